@@ -1,0 +1,1 @@
+"""Rocking podium structures: multi-storey buildings on kinematic bearings."""

@@ -1,0 +1,1 @@
+"""Structure, record and settings in; frozen results out."""

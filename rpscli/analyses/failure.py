@@ -1,0 +1,38 @@
+"""Why a history could not be carried to its end, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rpscli.physics import layout
+
+if TYPE_CHECKING:
+    from rpscli.physics.driver import History
+
+PHASE_NAMES = {
+    layout.FULL_CONTACT: "full contact",
+    layout.ROLLING: "rolling",
+    layout.ROCKING: "rocking",
+}
+
+REASONS = {
+    layout.FAILED_NOT_FINITE: (
+        "the motion is no longer finite; check masses and stiffnesses, or raise analysis.accuracy"
+    ),
+    layout.FAILED_TOO_MANY_EVENTS: (
+        "there are more events than analysis.max_events allows; raise it,"
+        " or raise analysis.recontact_tolerance"
+    ),
+    layout.FAILED_STEP_TOO_SMALL: (
+        "events follow each other without time passing; raise analysis.recontact_tolerance"
+    ),
+}
+
+
+def failure_text(history: History) -> str | None:
+    """Time, phase, rotation and reason of a failure; None if the history ended well."""
+    reason = REASONS.get(int(history.outcome))
+    if reason is None:
+        return None
+    phase = PHASE_NAMES[int(history.motion)]
+    return f"at t = {history.time:.6g} s, {phase}, theta = {history.rotation:.6g} rad: {reason}"

@@ -1,0 +1,181 @@
+"""Modes of the fixed base and of the linearised uplifted structure."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FixedBaseModes:
+    """Modes of the building in full contact, ascending in frequency."""
+
+    frequencies: Array
+    """(n,) [rad/s]."""
+    damping: Array
+    """(n,) critical damping ratios."""
+    shapes: Array
+    """(n, n), one a column, scaled to 1 at the largest component."""
+
+    @property
+    def periods(self) -> Array:
+        """(n,) [s]."""
+        return 2.0 * math.pi / self.frequencies
+
+
+@dataclass(frozen=True, eq=False)
+class UpliftedModes:
+    """Modes after uplift, linearised about theta = 0; ascending in frequency."""
+
+    eigenvalues: NDArray[np.complex128]
+    """(2 n + 2,) the storey's own pair first, then the pairs of the vibration modes [1/s]."""
+    frequencies: Array
+    """(n,) omega_u = |lambda| of the vibration modes [rad/s]."""
+    damping: Array
+    """(n,) xi_u = -Re(lambda)/|lambda|."""
+    frequency_ratio: Array
+    """(n,) omega_u/omega_0, mode by mode."""
+    damping_ratio: Array
+    """(n,) xi_u/xi_0."""
+    frequency_parameter: float
+    """p_ext of the storey's own mode [rad/s]; growth rate if the stiffness is negative."""
+    frequency_parameter_rigid: float
+    """p_hat sqrt|kappa| of the rigid frame [rad/s]."""
+    shapes: Array
+    """(n + 1, n + 1): storey's own mode first, then the vibration modes, one a column;
+    u_b first, then the floors, relative to the ground, scaled to 1 at the largest component."""
+
+    @property
+    def elastic_shapes(self) -> Array:
+        """(n, n + 1): floors relative to the cap beam, u_t - 1 u_b."""
+        return np.asarray(self.shapes[1:] - self.shapes[0])
+
+
+@dataclass(frozen=True, eq=False)
+class ModalResult:
+    """Modes of the structure in each state. Flat ends never roll: `rolling` is None then."""
+
+    structure: PodiumStructure
+    fixed_base: FixedBaseModes | None
+    rolling: UpliftedModes | None
+    rocking: UpliftedModes
+
+
+def modal(structure: PodiumStructure) -> ModalResult:
+    """Modal analysis in full contact, rolling and rocking (Theory, section 6; paper, section 3)."""
+    bearing, building = structure.bearing, structure.superstructure
+    rolling = None
+    if not bearing.is_flat:
+        rolling = _uplifted(structure, 2.0 * bearing.curvature_ratio - 1.0, bearing.alpha)
+    return ModalResult(
+        structure=structure,
+        fixed_base=_fixed_base(building) if building else None,
+        rolling=rolling,
+        rocking=_uplifted(structure, -1.0, bearing.alpha_wedge),
+    )
+
+
+def _fixed_base(building: Superstructure) -> FixedBaseModes:
+    return FixedBaseModes(
+        building.frequencies, building.damping_ratios, _scaled(np.array(building.shapes))
+    )
+
+
+def linearised_matrices(
+    structure: PodiumStructure, kappa: float, angle: float
+) -> tuple[Array, Array, Array]:
+    """M_L, C_L, K_L in the coordinates [2 R theta, u_t], each (n + 1, n + 1).
+
+    Parameters
+    ----------
+    kappa
+        Dimensionless stiffness of the storey: 2 rho - 1 rolling, -1 rocking.
+    angle
+        alpha rolling, alpha' rocking [rad].
+
+    Notes
+    -----
+    Paper, Table 2, where the sign of the (2 rho - 1) term must be +: with the printed one a larger
+    radius would soften the storey (Theory, section 9).
+    """
+    n = structure.storeys
+    M, C, K = (np.zeros((n + 1, n + 1)) for _ in range(3))
+    columns = 0.25 * structure.columns_mass * structure.bearing.inertia_ratio
+    M[0, 0] = columns + structure.cap_beam_mass + structure.superstructure_mass * angle**2
+    K[0, 0] = structure.weight * kappa / (2.0 * structure.bearing.semi_diagonal)
+    if (building := structure.superstructure) is not None:
+        M[1:, 1:] = building.mass_matrix
+        for whole, part in ((C, building.damping_matrix), (K, building.stiffness_matrix)):
+            whole[0, 0] += part.sum()
+            whole[0, 1:] = whole[1:, 0] = -part.sum(axis=0)
+            whole[1:, 1:] = part
+    return M, C, K
+
+
+def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> UpliftedModes:
+    M, C, K = linearised_matrices(structure, kappa, angle)
+    size = len(M)
+    state = np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
+    values, vectors = np.linalg.eig(state)
+    order = np.argsort(np.abs(values), kind="stable")
+    values, vectors = values[order].astype(complex), vectors[:size, order]
+    if kappa == 0.0:
+        # A defective double zero: rounding splits it into +-sqrt(eps), which is no frequency.
+        values[:2], vectors[:, :2] = 0.0, 1.0
+    pairs = _pairs(values[2:])
+    frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])
+    damping = np.array([-(a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
+    columns = [int(np.argmax(values[:2].real)), *(2 + index for *_, index in pairs)]
+    building = structure.superstructure
+    omega = building.frequencies if building else np.empty(0)
+    xi = building.damping_ratios if building else np.empty(0)
+    rigid = structure.rigid_frequency_parameter * math.sqrt(abs(kappa))
+    return UpliftedModes(
+        eigenvalues=np.concatenate([values[:2], *([a, b] for a, b, _ in pairs)]),
+        frequencies=frequencies,
+        damping=damping,
+        frequency_ratio=frequencies / omega,
+        damping_ratio=damping / xi,
+        frequency_parameter=math.sqrt(abs(values[0] * values[1])),
+        frequency_parameter_rigid=rigid,
+        shapes=_scaled(np.column_stack([_real_shape(vectors[:, i]) for i in columns])),
+    )
+
+
+def _over(M: Array, X: Array) -> Array:
+    # M is diagonal: dividing rows is exact where a solver would round.
+    return np.asarray(X / np.diag(M)[:, None])
+
+
+def _pairs(values: NDArray[np.complex128]) -> list[tuple[complex, complex, int]]:
+    """Eigenvalues two by two, ascending in frequency, with the index of the first of each pair.
+
+    Conjugates belong together. Real ones come from overdamped modes, of which higher modes have
+    the larger fast and the smaller slow root: the outermost two belong together, and so inwards.
+    """
+    oscillating = [i for i, v in enumerate(values) if v.imag > 0.0]
+    pairs = [(values[i], values[i].conjugate(), i) for i in oscillating]
+    real = sorted((i for i, v in enumerate(values) if v.imag == 0.0), key=lambda i: abs(values[i]))
+    half = len(real) // 2
+    pairs += [(values[real[j]], values[real[-1 - j]], real[j]) for j in range(half)]
+    return sorted(pairs, key=lambda pair: abs(pair[0] * pair[1]))
+
+
+def _real_shape(vector: NDArray[np.complex128]) -> Array:
+    """The shape at the instant at which its largest component is at its peak."""
+    largest = vector[np.argmax(np.abs(vector))]
+    return np.asarray((vector / largest).real)
+
+
+def _scaled(shapes: Array) -> Array:
+    """Columns scaled to 1 at the largest component, the roof positive."""
+    peak = np.max(np.abs(shapes), axis=0)
+    return np.asarray(shapes / np.where(shapes[-1] < 0.0, -peak, peak))

@@ -1,0 +1,147 @@
+"""Static behaviour: the storey alone, and the whole structure under lateral floor forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
+
+Array = NDArray[np.float64]
+PatternName = Literal["uniform", "triangular", "first_mode"]
+
+PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")
+
+
+@dataclass(frozen=True, eq=False)
+class StoreyCurve:
+    """Restoring force of the storey against its motion, from 0+ to the end of the curve."""
+
+    rotation: Array
+    """(points,) |theta| [rad]."""
+    displacement: Array
+    """(points,) u_b [m]."""
+    force: Array
+    """(points,) F = W B/C [N]."""
+    lift: Array
+    """(points,) v_b [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class CapacityCurve:
+    """Whole structure under floor forces lambda p: elastic to the uplift, rigid storey above."""
+
+    pattern: str
+    forces: Array
+    """(n,) p, scaled to sum 1."""
+    roof_displacement: Array
+    """(points,) [m]."""
+    cap_beam_displacement: Array
+    """(points,) [m]."""
+    base_shear: Array
+    """(points,) lambda [N]."""
+    roof_displacement_at_uplift: float
+    """[m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class PushoverResult:
+    """Static characteristics of the storey and capacity curves of the structure."""
+
+    structure: PodiumStructure
+    uplift_force: float
+    critical_rotation: float
+    critical_displacement: float
+    initial_stiffness: float
+    curve: StoreyCurve
+    capacity: tuple[CapacityCurve, ...]
+
+
+def pushover(
+    structure: PodiumStructure,
+    *,
+    patterns: Sequence[PatternName | Sequence[float]] = PATTERNS,
+    points: int = 201,
+) -> PushoverResult:
+    """Storey curve to theta_cr, and capacity curves for the given load patterns.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building; without a building there are no capacity curves.
+    patterns
+        ``uniform`` (forces as the masses), ``triangular`` (mass times height), ``first_mode``
+        (mass times fixed-base first mode), or floor forces from the bottom.
+    points
+        Points of each curve, beta being one of them where the storey rolls.
+
+    Raises
+    ------
+    ValueError
+        If a given pattern has the wrong length or does not push.
+
+    Notes
+    -----
+    F(theta) = W B/C; after uplift lambda sum(p) = F(theta) and the floors stand at
+    1 u_b + lambda K^-1 p (Theory, section 5; paper, Figure 1c).
+    """
+    end, beta = structure.critical_rotation, structure.bearing.beta
+    rotation = np.linspace(0.0, end, points)
+    if 0.0 < beta < end:
+        rotation = np.sort(np.append(rotation, beta))
+    force, displacement, lift = structure.path(rotation)
+    curve = StoreyCurve(rotation, displacement, force, lift)
+    building = structure.superstructure
+    return PushoverResult(
+        structure=structure,
+        uplift_force=structure.uplift_force,
+        critical_rotation=end,
+        critical_displacement=float(displacement[-1]),
+        initial_stiffness=structure.initial_stiffness,
+        curve=curve,
+        capacity=tuple(_capacity(building, curve, p) for p in patterns) if building else (),
+    )
+
+
+def _capacity(
+    building: Superstructure, curve: StoreyCurve, pattern: PatternName | Sequence[float]
+) -> CapacityCurve:
+    forces = load_pattern(building, pattern)
+    sway = np.linalg.solve(building.stiffness_matrix, forces)
+    base_shear = np.concatenate([[0.0], curve.force])
+    base = np.concatenate([[0.0], curve.displacement])
+    return CapacityCurve(
+        pattern=pattern if isinstance(pattern, str) else "given",
+        forces=forces,
+        roof_displacement=base + base_shear * sway[-1],
+        cap_beam_displacement=base,
+        base_shear=base_shear,
+        roof_displacement_at_uplift=float(curve.force[0] * sway[-1]),
+    )
+
+
+def load_pattern(building: Superstructure, pattern: PatternName | Sequence[float]) -> Array:
+    """Floor forces (n,) of sum 1, from the bottom."""
+    if isinstance(pattern, str):
+        n = building.storeys
+        heights = building.storey_heights
+        height = np.arange(1.0, n + 1.0) if heights is None else np.cumsum(heights)
+        shape = {
+            "uniform": np.ones(n),
+            "triangular": height,
+            "first_mode": building.shapes[:, 0],
+        }[pattern]
+        forces = building.masses * shape
+    else:
+        forces = np.asarray(pattern, dtype=float)
+    if forces.shape != (building.storeys,) or not np.isfinite(forces).all() or forces.sum() <= 0.0:
+        raise ValueError(
+            f"the load pattern must be {building.storeys} floor forces from the bottom with a"
+            f" sum > 0, not {forces.tolist()}"
+        )
+    return np.asarray(forces / forces.sum())

@@ -1,0 +1,38 @@
+"""How a time history is run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class TimeHistorySettings:
+    """Choices of the analysis that are no property of the structure.
+
+    Parameters
+    ----------
+    free_vibration
+        Time after the record [s]; None goes on until no new maximum is possible (Theory,
+        section 3), for at most `LONGEST_FREE_VIBRATION`.
+    recontact_tolerance
+        After an impact the storey locks when the next excursion stays below this times alpha.
+    overturning_limit
+        The structure counts as overturned at this times theta_cr.
+    accuracy
+        Divides the default time step; 2 gives steps half as long.
+    max_events
+        A history with more events ends as `failed`.
+    initial_rotation
+        theta at the start [rad], released from rest (snap-back); 0 is full contact.
+    """
+
+    free_vibration: float | None = None
+    recontact_tolerance: float = 1e-6
+    overturning_limit: float = 2.0
+    accuracy: float = 1.0
+    max_events: int = 100_000
+    initial_rotation: float = 0.0
+
+
+LONGEST_FREE_VIBRATION = 120.0
+"""Where free vibration `auto` gives up waiting for rest [s]."""

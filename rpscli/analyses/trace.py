@@ -1,0 +1,135 @@
+"""Everything that follows from the stored samples of a history, sample by sample."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.model.podium import PodiumStructure
+from rpscli.physics import geometry, layout
+from rpscli.physics.parameters import Ground
+
+Array = NDArray[np.float64]
+
+EventKind = Literal[
+    "uplift",
+    "impact",
+    "recontact",
+    "rolling_to_rocking",
+    "rocking_to_rolling",
+    "critical_rotation_passed",
+    "overturning",
+]
+
+EVENT_NAMES: dict[int, EventKind] = {
+    layout.UPLIFT: "uplift",
+    layout.IMPACT: "impact",
+    layout.RECONTACT: "recontact",
+    layout.ROLLING_TO_ROCKING: "rolling_to_rocking",
+    layout.ROCKING_TO_ROLLING: "rocking_to_rolling",
+    layout.CRITICAL_PASSAGE: "critical_rotation_passed",
+    layout.OVERTURNING: "overturning",
+}
+
+
+@dataclass(frozen=True)
+class Event:
+    """One event of a history. `energy_lost` [J] is negative where an impact created energy."""
+
+    time: float
+    kind: EventKind
+    rotation: float
+    rotation_rate_before: float
+    rotation_rate_after: float
+    energy_lost: float
+
+
+def event_list(log: Array) -> tuple[Event, ...]:
+    """Events from the rows of the kernel's log."""
+    return tuple(
+        Event(row[0], EVENT_NAMES[int(row[1])], row[2], row[3], row[4], row[5])
+        for row in log.tolist()
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Histories at the record's samples and on through the free vibration, SI units.
+
+    Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements
+    are relative to the ground; `floor_accelerations` are absolute. `phase` is 0 in full contact,
+    1 rolling, 2 rocking. `driving_moment` is what the ground and the building do about the
+    contact points, 2 R C (V - (N m_c/2 + m_b) a_g); in slow motion it equals the restoring moment
+    2 R W s B(x) [N m]. Energies [J] are those of Theory, section 8.
+    """
+
+    time: Array
+    ground_acceleration: Array
+    rotation: Array
+    rotation_rate: Array
+    phase: NDArray[np.int8]
+    cap_beam_displacement: Array
+    lift: Array
+    floor_displacements: Array
+    drifts: Array
+    storey_shears: Array
+    floor_accelerations: Array
+    driving_moment: Array
+    energy_input: Array
+    energy_damped: Array
+    energy_impact: Array
+    energy_stored: Array
+
+
+def trace_of(structure: PodiumStructure, ground: Ground, samples: Array) -> Trace:
+    """Histories from the kernel's rows (`layout.ROW_...`)."""
+    n = structure.storeys
+    theta, rate = samples[:, layout.ROW_ROTATION], samples[:, layout.ROW_RATE]
+    u = samples[:, layout.ROW_FLOORS : layout.ROW_FLOORS + n]
+    du = samples[:, layout.ROW_FLOORS + n :]
+    b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
+    B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
+    base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
+    a_g = np.zeros(len(samples))
+    length = min(len(samples), len(ground.horizontal))
+    a_g[:length] = ground.horizontal[:length]
+    drifts = np.diff(u, axis=1, prepend=base[:, None])
+    shears, forces = np.zeros_like(u), np.zeros_like(u)
+    if (building := structure.superstructure) is not None:
+        shears = building.stiffnesses * drifts
+        forces = (u - base[:, None]) @ building.stiffness_matrix
+        forces = forces + (du - base_rate[:, None]) @ building.damping_matrix
+    beam = 0.5 * structure.columns_mass + structure.cap_beam_mass
+    stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
+    stored += 0.5 * tilting_inertia(structure, B, C, theta) * rate**2
+    if building is not None:
+        stored += 0.5 * du**2 @ building.masses
+    return Trace(
+        time=np.arange(len(samples), dtype=np.float64) * ground.dt,
+        ground_acceleration=a_g,
+        rotation=theta,
+        rotation_rate=rate,
+        phase=samples[:, layout.ROW_PHASE].astype(np.int8),
+        cap_beam_displacement=base,
+        lift=diameter * lift,
+        floor_displacements=u,
+        drifts=drifts,
+        storey_shears=shears,
+        floor_accelerations=-forces / building.masses if building is not None else forces,
+        driving_moment=diameter * C * (forces.sum(axis=1) - beam * a_g),
+        energy_input=samples[:, layout.ROW_INPUT],
+        energy_damped=samples[:, layout.ROW_DAMPED],
+        energy_impact=samples[:, layout.ROW_LOST],
+        energy_stored=stored,
+    )
+
+
+def tilting_inertia(structure: PodiumStructure, B: Array, C: Array, theta: Array) -> Array:
+    """N m_c R^2 A(x) along a path [kg m2]."""
+    S = B**2 + C**2
+    beam = 4.0 * structure.gamma
+    A = structure.bearing.inertia_ratio - 1.0 + (1.0 + beam) * S + beam * structure.eta * B**2
+    return structure.columns_mass * structure.bearing.semi_diagonal**2 * A * np.ones_like(theta)

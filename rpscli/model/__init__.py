@@ -1,0 +1,1 @@
+"""The structure as frozen objects with the published formulae."""

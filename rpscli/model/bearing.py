@@ -1,0 +1,167 @@
+"""One kinematic bearing: its shape, and what follows from shape alone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rpscli.physics import geometry
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """A free-standing column whose ends are flat in the middle and curved outside.
+
+    Parameters
+    ----------
+    semi_diagonal
+        R = sqrt(H^2 + B^2) of the half-height H and the half-width B of the flat part [m].
+    slenderness
+        tan(alpha) = B/H.
+    wedge_slenderness
+        tan(alpha') = B'/H, B' the half-width up to which the ends are curved. Flat ends ignore it.
+    curvature_ratio
+        rho = r/(2H), r the radius of the arcs; 0 for flat ends (Housner's block).
+    inertia_ratio
+        I_o/(m_c R^2), I_o about an edge of the flat part; 4/3 for a rectangular block.
+
+    Raises
+    ------
+    ValueError
+        If a size is not positive, or if the arc cannot span from B to B'
+        (0 <= sin(beta) <= 1 fails).
+
+    Notes
+    -----
+    Theory, section 1; paper, Figure 1b.
+
+    Examples
+    --------
+    >>> bearing = Bearing(1.5, 0.15, 0.30, 0.5)
+    >>> round(bearing.beta, 4), round(bearing.critical_rotation, 4)
+    (0.1506, 0.2946)
+    """
+
+    semi_diagonal: float
+    slenderness: float
+    wedge_slenderness: float
+    curvature_ratio: float
+    inertia_ratio: float = 4.0 / 3.0
+
+    def __post_init__(self) -> None:
+        """Refuse a shape that cannot be built."""
+        for name in ("semi_diagonal", "slenderness", "inertia_ratio"):
+            if not (value := getattr(self, name)) > 0.0:
+                raise ValueError(f"{name} = {value} must be > 0")
+        if self.curvature_ratio < 0.0:
+            raise ValueError(
+                f"curvature_ratio = {self.curvature_ratio} must be >= 0; 0 = flat ends"
+            )
+        if self.is_flat:
+            return
+        if self.wedge_slenderness < self.slenderness:
+            raise ValueError(
+                f"wedge_slenderness = {self.wedge_slenderness} must be >= slenderness"
+                f" = {self.slenderness}: the arcs lie outside the flat part"
+            )
+        if self._sin_beta > 1.0:
+            raise ValueError(
+                f"curvature_ratio = {self.curvature_ratio} must be >="
+                f" {0.5 * (self.wedge_slenderness - self.slenderness):.6g} ="
+                " (tan alpha' - tan alpha)/2: a smaller arc does not reach the wedge's edge"
+            )
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether the ends are flat: the column rocks from the start and never rolls."""
+        return self.curvature_ratio == 0.0
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness angle of the flat part [rad]."""
+        return math.atan(self.slenderness)
+
+    @property
+    def alpha_wedge(self) -> float:
+        """alpha': slenderness angle of the curved part's edge [rad]; alpha for flat ends."""
+        return self.alpha if self.is_flat else math.atan(self.wedge_slenderness)
+
+    @property
+    def _sin_beta(self) -> float:
+        return (self.wedge_slenderness - self.slenderness) / (2.0 * self.curvature_ratio)
+
+    @property
+    def beta(self) -> float:
+        """Rotation at which rolling ends and rocking begins [rad]; 0 for flat ends."""
+        return 0.0 if self.is_flat else math.asin(self._sin_beta)
+
+    @property
+    def half_height(self) -> float:
+        """H [m]."""
+        return self.semi_diagonal * math.cos(self.alpha)
+
+    @property
+    def half_width(self) -> float:
+        """B, half the flat part [m]."""
+        return self.semi_diagonal * math.sin(self.alpha)
+
+    @property
+    def radius(self) -> float:
+        """r, the radius of the arcs [m]."""
+        return 2.0 * self.half_height * self.curvature_ratio
+
+    @cached_property
+    def rolling(self) -> geometry.Phase:
+        """Constants of the rolling phase."""
+        return geometry.rolling_phase(self.alpha, self.curvature_ratio)
+
+    @cached_property
+    def rocking(self) -> geometry.Phase:
+        """Constants of the rocking phase."""
+        return geometry.rocking_phase(self.alpha, self.curvature_ratio, self.beta)
+
+    @cached_property
+    def critical_rotation(self) -> float:
+        """theta_cr: where the weight stops restoring; the smallest positive root of B [rad].
+
+        The paper's Eq. 1 is its first-order form, see `critical_rotation_of_paper`.
+        """
+        return geometry.critical_rotation(self.rolling, self.rocking, self.beta)
+
+    @property
+    def overturns_rolling(self) -> bool:
+        """Whether theta_cr is reached before the contact arrives at the arc's end."""
+        return self.critical_rotation < self.beta
+
+    @property
+    def critical_rotation_of_paper(self) -> float:
+        """theta_cr by Eq. 1 of the paper [rad], which jumps by about 2 % at its rho_cr."""
+        if self.curvature_ratio <= self.critical_curvature_ratio_of_paper:
+            return math.atan2(self.slenderness, 1.0 - 2.0 * self.curvature_ratio)
+        wedge = math.tan(self.alpha_wedge)
+        lowered = 1.0 - 2.0 * self.curvature_ratio * (1.0 - math.cos(self.beta))
+        return math.atan2(wedge, lowered)
+
+    @property
+    def critical_curvature_ratio_of_paper(self) -> float:
+        """rho_cr = (1 - tan alpha/tan alpha')/2 (paper, Eq. 1): sin beta taken as tan beta."""
+        return 0.5 * (1.0 - self.slenderness / math.tan(self.alpha_wedge))
+
+    @cached_property
+    def critical_curvature_ratio(self) -> float:
+        """The rho at which theta_cr = beta exactly; above it the column overturns rocking.
+
+        Solves tan alpha/(1 - 2 rho) = tan beta(rho) (Theory, section 9). 0 for flat ends.
+        """
+        rise = math.tan(self.alpha_wedge) - self.slenderness
+        if rise <= 0.0:
+            return 0.0
+        # With t = 2 rho the condition squares to t^2 - rise^2 = (rise (1 - t)/tan(alpha))^2, a
+        # quadratic whose root between rise and 1 is wanted (beta from 90 degrees down).
+        ratio = (rise / self.slenderness) ** 2
+        roots = np.roots([1.0 - ratio, 2.0 * ratio, -(rise**2) - ratio]).real
+        admissible = [t for t in roots if rise <= t <= 1.0]
+        return 0.5 * float(min(admissible)) if admissible else math.nan

@@ -1,0 +1,70 @@
+"""What happens when the columns fall back on their flat ends and go over to the other edge."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from rpscli.model.bearing import Bearing
+
+ImpactKind = Literal["rigid", "flexible", "value"]
+
+
+@dataclass(frozen=True)
+class ImpactLaw:
+    """theta'+ = e theta'- at theta = 0, and what the floors do at that instant.
+
+    Parameters
+    ----------
+    kind
+        ``rigid``: all floors jump with the cap beam (paper, Eq. 6). ``flexible``: storey springs
+        carry no impulse, so the floors keep their absolute velocities. ``value``: e is measured;
+        the floors jump as in ``rigid``.
+    restitution
+        e of the law ``value``.
+    factor
+        Multiplies the e of any law.
+
+    Notes
+    -----
+    Theory, section 4. The paper's coefficient c is e^2.
+    """
+
+    kind: ImpactKind = "rigid"
+    restitution: float | None = None
+    factor: float = 1.0
+
+    @property
+    def floors_jump(self) -> bool:
+        """Whether the floors take part in the velocity jump of the cap beam."""
+        return self.kind != "flexible"
+
+    def ratio(self, bearing: Bearing, gamma: float, eta: float) -> float:
+        """Restitution e = theta'+/theta'- of a bearing with mass ratios gamma and eta.
+
+        A value <= 0 means that the column does not go over to its other edge; the case is then
+        outside the model.
+
+        >>> round(ImpactLaw().ratio(Bearing(1.5, 0.15, 0.3, 0.5), 10.0, 6.0), 5)
+        0.95604
+        """
+        law = {"rigid": rigid_restitution, "flexible": flexible_restitution}.get(self.kind)
+        if law is not None:
+            return self.factor * law(bearing, gamma, eta)
+        if self.restitution is None:
+            raise ValueError("the impact law `value` needs a restitution")
+        return self.factor * self.restitution
+
+
+def rigid_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
+    """e if the floors move with the cap beam (paper, Eq. 6, where c = e^2)."""
+    Io, carried = bearing.inertia_ratio, 4.0 * gamma * (1.0 + eta)
+    return 1.0 - 2.0 * math.sin(bearing.alpha) ** 2 * (1.0 + carried) / (Io + carried)
+
+
+def flexible_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
+    """e if only the vertical momentum of the floors takes part (Theory, section 4)."""
+    Io, a = bearing.inertia_ratio, bearing.alpha
+    sin2, beam, floors = math.sin(a) ** 2, 4.0 * gamma, 4.0 * gamma * eta * math.sin(a) ** 2
+    return (Io - 2.0 * sin2 + beam * math.cos(2.0 * a) - floors) / (Io + beam + floors)

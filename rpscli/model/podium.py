@@ -1,0 +1,159 @@
+"""The rocking podium structure: columns, cap beam and the building on it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.model.bearing import Bearing
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.superstructure import Superstructure
+from rpscli.physics import geometry
+
+
+@dataclass(frozen=True, eq=False)
+class PodiumStructure:
+    """N kinematic bearings under a cap beam that carries a shear building.
+
+    Parameters
+    ----------
+    bearing
+        Shape of every column.
+    columns_mass
+        N m_c, all columns together [kg].
+    cap_beam_mass
+        m_b [kg]; 0 only without a superstructure (N independent free-standing columns).
+    superstructure
+        The building, or None for a rigid rolling and rocking frame.
+    impact_law
+        Restitution at theta = 0.
+    gravity
+        g [m/s2].
+
+    Raises
+    ------
+    ValueError
+        If a mass is not admissible, or the restitution is not in (0, 1]: with e <= 0 the columns
+        would not go over to the other edge (Theory, section 4).
+
+    Notes
+    -----
+    Theory, section 2 and 5.
+    """
+
+    bearing: Bearing
+    columns_mass: float
+    cap_beam_mass: float
+    superstructure: Superstructure | None = None
+    impact_law: ImpactLaw = field(default_factory=ImpactLaw)
+    gravity: float = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        """Refuse masses and restitutions outside the model."""
+        if not (self.columns_mass > 0.0 and self.cap_beam_mass >= 0.0 and self.gravity > 0.0):
+            raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0")
+        if self.superstructure is not None and self.cap_beam_mass == 0.0:
+            raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
+        if not 0.0 < self.restitution <= 1.0:
+            raise ValueError(
+                f"restitution e = {self.restitution:.4g} must be in (0, 1]: with e <= 0 the"
+                " columns would not go over to their other edge; use more slender columns"
+                " (a smaller tan alpha) or give a measured value"
+            )
+
+    @property
+    def storeys(self) -> int:
+        """n; 0 for a rigid frame."""
+        return 0 if self.superstructure is None else self.superstructure.storeys
+
+    @property
+    def superstructure_mass(self) -> float:
+        """M_tot [kg]."""
+        return 0.0 if self.superstructure is None else self.superstructure.mass
+
+    @property
+    def gamma(self) -> float:
+        """m_b/(N m_c)."""
+        return self.cap_beam_mass / self.columns_mass
+
+    @property
+    def eta(self) -> float:
+        """M_tot/m_b; 0 without a superstructure."""
+        return self.superstructure_mass / self.cap_beam_mass if self.superstructure else 0.0
+
+    @property
+    def gamma_total(self) -> float:
+        """gamma (1 + eta): the mass ratio if the superstructure were rigid."""
+        return self.gamma * (1.0 + self.eta)
+
+    @property
+    def restoring_mass(self) -> float:
+        """N m_c/2 + m_b + M_tot: what the bearings lift, reduced to the cap beam [kg]."""
+        return 0.5 * self.columns_mass + self.cap_beam_mass + self.superstructure_mass
+
+    @property
+    def weight(self) -> float:
+        """W = restoring mass times g [N]; v_b lifts it."""
+        return self.restoring_mass * self.gravity
+
+    @property
+    def critical_rotation(self) -> float:
+        """theta_cr [rad]."""
+        return self.bearing.critical_rotation
+
+    @property
+    def restitution(self) -> float:
+        """e of the impact law."""
+        return self.impact_law.ratio(self.bearing, self.gamma, self.eta)
+
+    @property
+    def uplift_acceleration(self) -> float:
+        """Ground acceleration that uplifts quasi-statically: g tan(alpha) [m/s2]."""
+        return self.gravity * self.bearing.slenderness
+
+    @property
+    def uplift_force(self) -> float:
+        """F(0) = W tan(alpha): horizontal force at the cap beam that uplifts it [N]."""
+        return self.weight * self.bearing.slenderness
+
+    @property
+    def static_base_shear(self) -> float:
+        """V_st = M_tot g tan(alpha), the superstructure's base shear at quasi-static uplift [N]."""
+        return self.superstructure_mass * self.uplift_acceleration
+
+    @property
+    def initial_stiffness(self) -> float:
+        """dF/du_b at u_b = 0+ [N/m], exact.
+
+        F = W B/C and du_b = 2 R C dx, so it is W (B'C - B^2)/(2 R C^3) at x = 0; to first order in
+        alpha W (2 rho - 1)/(2 R) (Theory, section 5).
+        """
+        phase = self.bearing.rocking if self.bearing.is_flat else self.bearing.rolling
+        B = geometry.lever_arm(phase, 1.0, 0.0)
+        C = geometry.path_height(phase, 1.0, 0.0)
+        slope = (phase.c - C) * C - B**2
+        return self.weight * slope / (2.0 * self.bearing.semi_diagonal * C**3)
+
+    @cached_property
+    def rigid_frequency_parameter(self) -> float:
+        """p_hat of the rigid flat-ended frame with gamma_total [rad/s] (Theory, section 6)."""
+        carried = self.gamma_total
+        ratio = (1.0 + 2.0 * carried) / (self.bearing.inertia_ratio + 4.0 * carried)
+        return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)
+
+    def path(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """Restoring force F, cap beam displacement u_b and lift v_b at |theta| [rad].
+
+        Returns
+        -------
+        Three arrays of the shape of `rotation`: F = W B/C [N], u_b [m], v_b [m].
+        """
+        b = self.bearing
+        B, C, u, v = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
+        diameter = 2.0 * b.semi_diagonal
+        return self.weight * B / C, diameter * u, diameter * v

@@ -1,0 +1,191 @@
+"""The building above the cap beam: a shear building with one horizontal freedom a floor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rpscli.model.damping import ModalDamping, RayleighDamping
+
+Profile = Literal["sine", "uniform", "linear", "flexural"]
+
+
+def profile_shape(storeys: int, profile: Profile) -> NDArray[np.float64]:
+    """First fixed-base mode that a profile asks for, (n,), 1 at the roof.
+
+    ``sine`` is the usual shear profile sin(pi i/2n) (Theory, section 7).
+    """
+    height = np.arange(1, storeys + 1) / storeys
+    if profile == "linear":
+        return height
+    if profile == "flexural":
+        return 1.0 - np.cos(0.5 * math.pi * height)
+    return np.sin(0.5 * math.pi * height)
+
+
+def profile_stiffnesses(
+    masses: ArrayLike, period: float, profile: Profile = "sine"
+) -> NDArray[np.float64]:
+    """Storey stiffnesses that give a fixed-base first period and mode.
+
+    Parameters
+    ----------
+    masses
+        (n,) floor masses from the bottom [kg].
+    period
+        T_1 of the building on a fixed base [s].
+    profile
+        ``sine``, ``linear`` or ``flexural`` first mode, or ``uniform`` stiffness.
+
+    Returns
+    -------
+    (n,) stiffnesses from the bottom [N/m].
+
+    Notes
+    -----
+    k_i (Phi_i - Phi_{i-1}) = w1^2 sum_{j>=i} m_j Phi_j: the storey shear of free vibration in the
+    mode Phi (Theory, section 7).
+
+    Examples
+    --------
+    One storey: k = m (2 pi/T)^2.
+
+    >>> float(profile_stiffnesses([1000.0], 2.0 * math.pi).round(6)[0])
+    1000.0
+    """
+    m = np.asarray(masses, dtype=float)
+    w1 = 2.0 * math.pi / period
+    if profile == "uniform":
+        first = shear_modes(m, np.ones_like(m))[0][0]
+        return np.full_like(m, (w1 / first) ** 2)
+    shape = profile_shape(len(m), profile)
+    shear = w1**2 * np.cumsum((m * shape)[::-1])[::-1]
+    return np.asarray(shear / np.diff(shape, prepend=0.0))
+
+
+def stiffness_matrix(stiffnesses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """K of a shear building, (n, n), from storey stiffnesses (n,) [N/m]."""
+    k = stiffnesses
+    above = np.append(k[1:], 0.0)
+    return np.asarray(np.diag(k + above) - np.diag(k[1:], 1) - np.diag(k[1:], -1))
+
+
+def shear_modes(
+    masses: NDArray[np.float64], stiffnesses: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Frequencies (n,) [rad/s], ascending, and mass-normalised shapes (n, n), one a column.
+
+    The sign of a shape is fixed by a positive roof.
+    """
+    root = 1.0 / np.sqrt(masses)
+    squares, vectors = np.linalg.eigh(root[:, None] * stiffness_matrix(stiffnesses) * root)
+    shapes = root[:, None] * vectors
+    return np.sqrt(squares), shapes * np.where(shapes[-1] < 0.0, -1.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Superstructure:
+    """A shear building of n floors.
+
+    Parameters
+    ----------
+    masses
+        (n,) floor masses from the bottom [kg].
+    stiffnesses
+        (n,) storey stiffnesses from the bottom [N/m].
+    damping
+        Rayleigh or modal damping of the building on a fixed base.
+    storey_heights
+        (n,) [m]; only for drift ratios and pictures.
+
+    Raises
+    ------
+    ValueError
+        If lengths differ or a value is not positive.
+    """
+
+    masses: NDArray[np.float64]
+    stiffnesses: NDArray[np.float64]
+    damping: RayleighDamping | ModalDamping
+    storey_heights: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        """Take any sequence; refuse what is no building."""
+        for name in ("masses", "stiffnesses", "storey_heights"):
+            if (value := getattr(self, name)) is not None:
+                object.__setattr__(self, name, _positive(name, value))
+        lengths = {
+            len(array)
+            for array in (self.masses, self.stiffnesses, self.storey_heights)
+            if array is not None
+        }
+        if lengths != {self.storeys} or not self.storeys:
+            raise ValueError(f"masses, stiffnesses and heights must have one length: {lengths}")
+
+    @property
+    def storeys(self) -> int:
+        """n."""
+        return len(self.masses)
+
+    @property
+    def mass(self) -> float:
+        """M_tot [kg]."""
+        return float(self.masses.sum())
+
+    @cached_property
+    def mass_matrix(self) -> NDArray[np.float64]:
+        """M, (n, n) [kg]."""
+        return np.diag(self.masses)
+
+    @cached_property
+    def stiffness_matrix(self) -> NDArray[np.float64]:
+        """K, (n, n) [N/m]."""
+        return stiffness_matrix(self.stiffnesses)
+
+    @cached_property
+    def damping_matrix(self) -> NDArray[np.float64]:
+        """C, (n, n) [N s/m]."""
+        return self.damping.matrix(self)
+
+    @cached_property
+    def _modes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return shear_modes(self.masses, self.stiffnesses)
+
+    @property
+    def frequencies(self) -> NDArray[np.float64]:
+        """Fixed-base circular frequencies, (n,), ascending [rad/s]."""
+        return self._modes[0]
+
+    @property
+    def shapes(self) -> NDArray[np.float64]:
+        """Fixed-base mass-normalised mode shapes, (n, n), one a column [kg^-1/2]."""
+        return self._modes[1]
+
+    @cached_property
+    def damping_ratios(self) -> NDArray[np.float64]:
+        """Critical damping ratio of each fixed-base mode, (n,)."""
+        return self.damping.ratios(self.frequencies)
+
+    @property
+    def periods(self) -> NDArray[np.float64]:
+        """Fixed-base periods, (n,), descending [s]."""
+        return 2.0 * math.pi / self.frequencies
+
+    @property
+    def participation(self) -> NDArray[np.float64]:
+        """Gamma_r = phi_r^T M 1 of the mass-normalised modes, (n,) [kg^1/2]."""
+        return self.shapes.T @ self.masses
+
+
+def _positive(name: str, values: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    array = np.array(values, dtype=float)
+    if array.ndim != 1 or not np.all(np.isfinite(array) & (array > 0.0)):
+        raise ValueError(f"{name} must be a list of finite values > 0, from the bottom")
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,75 @@
+"""Compilation of the kernels, cached where the user may write.
+
+numba invalidates a cached function when its own file changes, not when a function that it inlines
+from another file does. The cache folder is therefore named after a digest of all kernel sources:
+what is found there always belongs to the program that runs.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@cache
+def cache_folder() -> Path | None:
+    """Folder of the compiled kernels; None if no place is writable.
+
+    ``RPS_CACHE_DIR`` wins, then the user's cache folder, then the system's temporary one.
+    """
+    digest = hashlib.sha256()
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    name = f"kernels-{digest.hexdigest()[:16]}"
+    home = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
+    places = [
+        os.environ.get("RPS_CACHE_DIR"),
+        Path(home) / "rps",
+        Path(tempfile.gettempdir()) / "rps",
+    ]
+    for place in places:
+        if place and _is_writable(folder := Path(place) / name):
+            return folder
+    return None
+
+
+def _is_writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def kernel(function: Function) -> Function:
+    """Compile at the first call, without the GIL, and keep the machine code on disk."""
+    folder = cache_folder()
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(folder or "")
+    try:
+        compiled: Function = numba.njit(
+            function, cache=folder is not None, nogil=True, error_model="numpy"
+        )
+    finally:
+        config.CACHE_DIR = before
+    return compiled
+
+
+def is_compiled(function: Callable[..., Any]) -> bool:
+    """Whether a kernel's machine code is in memory or on disk: calling it then starts at once."""
+    if getattr(function, "signatures", True):
+        return True
+    folder = cache_folder()
+    name = getattr(function, "__name__", "")
+    return folder is not None and any(folder.rglob(f"*.{name}-*.nbc"))
