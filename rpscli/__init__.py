@@ -1,1 +1,91 @@
-"""Rocking podium structures: multi-storey buildings on kinematic bearings."""
+"""Rocking podium structures: multi-storey buildings on kinematic bearings.
+
+The names below are imported when they are first used:
+
+>>> import rpscli
+>>> bearing = rpscli.Bearing(
+...     semi_diagonal=1.5, slenderness=0.15, wedge_slenderness=0.30, curvature_ratio=0.5
+... )
+>>> round(bearing.critical_rotation, 4)
+0.2946
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rpscli.analyses.demand import Demand, demand
+    from rpscli.analyses.modal import ModalResult, modal
+    from rpscli.analyses.pushover import PushoverResult, pushover
+    from rpscli.analyses.results import TimeHistoryResult
+    from rpscli.analyses.settings import TimeHistorySettings
+    from rpscli.analyses.timehistory import time_history
+    from rpscli.case.case import Case, load_case
+    from rpscli.errors import RpsError
+    from rpscli.model.bearing import Bearing
+    from rpscli.model.damping import ModalDamping, RayleighDamping
+    from rpscli.model.impact import ImpactLaw
+    from rpscli.model.podium import PodiumStructure
+    from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+    from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.source import load_record
+
+_HOMES = {
+    "rpscli.analyses.demand": ("Demand", "demand"),
+    "rpscli.analyses.modal": ("ModalResult", "modal"),
+    "rpscli.analyses.pushover": ("PushoverResult", "pushover"),
+    "rpscli.analyses.results": ("TimeHistoryResult",),
+    "rpscli.analyses.settings": ("TimeHistorySettings",),
+    "rpscli.analyses.timehistory": ("time_history",),
+    "rpscli.case.case": ("Case", "load_case"),
+    "rpscli.errors": ("RpsError",),
+    "rpscli.model.bearing": ("Bearing",),
+    "rpscli.model.damping": ("ModalDamping", "RayleighDamping"),
+    "rpscli.model.impact": ("ImpactLaw",),
+    "rpscli.model.podium": ("PodiumStructure",),
+    "rpscli.model.superstructure": ("Superstructure", "profile_stiffnesses"),
+    "rpscli.records.ground_motion": ("GroundMotion",),
+    "rpscli.records.source": ("load_record",),
+}
+
+__all__ = [
+    "Bearing",
+    "Case",
+    "Demand",
+    "GroundMotion",
+    "ImpactLaw",
+    "ModalDamping",
+    "ModalResult",
+    "PodiumStructure",
+    "PushoverResult",
+    "RayleighDamping",
+    "RpsError",
+    "Superstructure",
+    "TimeHistoryResult",
+    "TimeHistorySettings",
+    "__version__",
+    "demand",
+    "load_case",
+    "load_record",
+    "modal",
+    "profile_stiffnesses",
+    "pushover",
+    "time_history",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name now that it is wanted."""
+    from importlib import import_module  # noqa: PLC0415 -- not every import of rpscli needs it
+
+    if name == "__version__":
+        return import_module("rpscli.report.versions").program_version()
+    for module, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(module), name)
+    raise AttributeError(f"module 'rpscli' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

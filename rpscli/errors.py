@@ -57,3 +57,7 @@ class LimitExceeded(RpsError):
     """An acceptance limit of the case, or of `--fail-on`, was exceeded."""
 
     exit_code = 10
+
+
+class OutputError(RpsError):
+    """A result cannot be written: no permission, a full disk, a file where a folder should be."""

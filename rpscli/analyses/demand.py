@@ -1,25 +1,30 @@
-"""Largest demands of one history, without its samples: what studies are made of."""
+"""Largest demands of many histories, without their samples: what studies are made of."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.failure import failure_text
+from rpscli.analyses.history import History, empty_results, history_of, shape_of_one
 from rpscli.analyses.kernel_input import (
-    floor_parameters,
-    ground_parameters,
-    numerics,
-    podium_parameters,
+    aligned,
+    has_dense_damping,
+    joined_motions,
+    stacked_systems,
 )
-from rpscli.analyses.results import Outcome
+from rpscli.analyses.outcome import Outcome, outcome_of
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import OUTCOMES
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import layout
+from rpscli.physics.parameters import Points, Shape
 from rpscli.records.ground_motion import GroundMotion
+
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,13 +38,61 @@ class Demand:
     storey_shears: NDArray[np.float64]
     floor_accelerations: NDArray[np.float64]
     friction_demand: float
-    energy_input: float
     energy_impact: float
     energy_created: float
     creating_impacts: int
     uplifts: int
     impacts: int
     duration: float
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """One history to run: a structure under a record, both of its components times `scale`."""
+
+    structure: PodiumStructure
+    record: GroundMotion
+    settings: TimeHistorySettings = field(default_factory=TimeHistorySettings)
+    scale: float = 1.0
+    vertical: GroundMotion | None = None
+
+
+LANES = 8
+"""Histories that one core follows at once: doubles in a 512-bit register."""
+
+WORTH_LANES = 160
+"""Histories with the same number of storeys for which a kernel of their own is worth compiling.
+Fewer run in the kernel of single histories, which gives the same bits."""
+
+
+def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> list[Demand]:
+    """Largest demands of many histories.
+
+    Parameters
+    ----------
+    requests
+        In any order; structures and records that are the same object are stored once. Those with
+        the same number of storeys run together, in lanes of one core if there are many.
+    worth_lanes
+        How many are many: for studies that come in batches, 1 once the whole study is large.
+
+    Returns
+    -------
+    One demand a request, in their order. None of them depends on the others, or on the order.
+
+    Notes
+    -----
+    The kernels run without the GIL: call this from several threads to use several cores.
+    """
+    answers: dict[int, Demand] = {}
+    groups: dict[tuple[int, bool], list[int]] = {}
+    for i, request in enumerate(requests):
+        structure = request.structure
+        groups.setdefault((structure.storeys, has_dense_damping(structure)), []).append(i)
+    for members in groups.values():
+        histories = _run([requests[i] for i in members], worth_lanes)
+        answers.update(zip(members, map(demand_of, histories), strict=True))
+    return [answers[i] for i in range(len(requests))]
 
 
 def demand(
@@ -49,35 +102,70 @@ def demand(
     *,
     vertical: GroundMotion | None = None,
 ) -> Demand:
-    """Largest demands of the structure under a record; the kernel runs without the GIL.
+    """Largest demands of one history: those of `time_history`, without its samples."""
+    chosen = settings or TimeHistorySettings()
+    return demands([Request(structure, record, chosen, vertical=vertical)])[0]
 
-    The numbers are those of `time_history`, bit for bit: both run the same kernel.
-    """
+
+def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
     from rpscli.physics.driver import integrate  # noqa: PLC0415
 
-    settings = settings or TimeHistorySettings()
-    history = integrate(
-        podium_parameters(structure, settings),
-        floor_parameters(structure.superstructure),
-        ground_parameters(record, vertical),
-        numerics(structure, record.dt, settings),
-        np.empty((0, layout.ROW_FLOORS + 2 * structure.storeys)),
-        np.empty((0, layout.LOG_COLUMNS)),
-    )
-    given, _, lost, _ = (float(e) for e in history.energies)
+    systems = _Shelf[tuple[PodiumStructure, TimeHistorySettings]]()
+    motions = _Shelf[GroundMotion]()
+    rows = []
+    for r in requests:
+        record, vertical = aligned(r.record, r.vertical)
+        system = systems.place((id(r.structure), r.settings), (r.structure, r.settings))
+        along = motions.place((id(r.record), id(r.vertical)), record)
+        above = -1
+        if vertical is not None:
+            above = motions.place((id(r.vertical), id(r.record), "up"), vertical)
+        rows.append((system, along, above))
+    system, motion, upwards = np.array(rows, dtype=np.int64).T.copy()
+    points = Points(system, motion, upwards, np.array([r.scale for r in requests]))
+    results = empty_results(len(requests), requests[0].structure.storeys)
+    many = len(requests) >= worth_lanes
+    shape = (shape_of_many if many else shape_of_one)(requests[0].structure)
+    integrate(stacked_systems(systems.items), joined_motions(motions.items), points, shape, results)
+    return [history_of(*row) for row in zip(results.numbers, results.integers, strict=True)]
+
+
+class _Shelf(Generic[Item]):
+    """Distinct items in the order of their first use."""
+
+    def __init__(self) -> None:
+        self.items: list[Item] = []
+        self._places: dict[Hashable, int] = {}
+
+    def place(self, key: Hashable, item: Item) -> int:
+        """Number of the item with this key, which is put on the shelf if it is new."""
+        if key not in self._places:
+            self._places[key] = len(self.items)
+            self.items.append(item)
+        return self._places[key]
+
+
+def shape_of_many(structure: PodiumStructure) -> Shape:
+    """Lanes side by side, for a number of floors that the compiler knows."""
+    dense = (0,) if has_dense_damping(structure) else ()
+    floors = (0,) * structure.storeys
+    return Shape(floors, (0,) * LANES, np.zeros(LANES, np.int8), (), (), dense)
+
+
+def demand_of(history: History) -> Demand:
+    """The demand that a history leaves."""
     return Demand(
-        outcome=OUTCOMES.get(int(history.outcome), "failed"),
+        outcome=outcome_of(history),
         failure=failure_text(history),
-        max_rotation=float(history.max_rotation),
-        critical_passage_time=float(history.critical_time) if history.critical_time >= 0 else None,
+        max_rotation=history.max_rotation,
+        critical_passage_time=history.critical_time if history.critical_time >= 0.0 else None,
         storey_shears=history.storey_shears,
         floor_accelerations=history.floor_accelerations,
-        friction_demand=float(max(*history.contacts[: layout.NORMAL_TOP])),
-        energy_input=given,
-        energy_impact=lost,
-        energy_created=float(history.energy_created),
-        creating_impacts=int(history.creating_impacts),
+        friction_demand=float(max(history.friction)),
+        energy_impact=float(history.energies[2]),
+        energy_created=history.energy_created,
+        creating_impacts=history.creating_impacts,
         uplifts=int(history.counts[layout.UPLIFT]),
         impacts=int(history.counts[layout.IMPACT]),
-        duration=float(history.time),
+        duration=history.time,
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rpscli.physics import layout
 
 if TYPE_CHECKING:
-    from rpscli.physics.driver import History
+    from rpscli.analyses.history import History
 
 PHASE_NAMES = {
     layout.FULL_CONTACT: "full contact",
@@ -31,8 +31,10 @@ REASONS = {
 
 def failure_text(history: History) -> str | None:
     """Time, phase, rotation and reason of a failure; None if the history ended well."""
-    reason = REASONS.get(int(history.outcome))
+    reason = REASONS.get(history.outcome)
     if reason is None:
         return None
-    phase = PHASE_NAMES[int(history.motion)]
-    return f"at t = {history.time:.6g} s, {phase}, theta = {history.rotation:.6g} rad: {reason}"
+    phase = PHASE_NAMES[history.motion]
+    return (
+        f"at t = {history.time:.6g} s, {phase}, theta = {history.rotation + 0.0:.6g} rad: {reason}"
+    )

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.model.superstructure import Superstructure
-from rpscli.physics.parameters import Floors, Ground
+from rpscli.analyses.kernel_input import stacked_systems
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import GroundMotion
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,14 +33,26 @@ class FixedBaseResponse:
 
 
 def fixed_base_response(
-    building: Superstructure, floors: Floors, ground: Ground, intervals: int
+    structure: PodiumStructure, record: GroundMotion, intervals: int
 ) -> FixedBaseResponse:
-    """Run the building on a fixed base for a number of sampling intervals."""
+    """Run the building of a structure on a fixed base for a number of sampling intervals.
+
+    Raises
+    ------
+    ValueError
+        If there is no building.
+    """
     from rpscli.physics.fixed_base import integrate_fixed_base  # noqa: PLC0415
 
+    building = structure.superstructure
+    if building is None:
+        raise ValueError("a structure without superstructure has no fixed-base response")
     n = building.storeys
     samples = np.empty((intervals + 1, 2 * n))
-    shears, accelerations = integrate_fixed_base(floors, ground, intervals, samples)
+    systems = stacked_systems([(structure, TimeHistorySettings())])
+    shears, accelerations = integrate_fixed_base(
+        systems, record.acceleration, record.dt, intervals, samples
+    )
     return FixedBaseResponse(
         storey_shears=shears,
         floor_accelerations=accelerations,

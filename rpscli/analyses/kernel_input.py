@@ -1,34 +1,49 @@
-"""Structure, record and settings as the kernels want them."""
+"""Structures, records and settings as the kernels want them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.model.damping import RayleighDamping
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure
-from rpscli.physics.parameters import Floors, Ground, Numerics, Podium
+from rpscli.physics.parameters import Motions, Podium, Systems, podium_numbers
 from rpscli.records.ground_motion import GroundMotion
 
 FLIGHT_ANGLE = 0.25
-"""Largest step times the highest uplifted frequency [rad], at accuracy 1; see `tests/physics`."""
+"""Largest Runge-Kutta step times the highest uplifted frequency [rad], at accuracy 1."""
+
+FLIGHT_DECAY = 1.0
+"""Largest step times the fastest decay rate, where that asks for more: Runge-Kutta steps of order 5
+are unstable beyond 3.3. Only strongly overdamped modes come near."""
 
 CONTACT_ANGLE = 0.5
 """The same for the exact steps in full contact, where it only guards the search of uplift."""
 
 
 def podium_parameters(structure: PodiumStructure, settings: TimeHistorySettings) -> Podium:
-    """Parameters of the rocking storey."""
-    b = structure.bearing
+    """Parameters of the rocking storey and of the way its motion is followed."""
+    b, building = structure.bearing, structure.superstructure
+    limit = settings.overturning_limit * b.critical_rotation
+    if abs(settings.initial_rotation) >= limit:
+        raise ValueError(
+            f"initial_rotation = {settings.initial_rotation:.6g} rad must stay below the"
+            f" overturning limit {limit:.6g} rad"
+        )
+    a0, a1 = 0.0, 0.0
+    if building is not None and isinstance(building.damping, RayleighDamping):
+        a0, a1 = building.damping.coefficients(building.frequencies)
+    free = settings.free_vibration
     return Podium(
         R=b.semi_diagonal,
         alpha=b.alpha,
         beta=b.beta,
         theta_cr=b.critical_rotation,
-        theta_limit=settings.overturning_limit * b.critical_rotation,
+        theta_limit=limit,
         rolling=b.rolling,
         rocking=b.rocking,
         Io=b.inertia_ratio,
@@ -39,58 +54,34 @@ def podium_parameters(structure: PodiumStructure, settings: TimeHistorySettings)
         floors_mass=structure.superstructure_mass,
         gravity=structure.gravity,
         restitution=structure.restitution,
-        floors_jump=structure.impact_law.floors_jump,
-    )
-
-
-def floor_parameters(building: Superstructure | None) -> Floors:
-    """Parameters of the building; empty arrays without one."""
-    if building is None:
-        none, square = np.empty(0), np.empty((0, 0))
-        return Floors(none, none, none, 0.0, 0.0, square, none, none, square, none)
-    a0, a1, full = 0.0, 0.0, np.empty((0, 0))
-    if isinstance(building.damping, RayleighDamping):
-        a0, a1 = building.damping.coefficients(building.frequencies)
-    else:
-        full = np.ascontiguousarray(building.damping_matrix)
-    return Floors(
-        mass=np.array(building.masses),
-        inverse_mass=1.0 / building.masses,
-        stiffness=np.array(building.stiffnesses),
+        floors_jump=float(structure.impact_law.floors_jump),
         a0=a0,
         a1=a1,
-        damping=full,
-        omega=building.frequencies,
-        xi=building.damping_ratios,
-        shapes=np.ascontiguousarray(building.shapes),
-        participation=building.participation,
-    )
-
-
-def ground_parameters(record: GroundMotion, vertical: GroundMotion | None) -> Ground:
-    """Ground acceleration of one or two components; the shorter one goes on as zero."""
-    horizontal = np.array(record.acceleration)
-    if vertical is None:
-        return Ground(horizontal, np.empty(0), record.dt)
-    length = max(record.npts, vertical.npts)
-    padded = [np.pad(m.acceleration, (0, length - m.npts)) for m in (record, vertical)]
-    return Ground(padded[0], padded[1], record.dt)
-
-
-def numerics(structure: PodiumStructure, dt: float, settings: TimeHistorySettings) -> Numerics:
-    """Steps within a record interval, and how long to go on after its end."""
-    highest = highest_frequency(structure)
-    free = settings.free_vibration
-    longest = LONGEST_FREE_VIBRATION if free is None else free
-    return Numerics(
-        substeps=max(1, math.ceil(dt * highest * settings.accuracy / FLIGHT_ANGLE)),
-        contact_substeps=max(1, math.ceil(dt * highest / CONTACT_ANGLE)),
-        free_samples=math.ceil(longest / dt - 1e-9),
-        until_rest=free is None,
+        flight_rate=settings.accuracy * flight_rate(structure),
+        contact_rate=highest_frequency(structure) / CONTACT_ANGLE,
         recontact_tolerance=settings.recontact_tolerance,
-        max_events=settings.max_events,
+        bounces=bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0,
+        max_events=float(settings.max_events),
         initial_rotation=settings.initial_rotation,
+        free_vibration=LONGEST_FREE_VIBRATION if free is None else free,
+        until_rest=float(free is None),
     )
+
+
+def bounces_left_out(structure: PodiumStructure) -> float:
+    """What the impacts after re-contact would add to each floor's relative velocity, over u_b'.
+
+    Left to bounce for ever, the cap beam stops, and the floors keep their absolute velocity but
+    for the jumps of the impact law: 2/(1 + e) if they jump with the beam, 1 if they do not
+    (Theory, section 3).
+    """
+    return 2.0 / (1.0 + structure.restitution) if structure.impact_law.floors_jump else 1.0
+
+
+def flight_rate(structure: PodiumStructure) -> float:
+    """Runge-Kutta steps a second that follow the uplifted structure at accuracy 1 [1/s]."""
+    by_angle = highest_frequency(structure) / FLIGHT_ANGLE
+    return max(by_angle, fastest_decay(structure) / FLIGHT_DECAY)
 
 
 def highest_frequency(structure: PodiumStructure) -> float:
@@ -102,9 +93,92 @@ def highest_frequency(structure: PodiumStructure) -> float:
     square = (structure.gravity / structure.bearing.semi_diagonal) * (
         1.0 + abs(2.0 * structure.bearing.curvature_ratio - 1.0)
     )
-    if structure.superstructure is not None:
-        building = structure.superstructure
-        freed = 0.25 * structure.columns_mass * structure.bearing.inertia_ratio
-        base = building.stiffnesses[0] / (freed + structure.cap_beam_mass)
+    if (building := structure.superstructure) is not None:
+        base = building.stiffnesses[0] / least_base_mass(structure)
         square += float(building.frequencies[-1] ** 2 + base)
     return math.sqrt(square)
+
+
+def fastest_decay(structure: PodiumStructure) -> float:
+    """A bound on the decay rates of the uplifted structure [1/s], by the same inequality for C."""
+    if (building := structure.superstructure) is None:
+        return 0.0
+    fixed = np.max(2.0 * building.damping_ratios * building.frequencies)
+    return float(fixed + building.damping_matrix.sum() / least_base_mass(structure))
+
+
+def least_base_mass(structure: PodiumStructure) -> float:
+    """Inertia against u_b at theta = 0 without the floors: columns and cap beam [kg]."""
+    return 0.25 * structure.columns_mass * structure.bearing.inertia_ratio + structure.cap_beam_mass
+
+
+def has_dense_damping(structure: PodiumStructure) -> bool:
+    """Whether the damping matrix is not a0 M + a1 K."""
+    building = structure.superstructure
+    return building is not None and not isinstance(building.damping, RayleighDamping)
+
+
+def stacked_systems(
+    systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]],
+) -> Systems:
+    """Structures with the same number of floors and kind of damping, stacked."""
+    table = [podium_numbers(podium_parameters(*system)) for system in systems]
+    buildings = [structure.superstructure for structure, _ in systems]
+    n = systems[0][0].storeys
+    present = [b for b in buildings if b is not None]
+    if not present:
+        none, square = np.empty((len(systems), 0)), np.empty((len(systems), 0, 0))
+        return Systems(np.array(table), none, none, none, square, none, none, none, square, square)
+    shapes = np.array([b.shapes.T for b in present])
+    drifts = np.diff(shapes, axis=2, prepend=0.0)
+    stiffness = np.array([b.stiffnesses for b in present])
+    mass = np.array([b.masses for b in present])
+    dense = has_dense_damping(systems[0][0])
+    return Systems(
+        podium=np.array(table),
+        mass=mass,
+        inverse_mass=1.0 / mass,
+        stiffness=stiffness,
+        damping=np.array([b.damping_matrix for b in present]) if dense else np.empty((0, n, n)),
+        omega=np.array([b.frequencies for b in present]),
+        xi=np.array([b.damping_ratios for b in present]),
+        participation=np.array([b.participation for b in present]),
+        shapes=np.ascontiguousarray(shapes),
+        shear_shapes=np.ascontiguousarray(drifts * stiffness[:, None, :]),
+    )
+
+
+def joined_motions(records: Sequence[GroundMotion]) -> Motions:
+    """Records end to end."""
+    npts = np.array([r.npts for r in records], dtype=np.int64)
+    return Motions(
+        acceleration=np.concatenate([r.acceleration for r in records]),
+        start=np.concatenate([[0], np.cumsum(npts)[:-1]]).astype(np.int64),
+        npts=npts,
+        dt=np.array([r.dt for r in records]),
+    )
+
+
+def aligned(
+    record: GroundMotion, vertical: GroundMotion | None
+) -> tuple[GroundMotion, GroundMotion | None]:
+    """Both components with the same number of samples: the shorter one goes on as zero.
+
+    Raises
+    ------
+    ValueError
+        If their time steps differ.
+    """
+    if vertical is None or (vertical.npts == record.npts and vertical.dt == record.dt):
+        return record, vertical
+    if vertical.dt != record.dt:
+        raise ValueError(
+            f"the vertical record has dt = {vertical.dt} s, the horizontal one {record.dt} s:"
+            " they must agree"
+        )
+    npts = max(record.npts, vertical.npts)
+    along, upwards = (
+        replace(m, acceleration=np.pad(m.acceleration, (0, npts - m.npts)))
+        for m in (record, vertical)
+    )
+    return along, upwards

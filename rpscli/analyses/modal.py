@@ -44,7 +44,7 @@ class UpliftedModes:
     frequency_ratio: Array
     """(n,) omega_u/omega_0, mode by mode."""
     damping_ratio: Array
-    """(n,) xi_u/xi_0."""
+    """(n,) xi_u/xi_0; not a number where the building is undamped."""
     frequency_parameter: float
     """p_ext of the storey's own mode [rad/s]; growth rate if the stiffness is negative."""
     frequency_parameter_rigid: float
@@ -125,7 +125,8 @@ def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> Uplifte
     size = len(M)
     state = np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
     values, vectors = np.linalg.eig(state)
-    order = np.argsort(np.abs(values), kind="stable")
+    own = _own_pair(values, kappa)
+    order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
     values, vectors = values[order].astype(complex), vectors[:size, order]
     if kappa == 0.0:
         # A defective double zero: rounding splits it into +-sqrt(eps), which is no frequency.
@@ -133,7 +134,7 @@ def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> Uplifte
     pairs = _pairs(values[2:])
     frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])
     damping = np.array([-(a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
-    columns = [int(np.argmax(values[:2].real)), *(2 + index for *_, index in pairs)]
+    columns = [0, *(2 + index for *_, index in pairs)]
     building = structure.superstructure
     omega = building.frequencies if building else np.empty(0)
     xi = building.damping_ratios if building else np.empty(0)
@@ -143,11 +144,26 @@ def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> Uplifte
         frequencies=frequencies,
         damping=damping,
         frequency_ratio=frequencies / omega,
-        damping_ratio=damping / xi,
+        damping_ratio=np.divide(damping, xi, out=np.full_like(damping, np.nan), where=xi > 0.0),
         frequency_parameter=math.sqrt(abs(values[0] * values[1])),
         frequency_parameter_rigid=rigid,
         shapes=_scaled(np.column_stack([_real_shape(vectors[:, i]) for i in columns])),
     )
+
+
+def _own_pair(values: NDArray[np.complex128], kappa: float) -> tuple[int, int]:
+    """Indices of the storey's own eigenvalues, the growing one first.
+
+    With negative stiffness K_L has one negative eigenvalue, so exactly one root grows; its partner
+    is the real root nearest to its mirror image. Tall buildings have slower modes than these two,
+    so the smallest pair will not do. With positive stiffness the slow pair is the storey's.
+    """
+    if kappa >= 0.0:
+        first, second = np.argsort(np.abs(values), kind="stable")[:2]
+        return int(first), int(second)
+    growing = int(np.argmax(values.real))
+    real = [i for i, v in enumerate(values) if v.imag == 0.0 and i != growing]
+    return growing, min(real, key=lambda i: abs(values[i] + values[growing]))
 
 
 def _over(M: Array, X: Array) -> Array:

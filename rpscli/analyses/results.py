@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.fixed_base import FixedBaseResponse
+from rpscli.analyses.outcome import Outcome
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import layout
+from rpscli.physics import geometry, layout
 from rpscli.records.ground_motion import GroundMotion
 
 if TYPE_CHECKING:
-    from rpscli.physics.driver import History
-
-Outcome = Literal["at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"]
+    from rpscli.analyses.history import History
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ class TimeHistoryResult:
     @property
     def friction_demand(self) -> float:
         """Largest |F|/N at either end of the columns: the friction that no sliding needs."""
-        return float(max(*self.history.contacts[: layout.NORMAL_TOP]))
+        return float(max(self.history.friction))
 
     @property
     def uplifts(self) -> int:
@@ -143,20 +142,31 @@ class TimeHistoryResult:
         residual = given + started - damped - lost - stored
         return Energy(given, damped, lost, stored, residual, created)
 
+    def restoring_moment(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Static moment 2 R W s B(x) at rotations theta [N m], of the shape of `rotation`.
+
+        What `Trace.driving_moment` equals in slow motion; positive where the weight restores a
+        positive rotation.
+        """
+        b, theta = self.structure.bearing, np.asarray(rotation)
+        arm, *_ = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
+        return 2.0 * b.semi_diagonal * self.structure.weight * np.sign(theta) * arm
+
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the user must know before trusting the numbers."""
         notes = list(self.record.warnings)
-        least = min(self.history.contacts[layout.NORMAL_TOP :])
+        least = min(self.history.least_normal)
         if least <= 0.0:
             notes.append(
                 "contact is lost: the normal force between columns and beam or ground falls to"
                 f" {least:.3g} of the weight; the model assumes contact throughout"
             )
-        if self.energy.created > 0.02 * max(abs(self.energy.input), 1e-300):
-            share = self.energy.created / abs(self.energy.input)
+        supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
+        if self.energy.created > 0.02 * supplied:
+            share = self.energy.created / supplied
             notes.append(
-                f"the rigid impact law created {share:.1%} of the input energy at impacts;"
+                f"the rigid impact law created {share:.1%} of the energy supplied at impacts;"
                 " compare with `impact: {law: flexible}`"
             )
         if self.outcome == "survived" and self.history.motion != layout.FULL_CONTACT:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
@@ -16,6 +17,10 @@ class TimeHistorySettings:
         section 3), for at most `LONGEST_FREE_VIBRATION`.
     recontact_tolerance
         After an impact the storey locks when the next excursion stays below this times alpha.
+    recontact_rule
+        What the floors keep at re-contact: ``relative``, their velocity relative to the cap beam,
+        so that maxima approach their limit as the square root of the tolerance; ``limit``, what
+        the bounces left out would have made of it, so that they approach it in proportion.
     overturning_limit
         The structure counts as overturned at this times theta_cr.
     accuracy
@@ -28,6 +33,7 @@ class TimeHistorySettings:
 
     free_vibration: float | None = None
     recontact_tolerance: float = 1e-6
+    recontact_rule: Literal["relative", "limit"] = "relative"
     overturning_limit: float = 2.0
     accuracy: float = 1.0
     max_events: int = 100_000

@@ -2,33 +2,15 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from rpscli.analyses.failure import failure_text
 from rpscli.analyses.fixed_base import fixed_base_response
-from rpscli.analyses.kernel_input import (
-    floor_parameters,
-    ground_parameters,
-    numerics,
-    podium_parameters,
-)
-from rpscli.analyses.results import Outcome, TimeHistoryResult
+from rpscli.analyses.history import sampled_history
+from rpscli.analyses.outcome import outcome_of
+from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.trace import event_list, trace_of
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import layout
 from rpscli.records.ground_motion import GroundMotion
-
-OUTCOMES: dict[int, Outcome] = {
-    layout.AT_REST: "at_rest",
-    layout.SURVIVED: "survived",
-    layout.OVERTURNED_ROLLING: "overturned_rolling",
-    layout.OVERTURNED_ROCKING: "overturned_rocking",
-}
-"""Every other code of the kernel is a failure."""
-
-FIRST_LOG = 4096
-"""Rows of the event log at the first attempt; a longer history is run once more."""
 
 
 def time_history(
@@ -66,37 +48,19 @@ def time_history(
         If the two components have different time steps.
     """
     settings = settings or TimeHistorySettings()
-    if vertical is not None and vertical.dt != record.dt:
-        raise ValueError(
-            f"the vertical record has dt = {vertical.dt} s, the horizontal one {record.dt} s:"
-            " they must agree"
-        )
-    # Imported here: compiling or loading kernels costs time that other commands need not pay.
-    from rpscli.physics.driver import integrate  # noqa: PLC0415
-
-    podium = podium_parameters(structure, settings)
-    floors = floor_parameters(structure.superstructure)
-    ground = ground_parameters(record, vertical)
-    steps = numerics(structure, record.dt, settings)
-    rows = len(ground.horizontal) + steps.free_samples
-    samples = np.empty((rows, layout.ROW_FLOORS + 2 * structure.storeys))
-    log = np.empty((FIRST_LOG, layout.LOG_COLUMNS))
-    history = integrate(podium, floors, ground, steps, samples, log)
-    if (events := int(history.counts.sum())) > FIRST_LOG:
-        log = np.empty((events, layout.LOG_COLUMNS))
-        history = integrate(podium, floors, ground, steps, samples, log)
-    trace = trace_of(structure, ground, samples[: history.intervals + 1].copy())
+    run = sampled_history(structure, record, vertical, settings)
     fixed = None
     if with_fixed_base and structure.superstructure is not None:
-        fixed = fixed_base_response(structure.superstructure, floors, ground, history.intervals)
+        intervals = max(run.history.intervals, record.npts - 1)
+        fixed = fixed_base_response(structure, record, intervals)
     return TimeHistoryResult(
         structure=structure,
         record=record,
         settings=settings,
-        outcome=OUTCOMES.get(int(history.outcome), "failed"),
-        failure=failure_text(history),
-        history=history,
-        trace=trace,
-        events=event_list(log[:events]),
+        outcome=outcome_of(run.history),
+        failure=failure_text(run.history),
+        history=run.history,
+        trace=trace_of(structure, record.dt, run.ground, run.samples),
+        events=event_list(run.log),
         fixed_base=fixed,
     )

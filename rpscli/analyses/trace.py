@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import geometry, layout
-from rpscli.physics.parameters import Ground
 
 Array = NDArray[np.float64]
 
@@ -84,8 +83,8 @@ class Trace:
     energy_stored: Array
 
 
-def trace_of(structure: PodiumStructure, ground: Ground, samples: Array) -> Trace:
-    """Histories from the kernel's rows (`layout.ROW_...`)."""
+def trace_of(structure: PodiumStructure, dt: float, ground: Array, samples: Array) -> Trace:
+    """Histories from the kernel's rows (`layout.ROW_...`), the ground acceleration and its step."""
     n = structure.storeys
     theta, rate = samples[:, layout.ROW_ROTATION], samples[:, layout.ROW_RATE]
     u = samples[:, layout.ROW_FLOORS : layout.ROW_FLOORS + n]
@@ -94,8 +93,8 @@ def trace_of(structure: PodiumStructure, ground: Ground, samples: Array) -> Trac
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
     base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
     a_g = np.zeros(len(samples))
-    length = min(len(samples), len(ground.horizontal))
-    a_g[:length] = ground.horizontal[:length]
+    length = min(len(samples), len(ground))
+    a_g[:length] = ground[:length]
     drifts = np.diff(u, axis=1, prepend=base[:, None])
     shears, forces = np.zeros_like(u), np.zeros_like(u)
     if (building := structure.superstructure) is not None:
@@ -108,7 +107,7 @@ def trace_of(structure: PodiumStructure, ground: Ground, samples: Array) -> Trac
     if building is not None:
         stored += 0.5 * du**2 @ building.masses
     return Trace(
-        time=np.arange(len(samples), dtype=np.float64) * ground.dt,
+        time=np.arange(len(samples), dtype=np.float64) * dt,
         ground_acceleration=a_g,
         rotation=theta,
         rotation_rate=rate,

@@ -54,15 +54,15 @@ class Bearing:
     def __post_init__(self) -> None:
         """Refuse a shape that cannot be built."""
         for name in ("semi_diagonal", "slenderness", "inertia_ratio"):
-            if not (value := getattr(self, name)) > 0.0:
-                raise ValueError(f"{name} = {value} must be > 0")
-        if self.curvature_ratio < 0.0:
+            if not 0.0 < (value := getattr(self, name)) < math.inf:
+                raise ValueError(f"{name} = {value} must be > 0 and finite")
+        if not 0.0 <= self.curvature_ratio < math.inf:
             raise ValueError(
-                f"curvature_ratio = {self.curvature_ratio} must be >= 0; 0 = flat ends"
+                f"curvature_ratio = {self.curvature_ratio} must be >= 0 and finite; 0 = flat ends"
             )
         if self.is_flat:
             return
-        if self.wedge_slenderness < self.slenderness:
+        if not self.slenderness <= self.wedge_slenderness < math.inf:
             raise ValueError(
                 f"wedge_slenderness = {self.wedge_slenderness} must be >= slenderness"
                 f" = {self.slenderness}: the arcs lie outside the flat part"
@@ -77,7 +77,7 @@ class Bearing:
     @property
     def is_flat(self) -> bool:
         """Whether the ends are flat: the column rocks from the start and never rolls."""
-        return self.curvature_ratio == 0.0
+        return self.curvature_ratio == 0.0 or self.wedge_slenderness == self.slenderness
 
     @property
     def alpha(self) -> float:

@@ -1,246 +1,378 @@
-"""The event-driven history: step - detect - locate - switch - store.
+"""Histories in lanes: step - search - observe - take over - switch.
 
-Time runs over the record's intervals; within one, the structure is either in full contact, where
-the exact linear solution is searched for an uplift, or uplifted, where Runge-Kutta steps are
-searched for an impact, a change between rolling and rocking, or overturning.
+Each lane follows one history at a time; when it is over the lane takes the next one. All lanes
+make their Runge-Kutta steps together, each from its own time with its own length, so that the
+processor works on them at once; whatever is particular to one - full contact, the location of an
+event, a switch of phase - is done for that lane alone. No number passes from one lane to another:
+a history does not depend on its neighbours.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rpscli.physics.building import building_energy
-from rpscli.physics.contact import fill_decay, step_contact, to_floors
-from rpscli.physics.flight import NOT_FINITE, NOTHING, fly, watch_peak
+from rpscli.physics.acceleration import accelerate
+from rpscli.physics.contact import SHAPES, load_modes
+from rpscli.physics.energy import building_energy, uplifted_energy
+from rpscli.physics.flight import attend, go_on, plan_step, set_step, settle, watch_peak
+from rpscli.physics.inspection import observe, search_events, take_over
 from rpscli.physics.jit import kernel
 from rpscli.physics.layout import (
+    ACCELERATION,
+    AHEAD,
+    AHEAD_ACCELERATION,
+    AHEAD_RATE,
     AT_REST,
+    BEAM,
+    BLOCKS,
+    BUILDING,
+    CAP_BEAM_MASS,
+    COLUMNS_MASS,
+    CONTACT_STEP,
+    COUNTS,
     CREATED,
-    CREATED_IMPACTS,
-    CRITICAL_PASSAGE,
+    CREATING,
     CRITICAL_TIME,
     DAMPED,
+    DAMPING,
+    DIAMETER,
+    DRAG,
+    EVALUATIONS,
     EVENT_KINDS,
-    FAILED_NOT_FINITE,
-    FAILED_STEP_TOO_SMALL,
-    FAILED_TOO_MANY_EVENTS,
-    FLOORS,
+    FLIGHT_STEP,
+    FLOOR_ACCELERATION,
+    FLOORS_MASS,
+    FRESH,
+    FRICTION_BOTTOM,
+    FRICTION_TOP,
     FULL_CONTACT,
-    IMPACT,
+    INERTIA,
     INPUT,
+    INTERVAL,
+    INTERVAL_LENGTH,
+    INTERVALS,
+    INVERSE_MASS,
+    LEANING,
     LOST,
-    OVERTURNED_ROCKING,
-    OVERTURNED_ROLLING,
-    OVERTURNING,
+    MASS,
+    MOTION,
+    NO_POINT,
+    NORMAL_BOTTOM,
+    NORMAL_TOP,
+    NPTS,
+    OUT_COUNTS,
+    OUT_CREATED,
+    OUT_CREATING,
+    OUT_CRITICAL_TIME,
+    OUT_DAMPED,
+    OUT_EVALUATIONS,
+    OUT_FLOORS,
+    OUT_FRICTION_BOTTOM,
+    OUT_FRICTION_TOP,
+    OUT_INPUT,
+    OUT_INTERVALS,
+    OUT_LOST,
+    OUT_MOTION,
+    OUT_NORMAL_BOTTOM,
+    OUT_NORMAL_TOP,
+    OUT_OUTCOME,
+    OUT_PEAK,
+    OUT_PEAK_TIME,
+    OUT_ROTATION,
+    OUT_STORED,
+    OUT_TIME,
+    OUTCOME,
     PEAK,
     PEAK_TIME,
+    POINT,
+    POSITION,
+    PUSH,
+    QUIET,
+    RECORD,
     ROCKING,
     ROLLING,
-    ROLLING_TO_ROCKING,
     RUNNING,
+    SCALARS,
+    SCALE,
+    SHEAR,
+    SIDE,
+    STALE,
+    STANDARD_GRAVITY,
+    STIFFNESS,
+    STOREY_SHEAR,
     SURVIVED,
-    TALLY_SIZE,
-    TILT,
-    TILT_RATE,
+    THETA_CR,
     UPLIFT,
+    VELOCITY,
+    VERTICAL,
+    WEIGHT,
+    WHOLE_NUMBERS,
 )
-from rpscli.physics.observation import base_motion, observe
-from rpscli.physics.parameters import Floors, Ground, Numerics, Podium
-from rpscli.physics.rest import is_over
-from rpscli.physics.runge_kutta import EVALUATIONS, STAGES
-from rpscli.physics.switch import land, note, uplift, uplifted_phase
-from rpscli.physics.uplifted import Shaking, rates_of_change, uplifted_energy
-
-STALLED = 100
-"""So many events in a row without time passing: the step cannot be made small enough."""
-
-
-class History(NamedTuple):
-    """What one history leaves behind besides samples and log, SI units.
-
-    `motion`, `rotation` and `time` are those of the end, after `intervals` of the record's steps.
-    Times that never came are negative. `contacts` has the entries `layout.FRICTION_TOP` and on,
-    `counts` the number of events of each kind. `energies` are input, damped, lost at impacts, and
-    stored at the end; the energy created at impacts counts negatively in what was lost.
-    """
-
-    outcome: int
-    motion: int
-    rotation: float
-    time: float
-    intervals: int
-    max_rotation: float
-    max_rotation_time: float
-    critical_time: float
-    storey_shears: NDArray[np.float64]
-    floor_accelerations: NDArray[np.float64]
-    contacts: NDArray[np.float64]
-    energies: NDArray[np.float64]
-    energy_created: float
-    creating_impacts: int
-    counts: NDArray[np.int64]
-    evaluations: int
-
-
-@kernel
-def shaking_in(ground: Ground, interval: int) -> Shaking:
-    """Ground acceleration within an interval of the record, or after its end."""
-    i, dt = interval, ground.dt
-    if i + 1 >= ground.horizontal.shape[0]:
-        return Shaking(0.0, 0.0, 0.0, 0.0)
-    a, b = ground.horizontal[i], ground.horizontal[i + 1]
-    if ground.vertical.shape[0] == 0:
-        return Shaking(a, (b - a) / dt, 0.0, 0.0)
-    v, w = ground.vertical[i], ground.vertical[i + 1]
-    return Shaking(a, (b - a) / dt, v, (w - v) / dt)
-
-
-@kernel
-def release(
-    podium: Podium, floors: Floors, rotation: float, y: NDArray[np.float64]
-) -> tuple[int, float]:
-    """Start from rest at a rotation, the building unstrained; returns phase and side."""
-    if rotation == 0.0:
-        return FULL_CONTACT, 1.0
-    side = math.copysign(1.0, rotation)
-    y[TILT] = abs(rotation)
-    motion = uplifted_phase(podium, y[TILT])
-    base = base_motion(podium, motion, side, y, 0.0).displacement
-    for i in range(floors.mass.shape[0]):
-        y[FLOORS + i] = base
-    return motion, side
+from rpscli.physics.parameters import (
+    Floats,
+    Lanes,
+    Motions,
+    Podium,
+    Points,
+    Results,
+    Shape,
+    Systems,
+)
+from rpscli.physics.progress import store_sample
+from rpscli.physics.runge_kutta import EVALUATIONS as EVALUATIONS_OF_A_STEP
+from rpscli.physics.runge_kutta import step
+from rpscli.physics.shaking import shake
+from rpscli.physics.standing import observe_contact, stand, to_floors
+from rpscli.physics.switch import enter_phase, now
+from rpscli.physics.table import podium_of
 
 
 @kernel
 def integrate(
-    podium: Podium,
-    floors: Floors,
-    ground: Ground,
-    numerics: Numerics,
-    samples: NDArray[np.float64],
-    log: NDArray[np.float64],
-) -> History:
-    """Integrate one history from rest.
+    systems: Systems, motions: Motions, points: Points, shape: Shape, results: Results
+) -> None:
+    """Follow every history of `points` from rest; writes `results`.
 
     Parameters
     ----------
-    samples
-        Written, (intervals + 1, 7 + 2 n): see `layout.ROW_...`; give no rows to keep none.
-    log
-        Written, (events, 6): see `layout.LOG_...`; events beyond its rows are only counted.
+    systems, motions, points
+        What to run.
+    shape
+        Sizes: n must be that of the systems, the lanes at least one.
     """
-    n = floors.mass.shape[0]
-    m = FLOORS + 2 * n
-    y, end, k = np.zeros(m), np.zeros(m), np.zeros((STAGES, m))
-    z, z_end = np.zeros((2, n)), np.zeros((2, n))
-    table, scratch, piece = np.zeros((2, n)), np.zeros((2, n)), np.zeros(6)
-    storey_shears, floor_accelerations = np.zeros(n), np.zeros(n)
-    contacts = np.array([0.0, 0.0, math.inf, math.inf])
-    tally, counts = np.zeros(TALLY_SIZE), np.zeros(EVENT_KINDS, np.int64)
-    tally[CRITICAL_TIME] = -1.0
-    dt = ground.dt
-    contact_step, flight_step = dt / numerics.contact_substeps, dt / numerics.substeps
-    fill_decay(floors, contact_step, table)
-    shaken = ground.horizontal.shape[0] - 1
-    intervals = shaken + numerics.free_samples
-    motion, side = release(podium, floors, numerics.initial_rotation, y)
-    tally[PEAK] = y[TILT]
-    outcome, evaluations, stalled, interval, time = RUNNING, 0, 0, 0, 0.0
+    n, L = len(shape.floors), len(shape.stride)
+    rows = SCALARS + BLOCKS * (n + 1) + (n * n if len(shape.dense) > 0 else 0)
+    lanes = Lanes(
+        np.zeros(rows * L),
+        np.zeros((L, WHOLE_NUMBERS), np.int64),
+        np.zeros((L, systems.podium.shape[1])),
+        np.zeros((L, SHAPES + 2 * n, n)),
+        np.zeros(6),
+        motions.acceleration,
+        results.samples,
+        results.log,
+    )
+    b, whole = lanes.buffer, lanes.integers
+    whole[:, POINT] = NO_POINT
+    waiting, active, started = 0, L, False
+    while active > 0:
+        if started:
+            step(b, shape, (n + 1) * L)
+            search_events(b, shape)
+            for l in range(L):
+                if b[QUIET * L + l] > 0.0:
+                    watch_peak(lanes, shape, l)
+            observe(b, shape)
+            take_over(b, shape)
+        for l in range(L):
+            flies = False
+            if started:
+                if whole[l, POINT] == NO_POINT:
+                    continue
+                whole[l, EVALUATIONS] += EVALUATIONS_OF_A_STEP
+                quiet = b[QUIET * L + l] > 0.0
+                flies = go_on(lanes, shape, l) if quiet else attend(lanes, shape, l)
+            while not flies or b[STALE * L + l] != FRESH:
+                if flies:
+                    refresh(lanes, shape, l)
+                    flies = settle(lanes, shape, l)
+                    continue
+                if whole[l, POINT] != NO_POINT:
+                    finish(lanes, shape, l, results)
+                waiting = engage(lanes, shape, l, waiting, systems, motions, points, results)
+                flies = True
+            active -= whole[l, POINT] == NO_POINT
+        started = True
 
-    while outcome == RUNNING:
-        shaking = shaking_in(ground, interval)
-        start = interval * dt
-        if motion != FULL_CONTACT and interval in (0, shaken):
-            # The ground acceleration may jump here; elsewhere the last step's slope still holds.
-            rates_of_change(podium, floors, motion, side, shaking, 0.0, y, k[0])
-        if interval == 0:
-            observe(
-                podium, floors, motion, side, shaking, 0.0, 0.0, y, k[0],
-                storey_shears, floor_accelerations, contacts, samples, 0,
-            )  # fmt: skip
-        if interval == intervals:
-            break
-        time = 0.0
-        while dt - time > 1e-13 * dt and outcome == RUNNING:
-            if motion == FULL_CONTACT:
-                h, decays = min(contact_step, dt - time), table
-                if abs(h - contact_step) > 1e-12 * dt:
-                    decays = scratch
-                    fill_decay(floors, h, decays)
-                advanced, towards = step_contact(
-                    podium, floors, shaking, time, h, decays, scratch, piece, y, z, z_end
-                )
-                time += advanced
-                if towards != 0.0:
-                    side = towards
-                    motion = uplift(podium, floors, side, shaking, time, z, y, k[0])
-                    note(log, counts, start + time, UPLIFT, 0.0, 0.0, 0.0, 0.0)
-            else:
-                h = (dt - time) / max(math.ceil((dt - time) / flight_step - 1e-9), 1)
-                advanced, event, steps = fly(
-                    podium, floors, motion, side, shaking, time, h, y, k, end, piece
-                )
-                evaluations += steps * EVALUATIONS
-                if event == NOT_FINITE:
-                    outcome = FAILED_NOT_FINITE
-                    break
-                watch_peak(y, k, end, advanced, start + time, tally)
-                time += advanced
-                for i in range(m):
-                    y[i], k[0, i] = end[i], k[6, i]
-                rotation, rate = side * y[TILT], side * y[TILT_RATE]
-                if tally[PEAK] > podium.theta_cr and tally[CRITICAL_TIME] < 0.0:
-                    tally[CRITICAL_TIME] = start + time
-                    note(log, counts, start + time, CRITICAL_PASSAGE, rotation, rate, rate, 0.0)
-                if event == IMPACT:
-                    motion, side = land(
-                        podium, floors, side, shaking, time, start, numerics.recontact_tolerance,
-                        y, z, k[0], tally, counts, log,
-                    )  # fmt: skip
-                elif event == OVERTURNING:
-                    rolls = podium.theta_cr < podium.beta
-                    outcome = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
-                    note(log, counts, start + time, OVERTURNING, rotation, rate, rate, 0.0)
-                elif event != NOTHING:
-                    motion = ROCKING if event == ROLLING_TO_ROCKING else ROLLING
-                    note(log, counts, start + time, event, rotation, rate, rate, 0.0)
-                    rates_of_change(podium, floors, motion, side, shaking, time, y, k[0])
-            stalled = 0 if advanced > 0.0 else stalled + 1
-            if stalled > STALLED:
-                outcome = FAILED_STEP_TOO_SMALL
-            elif counts.sum() > numerics.max_events:
-                outcome = FAILED_TOO_MANY_EVENTS
-        if outcome != RUNNING:
-            break
-        interval, time = interval + 1, 0.0
-        if motion == FULL_CONTACT:
-            to_floors(floors, z, y)
-        observe(
-            podium, floors, motion, side, shaking, dt, tally[LOST], y, k[0],
-            storey_shears, floor_accelerations, contacts, samples, interval,
-        )  # fmt: skip
-        if numerics.until_rest and interval > shaken:
-            peak = tally[PEAK]
-            demands = (storey_shears, floor_accelerations)
-            if is_over(podium, floors, motion, side, y, z, peak, *demands):
-                break
 
-    if outcome == RUNNING:
-        moved = counts[UPLIFT] > 0 or numerics.initial_rotation != 0.0
-        outcome = SURVIVED if moved else AT_REST
-    if motion == FULL_CONTACT:
-        to_floors(floors, z, y)
-        stored = building_energy(floors, y, 0.0)
+@kernel
+def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
+    """Accelerations of one lane at its present state and time."""
+    n, L = len(shape.floors), len(shape.stride)
+    b = lanes.buffer
+    for c in range(n + 1):
+        position = b[(SCALARS + POSITION * (n + 1) + c) * L + l]
+        velocity = b[(SCALARS + VELOCITY * (n + 1) + c) * L + l]
+        b[(SCALARS + AHEAD * (n + 1) + c) * L + l] = position
+        b[(SCALARS + AHEAD_RATE * (n + 1) + c) * L + l] = velocity
+    accelerate(b, alone(shape), l, 0, 0.0)
+    for c in range(n + 1):
+        acceleration = b[(SCALARS + AHEAD_ACCELERATION * (n + 1) + c) * L + l]
+        b[(SCALARS + ACCELERATION * (n + 1) + c) * L + l] = acceleration
+    lanes.integers[l, EVALUATIONS] += 1
+
+
+@kernel
+def alone(shape: Shape) -> Shape:
+    """The same sizes for one lane of many."""
+    return Shape(shape.floors, shape.stride, (0,), (0,), shape.audit, shape.dense)
+
+
+@kernel
+def engage(
+    lanes: Lanes,
+    shape: Shape,
+    l: int,
+    waiting: int,
+    systems: Systems,
+    motions: Motions,
+    points: Points,
+    results: Results,
+) -> int:
+    """Give a lane the next history that uplifts; returns the number of the one after it.
+
+    Histories that stay in full contact to their end are finished on the way. A lane for which
+    there is none left is marked by NO_POINT and makes empty steps.
+    """
+    L = len(shape.stride)
+    b = lanes.buffer
+    while waiting < points.system.shape[0]:
+        begin(lanes, shape, l, waiting, systems, motions, points)
+        waiting += 1
+        rotation = podium_of(lanes.podium, l).initial_rotation
+        if rotation != 0.0:
+            lean(lanes, shape, l, rotation)
+            plan_step(b, shape, l)
+            return waiting
+        store_sample(lanes, shape, l)
+        observe_contact(lanes, L, l)
+        if stand(lanes, shape, l):
+            plan_step(b, shape, l)
+            return waiting
+        finish(lanes, shape, l, results)
+    lanes.integers[l, POINT] = NO_POINT
+    b[STALE * L + l] = FRESH
+    set_step(b, shape, l, 0.0)
+    return waiting
+
+
+@kernel
+def begin(
+    lanes: Lanes,
+    shape: Shape,
+    l: int,
+    point: int,
+    systems: Systems,
+    motions: Motions,
+    points: Points,
+) -> None:
+    """Load a history into a lane, at rest in full contact at the start of its record."""
+    L = len(shape.stride)
+    b, whole = lanes.buffer, lanes.integers
+    for row in range(b.shape[0] // L):
+        b[row * L + l] = 0.0
+    whole[l] = 0
+    s, motion, vertical = points.system[point], points.motion[point], points.vertical[point]
+    lanes.podium[l] = systems.podium[s]
+    podium = podium_of(lanes.podium, l)
+    dt = motions.dt[motion]
+    whole[l, POINT], whole[l, OUTCOME] = point, RUNNING
+    whole[l, MOTION], whole[l, RECORD] = FULL_CONTACT, motions.start[motion]
+    whole[l, NPTS] = motions.npts[motion]
+    whole[l, VERTICAL] = motions.start[vertical] if vertical >= 0 else -1
+    free = math.ceil(podium.free_vibration / dt - 1e-9)
+    whole[l, INTERVALS] = motions.npts[motion] - 1 + free
+    load_podium(b, L, l, podium)
+    load_floors(b, shape, l, podium.a1, systems, s)
+    b[SCALE * L + l], b[INTERVAL_LENGTH * L + l] = points.scale[point], dt
+    b[FLIGHT_STEP * L + l] = dt / max(math.ceil(dt * podium.flight_rate), 1)
+    b[CONTACT_STEP * L + l] = dt / max(math.ceil(dt * podium.contact_rate), 1)
+    load_modes(systems, s, lanes.modes[l], b[CONTACT_STEP * L + l])
+    shake(lanes, L, l)
+
+
+@kernel
+def load_podium(b: Floats, L: int, l: int, podium: Podium) -> None:
+    """Fold the constants of the rocking storey."""
+    gamma, eta = podium.gamma, podium.eta
+    own = 1.0 + 2.0 * gamma
+    b[DIAMETER * L + l] = 2.0 * podium.R
+    b[INERTIA * L + l] = podium.Io - 1.0
+    b[BEAM * L + l] = 1.0 + 4.0 * gamma
+    b[BUILDING * L + l] = 4.0 * gamma * eta
+    b[WEIGHT * L + l] = (own + 2.0 * gamma * eta) / podium.R
+    b[PUSH * L + l] = own / podium.R
+    b[SHEAR * L + l] = 2.0 / (podium.columns_mass * podium.R)
+    b[DRAG * L + l] = podium.a0
+    b[COLUMNS_MASS * L + l] = podium.columns_mass
+    b[CAP_BEAM_MASS * L + l] = podium.cap_beam_mass
+    b[FLOORS_MASS * L + l] = podium.floors_mass
+    b[STANDARD_GRAVITY * L + l] = podium.gravity
+    b[THETA_CR * L + l] = podium.theta_cr
+    b[SIDE * L + l] = 1.0
+    b[CRITICAL_TIME * L + l] = -1.0
+    b[NORMAL_TOP * L + l], b[NORMAL_BOTTOM * L + l] = math.inf, math.inf
+
+
+@kernel
+def load_floors(b: Floats, shape: Shape, l: int, a1: float, systems: Systems, s: int) -> None:
+    """Masses, stiffnesses and damping of the floors."""
+    n, L = len(shape.floors), len(shape.stride)
+    for i in range(n):
+        b[(SCALARS + STIFFNESS * (n + 1) + i) * L + l] = systems.stiffness[s, i]
+        b[(SCALARS + DAMPING * (n + 1) + i) * L + l] = a1 * systems.stiffness[s, i]
+        b[(SCALARS + MASS * (n + 1) + i) * L + l] = systems.mass[s, i]
+        b[(SCALARS + INVERSE_MASS * (n + 1) + i) * L + l] = systems.inverse_mass[s, i]
+    if len(shape.dense) > 0:
+        matrix = SCALARS + BLOCKS * (n + 1)
+        for i in range(n):
+            for j in range(n):
+                b[(matrix + i * n + j) * L + l] = systems.damping[s, i, j]
+
+
+@kernel
+def lean(lanes: Lanes, shape: Shape, l: int, rotation: float) -> None:
+    """Start from rest at a rotation, the building unstrained."""
+    n, L = len(shape.floors), len(shape.stride)
+    b = lanes.buffer
+    podium = podium_of(lanes.podium, l)
+    b[SIDE * L + l] = math.copysign(1.0, rotation)
+    b[(SCALARS + POSITION * (n + 1)) * L + l] = abs(rotation)
+    b[PEAK * L + l] = abs(rotation)
+    enter_phase(lanes, L, l, podium, ROLLING if abs(rotation) < podium.beta else ROCKING)
+    b[STALE * L + l] = LEANING
+
+
+@kernel
+def finish(lanes: Lanes, shape: Shape, l: int, results: Results) -> None:
+    """Write what the history leaves behind."""
+    n, L = len(shape.floors), len(shape.stride)
+    b, whole = lanes.buffer, lanes.integers
+    if whole[l, MOTION] == FULL_CONTACT:
+        to_floors(lanes, L, l)
+        stored = building_energy(b, n, L, l, 0.0)
     else:
-        stored = uplifted_energy(podium, floors, motion, side, y)
-    energies = np.array([y[INPUT], y[DAMPED], tally[LOST], stored])
-    return History(
-        outcome, motion, side * y[TILT], interval * dt + time, interval,
-        tally[PEAK], tally[PEAK_TIME], tally[CRITICAL_TIME],
-        storey_shears, floor_accelerations, contacts,
-        energies, tally[CREATED], int(tally[CREATED_IMPACTS]), counts, evaluations,
-    )  # fmt: skip
+        stored = uplifted_energy(b, n, L, l)
+    if whole[l, OUTCOME] == RUNNING:
+        released = podium_of(lanes.podium, l).initial_rotation != 0.0
+        moved = released or whole[l, COUNTS + UPLIFT] > 0
+        whole[l, OUTCOME] = SURVIVED if moved else AT_REST
+    numbers, integers = results.numbers[whole[l, POINT]], results.integers[whole[l, POINT]]
+    numbers[OUT_TIME] = now(lanes, L, l)
+    numbers[OUT_ROTATION] = b[SIDE * L + l] * b[(SCALARS + POSITION * (n + 1)) * L + l]
+    for column, row in (
+        (OUT_PEAK, PEAK),
+        (OUT_PEAK_TIME, PEAK_TIME),
+        (OUT_CRITICAL_TIME, CRITICAL_TIME),
+        (OUT_FRICTION_TOP, FRICTION_TOP),
+        (OUT_FRICTION_BOTTOM, FRICTION_BOTTOM),
+        (OUT_NORMAL_TOP, NORMAL_TOP),
+        (OUT_NORMAL_BOTTOM, NORMAL_BOTTOM),
+        (OUT_INPUT, INPUT),
+        (OUT_DAMPED, DAMPED),
+        (OUT_LOST, LOST),
+        (OUT_CREATED, CREATED),
+    ):
+        numbers[column] = b[row * L + l]
+    numbers[OUT_STORED] = stored
+    for i in range(n):
+        numbers[OUT_FLOORS + i] = b[(SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l]
+        numbers[OUT_FLOORS + n + i] = b[(SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l]
+    integers[OUT_OUTCOME], integers[OUT_MOTION] = whole[l, OUTCOME], whole[l, MOTION]
+    integers[OUT_INTERVALS] = whole[l, INTERVAL]
+    integers[OUT_EVALUATIONS] = whole[l, EVALUATIONS]
+    integers[OUT_CREATING] = whole[l, CREATING]
+    for i in range(EVENT_KINDS):
+        integers[OUT_COUNTS + i] = whole[l, COUNTS + i]

@@ -3,37 +3,52 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rpscli.physics.building import floor_rates
-from rpscli.physics.contact import advance_modes, fill_decay, to_floors
-from rpscli.physics.driver import shaking_in
+from rpscli.physics.contact import (
+    DQ,
+    PULL,
+    SHAPES,
+    WHOLE,
+    Q,
+    advance_modes,
+    keep_end,
+    load_modes,
+    push_of,
+)
 from rpscli.physics.jit import kernel
-from rpscli.physics.layout import FLOORS
-from rpscli.physics.observation import record_demands
-from rpscli.physics.parameters import Floors, Ground
+from rpscli.physics.parameters import Floats, Systems
 
 
 @kernel
 def integrate_fixed_base(
-    floors: Floors, ground: Ground, intervals: int, samples: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    systems: Systems, acceleration: Floats, dt: float, intervals: int, samples: Floats
+) -> tuple[Floats, Floats]:
     """Largest storey shears k_i d_i (n,) [N] and absolute floor accelerations (n,) [m/s2].
 
-    `samples` (intervals + 1, 2 n), or with no rows, takes floor displacements and velocities.
+    The building is that of the first system. The ground acceleration (npts,) [m/s2] is zero after
+    its last sample. `samples` (intervals + 1, 2 n), or with no rows, takes floor displacements and
+    velocities.
     """
-    n = floors.mass.shape[0]
-    y, rates = np.zeros(FLOORS + 2 * n), np.zeros(FLOORS + 2 * n)
-    z, end, table = np.zeros((2, n)), np.zeros((2, n)), np.zeros((2, n))
+    n = systems.mass.shape[1]
+    z = np.zeros((SHAPES + 2 * n, n))
     storey_shears, floor_accelerations = np.zeros(n), np.zeros(n)
-    fill_decay(floors, ground.dt, table)
+    load_modes(systems, 0, z, dt)
     for interval in range(intervals + 1):
-        shaking = shaking_in(ground, interval)
-        to_floors(floors, z, y)
-        floor_rates(floors, y, 0.0, 0.0, shaking.start, rates)
-        record_demands(floors, y, rates, 0.0, shaking.start, storey_shears, floor_accelerations)
-        if interval < samples.shape[0]:
-            samples[interval, :] = y[FLOORS:]
-        advance_modes(floors, shaking, 0.0, ground.dt, table, z, end)
-        z, end = end, z
+        inside = interval + 1 < acceleration.shape[0]
+        start = acceleration[interval] if inside else 0.0
+        end = acceleration[interval + 1] if inside else 0.0
+        push_of(z, Q, start)
+        for i in range(n):
+            shear, pull, u, du = 0.0, 0.0, 0.0, 0.0
+            for r in range(n):
+                shear += z[SHAPES + n + r, i] * z[Q, r]
+                pull += z[SHAPES + r, i] * z[PULL, r]
+                u += z[SHAPES + r, i] * z[Q, r]
+                du += z[SHAPES + r, i] * z[DQ, r]
+            storey_shears[i] = max(storey_shears[i], abs(shear))
+            floor_accelerations[i] = max(floor_accelerations[i], abs(pull))
+            if interval < samples.shape[0]:
+                samples[interval, i], samples[interval, n + i] = u, du
+        advance_modes(z, start, (end - start) / dt, WHOLE)
+        keep_end(z)
     return storey_shears, floor_accelerations

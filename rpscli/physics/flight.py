@@ -1,147 +1,117 @@
-"""One uplifted step: step, detect, locate.
+"""What a lane does after each uplifted step: go on, locate an event, or switch.
 
-The step is taken as if its phase of motion went on for ever. If the tilt then leaves the range of
-the phase - below 0 or above beta while rolling, below beta or above the overturning limit while
-rocking - the step is taken again up to the passage.
+A step is taken as if its phase of motion went on for ever. If the tilt then leaves the range of
+the phase, the step is taken again up to the passage: first to the root of the interpolating
+quintic, then corrected by Newton's method. The other lanes meanwhile go on with steps of their own.
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
-from rpscli.physics.events import (
-    NO_PASSAGE,
-    Quintic,
-    first_descent,
-    lower_hull,
-    offset,
-    quintic,
-    slope,
-    upper_hull,
-    value,
-)
+from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, offset, slope, value
+from rpscli.physics.inspection import tilt_path
 from rpscli.physics.jit import kernel
 from rpscli.physics.layout import (
+    ACCELERATION,
+    AHEAD,
+    AHEAD_ACCELERATION,
+    AHEAD_RATE,
+    AT_SAMPLE,
+    BASE,
+    COUNTS,
+    CRITICAL_PASSAGE,
+    CRITICAL_TIME,
+    DAMPED,
+    DAMPED_POWER,
+    EVENT,
+    EVENT_KINDS,
+    FAILED_NOT_FINITE,
+    FAILED_STEP_TOO_SMALL,
+    FAILED_TOO_MANY_EVENTS,
+    FLIGHT_STEP,
+    FRESH,
+    HIGH,
     IMPACT,
+    INPUT,
+    INPUT_POWER,
+    INTERVAL,
+    INTERVAL_LENGTH,
+    LANDED,
+    LAST,
+    LEANING,
+    LEVEL,
+    LIFTED_OFF,
+    LOCATING,
+    LONGEST,
+    LOW,
+    MOTION,
+    MOVED_ON,
+    NOTHING,
+    NPTS,
+    OUTCOME,
+    OVERTURNED_ROCKING,
+    OVERTURNED_ROLLING,
     OVERTURNING,
     PEAK,
     PEAK_TIME,
-    ROCKING_TO_ROLLING,
+    POSITION,
+    ROCKING,
     ROLLING,
     ROLLING_TO_ROCKING,
-    TILT,
-    TILT_RATE,
+    SCALARS,
+    SIDE,
+    STALE,
+    STALLED,
+    STEP,
+    STEPS,
+    THETA_CR,
+    TIME,
+    VELOCITY,
 )
-from rpscli.physics.parameters import Floors, Podium
-from rpscli.physics.runge_kutta import step
-from rpscli.physics.uplifted import Shaking
-
-NOTHING = -1
-"""No event in the step."""
-
-NOT_FINITE = -2
-"""The step gave an infinity or no number."""
+from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
+from rpscli.physics.progress import next_interval, store_sample
+from rpscli.physics.runge_kutta import energy_over_step
+from rpscli.physics.standing import stand, to_modes
+from rpscli.physics.switch import (
+    comes_to_rest,
+    enter_phase,
+    event_above,
+    event_below,
+    land,
+    note,
+    now,
+)
+from rpscli.physics.table import podium_of
 
 RESTEPS = 4
 """At most so many re-steps locate an event; two suffice but for grazing."""
 
-
-@kernel
-def tilt_path(
-    y: NDArray[np.float64], k: NDArray[np.float64], end: NDArray[np.float64], h: float
-) -> Quintic:
-    """The tilt x over the step that was just taken."""
-    return quintic(
-        h,
-        y[TILT],
-        y[TILT_RATE],
-        k[0, TILT_RATE],
-        end[TILT],
-        end[TILT_RATE],
-        k[6, TILT_RATE],
-    )
+STALL = 100
+"""So many events in a row without time passing: the step cannot be made small enough."""
 
 
 @kernel
-def phase_range(podium: Podium, motion: int) -> tuple[float, float, int, int]:
-    """Least and largest tilt of a phase, and the events at either."""
-    if motion == ROLLING:
-        return 0.0, podium.beta, IMPACT, ROLLING_TO_ROCKING
-    if podium.beta > 0.0:
-        return podium.beta, podium.theta_limit, ROCKING_TO_ROLLING, OVERTURNING
-    return 0.0, podium.theta_limit, IMPACT, OVERTURNING
+def set_step(b: Floats, shape: Shape, l: int, h: float) -> None:
+    """Set the length of the next step of a lane [s]."""
+    n, L = len(shape.floors), len(shape.stride)
+    b[STEP * L + l] = h
+    for c in range(n + 1):
+        b[(SCALARS + STEPS * (n + 1) + c) * L + l] = h
 
 
 @kernel
-def first_exit(
-    podium: Podium, motion: int, path: Quintic, piece: NDArray[np.float64]
-) -> tuple[float, float, int]:
-    """Fraction of the step, tilt and kind of the first event; fraction `NO_PASSAGE` if none."""
-    low, high, down, up = phase_range(podium, motion)
-    if motion == ROLLING:
-        high = min(high, podium.theta_limit)
-        if high == podium.theta_limit:
-            up = OVERTURNING
-    first, level, kind = NO_PASSAGE, 0.0, NOTHING
-    if lower_hull(path) < low or path[0] < low:
-        first = first_descent(offset(path, 1.0, low), piece)
-        if first <= 1.0:
-            level, kind = low, down
-    if upper_hull(path) > high or path[0] > high:
-        t = first_descent(offset(path, -1.0, high), piece)
-        if t < first:
-            first, level, kind = t, high, up
-    return first, level, kind
+def plan_step(b: Floats, shape: Shape, l: int) -> None:
+    """Length of the next step: even parts of what is left of the interval.
 
-
-@kernel
-def fly(
-    podium: Podium,
-    floors: Floors,
-    motion: int,
-    side: float,
-    shaking: Shaking,
-    time: float,
-    h: float,
-    y: NDArray[np.float64],
-    k: NDArray[np.float64],
-    end: NDArray[np.float64],
-    piece: NDArray[np.float64],
-) -> tuple[float, int, int]:
-    """Step the uplifted structure by h, or to the first event if that comes before.
-
-    Parameters
-    ----------
-    y, end
-        State before and, written, after.
-    k
-        Slopes (7, m); row 0 is given, row 6 belongs to `end` afterwards.
-
-    Returns
-    -------
-    Time advanced [s]; the event at its end, `NOTHING` or `NOT_FINITE`; steps taken.
+    Nothing may be left after an event on the very sample; a step of length 0 then leads over.
     """
-    step(podium, floors, motion, side, shaking, time, h, y, k, end)
-    steps = 1
-    if not math.isfinite(end[TILT] + end[TILT_RATE] + k[6, TILT_RATE]):
-        return h, NOT_FINITE, steps
-    fraction, level, kind = first_exit(podium, motion, tilt_path(y, k, end, h), piece)
-    if kind == NOTHING:
-        return h, NOTHING, steps
-    advanced = fraction * h
-    for _ in range(RESTEPS):
-        step(podium, floors, motion, side, shaking, time, advanced, y, k, end)
-        steps += 1
-        miss = end[TILT] - level
-        change = -miss / end[TILT_RATE] if end[TILT_RATE] != 0.0 else math.inf
-        if abs(miss) < 1e-15 or not 0.0 <= advanced + change <= h or abs(change) < 1e-15 * h:
-            break
-        advanced += change
-    end[TILT] = level
-    return advanced, kind, steps
+    L = len(shape.stride)
+    left = b[INTERVAL_LENGTH * L + l] - b[TIME * L + l]
+    steps = max(math.ceil(left / b[FLIGHT_STEP * L + l] - 1e-9), 1)
+    set_step(b, shape, l, max(left, 0.0) / steps)
+    b[AT_SAMPLE * L + l] = 1.0 if steps == 1 else 0.0
+    b[LOCATING * L + l] = 0.0
 
 
 @kernel
@@ -161,18 +131,195 @@ def crest(path: Quintic) -> tuple[float, float]:
 
 
 @kernel
-def watch_peak(
-    y: NDArray[np.float64],
-    k: NDArray[np.float64],
-    end: NDArray[np.float64],
-    h: float,
-    time: float,
-    tally: NDArray[np.float64],
-) -> None:
-    """Raise the largest tilt by that of a step of length h from `time`, turning points included."""
-    height, when = end[TILT], time + h
-    if y[TILT_RATE] > 0.0 and end[TILT_RATE] < 0.0:
-        fraction, height = crest(tilt_path(y, k, end, h))
-        when = time + fraction * h
-    if height > tally[PEAK]:
-        tally[PEAK], tally[PEAK_TIME] = height, when
+def watch_peak(lanes: Lanes, shape: Shape, l: int) -> None:
+    """Raise the largest tilt by that of the step just taken, turning points included."""
+    n, L = len(shape.floors), len(shape.stride)
+    b = lanes.buffer
+    height, fraction = b[(SCALARS + AHEAD * (n + 1)) * L + l], 1.0
+    before = b[(SCALARS + VELOCITY * (n + 1)) * L + l]
+    after = b[(SCALARS + AHEAD_RATE * (n + 1)) * L + l]
+    if before > 0.0 and after < 0.0:
+        fraction, height = crest(tilt_path(b, n, L, l))
+    if height > b[PEAK * L + l]:
+        b[PEAK * L + l] = height
+        b[PEAK_TIME * L + l] = now(lanes, L, l) + fraction * b[STEP * L + l]
+        if height > b[THETA_CR * L + l] and b[CRITICAL_TIME * L + l] < 0.0:
+            note_critical_passage(lanes, shape, l)
+
+
+@kernel
+def note_critical_passage(lanes: Lanes, shape: Shape, l: int) -> None:
+    """Note when theta_cr was passed for the first time, within the step just taken."""
+    n, L = len(shape.floors), len(shape.stride)
+    b = lanes.buffer
+    level, h = b[THETA_CR * L + l], b[STEP * L + l]
+    path = tilt_path(b, n, L, l)
+    t = min(first_descent(offset(path, -1.0, level), lanes.piece), 1.0)
+    time, side = now(lanes, L, l) + t * h, b[SIDE * L + l]
+    rate = side * slope(path, t) / h if h > 0.0 else 0.0
+    b[CRITICAL_TIME * L + l] = time
+    note(lanes, l, time, CRITICAL_PASSAGE, side * level, rate, rate, 0.0)
+
+
+@kernel
+def pass_time(lanes: Lanes, shape: Shape, l: int) -> None:
+    """Book the step that was taken over."""
+    L = len(shape.stride)
+    b = lanes.buffer
+    b[TIME * L + l] += b[STEP * L + l]
+    if len(shape.audit) > 0:
+        given, damped = energy_over_step(b, L, l)
+        b[INPUT * L + l] += given
+        b[DAMPED * L + l] += damped
+        b[INPUT_POWER * L + l] = b[(INPUT_POWER + LAST) * L + l]
+        b[DAMPED_POWER * L + l] = b[(DAMPED_POWER + LAST) * L + l]
+
+
+@kernel
+def aim(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> bool:
+    """Find the first event within the step just taken, and plan the re-step that leads there.
+
+    False if the step is not finite. If the quintic turns out to stay in range, the alarm was
+    false: the same step is taken once more and then passes.
+    """
+    n, L = len(shape.floors), len(shape.stride)
+    b, whole = lanes.buffer, lanes.integers
+    path = tilt_path(b, n, L, l)
+    if not math.isfinite(path[1] + path[3] + path[5]):
+        return False
+    first, level, kind = NO_PASSAGE, 0.0, NOTHING
+    low, high = b[LOW * L + l], b[HIGH * L + l]
+    t = first_descent(offset(path, 1.0, low), lanes.piece)
+    if t < first:
+        first, level, kind = t, low, event_below(podium, whole[l, MOTION])
+    t = first_descent(offset(path, -1.0, high), lanes.piece)
+    if t < first:
+        first, level, kind = t, high, event_above(podium, whole[l, MOTION])
+    if kind == NOTHING:
+        b[LOCATING * L + l] = -1.0
+        return True
+    whole[l, EVENT] = kind
+    b[LEVEL * L + l], b[LONGEST * L + l] = level, b[STEP * L + l]
+    set_step(b, shape, l, first * b[STEP * L + l])
+    b[LOCATING * L + l] = 1.0
+    return True
+
+
+@kernel
+def correct(b: Floats, shape: Shape, l: int) -> bool:
+    """Whether the re-step ends on the event; if not, correct its length."""
+    n, L = len(shape.floors), len(shape.stride)
+    miss = b[(SCALARS + AHEAD * (n + 1)) * L + l] - b[LEVEL * L + l]
+    rate = b[(SCALARS + AHEAD_RATE * (n + 1)) * L + l]
+    change = -miss / rate if rate != 0.0 else math.inf
+    longest = b[LONGEST * L + l]
+    length = b[STEP * L + l] + change
+    if abs(miss) < 1e-15 or abs(change) < 1e-15 * longest or not 0.0 <= length <= longest:
+        return True
+    if b[LOCATING * L + l] >= RESTEPS:
+        return True
+    set_step(b, shape, l, length)
+    b[LOCATING * L + l] += 1.0
+    return False
+
+
+@kernel
+def arrive(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> None:
+    """Take over the step that ends on an event, and switch."""
+    n, L = len(shape.floors), len(shape.stride)
+    b, whole = lanes.buffer, lanes.integers
+    b[(SCALARS + AHEAD * (n + 1)) * L + l] = b[LEVEL * L + l]
+    watch_peak(lanes, shape, l)
+    for state, ahead in (
+        (POSITION, AHEAD),
+        (VELOCITY, AHEAD_RATE),
+        (ACCELERATION, AHEAD_ACCELERATION),
+    ):
+        for c in range(n + 1):
+            end = b[(SCALARS + ahead * (n + 1) + c) * L + l]
+            b[(SCALARS + state * (n + 1) + c) * L + l] = end
+    whole[l, STALLED] = whole[l, STALLED] + 1 if b[STEP * L + l] == 0.0 else 0
+    pass_time(lanes, shape, l)
+    kind = whole[l, EVENT]
+    if kind == IMPACT:
+        land(lanes, n, L, l, podium)
+        return
+    rotation = b[SIDE * L + l] * b[(SCALARS + POSITION * (n + 1)) * L + l]
+    rate = b[SIDE * L + l] * b[(SCALARS + VELOCITY * (n + 1)) * L + l]
+    note(lanes, l, now(lanes, L, l), kind, rotation, rate, rate, 0.0)
+    if kind == OVERTURNING:
+        rolls = podium.theta_cr < podium.beta
+        whole[l, OUTCOME] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
+        return
+    enter_phase(lanes, L, l, podium, ROCKING if kind == ROLLING_TO_ROCKING else ROLLING)
+    b[STALE * L + l] = MOVED_ON
+
+
+@kernel
+def too_many(lanes: Lanes, l: int, podium: Podium) -> bool:
+    """Whether events pile up; sets the outcome."""
+    whole, events = lanes.integers, 0
+    for i in range(EVENT_KINDS):
+        events += whole[l, COUNTS + i]
+    if events > podium.max_events:
+        whole[l, OUTCOME] = FAILED_TOO_MANY_EVENTS
+        return True
+    if whole[l, STALLED] > STALL:
+        whole[l, OUTCOME] = FAILED_STEP_TOO_SMALL
+        return True
+    return False
+
+
+@kernel
+def go_on(lanes: Lanes, shape: Shape, l: int) -> bool:
+    """Book a quiet step and plan the next; False if the history of the lane is over."""
+    L = len(shape.stride)
+    b, whole = lanes.buffer, lanes.integers
+    pass_time(lanes, shape, l)
+    if b[AT_SAMPLE * L + l] > 0.0:
+        if next_interval(lanes, shape, l):
+            return False
+        if whole[l, INTERVAL] + 1 == whole[l, NPTS]:
+            b[STALE * L + l] = MOVED_ON  # the ground acceleration may jump to zero
+    plan_step(b, shape, l)
+    return True
+
+
+@kernel
+def attend(lanes: Lanes, shape: Shape, l: int) -> bool:
+    """Deal with a step that holds an event; False if the history of the lane is over."""
+    L = len(shape.stride)
+    b, whole = lanes.buffer, lanes.integers
+    podium = podium_of(lanes.podium, l)
+    if b[LOCATING * L + l] == 0.0:
+        if not aim(lanes, shape, l, podium):
+            whole[l, OUTCOME] = FAILED_NOT_FINITE
+        return bool(whole[l, OUTCOME] < 0)
+    if correct(b, shape, l):
+        arrive(lanes, shape, l, podium)
+        plan_step(b, shape, l)
+    return not (whole[l, OUTCOME] >= 0 or too_many(lanes, l, podium))
+
+
+@kernel
+def settle(lanes: Lanes, shape: Shape, l: int) -> bool:
+    """After accelerations were computed anew; False if the history of the lane is over."""
+    n, L = len(shape.floors), len(shape.stride)
+    b = lanes.buffer
+    why = b[STALE * L + l]
+    b[STALE * L + l] = FRESH
+    if why == LIFTED_OFF:
+        # At the threshold theta'' is zero but for rounding, and about to grow.
+        row = (SCALARS + ACCELERATION * (n + 1)) * L + l
+        b[row] = max(b[row], 0.0)
+    elif why == LEANING:
+        for i in range(n):
+            b[(SCALARS + POSITION * (n + 1) + i + 1) * L + l] = b[BASE * L + l]
+        store_sample(lanes, shape, l)
+        b[STALE * L + l] = MOVED_ON
+    elif why == LANDED and comes_to_rest(lanes, n, L, l):
+        to_modes(lanes, L, l)
+        if not stand(lanes, shape, l):
+            return False
+        plan_step(b, shape, l)
+    return True

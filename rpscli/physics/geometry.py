@@ -79,7 +79,7 @@ def path_height(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
 
 def squared_distance(phase: Phase, C: float) -> float:
     """S(x) = B^2 + C^2, from C alone."""
-    return phase.p**2 + phase.q**2 - phase.c**2 + 2.0 * phase.c * C
+    return phase.p * phase.p + phase.q * phase.q + phase.c * (2.0 * C - phase.c)
 
 
 def cap_beam_displacement(phase: Phase, x: Value, cos_x: Value, sin_x: Value) -> Value:

@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -30,7 +30,7 @@ def cache_folder() -> Path | None:
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
-    home = os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
     places = [
         os.environ.get("RPS_CACHE_DIR"),
         Path(home) / "rps",
@@ -52,18 +52,39 @@ def _is_writable(folder: Path) -> bool:
 
 
 def kernel(function: Function) -> Function:
-    """Compile at the first call, without the GIL, and keep the machine code on disk."""
+    """Compile at the first call, without the GIL, and keep the machine code on disk.
+
+    A product and a sum may be contracted to one rounding; nothing else is reordered.
+    """
+    return _compiled(function, merged_into_callers=False)
+
+
+def merged(function: Function) -> Function:
+    """The same for a part of a kernel that is merged into each caller.
+
+    What a caller passes as a constant is then one in the part too: that is how the loops over
+    lanes know that their rows do not overlap.
+    """
+    return _compiled(function, merged_into_callers=True)
+
+
+def _compiled(function: Function, *, merged_into_callers: bool) -> Function:
     folder = cache_folder()
     config: Any = numba.config
     before = config.CACHE_DIR
     config.CACHE_DIR = str(folder or "")
     try:
-        compiled: Function = numba.njit(
-            function, cache=folder is not None, nogil=True, error_model="numpy"
+        compiled: Any = numba.njit(
+            function,
+            cache=folder is not None,
+            nogil=True,
+            error_model="numpy",
+            fastmath={"contract"},
+            forceinline=merged_into_callers,
         )
     finally:
         config.CACHE_DIR = before
-    return compiled
+    return cast("Function", compiled)
 
 
 def is_compiled(function: Callable[..., Any]) -> bool:

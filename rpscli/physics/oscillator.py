@@ -28,25 +28,35 @@ def decay(omega: float, xi: float, h: float) -> tuple[float, float]:
         envelope = math.exp(-rate * h)
         return envelope * math.cos(wd * h), envelope * math.sin(wd * h) / wd
     wd = math.sqrt(-square)
+    if wd * h < 1.0:  # where the difference below would cancel
+        envelope = math.exp(-rate * h)
+        return envelope * math.cosh(wd * h), envelope * math.sinh(wd * h) / wd
     slow, fast = math.exp((wd - rate) * h), math.exp(-(wd + rate) * h)
     return 0.5 * (slow + fast), 0.5 * (slow - fast) / wd
 
 
 @kernel
-def advance_oscillator(
-    omega: float,
-    xi: float,
-    c: float,
-    s: float,
-    h: float,
-    q: float,
-    dq: float,
-    load: float,
-    slope: float,
-) -> tuple[float, float]:
-    """q and q' after a step h with the load p = load + slope t, given c(h) and s(h)."""
-    trend = slope / omega**2
-    static = load / omega**2 - 2.0 * xi * trend / omega
-    a, b = q - static, dq - trend
-    after = static + trend * h + (c + xi * omega * s) * a + s * b
-    return after, trend - omega**2 * s * a + (c - xi * omega * s) * b
+def transition(
+    omega: float, xi: float, h: float
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """The exact map over a step h.
+
+    Returns
+    -------
+    a, b, c, d, e, f, g, i of q1 = a q + b q' + c p + d p' and q1' = e q + f q' + g p + i p', with p
+    the load at the start of the step and p' its slope.
+    """
+    c, s = decay(omega, xi, h)
+    square = omega * omega
+    rest, grow = 1.0 - (c + xi * omega * s), c - xi * omega * s
+    trend = (h - s - 2.0 * xi / omega * rest) / square
+    return (
+        1.0 - rest,
+        s,
+        rest / square,
+        trend,
+        -square * s,
+        grow,
+        s,
+        (1.0 - c - xi * omega * s) / square,
+    )

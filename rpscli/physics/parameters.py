@@ -2,35 +2,24 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.physics.geometry import Phase
 
-
-class Floors(NamedTuple):
-    """The shear building: n floors, n may be 0.
-
-    Damping is C = a0 M + a1 K, or the full `damping` (n, n) where that is not empty. The modes are
-    those of the fixed base, mass-normalised; `participation` is Gamma_r = phi_r^T M 1.
-    """
-
-    mass: NDArray[np.float64]
-    inverse_mass: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
-    a0: float
-    a1: float
-    damping: NDArray[np.float64]
-    omega: NDArray[np.float64]
-    xi: NDArray[np.float64]
-    shapes: NDArray[np.float64]
-    participation: NDArray[np.float64]
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 
 class Podium(NamedTuple):
-    """The rocking storey. Letters as in the paper and in Theory, sections 1 and 2."""
+    """The rocking storey and how its motion is followed; letters as in Theory, sections 1 and 2.
+
+    `flight_rate` and `contact_rate` are the least numbers of steps a second, uplifted and in full
+    contact; each interval of a record is divided evenly. `bounces` is what the impacts left out at
+    re-contact add to the floors' velocity, over the cap beam's.
+    """
 
     R: float
     alpha: float
@@ -47,33 +36,126 @@ class Podium(NamedTuple):
     floors_mass: float
     gravity: float
     restitution: float
-    floors_jump: bool
-
-
-class Ground(NamedTuple):
-    """Accelerations of the ground at equal steps, linear between samples and 0 after the last.
-
-    `vertical` is empty or as long as `horizontal`.
-    """
-
-    horizontal: NDArray[np.float64]
-    vertical: NDArray[np.float64]
-    dt: float
-
-
-class Numerics(NamedTuple):
-    """How the motion is integrated.
-
-    `substeps` Runge-Kutta steps are made in each interval of the record while uplifted, and
-    `contact_substeps` exact steps in full contact (for the search of uplift only). At most
-    `free_samples` intervals follow the record's end, fewer if `until_rest` and nothing more can
-    happen. The motion starts from rest at `initial_rotation`.
-    """
-
-    substeps: int
-    contact_substeps: int
-    free_samples: int
-    until_rest: bool
+    floors_jump: float
+    a0: float
+    a1: float
+    flight_rate: float
+    contact_rate: float
     recontact_tolerance: float
-    max_events: int
+    bounces: float
+    max_events: float
     initial_rotation: float
+    free_vibration: float
+    until_rest: float
+
+
+def podium_numbers(podium: Podium) -> list[float]:
+    """The row of numbers of a podium: its fields in order, phases spread out."""
+    numbers: list[float] = []
+    for value in podium:
+        numbers.extend(value if isinstance(value, Phase) else [float(value)])
+    return numbers
+
+
+class Systems(NamedTuple):
+    """Structures of the same number of floors n, stacked along the first axis.
+
+    `podium` holds a row of `podium_numbers` each. Damping is C = a0 M + a1 K, or the full
+    matrices where `damping` is not empty. The modes are those of the fixed base, mass-normalised,
+    one a row; `shear_shapes` are the storey shears k_i (phi_i - phi_{i-1}) of each, and
+    `participation` is Gamma_r = phi_r^T M 1.
+    """
+
+    podium: Floats
+    mass: Floats
+    inverse_mass: Floats
+    stiffness: Floats
+    damping: Floats
+    omega: Floats
+    xi: Floats
+    participation: Floats
+    shapes: Floats
+    shear_shapes: Floats
+
+
+class Motions(NamedTuple):
+    """Accelerations of the ground, end to end; linear between samples, 0 after the last."""
+
+    acceleration: Floats
+    start: Integers
+    npts: Integers
+    dt: Floats
+
+
+class Points(NamedTuple):
+    """The histories to run: which system, which motion at which scale; vertical -1 for none."""
+
+    system: Integers
+    motion: Integers
+    vertical: Integers
+    scale: Floats
+
+
+class Results(NamedTuple):
+    """What is written for each history, and, for the first one, its samples and event log.
+
+    `numbers` (points, 14 + 2 n) and `integers` (points, 12): columns `layout.OUT_...`.
+    `samples` (rows, 7 + 2 n) and `log` (rows, 6): give no rows to keep none; events beyond the
+    log's rows are only counted.
+    """
+
+    numbers: Floats
+    integers: Integers
+    samples: Floats
+    log: Floats
+
+
+Size: TypeAlias = tuple[int, ...] | NDArray[np.int8]
+
+
+class Shape(NamedTuple):
+    """Sizes that the compiler may know: each is the length of an entry.
+
+    A tuple's length is part of its type, so a kernel called with a tuple is compiled for that
+    length; an array's length is read at run time, and one kernel serves all. The values do not
+    matter.
+
+    floors
+        n.
+    stride
+        L, the lanes that the buffer is made for; always a tuple.
+    lanes
+        Lanes that move together. A tuple of one unrolls the loop over lanes away; an array keeps
+        it, for the compiler to turn it into vector instructions.
+    alone
+        Not empty: one lane of several moves by itself.
+    audit
+        Not empty: integrate the energy flows.
+    dense
+        Not empty: damping matrices are given.
+    """
+
+    floors: Size
+    stride: tuple[int, ...]
+    lanes: Size
+    alone: tuple[int, ...]
+    audit: tuple[int, ...]
+    dense: Size
+
+
+class Lanes(NamedTuple):
+    """Everything that a history needs while it runs, lane by lane: see `layout` and `contact`.
+
+    `podium` (L, 34) are the numbers of `Podium`, `modes` (L, 14 + 2 n, n) the modal rows of full
+    contact, `piece` (6,) is scratch; the acceleration of the ground, the samples and the log are
+    those of `Motions` and `Results`.
+    """
+
+    buffer: Floats
+    integers: Integers
+    podium: Floats
+    modes: Floats
+    piece: Floats
+    acceleration: Floats
+    samples: Floats
+    log: Floats

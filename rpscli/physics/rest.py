@@ -4,80 +4,67 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
-from rpscli.physics.contact import uplift_limit
+from rpscli.physics.contact import DQ, DRAG, OMEGA, PARTICIPATION, SHAPES, Q
 from rpscli.physics.jit import kernel
-from rpscli.physics.layout import FULL_CONTACT, ROCKING, ROLLING
-from rpscli.physics.parameters import Floors, Podium
-from rpscli.physics.uplifted import cap_beam_lift, phase_of, uplifted_energy
-
-RESERVE = 1.05
-"""The rigid impact law may create energy, a few per cent of what is left in all cases seen."""
+from rpscli.physics.layout import (
+    FLOOR_ACCELERATION,
+    FULL_CONTACT,
+    MOTION,
+    SCALARS,
+    STOREY_SHEAR,
+)
+from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
+from rpscli.physics.table import podium_of
 
 
 @kernel
-def is_over(
-    podium: Podium,
-    floors: Floors,
-    motion: int,
-    side: float,
-    y: NDArray[np.float64],
-    z: NDArray[np.float64],
-    peak: float,
-    storey_shears: NDArray[np.float64],
-    floor_accelerations: NDArray[np.float64],
-) -> bool:
+def is_over(lanes: Lanes, shape: Shape, l: int) -> bool:
     """Whether no later moment of the free vibration can bring a new maximum.
 
-    In full contact each mode decays from its present energy, which bounds every demand and the
-    push that could uplift the storey again. Uplifted, the whole energy bounds the lift of the
-    weight, and the strain energy of each storey.
+    Never while uplifted: impacts excite the building until the storey is down. In full contact
+    each mode decays from its present energy, which bounds every demand and the push that could
+    uplift the storey again.
     """
-    if motion == FULL_CONTACT:
-        return vibration_is_bounded(podium, floors, z, storey_shears, floor_accelerations)
-    energy = RESERVE * uplifted_energy(podium, floors, motion, side, y)
-    lifted = ROLLING if peak < podium.beta else ROCKING
-    phase = phase_of(podium, lifted)
-    mass = 0.5 * podium.columns_mass + podium.cap_beam_mass + podium.floors_mass
-    lift = 2.0 * podium.R * cap_beam_lift(phase, math.cos(peak), math.sin(peak))
-    if energy > mass * podium.gravity * lift or peak > podium.theta_cr:
+    podium = podium_of(lanes.podium, l)
+    if podium.until_rest == 0.0 or lanes.integers[l, MOTION] != FULL_CONTACT:
         return False
-    for i in range(floors.mass.shape[0]):
-        if storey_shears[i] ** 2 < 2.0 * floors.stiffness[i] * energy:
-            return False
-    return True
+    return stays_down(lanes, l, podium) and demands_stand(lanes, len(shape.stride), l)
 
 
 @kernel
-def vibration_is_bounded(
-    podium: Podium,
-    floors: Floors,
-    z: NDArray[np.float64],
-    storey_shears: NDArray[np.float64],
-    floor_accelerations: NDArray[np.float64],
-) -> bool:
-    """The same in full contact: mode r never moves faster than v_r = sqrt(2 E_r)."""
-    n = floors.mass.shape[0]
-    if n == 0:
-        return True
-    base_shear = 0.0
-    for r in range(n):
-        w = floors.omega[r]
-        speed = math.sqrt(z[1, r] ** 2 + (w * z[0, r]) ** 2)
-        base_shear += abs(floors.participation[r]) * w * (1.0 + 2.0 * floors.xi[r]) * speed
-    share = 2.0 * podium.gamma * podium.eta / podium.floors_mass
-    if share * base_shear >= uplift_limit(podium, podium.gravity):
-        return False
+def modal_speed(z: Floats, r: int) -> float:
+    """sqrt(2 E_r): mode r never moves faster than this, nor farther than this over w."""
+    w = z[OMEGA, r]
+    return math.sqrt(z[DQ, r] ** 2 + (w * z[Q, r]) ** 2)
+
+
+@kernel
+def stays_down(lanes: Lanes, l: int, podium: Podium) -> bool:
+    """Whether the freely vibrating building can never again push hard enough to uplift."""
+    z = lanes.modes[l]
+    own, carried = 1.0 + 2.0 * podium.gamma, 2.0 * podium.gamma * podium.eta
+    largest = 0.0
+    for r in range(z.shape[1]):
+        pull = z[OMEGA, r] + z[DRAG, r]
+        largest += abs(z[PARTICIPATION, r]) * pull * modal_speed(z, r)
+    limit = podium.gravity * math.tan(podium.alpha) * (own + carried)
+    return z.shape[1] == 0 or carried / podium.floors_mass * largest < limit
+
+
+@kernel
+def demands_stand(lanes: Lanes, L: int, l: int) -> bool:
+    """Whether free vibration in full contact can raise no storey shear and no acceleration."""
+    b, z = lanes.buffer, lanes.modes[l]
+    n = z.shape[1]
     for i in range(n):
         shear, acceleration = 0.0, 0.0
         for r in range(n):
-            w = floors.omega[r]
-            speed = math.sqrt(z[1, r] ** 2 + (w * z[0, r]) ** 2)
-            below = floors.shapes[i - 1, r] if i > 0 else 0.0
-            shear += abs(floors.shapes[i, r] - below) * speed / w
-            acceleration += abs(floors.shapes[i, r]) * w * (1.0 + 2.0 * floors.xi[r]) * speed
-        if floors.stiffness[i] * shear > storey_shears[i] or acceleration > floor_accelerations[i]:
+            speed = modal_speed(z, r)
+            shear += abs(z[SHAPES + n + r, i]) * speed / z[OMEGA, r]
+            acceleration += abs(z[SHAPES + r, i]) * (z[OMEGA, r] + z[DRAG, r]) * speed
+        if (
+            shear > b[(SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l]
+            or acceleration > b[(SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l]
+        ):
             return False
     return True

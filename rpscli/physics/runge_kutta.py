@@ -2,79 +2,136 @@
 
 J. R. Dormand and P. J. Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6
 (1980) 19-26. The embedded formula of order 4 is not needed: the step follows the record's samples.
+
+The equations are of second order, so a stage's slopes are its velocities and accelerations. Each
+lane has its own step length, phase and side.
 """
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rpscli.physics.acceleration import accelerate
 from rpscli.physics.jit import kernel
-from rpscli.physics.parameters import Floors, Podium
-from rpscli.physics.uplifted import Shaking, rates_of_change
-
-STAGES = 7
-"""Rows of the array of slopes; the last is the first of the next step."""
+from rpscli.physics.layout import (
+    ACCELERATION,
+    AHEAD,
+    AHEAD_ACCELERATION,
+    AHEAD_RATE,
+    DAMPED_POWER,
+    INPUT_POWER,
+    LAST,
+    POSITION,
+    SCALARS,
+    STEP,
+    STEPS,
+    VELOCITY,
+)
+from rpscli.physics.parameters import Floats, Shape
 
 EVALUATIONS = 6
-"""Right-hand sides of one step when the first slope is known."""
+"""Accelerations of one step when the first are known."""
 
 
 @kernel
-def step(
-    podium: Podium,
-    floors: Floors,
-    motion: int,
-    side: float,
-    shaking: Shaking,
-    time: float,
-    h: float,
-    y: NDArray[np.float64],
-    k: NDArray[np.float64],
-    end: NDArray[np.float64],
-) -> None:
-    """Advance the uplifted structure from `time` by `h`.
+def step(b: Floats, shape: Shape, size: int) -> None:
+    """Advance all lanes, each by its own step.
 
-    Parameters
-    ----------
-    y, end
-        State before and, written, after the step, (m,).
-    k
-        Slopes, (7, m): row 0 is dy/dt at y; rows 1-6 are written, row 6 is dy/dt at `end`.
+    The coordinates of all lanes stand one after the other, so one loop combines the slopes of
+    them all; the block STEPS repeats the step length for each coordinate to that end.
+
+    Reads the state (blocks POSITION, VELOCITY, ACCELERATION); leaves it, and writes the end of the
+    step to the blocks AHEAD, AHEAD_RATE and AHEAD_ACCELERATION. `size` is (n + 1) L, told apart
+    from the shape so that the loops stay loops, quick to compile.
     """
-    m = y.shape[0]
-    for i in range(m):
-        end[i] = y[i] + h * (1 / 5) * k[0, i]
-    rates_of_change(podium, floors, motion, side, shaking, time + h * (1 / 5), end, k[1])
-    for i in range(m):
-        end[i] = y[i] + h * ((3 / 40) * k[0, i] + (9 / 40) * k[1, i])
-    rates_of_change(podium, floors, motion, side, shaking, time + h * (3 / 10), end, k[2])
-    for i in range(m):
-        end[i] = y[i] + h * ((44 / 45) * k[0, i] - (56 / 15) * k[1, i] + (32 / 9) * k[2, i])
-    rates_of_change(podium, floors, motion, side, shaking, time + h * (4 / 5), end, k[3])
-    for i in range(m):
-        end[i] = y[i] + h * (
-            (19372 / 6561) * k[0, i]
-            - (25360 / 2187) * k[1, i]
-            + (64448 / 6561) * k[2, i]
-            - (212 / 729) * k[3, i]
+    n, L = len(shape.floors), len(shape.stride)
+    start, block = SCALARS * L, (n + 1) * L
+    step = start + STEPS * block
+    x, dx = start + AHEAD * block, start + AHEAD_RATE * block
+    ddx = start + AHEAD_ACCELERATION * block
+    x1, v1, a1 = start + POSITION * block, start + VELOCITY * block, start + ACCELERATION * block
+    v2, v3, v4, v5 = v1 + block, v1 + 2 * block, v1 + 3 * block, v1 + 4 * block
+    a2, a3, a4, a5 = a1 + block, a1 + 2 * block, a1 + 3 * block, a1 + 4 * block
+    for i in range(size):
+        h = b[step + i] * (1 / 5)
+        b[x + i] = b[x1 + i] + h * b[v1 + i]
+        b[dx + i] = b[v1 + i] + h * b[a1 + i]
+    accelerate(b, shape, 0, 1, 1 / 5)
+    for i in range(size):
+        h, v, a = b[step + i], b[dx + i], b[ddx + i]
+        b[v2 + i], b[a2 + i] = v, a
+        b[x + i] = b[x1 + i] + h * ((3 / 40) * b[v1 + i] + (9 / 40) * v)
+        b[dx + i] = b[v1 + i] + h * ((3 / 40) * b[a1 + i] + (9 / 40) * a)
+    accelerate(b, shape, 0, 2, 3 / 10)
+    for i in range(size):
+        h, v, a = b[step + i], b[dx + i], b[ddx + i]
+        b[v3 + i], b[a3 + i] = v, a
+        b[x + i] = b[x1 + i] + h * ((44 / 45) * b[v1 + i] - (56 / 15) * b[v2 + i] + (32 / 9) * v)
+        b[dx + i] = b[v1 + i] + h * ((44 / 45) * b[a1 + i] - (56 / 15) * b[a2 + i] + (32 / 9) * a)
+    accelerate(b, shape, 0, 3, 4 / 5)
+    for i in range(size):
+        h, v, a = b[step + i], b[dx + i], b[ddx + i]
+        b[v4 + i], b[a4 + i] = v, a
+        b[x + i] = b[x1 + i] + h * (
+            (19372 / 6561) * b[v1 + i]
+            - (25360 / 2187) * b[v2 + i]
+            + (64448 / 6561) * b[v3 + i]
+            - (212 / 729) * v
         )
-    rates_of_change(podium, floors, motion, side, shaking, time + h * (8 / 9), end, k[4])
-    for i in range(m):
-        end[i] = y[i] + h * (
-            (9017 / 3168) * k[0, i]
-            - (355 / 33) * k[1, i]
-            + (46732 / 5247) * k[2, i]
-            + (49 / 176) * k[3, i]
-            - (5103 / 18656) * k[4, i]
+        b[dx + i] = b[v1 + i] + h * (
+            (19372 / 6561) * b[a1 + i]
+            - (25360 / 2187) * b[a2 + i]
+            + (64448 / 6561) * b[a3 + i]
+            - (212 / 729) * a
         )
-    rates_of_change(podium, floors, motion, side, shaking, time + h, end, k[5])
-    for i in range(m):
-        end[i] = y[i] + h * (
-            (35 / 384) * k[0, i]
-            + (500 / 1113) * k[2, i]
-            + (125 / 192) * k[3, i]
-            - (2187 / 6784) * k[4, i]
-            + (11 / 84) * k[5, i]
+    accelerate(b, shape, 0, 4, 8 / 9)
+    for i in range(size):
+        h, v, a = b[step + i], b[dx + i], b[ddx + i]
+        b[v5 + i], b[a5 + i] = v, a
+        b[x + i] = b[x1 + i] + h * (
+            (9017 / 3168) * b[v1 + i]
+            - (355 / 33) * b[v2 + i]
+            + (46732 / 5247) * b[v3 + i]
+            + (49 / 176) * b[v4 + i]
+            - (5103 / 18656) * v
         )
-    rates_of_change(podium, floors, motion, side, shaking, time + h, end, k[6])
+        b[dx + i] = b[v1 + i] + h * (
+            (9017 / 3168) * b[a1 + i]
+            - (355 / 33) * b[a2 + i]
+            + (46732 / 5247) * b[a3 + i]
+            + (49 / 176) * b[a4 + i]
+            - (5103 / 18656) * a
+        )
+    accelerate(b, shape, 0, 5, 1.0)
+    for i in range(size):
+        h, v, a = b[step + i], b[dx + i], b[ddx + i]
+        b[x + i] = b[x1 + i] + h * (
+            (35 / 384) * b[v1 + i]
+            + (500 / 1113) * b[v3 + i]
+            + (125 / 192) * b[v4 + i]
+            - (2187 / 6784) * b[v5 + i]
+            + (11 / 84) * v
+        )
+        b[dx + i] = b[v1 + i] + h * (
+            (35 / 384) * b[a1 + i]
+            + (500 / 1113) * b[a3 + i]
+            + (125 / 192) * b[a4 + i]
+            - (2187 / 6784) * b[a5 + i]
+            + (11 / 84) * a
+        )
+    accelerate(b, shape, 0, LAST, 1.0)
+
+
+@kernel
+def energy_over_step(b: Floats, L: int, l: int) -> tuple[float, float]:
+    """Energy put in and damped during the step of a lane [J], by the same quadrature."""
+    given, damped = 0.0, 0.0
+    for stage, weight in (
+        (0, 35 / 384),
+        (2, 500 / 1113),
+        (3, 125 / 192),
+        (4, -2187 / 6784),
+        (5, 11 / 84),
+    ):
+        given += weight * b[(INPUT_POWER + stage) * L + l]
+        damped += weight * b[(DAMPED_POWER + stage) * L + l]
+    h = b[STEP * L + l]
+    return h * given, h * damped

@@ -2,33 +2,60 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+import math
 
-from rpscli.physics.building import building_energy
-from rpscli.physics.contact import to_floors, to_modes
-from rpscli.physics.impact import impact, is_negligible, lock
+from rpscli.physics.energy import building_energy, uplifted_energy
 from rpscli.physics.jit import kernel
 from rpscli.physics.layout import (
+    ACCELERATION,
+    ARC,
+    ARM_COS,
+    ARM_SIN,
+    COUNTS,
     CREATED,
-    CREATED_IMPACTS,
+    CREATING,
+    EVENT_KINDS,
     FULL_CONTACT,
+    HIGH,
     IMPACT,
+    INTERVAL,
+    INTERVAL_LENGTH,
+    LANDED,
+    LIFT_START,
+    LIFTED_OFF,
     LOST,
+    LOW,
+    MOTION,
+    OVERTURNING,
+    PATH_START,
+    POSITION,
     RECONTACT,
     ROCKING,
+    ROCKING_TO_ROLLING,
     ROLLING,
-    TILT,
-    TILT_RATE,
+    ROLLING_TO_ROCKING,
+    SCALARS,
+    SIDE,
+    STALE,
+    TIME,
+    UPLIFT,
+    VELOCITY,
 )
-from rpscli.physics.parameters import Floors, Podium
-from rpscli.physics.uplifted import Shaking, rates_of_change, uplifted_energy
+from rpscli.physics.parameters import Floats, Lanes, Podium
+from rpscli.physics.table import podium_of
+
+
+@kernel
+def now(lanes: Lanes, L: int, l: int) -> float:
+    """Time since the start of the record [s]."""
+    b = lanes.buffer
+    return float(lanes.integers[l, INTERVAL] * b[INTERVAL_LENGTH * L + l] + b[TIME * L + l])
 
 
 @kernel
 def note(
-    log: NDArray[np.float64],
-    counts: NDArray[np.int64],
+    lanes: Lanes,
+    l: int,
     time: float,
     kind: int,
     rotation: float,
@@ -37,78 +64,135 @@ def note(
     lost: float,
 ) -> None:
     """Count an event, and log it if there is room (the caller sees from the counts if not)."""
-    row = counts.sum()
-    counts[kind] += 1
-    if row < log.shape[0]:
-        log[row, 0], log[row, 1], log[row, 2] = time, kind, rotation
-        log[row, 3], log[row, 4], log[row, 5] = before, after, lost
+    whole, log = lanes.integers, lanes.log
+    if log.shape[0] > 0:
+        row = 0
+        for i in range(EVENT_KINDS):
+            row += whole[l, COUNTS + i]
+        if row < log.shape[0]:
+            log[row, 0], log[row, 1], log[row, 2] = time, kind, rotation
+            log[row, 3], log[row, 4], log[row, 5] = before, after, lost
+    whole[l, COUNTS + kind] += 1
 
 
 @kernel
-def uplifted_phase(podium: Podium, x: float) -> int:
-    """Phase of motion at the tilt x."""
-    return ROLLING if x < podium.beta else ROCKING
+def enter_phase(lanes: Lanes, L: int, l: int, podium: Podium, motion: int) -> None:
+    """Set the constants of a phase of motion and the range that the tilt has in it."""
+    b = lanes.buffer
+    phase = podium.rolling if motion == ROLLING else podium.rocking
+    b[ARM_COS * L + l], b[ARM_SIN * L + l], b[ARC * L + l] = phase.p, phase.q, phase.c
+    b[PATH_START * L + l], b[LIFT_START * L + l] = phase.u0, phase.v0
+    if motion == ROLLING:
+        b[LOW * L + l], b[HIGH * L + l] = 0.0, min(podium.beta, podium.theta_limit)
+    else:
+        b[LOW * L + l], b[HIGH * L + l] = podium.beta, podium.theta_limit
+    lanes.integers[l, MOTION] = motion
 
 
 @kernel
-def uplift(
-    podium: Podium,
-    floors: Floors,
-    side: float,
-    shaking: Shaking,
-    time: float,
-    z: NDArray[np.float64],
-    y: NDArray[np.float64],
-    rates: NDArray[np.float64],
-) -> int:
-    """Leave full contact towards `side`; writes state and slopes, returns the phase."""
-    to_floors(floors, z, y)
-    y[TILT], y[TILT_RATE] = 0.0, 0.0
-    motion = uplifted_phase(podium, 0.0)
-    rates_of_change(podium, floors, motion, side, shaking, time, y, rates)
-    # At the threshold theta'' is zero but for rounding, and about to grow.
-    rates[TILT_RATE] = max(rates[TILT_RATE], 0.0)
-    return motion
+def event_below(podium: Podium, motion: int) -> int:
+    """What happens where the tilt falls below the range of its phase."""
+    return ROCKING_TO_ROLLING if motion == ROCKING and podium.beta > 0.0 else IMPACT
 
 
 @kernel
-def land(
-    podium: Podium,
-    floors: Floors,
-    side: float,
-    shaking: Shaking,
-    time: float,
-    start: float,
-    tolerance: float,
-    y: NDArray[np.float64],
-    z: NDArray[np.float64],
-    rates: NDArray[np.float64],
-    tally: NDArray[np.float64],
-    counts: NDArray[np.int64],
-    log: NDArray[np.float64],
-) -> tuple[int, float]:
-    """Impact at theta = 0, and re-contact if the next excursion would be negligible.
+def event_above(podium: Podium, motion: int) -> int:
+    """What happens where the tilt rises above the range of its phase."""
+    rolls_on = motion == ROLLING and podium.beta < podium.theta_limit
+    return ROLLING_TO_ROCKING if rolls_on else OVERTURNING
 
-    Returns the phase of motion and the side afterwards; z is written on re-contact.
+
+@kernel
+def lift_off(lanes: Lanes, L: int, l: int, side: float) -> None:
+    """Leave full contact towards `side`; the floors' state is set already."""
+    b = lanes.buffer
+    podium = podium_of(lanes.podium, l)
+    b[SIDE * L + l] = side
+    enter_phase(lanes, L, l, podium, ROLLING if podium.beta > 0.0 else ROCKING)
+    note(lanes, l, now(lanes, L, l), UPLIFT, 0.0, 0.0, 0.0, 0.0)
+    b[STALE * L + l] = LIFTED_OFF
+
+
+@kernel
+def shift_floors(b: Floats, n: int, L: int, l: int, change: float) -> None:
+    """Add the same velocity to every floor [m/s]."""
+    for i in range(n):
+        b[(SCALARS + VELOCITY * (n + 1) + i + 1) * L + l] += change
+
+
+@kernel
+def go_over(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
+    """Impact: from the edge on one side to the other.
+
+    theta'+ = e theta'-, and floors that move with the cap beam jump by
+    -2 R cos(alpha) (1 - e) theta'- (Theory, section 4; paper, Eq. 6). The tilt x = |theta| starts
+    again from exactly zero, upwards.
     """
-    motion = uplifted_phase(podium, 0.0)
-    before = uplifted_energy(podium, floors, motion, side, y)
-    arriving = side * y[TILT_RATE]
-    side = impact(podium, floors, side, y)
-    leaving = side * y[TILT_RATE]
-    gone = before - uplifted_energy(podium, floors, motion, side, y)
-    tally[LOST] += gone
+    tilt, rate = (SCALARS + POSITION * (n + 1)) * L + l, (SCALARS + VELOCITY * (n + 1)) * L + l
+    before = b[SIDE * L + l] * min(b[rate], 0.0)
+    b[tilt] = 0.0
+    b[rate] = podium.restitution * abs(before)
+    b[SIDE * L + l] = -b[SIDE * L + l]
+    if podium.floors_jump > 0.0:
+        jump = -2.0 * podium.R * math.cos(podium.alpha) * (1.0 - podium.restitution) * before
+        shift_floors(b, n, L, l, jump)
+
+
+@kernel
+def lock(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
+    """Full contact from now on.
+
+    The floors lose the cap beam's velocity u_b' and keep the relative one; the bounces that are
+    left out would have changed it by `podium.bounces` u_b', which is added where asked for.
+    """
+    rate = (SCALARS + VELOCITY * (n + 1)) * L + l
+    base_rate = b[SIDE * L + l] * 2.0 * podium.R * math.cos(podium.alpha) * b[rate]
+    shift_floors(b, n, L, l, (podium.bounces - 1.0) * base_rate)
+    b[rate] = 0.0
+
+
+@kernel
+def is_negligible(podium: Podium, rate: float, acceleration: float) -> bool:
+    """Whether the excursion that begins with x' = rate at x = 0 is too small to follow.
+
+    Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
+    it reaches x'^2/(2 |x''|).
+    """
+    least = podium.recontact_tolerance * podium.alpha
+    return acceleration < 0.0 and rate**2 < 2.0 * abs(acceleration) * least
+
+
+@kernel
+def land(lanes: Lanes, n: int, L: int, l: int, podium: Podium) -> None:
+    """Impact at theta = 0."""
+    b = lanes.buffer
+    rate = (SCALARS + VELOCITY * (n + 1)) * L + l
+    enter_phase(lanes, L, l, podium, ROLLING if podium.beta > 0.0 else ROCKING)
+    arriving = b[SIDE * L + l] * b[rate]
+    before = uplifted_energy(b, n, L, l)
+    go_over(b, n, L, l, podium)
+    gone = before - uplifted_energy(b, n, L, l)
+    b[LOST * L + l] += gone
     if gone < 0.0:
-        tally[CREATED] -= gone
-        tally[CREATED_IMPACTS] += 1.0
-    note(log, counts, start + time, IMPACT, 0.0, arriving, leaving, gone)
-    rates_of_change(podium, floors, motion, side, shaking, time, y, rates)
-    if is_negligible(podium, y[TILT_RATE], rates[TILT_RATE], tolerance):
-        before = uplifted_energy(podium, floors, motion, side, y)
-        lock(podium, floors, side, y)
-        gone = before - building_energy(floors, y, 0.0)
-        tally[LOST] += gone
-        to_modes(floors, y, z)
-        note(log, counts, start + time, RECONTACT, 0.0, leaving, 0.0, gone)
-        motion = FULL_CONTACT
-    return motion, side
+        b[CREATED * L + l] -= gone
+        lanes.integers[l, CREATING] += 1
+    note(lanes, l, now(lanes, L, l), IMPACT, 0.0, arriving, b[SIDE * L + l] * b[rate], gone)
+    b[STALE * L + l] = LANDED
+
+
+@kernel
+def comes_to_rest(lanes: Lanes, n: int, L: int, l: int) -> bool:
+    """After an impact: lock the storey if the next excursion would be negligible."""
+    b = lanes.buffer
+    podium = podium_of(lanes.podium, l)
+    rate = b[(SCALARS + VELOCITY * (n + 1)) * L + l]
+    acceleration = b[(SCALARS + ACCELERATION * (n + 1)) * L + l]
+    if not is_negligible(podium, rate, acceleration):
+        return False
+    before = uplifted_energy(b, n, L, l)
+    lock(b, n, L, l, podium)
+    gone = before - building_energy(b, n, L, l, 0.0)
+    b[LOST * L + l] += gone
+    note(lanes, l, now(lanes, L, l), RECONTACT, 0.0, b[SIDE * L + l] * rate, 0.0, gone)
+    lanes.integers[l, MOTION] = FULL_CONTACT
+    return True

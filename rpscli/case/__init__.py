@@ -1,0 +1,1 @@
+"""Case files: strict text -> validated document -> structure and settings."""

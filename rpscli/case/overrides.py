@@ -1,0 +1,177 @@
+"""`--set dotted.key=value`, and the varied keys of a study: values put over those of a file."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from pydantic import BaseModel
+
+from rpscli.case.document import Document
+from rpscli.case.faults import Fault, Path, Place, dotted, shown
+from rpscli.case.known_keys import field_at, section_at, unknown_key
+from rpscli.case.schema import CaseFile
+from rpscli.case.yaml_text import read_value
+from rpscli.errors import CaseError
+
+
+class Override(NamedTuple):
+    """One value to be put at a dotted key; None takes the key away."""
+
+    key: str
+    value: Any
+    place: Place
+
+
+Overrides = Sequence[str | Override] | Mapping[str, object]
+
+
+def apply_overrides(
+    document: Document,
+    overrides: Overrides,
+    *,
+    label: str = "--set",
+    model: type[BaseModel] = CaseFile,
+) -> Document:
+    """A new document with values put over those that are written.
+
+    Parameters
+    ----------
+    document
+        The document; it stays as it is.
+    overrides
+        Either texts ``dotted.key=value`` whose values are YAML (scalars, ``[1, 2]``,
+        ``{law: rigid}``), or `Override`s with the places where a study wrote them, or a mapping
+        from dotted keys to Python values. An element of a list is named by its index, counted
+        from 0. A null takes the key out of the document. Later ones go over earlier ones.
+    label
+        Heads the messages: ``--set podium.columns=0: ...``.
+    model
+        Knows the keys that exist; they need not be written in the document.
+
+    Raises
+    ------
+    CaseError
+        For a text without ``=``, an unreadable value, an unknown key (with the nearest known
+        one), or an index outside its list. Whether the value is admissible is seen when the
+        document is checked.
+
+    Examples
+    --------
+    >>> document = Document("a.yaml", {"podium": {"bearing": {"slenderness": 0.15}}})
+    >>> apply_overrides(document, ["podium.bearing.slenderness=0.2"]).content
+    {'podium': {'bearing': {'slenderness': 0.2}}}
+    """
+    changed = Document(
+        document.name,
+        copy.deepcopy(document.content),
+        dict(document.keys),
+        dict(document.values),
+        document.faults,
+    )
+    faults = []
+    for override in _parsed(overrides, label):
+        fault = _put(changed, override, model)
+        if fault:
+            faults.append(Fault(fault.path, fault.text, place=override.place))
+    changed.refuse(faults)
+    return changed
+
+
+def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
+    if isinstance(overrides, Mapping):
+        for rank, (key, value) in enumerate(overrides.items(), start=1):
+            plain = _plain(value)
+            yield Override(key, plain, Place(f"{label} {key}={_written(plain)}", rank=rank))
+        return
+    for rank, text in enumerate(overrides, start=1):
+        if isinstance(text, Override):
+            yield text
+            continue
+        place = Place(f"{label} {text}", rank=rank)
+        key, sign, value = text.partition("=")
+        if not sign or not key.strip():
+            raise CaseError(f"{place}: write {label} dotted.key=value, as in podium.columns=4")
+        yield Override(key.strip(), read_value(value, str(place)), place)
+
+
+def _plain(value: Any) -> Any:
+    """A Python value as YAML would have given it: lists for tuples, no numpy."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def _written(value: Any) -> str:
+    return value if isinstance(value, str) else shown(value)
+
+
+def _put(document: Document, override: Override, model: type[BaseModel]) -> Fault | None:
+    """Put one value in place; returns what is wrong with its key, if anything."""
+    path = tuple(int(part) if part.isdecimal() else part for part in override.key.split("."))
+    named = tuple(part for part in path if isinstance(part, str))
+    if field_at(model, named) is None:
+        return _unknown(named, model)
+    owner: Any = document.content
+    for depth, part in enumerate(path):
+        fault = _step(owner, path[:depth], part)
+        if fault:
+            return fault
+        if depth == len(path) - 1:
+            return _set(document, owner, path, override)
+        if isinstance(owner, dict) and part not in owner:
+            if override.value is None:
+                return None  # nothing there to take out
+            owner[part] = {}
+            _settle(document, path[: depth + 1], override.place)
+        owner = owner[part]
+    raise AssertionError("a key has at least one part")
+
+
+def _step(owner: object, path: Path, part: str | int) -> Fault | None:
+    """What keeps `part` from being a key or an index of the value at a path."""
+    if isinstance(owner, list):
+        if not isinstance(part, int):
+            return Fault(path, f"{dotted(path)} is a list, without a key {part}")
+        if part >= len(owner):
+            text = f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
+            return Fault(path, text)
+    elif not isinstance(owner, dict):
+        return Fault(path, f"{dotted(path)} = {shown(owner)} is a single value; set it as a whole")
+    elif isinstance(part, int):
+        return Fault(path, f"{dotted(path) or 'the case'} is not a list; {part} is no key of it")
+    return None
+
+
+def _set(document: Document, owner: Any, path: Path, override: Override) -> Fault | None:
+    if override.value is None and isinstance(owner, list):
+        return Fault(path, f"{dotted(path)} cannot be taken out of its list; set the whole list")
+    _settle(document, path, override.place)
+    if override.value is None:
+        owner.pop(path[-1], None)
+    else:
+        owner[path[-1]] = override.value
+    return None
+
+
+def _settle(document: Document, path: Path, place: Place) -> None:
+    """From now on, everything at and below the path was written by the override."""
+    for places in (document.keys, document.values):
+        for old in [old for old in places if old[: len(path)] == path]:
+            del places[old]
+        places[path] = place
+
+
+def _unknown(named: tuple[str, ...], model: type[BaseModel]) -> Fault:
+    """Name the first part of the key that the format does not know."""
+    for length in range(1, len(named) + 1):
+        path = named[:length]
+        if field_at(model, path) is None:
+            if section_at(model, path[:-1]) is None:
+                return Fault(
+                    path, f"{dotted(path[:-1])} holds no keys; there is no {dotted(named)}"
+                )
+            return unknown_key(model, path)[0]
+    return Fault((), "an index alone is not a key of the format")

@@ -1,0 +1,74 @@
+"""The command line: `rps COMMAND ...`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+import click
+
+from rpscli.commands.lazy import LazyGroup, Member
+
+COMMANDS = {
+    "init": Member("rpscli.commands.init", "write a commented case to start from"),
+    "check": Member("rpscli.commands.check", "what follows from a case, and what is wrong in it"),
+    "schema": Member("rpscli.commands.schema", "the case format as a JSON schema"),
+    "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
+    "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
+    "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
+    "sweep": Member("rpscli.commands.sweep", "all points of a study, stored as they end; reports"),
+    "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
+}
+
+
+class Program(LazyGroup):
+    """The program itself: whatever happens in a command ends here, as an exit code."""
+
+    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> NoReturn:
+        """Run, report what went wrong, and leave."""
+        words = list(sys.argv[1:] if args is None else args)
+        options["standalone_mode"] = False
+        try:
+            code = super().main(words, *rest, **options)
+        except SystemExit:
+            raise
+        except BaseException as error:  # noqa: BLE001 -- the last stop of every error
+            # Imported now, when it is needed.
+            from rpscli.commands.failure import report  # noqa: PLC0415
+
+            code = report(error, as_json="--json" in words)
+        sys.exit(code or 0)
+
+
+def _show_version(ctx: click.Context, option: click.Parameter, value: object) -> None:
+    del option
+    if value and not ctx.resilient_parsing:
+        from rpscli.report.versions import program_version  # noqa: PLC0415
+
+        click.echo(f"rps {program_version()}")
+        ctx.exit()
+
+
+@click.command(
+    cls=Program,
+    members=COMMANDS,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3 case or"
+    " record invalid, 4 analysis failed, 5 study with failed points, 6 verification mismatch,"
+    " 7 refused to overwrite, 10 a limit was exceeded, 130 interrupted.",
+)
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_version,
+    help="Show the version.",
+)
+def program() -> None:
+    """Rocking podium structures: buildings on kinematic bearings under earthquakes.
+
+    A case is a YAML file; `rps init` writes one to start from. Results go to the standard output
+    and to a folder, everything else to the standard error.
+    """

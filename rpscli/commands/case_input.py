@@ -1,0 +1,78 @@
+"""From what stands on the command line to a case and to the folder of its results."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rpscli.commands.options import CaseRequest, OutputRequest
+from rpscli.commands.terminal import Terminal
+from rpscli.report.output_folder import OutputFolder, Run
+
+if TYPE_CHECKING:
+    from rpscli.case.case import Case
+
+RESULTS = Path("results")
+"""Where results go by default, below the working folder."""
+
+
+@dataclass(frozen=True, eq=False)
+class CaseInput:
+    """A case with what identifies it."""
+
+    case: Case
+    request: CaseRequest
+    digest: str
+    """SHA-256 of the case file's text."""
+
+    @property
+    def file(self) -> Path | None:
+        """The case file; None if it came through the standard input."""
+        return None if self.request.source == "-" else Path(self.request.source)
+
+
+def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
+    """Read and check a case; its warnings go to the terminal."""
+    from rpscli.case.case import parse_case  # noqa: PLC0415 -- pydantic and yaml are slow
+    from rpscli.case.files import read_text  # noqa: PLC0415
+
+    text = read_text(request.source)
+    piped = request.source == "-"
+    case = parse_case(
+        text,
+        name="<stdin>" if piped else request.source,
+        folder=None if piped else Path(request.source).parent,
+        overrides=request.overrides,
+    )
+    terminal.warn(case.warnings)
+    return CaseInput(case, request, hashlib.sha256(text.encode()).hexdigest())
+
+
+def case_folder(
+    given: CaseInput, output: OutputRequest, command: str, **inputs: Any
+) -> OutputFolder:
+    """The folder of a command's results, claimed before the work begins."""
+    resolved: Mapping[str, Any] = {
+        "case": given.case.document,
+        "overrides": list(given.request.overrides),
+        **inputs,
+    }
+    run = Run(command, given.case.name, given.file, given.digest, resolved)
+    place = output.place or RESULTS / given.case.name / command
+    return OutputFolder(place, run, force=output.force)
+
+
+def write(folder: OutputFolder, terminal: Terminal) -> None:
+    """Write all that was collected, and say where."""
+    replaced = folder.replaces_other_inputs
+    folder.write()
+    note = "; replaces results of the same case with other inputs" if replaced else ""
+    terminal.note(f"written to {folder.folder}{note}")
+
+
+def case_heading(given: CaseInput) -> dict[str, str]:
+    """The case in a JSON document."""
+    return {"name": given.case.name, "title": given.case.title, "source": given.case.source}

@@ -1,0 +1,70 @@
+"""`rps check`: what follows from a case, before any analysis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.commands.case_input import case_heading, read_case
+from rpscli.commands.check_tables import check_tables
+from rpscli.commands.failure import concluded, leave
+from rpscli.commands.motion import MotionRequest, load_motion
+from rpscli.commands.options import CaseRequest, case_options, terminal_options
+from rpscli.commands.terminal import Terminal
+from rpscli.errors import RecordError
+from rpscli.report.documents import heading
+
+if TYPE_CHECKING:
+    from rpscli.case.case import Case
+
+
+@click.command("check")
+@case_options
+@terminal_options
+def command(request: CaseRequest, terminal: Terminal) -> None:
+    """What follows from CASE: geometry, masses, statics, periods.
+
+    Nothing is analysed and nothing is written. A case with mistakes ends with exit code 3 and a
+    line for each of them; so does a record that cannot be read.
+    """
+    given = read_case(request, terminal)
+    from rpscli.report.derived import derived_quantities  # noqa: PLC0415 -- numpy is slow
+
+    derived = derived_quantities(given.case.structure)
+    record, error = _record(given.case)
+    document = {
+        **heading(),
+        "command": "check",
+        "case": case_heading(given),
+        **derived,
+        "record": record,
+        "limits": given.case.limits.model_dump(exclude_none=True),
+        "warnings": [*given.case.warnings, *(record or {}).get("warnings", ())],
+    }
+    terminal.warn((record or {}).get("warnings", ()))
+    terminal.result(concluded(document, error), check_tables(document))
+    leave(error)
+
+
+def _record(case: Case) -> tuple[dict[str, Any] | None, RecordError | None]:
+    """The case's own record, or why it cannot be read; nothing if the case names none."""
+    if case.record is None:
+        return None, None
+    try:
+        motion = load_motion(case, MotionRequest())
+    except RecordError as error:
+        return None, error
+    found = motion.horizontal
+    return {
+        "name": found.name,
+        "source": found.source,
+        "format": found.format,
+        "description": found.description,
+        "npts": found.npts,
+        "dt": found.dt,
+        "duration": found.duration,
+        "pga": found.pga,
+        "scale": motion.scale,
+        "warnings": found.warnings,
+    }, None

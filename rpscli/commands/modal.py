@@ -1,0 +1,89 @@
+"""`rps modal`: modes of a case in each of its states."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import click
+
+from rpscli.commands.case_input import case_folder, case_heading, read_case, write
+from rpscli.commands.numbers import shown
+from rpscli.commands.options import (
+    CaseRequest,
+    OutputRequest,
+    case_options,
+    output_options,
+    terminal_options,
+)
+from rpscli.commands.tables import table
+from rpscli.commands.tables import title as heading_line
+from rpscli.commands.terminal import Terminal
+from rpscli.report.documents import heading, modal_document
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.analyses.modal import ModalResult
+
+
+@click.command("modal")
+@case_options
+@output_options
+@terminal_options
+def command(request: CaseRequest, output: OutputRequest, terminal: Terminal) -> None:
+    """Modes of CASE in full contact and, linearised, rolling and rocking.
+
+    Writes modes.csv, shapes.csv, eigenvalues.csv and modes.png.
+    """
+    given = read_case(request, terminal)
+    folder = case_folder(given, output, "modal")
+    from rpscli.analyses.modal import modal  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.bundles import modal_files  # noqa: PLC0415
+
+    result = modal(given.case.structure)
+    for name, content in modal_files(result, given.case.title):
+        folder.add(name, content)
+    write(folder, terminal)
+    document = {
+        **heading(),
+        "command": "modal",
+        "case": case_heading(given),
+        **modal_document(result),
+        "warnings": given.case.warnings,
+        "files": folder.files,
+    }
+    terminal.result(document, _tables(result, given.case.title))
+
+
+def _tables(result: ModalResult, title: str) -> Iterator[RenderableType]:
+    from rpscli.report.modal_tables import uplifted_states  # noqa: PLC0415 -- numpy is slow
+
+    states = uplifted_states(result)
+    storey = [
+        (name, shown(modes.frequency_parameter), shown(modes.frequency_parameter_rigid))
+        for name, modes in states
+    ]
+    yield heading_line(title)
+    yield table(("storey's own mode", "p_ext rad/s", "rigid estimate rad/s"), storey)
+    if (fixed := result.fixed_base) is None:
+        return
+    rows = [
+        (str(i + 1), shown(w), shown(fixed.periods[i]), shown(100.0 * fixed.damping[i], 3))
+        for i, w in enumerate(fixed.frequencies)
+    ]
+    yield table(("full contact", "rad/s", "T s", "xi %"), rows)
+    for name, modes in states:
+        yield table(
+            (f"{name}", "rad/s", "of fixed base", "xi %", "of fixed base"),
+            [
+                (
+                    str(i + 1),
+                    shown(w),
+                    shown(modes.frequency_ratio[i]),
+                    shown(100.0 * modes.damping[i], 3),
+                    shown(modes.damping_ratio[i]),
+                )
+                for i, w in enumerate(modes.frequencies)
+            ],
+        )

@@ -1,0 +1,113 @@
+"""`rps pushover`: static characteristics of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import click
+
+from rpscli.commands.case_input import case_folder, case_heading, read_case, write
+from rpscli.commands.numbers import shown
+from rpscli.commands.options import (
+    CaseRequest,
+    OutputRequest,
+    case_options,
+    output_options,
+    terminal_options,
+)
+from rpscli.commands.tables import listing, table
+from rpscli.commands.tables import title as heading_line
+from rpscli.commands.terminal import Terminal
+from rpscli.errors import UsageError
+from rpscli.report.documents import heading, pushover_document
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.analyses.pushover import PatternName, PushoverResult
+
+
+@click.command("pushover")
+@case_options
+@click.option(
+    "--pattern",
+    "patterns",
+    multiple=True,
+    metavar="PATTERN",
+    help="Floor forces: uniform, triangular, first_mode, or f1,f2,... from the bottom; repeatable."
+    " All three named ones by default.",
+)
+@output_options
+@terminal_options
+def command(
+    request: CaseRequest, output: OutputRequest, terminal: Terminal, patterns: tuple[str, ...]
+) -> None:
+    """Restoring force of the storey of CASE, and capacity curves of the whole structure.
+
+    Writes storey_curve.csv and storey_curve.png and, for a case with storeys, capacity.csv and
+    capacity.png.
+    """
+    given = read_case(request, terminal)
+    from rpscli.analyses.pushover import PATTERNS, pushover  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.bundles import pushover_files  # noqa: PLC0415
+
+    if patterns and given.case.structure.superstructure is None:
+        raise UsageError("--pattern: the case has no storeys to push at")
+    asked = [_pattern(text) for text in patterns] or PATTERNS
+    folder = case_folder(given, output, "pushover", patterns=list(asked))
+    try:
+        result = pushover(given.case.structure, patterns=asked)
+    except ValueError as error:
+        raise UsageError(f"--pattern: {error}") from None
+    for name, content in pushover_files(result, given.case.title):
+        folder.add(name, content)
+    write(folder, terminal)
+    document = {
+        **heading(),
+        "command": "pushover",
+        "case": case_heading(given),
+        **pushover_document(result),
+        "warnings": given.case.warnings,
+        "files": folder.files,
+    }
+    terminal.result(document, _tables(result, given.case.title))
+
+
+def _pattern(text: str) -> PatternName | list[float]:
+    from rpscli.analyses.pushover import PATTERNS  # noqa: PLC0415 -- numpy is slow
+
+    for name in PATTERNS:
+        if text == name:
+            return name
+    try:
+        return [float(force) for force in text.split(",")]
+    except ValueError:
+        raise UsageError(
+            f"--pattern {text}: write {', '.join(PATTERNS)}, or floor forces from the bottom as in"
+            " 1,2,3"
+        ) from None
+
+
+def _tables(result: PushoverResult, title: str) -> Iterator[RenderableType]:
+
+    rows = [
+        ("uplift force", f"{shown(result.uplift_force * 1e-3)} kN"),
+        ("stiffness after uplift", f"{shown(result.initial_stiffness * 1e-3)} kN/m"),
+        ("largest force", f"{shown(float(result.curve.force.max()) * 1e-3)} kN"),
+        ("critical rotation", f"{shown(result.critical_rotation)} rad"),
+        ("critical displacement", f"{shown(result.critical_displacement)} m"),
+        ("lift at the critical rotation", f"{shown(float(result.curve.lift[-1]))} m"),
+    ]
+    yield heading_line(title)
+    yield listing(rows)
+    if result.capacity:
+        capacity = [
+            (
+                curve.pattern,
+                shown(curve.roof_displacement_at_uplift),
+                shown(float(curve.base_shear.max()) * 1e-3),
+            )
+            for curve in result.capacity
+        ]
+        yield table(("pattern", "roof at uplift m", "largest base shear kN"), capacity)

@@ -1,0 +1,115 @@
+"""`rps timehistory`: response of a case to a ground motion."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.commands.acceptance import Verdict, case_conditions, exceeded, judge, parse_condition
+from rpscli.commands.case_input import CaseInput, case_folder, case_heading, read_case, write
+from rpscli.commands.compilation import announce_compilation
+from rpscli.commands.failure import concluded, leave
+from rpscli.commands.motion import Motion, MotionRequest, load_motion
+from rpscli.commands.options import (
+    CaseRequest,
+    OutputRequest,
+    case_options,
+    output_options,
+    terminal_options,
+)
+from rpscli.commands.terminal import Terminal
+from rpscli.commands.timehistory_tables import timehistory_tables
+from rpscli.errors import AnalysisError, RpsError, UsageError
+from rpscli.report.documents import heading, timehistory_document
+from rpscli.report.json_text import json_text
+
+if TYPE_CHECKING:
+    from rpscli.analyses.results import TimeHistoryResult
+
+
+@click.command("timehistory")
+@case_options
+@click.option(
+    "--record", metavar="SRC", help="Ground motion in place of the case's own: file, set, pulse."
+)
+@click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
+@click.option("--scale", type=float, metavar="FACTOR", help="Factor on the acceleration.")
+@click.option(
+    "--fail-on",
+    "fail_on",
+    multiple=True,
+    metavar="WHAT",
+    help="End with exit code 10 on overturning, on uplift, or if a result exceeds a value, such as"
+    " rotation_ratio=0.5, base_shear_ratio=2, drift_ratio=0.005, max_rotation=0.1,"
+    " max_cap_beam_displacement=0.3, max_base_shear=2e6, friction_demand=0.3, uplifts=2,"
+    " impacts=50 (SI units); repeatable.",
+)
+@click.option(
+    "--animate", type=click.Path(path_type=Path), metavar="FILE.gif", help="Also draw it moving."
+)
+@output_options
+@terminal_options
+def command(
+    request: CaseRequest,
+    output: OutputRequest,
+    terminal: Terminal,
+    fail_on: tuple[str, ...],
+    animate: Path | None,
+    **motion: Any,
+) -> None:
+    """Response of CASE to its record, or to that of --record.
+
+    Overturning is a result, not an error: see --fail-on. The limits of the case count as well.
+    """
+    conditions = [parse_condition(text) for text in fail_on]
+    if animate is not None and animate.suffix.lower() != ".gif":
+        raise UsageError(f"--animate {animate}: must end with .gif, the only format there is")
+    given = read_case(request, terminal)
+    ground = load_motion(given.case, MotionRequest(**motion))
+    folder = case_folder(given, output, "timehistory", record=ground.inputs)
+    announce_compilation(terminal)
+    from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
+    from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
+
+    result = time_history(
+        given.case.structure, ground.horizontal, given.case.analysis, vertical=ground.vertical
+    )
+    if result.failure:
+        verdicts: list[Verdict] = []
+        error: RpsError | None = AnalysisError(result.failure)
+    else:
+        verdicts = judge(result, [*case_conditions(given.case.limits), *conditions])
+        error = exceeded(verdicts)
+    for name, content in timehistory_files(result, given.case.title):
+        folder.add(name, content)
+    if animate is not None:
+        from rpscli.report.animation import animation_gif  # noqa: PLC0415
+
+        terminal.note("drawing the animation")
+        folder.add_at(animate, animation_gif(result, given.case.title))
+    document = concluded(_document(given, ground, result, verdicts), error)
+    document["files"] = [str(folder.folder / "summary.json"), *folder.files]
+    folder.add("summary.json", json_text(document))
+    write(folder, terminal)
+    terminal.warn(document["warnings"])
+    terminal.result(document, timehistory_tables(result, verdicts, given.case.title))
+    leave(error)
+
+
+def _document(
+    given: CaseInput, ground: Motion, result: TimeHistoryResult, verdicts: list[Verdict]
+) -> dict[str, Any]:
+    document = {
+        **heading(),
+        "command": "timehistory",
+        "case": case_heading(given),
+        **timehistory_document(result),
+        "verdicts": [asdict(verdict) for verdict in verdicts],
+    }
+    document["record"] |= {"scale": ground.scale}
+    vertical = ground.vertical.warnings if ground.vertical else ()
+    document["warnings"] = [*given.case.warnings, *document["warnings"], *vertical]
+    return document

@@ -1,0 +1,50 @@
+"""The equation of motion of the tilt, and the contact geometry compiled for the kernels.
+
+The tilt is x = |theta| >= 0 and s = sign(theta); a motion to the left is the mirror image of one
+to the right, so only the horizontal actions carry s. Kept beyond x = 0 and x = beta the right-hand
+side is smooth, which is what the event location needs.
+"""
+
+from __future__ import annotations
+
+from rpscli.physics import geometry
+from rpscli.physics.geometry import Phase
+from rpscli.physics.jit import kernel
+
+lever_arm = kernel(geometry.lever_arm)
+path_height = kernel(geometry.path_height)
+squared_distance = kernel(geometry.squared_distance)
+cap_beam_displacement = kernel(geometry.cap_beam_displacement)
+cap_beam_lift = kernel(geometry.cap_beam_lift)
+
+
+@kernel
+def tilt_inertia(
+    inertia: float, beam: float, building: float, phase: Phase, B: float, C: float
+) -> float:
+    """A(x) = Io - 1 + (1 + 4 gamma) S + 4 gamma eta B^2 (paper, Table 1).
+
+    `inertia` is Io - 1, `beam` 1 + 4 gamma, `building` 4 gamma eta.
+    """
+    return inertia + beam * squared_distance(phase, C) + building * (B * B)
+
+
+@kernel
+def tilt_inertia_slope(beam: float, building: float, phase: Phase, B: float, C: float) -> float:
+    """D(x) = A'(x)/2, with S' = 2 c B and B' = c - C.
+
+    The paper's Table 1 lacks the factor 4 gamma eta in the rocking phase (c = 0).
+    """
+    return B * (beam * phase.c + building * (phase.c - C))
+
+
+@kernel
+def tilt_acceleration(
+    A: float, D: float, B: float, C: float, rate: float, weight: float, action: float
+) -> float:
+    """x'' of A x'' = -B (g/R)(1 + 2 gamma + 2 gamma eta) - C s action - D x'^2.
+
+    `weight` is the factor of B, under g + a_v where the ground moves vertically; `action` is
+    s (a_g/R (1 + 2 gamma) - 2 V/(N m_c R)); all [rad/s2] (paper, Eq. 2).
+    """
+    return -(B * weight + C * action + D * (rate * rate)) / A

@@ -1,0 +1,1 @@
+"""Ground motions: files, sets, pulses and synthetic ones, and what they measure."""

@@ -1,0 +1,109 @@
+"""A ground motion: what every reader, pulse and set returns, and every analysis takes."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.errors import RecordError
+
+
+@dataclass(frozen=True, eq=False)
+class GroundMotion:
+    """Ground acceleration, sampled uniformly from t = 0 and linear between the samples.
+
+    Positive acceleration is the direction that the record's own sensor calls positive. Before
+    the first sample the ground is at rest; after the last one its acceleration is zero.
+
+    Parameters
+    ----------
+    acceleration : array, shape (npts,) [m/s2]
+        Copied, then kept contiguous and read-only.
+    dt : float [s]
+        Sampling interval.
+    name : str
+        Short; good for titles and file names.
+    source : str
+        The source as the user wrote it.
+    format : str
+        What the samples were read from or made by, such as "PEER AT2" or "pulse".
+    description : str
+        What the reader understood: event, station, units.
+    warnings : tuple of str
+        What the reader wants a human to look at.
+
+    Raises
+    ------
+    RecordError
+        If there are fewer than two samples, one of them is not finite, or `dt` is not positive.
+
+    Examples
+    --------
+    >>> motion = GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5, "m", "m.at2", "PEER AT2")
+    >>> motion.npts, motion.duration, motion.pga
+    (3, 1.0, 3.0)
+    """
+
+    acceleration: NDArray[np.float64]
+    dt: float
+    name: str
+    source: str
+    format: str
+    description: str = ""
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        values = np.array(self.acceleration, dtype=np.float64, order="C")
+        if values.ndim != 1 or values.size < 2:
+            raise RecordError(
+                f"{self.source}: a ground motion needs one row of at least 2 samples, "
+                f"found the shape {values.shape}"
+            )
+        if not np.isfinite(values).all():
+            first = int(np.flatnonzero(~np.isfinite(values))[0])
+            raise RecordError(f"{self.source}: sample {first + 1} is {values[first]}, not finite")
+        if not (np.isfinite(self.dt) and self.dt > 0.0):
+            raise RecordError(f"{self.source}: dt = {self.dt} s must be positive and finite")
+        values.flags.writeable = False
+        object.__setattr__(self, "acceleration", values)
+        object.__setattr__(self, "dt", float(self.dt))
+
+    @property
+    def npts(self) -> int:
+        """Number of samples."""
+        return int(self.acceleration.size)
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample [s]: (npts - 1) dt."""
+        return (self.npts - 1) * self.dt
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Times of the samples, shape (npts,) [s], from zero."""
+        return np.arange(self.npts, dtype=np.float64) * self.dt
+
+    @cached_property
+    def pga(self) -> float:
+        """Peak ground acceleration [m/s2], unsigned."""
+        return float(np.max(np.abs(self.acceleration)))
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 (hexadecimal) of `dt` and the samples: same digest, same motion."""
+        digest = hashlib.sha256(np.array([self.dt], dtype="<f8").tobytes())
+        digest.update(self.acceleration.astype("<f8").tobytes())
+        return digest.hexdigest()
+
+    def scaled(self, factor: float) -> GroundMotion:
+        """The same motion times `factor`, with a description that says so."""
+        note = f"scaled by {factor:g}"
+        return replace(
+            self,
+            acceleration=self.acceleration * factor,
+            description=f"{self.description}; {note}" if self.description else note,
+        )

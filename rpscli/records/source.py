@@ -1,0 +1,161 @@
+"""From what a user writes to ground motions: files, folders, sets, pulses, synthetic motions."""
+
+from __future__ import annotations
+
+import glob
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rpscli.errors import RecordError
+from rpscli.records import pulses, sets, synthetic
+from rpscli.records.acceleration_units import canonical_unit, unit_factor
+from rpscli.records.formats import is_record, read_record
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.query import closest, nearest, parse_query
+
+_MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
+    sets.SCHEME: sets.load_component,
+    pulses.SCHEME: pulses.load_pulse,
+    synthetic.SCHEME: synthetic.load_synthetic,
+}
+# Two letters at least: C: is a drive.
+_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9_.+-]+):(.*)", re.DOTALL)
+# A question mark may also stand in a glob or a file name: options are key=value.
+_FILE_OPTIONS = re.compile(r"(.+?)\?([A-Za-z_]\w*=[^&?]*(?:&[A-Za-z_]\w*=[^&?]*)*)", re.DOTALL)
+
+
+def load_record(
+    source: str,
+    *,
+    folder: Path | None = None,
+    dt: float | None = None,
+    units: str | None = None,
+) -> GroundMotion:
+    """Load one ground motion.
+
+    Parameters
+    ----------
+    source : str
+        A file, with options if it needs them (`rec.txt?dt=0.005&units=g`, `rec.V2?channel=1`), or
+        `fema_p695:farfield/1/b`, `pulse:sine?...`, `synthetic:?...`.
+    folder : Path, optional
+        Where relative paths start (the folder of the case file); else the working directory.
+    dt : float, optional [s]
+        Sampling interval of a file that does not state it.
+    units : str, optional
+        Units of the values of a file that does not state them: "g", "m/s2", "cm/s2", ...
+
+    Raises
+    ------
+    RecordError
+        If there is no such record, or it cannot be read without guessing.
+    """
+    scheme, rest = _split_scheme(source, folder)
+    if scheme:
+        if dt is not None or units is not None:
+            raise RecordError(f"{source}: dt and units describe files; leave them out here")
+        return _MAKERS[scheme](rest, source)
+    place, options = _split_options(source)
+    query = parse_query(options, source, ("dt", "units", "channel"))
+    in_source = query.quantity("dt", "time") if "dt" in query.values else None
+    if dt is not None and in_source not in {None, dt}:
+        raise RecordError(f"{source}: dt = {dt} s contradicts the {in_source} s in the source")
+    spelled = query.values.get("units")
+    if units is not None and spelled is not None and _differ(units, spelled):
+        raise RecordError(f"{source}: units = {units} contradicts the {spelled} in the source")
+    path = _located(place, folder)
+    if path.is_dir():
+        raise RecordError(f"{path}: a folder; name one of its files")
+    _require_file(path, source)
+    return read_record(
+        path,
+        source,
+        dt=dt if in_source is None else in_source,
+        units=spelled or units,
+        channel=query.integer("channel") if "channel" in query.values else None,
+    )
+
+
+def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> list[str]:
+    """Single sources for a list that may hold folders, globs and patterns of record sets.
+
+    Files of a folder or glob come sorted by name, each with the options of the pattern; what a
+    source stands for keeps its place in the list, and nothing comes twice. Of a folder, only the
+    files that are recognised as records count (velocities and displacements do not).
+
+    Raises
+    ------
+    RecordError
+        If a source stands for nothing.
+    """
+    expanded = [single for source in sources for single in _expand(source, folder)]
+    return list(dict.fromkeys(expanded))
+
+
+def _differ(one: str, other: str) -> bool:
+    units = canonical_unit(one), canonical_unit(other)
+    if units[0] is None or units[1] is None:
+        return one != other
+    return unit_factor(units[0]) != unit_factor(units[1])
+
+
+def _expand(source: str, folder: Path | None) -> list[str]:
+    scheme, rest = _split_scheme(source, folder)
+    if scheme == sets.SCHEME:
+        return sets.expand_set(rest, source)
+    if scheme:
+        return [source]
+    place, options = _split_options(source)
+    suffix = f"?{options}" if options else ""
+    path = _located(place, folder)
+    if path.is_dir():
+        names = sorted(entry.name for entry in path.iterdir() if entry.is_file())
+        found = [f"{Path(place) / name}" for name in names if is_record(path / name)]
+    elif glob.has_magic(place) and not path.exists():
+        start = folder or Path()
+        pattern = str(Path(place).expanduser())
+        # Path.glob refuses absolute patterns.
+        matches = sorted(glob.glob(pattern, root_dir=start, recursive=True))  # noqa: PTH207
+        found = [match for match in matches if is_record(start / match)]
+    else:
+        _require_file(path, source)
+        return [source]
+    if not found:
+        raise RecordError(f"{source}: no record file there that can be read")
+    return [f"{name}{suffix}" for name in found]
+
+
+def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
+    """Scheme and rest of a source that is no file; an empty scheme means a file."""
+    match = _SCHEME.fullmatch(source)
+    if not match or _located(_split_options(source)[0], folder).exists():
+        return "", source
+    if match[1] not in _MAKERS:
+        raise RecordError(
+            f"{source}: {match[1]!r} is no kind of record source; "
+            f"{nearest(match[1], list(_MAKERS))}"
+        )
+    return match[1], match[2]
+
+
+def _split_options(source: str) -> tuple[str, str]:
+    match = _FILE_OPTIONS.fullmatch(source)
+    return (match[1], match[2]) if match else (source, "")
+
+
+def _located(place: str, folder: Path | None) -> Path:
+    return (folder or Path()) / Path(place).expanduser()
+
+
+def _require_file(path: Path, source: str) -> None:
+    if path.is_file():
+        return
+    if path.exists():
+        raise RecordError(f"{source}: {path} is not a regular file")
+    if not path.parent.is_dir():
+        raise RecordError(f"{source}: there is no folder {path.parent}")
+    names = sorted(entry.name for entry in path.parent.iterdir())
+    close = closest(path.name, names)
+    hint = f"; did you mean {path.parent / close}?" if close else ""
+    raise RecordError(f"{source}: there is no file {path}{hint}")

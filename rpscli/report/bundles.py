@@ -1,0 +1,66 @@
+"""Which files each analysis leaves behind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rpscli.analyses.modal import ModalResult
+from rpscli.analyses.pushover import PushoverResult
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.spectrum import ResponseSpectrum
+from rpscli.report.capacity_figure import capacity_figure
+from rpscli.report.csv_text import csv_text
+from rpscli.report.displacement_figure import displacement_figure
+from rpscli.report.energy_figure import energy_figure
+from rpscli.report.modal_tables import eigenvalue_columns, mode_columns, shape_columns
+from rpscli.report.modes_figure import modes_figure
+from rpscli.report.moment_figure import moment_figure
+from rpscli.report.profile_figure import profile_figure
+from rpscli.report.pushover_tables import capacity_columns, storey_curve_columns
+from rpscli.report.record_figure import record_figure
+from rpscli.report.record_tables import motion_columns, spectrum_columns
+from rpscli.report.rotation_figure import rotation_figure
+from rpscli.report.storey_curve_figure import storey_curve_figure
+from rpscli.report.storeys import storey_columns
+from rpscli.report.timehistory_tables import event_columns, history_columns
+
+Files = Iterator[tuple[str, str | bytes]]
+"""Names and contents."""
+
+
+def modal_files(result: ModalResult, title: str) -> Files:
+    """Files of a modal analysis."""
+    yield "modes.csv", csv_text(mode_columns(result))
+    yield "shapes.csv", csv_text(shape_columns(result))
+    yield "eigenvalues.csv", csv_text(eigenvalue_columns(result))
+    yield "modes.png", modes_figure(result, title)
+
+
+def pushover_files(result: PushoverResult, title: str) -> Files:
+    """Files of the static characteristics; without a building there are no capacity curves."""
+    yield "storey_curve.csv", csv_text(storey_curve_columns(result.curve))
+    yield "storey_curve.png", storey_curve_figure(result, title)
+    if result.capacity:
+        yield "capacity.csv", csv_text(capacity_columns(result.capacity))
+        yield "capacity.png", capacity_figure(result, title)
+
+
+def timehistory_files(result: TimeHistoryResult, title: str) -> Files:
+    """Files of a time history."""
+    yield "timehistory.csv", csv_text(history_columns(result))
+    yield "events.csv", csv_text(event_columns(result.events))
+    yield "rotation.png", rotation_figure(result, title)
+    yield "displacements.png", displacement_figure(result, title)
+    yield "moment_rotation.png", moment_figure(result, title)
+    yield "energy.png", energy_figure(result, title)
+    yield "storeys.csv", csv_text(storey_columns(result))
+    if result.structure.storeys:
+        yield "storey_shears.png", profile_figure(result, title)
+
+
+def record_files(motion: GroundMotion, spectrum: ResponseSpectrum) -> Files:
+    """Files of a ground motion."""
+    yield "record.csv", csv_text(motion_columns(motion))
+    yield "spectrum.csv", csv_text(spectrum_columns(spectrum))
+    yield "record.png", record_figure(motion, spectrum)

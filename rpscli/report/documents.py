@@ -1,0 +1,101 @@
+"""What `--json` prints: the results of each analysis under their published names."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from rpscli.analyses.modal import ModalResult, UpliftedModes
+from rpscli.analyses.pushover import PushoverResult
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.report.json_text import SCHEMA_VERSION
+from rpscli.report.storeys import StoreyDemands, fixed_base_demands, isolated_demands
+from rpscli.report.versions import program_version
+
+Document = dict[str, Any]
+
+
+def heading(status: str = "ok") -> Document:
+    """The keys with which every document begins."""
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "rps_version": program_version(),
+        "status": status,
+    }
+
+
+def failure_document(kind: str, message: str, exit_code: int) -> Document:
+    """The keys by which a document says that its command failed."""
+    return {
+        **heading("error"),
+        "error": {"type": kind, "message": message, "exit_code": exit_code},
+    }
+
+
+def modal_document(result: ModalResult) -> Document:
+    """Frequencies in rad/s; lists by mode; eigenvalues as [re, im] in 1/s."""
+    fixed = result.fixed_base
+    return {
+        "fixed_base": None
+        if fixed is None
+        else {
+            "frequencies": fixed.frequencies,
+            "periods": fixed.periods,
+            "damping": fixed.damping,
+        },
+        "rolling": None if result.rolling is None else _uplifted(result.rolling),
+        "rocking": _uplifted(result.rocking),
+    }
+
+
+def _uplifted(modes: UpliftedModes) -> Document:
+    return {
+        "frequencies": modes.frequencies,
+        "damping": modes.damping,
+        "frequency_ratio": modes.frequency_ratio,
+        "damping_ratio": modes.damping_ratio,
+        "frequency_parameter": modes.frequency_parameter,
+        "frequency_parameter_rigid": modes.frequency_parameter_rigid,
+        "eigenvalues": modes.eigenvalues,
+    }
+
+
+def pushover_document(result: PushoverResult) -> Document:
+    """Forces in N, displacements in m, the storey's curve and one entry a load pattern."""
+    return {
+        "uplift_force": result.uplift_force,
+        "critical_rotation": result.critical_rotation,
+        "critical_displacement": result.critical_displacement,
+        "initial_stiffness": result.initial_stiffness,
+        "curve": asdict(result.curve),
+        "capacity": [asdict(curve) for curve in result.capacity],
+    }
+
+
+def timehistory_document(result: TimeHistoryResult) -> Document:
+    """Scalar results, demands of each storey, energies [J], and what to be warned of."""
+    isolated, fixed = isolated_demands(result), fixed_base_demands(result)
+    return {
+        "record": {
+            "name": result.record.name,
+            "source": result.record.source,
+            "npts": result.record.npts,
+            "dt": result.record.dt,
+            "pga": result.record.pga,
+        },
+        "failure": result.failure,
+        **result.scalars(),
+        **_storeys(isolated),
+        "fixed_base": None if fixed is None else _storeys(fixed),
+        "energy": asdict(result.energy),
+        "warnings": result.warnings,
+    }
+
+
+def _storeys(demands: StoreyDemands) -> Document:
+    return {
+        "storey_shears": demands.shear,
+        "storey_drifts": demands.drift,
+        "storey_drift_ratios": demands.drift_ratio,
+        "floor_accelerations": demands.floor_acceleration,
+    }

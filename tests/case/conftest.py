@@ -1,0 +1,68 @@
+"""Texts of small cases; the tests count their lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import pytest
+
+from rpscli.case.case import parse_case
+from rpscli.errors import CaseError
+
+BUILDING = """\
+rps: 1
+superstructure:
+  storeys: 3
+  storey_mass: 200 t
+  storey_height: 3.0
+  period: 0.3
+  profile: sine
+  damping: {ratio: 0.05, modes: [1, 2]}
+podium:
+  bearing:
+    semi_diagonal: 1.5
+    slenderness: 0.15
+    wedge_slenderness: 0.30
+    curvature_ratio: 0.5
+  cap_beam_mass_ratio: 10
+  superstructure_mass_ratio: 3
+  impact: {law: rigid}
+record: {source: motion.at2}
+analysis: {free_vibration: auto}
+limits: {rotation_ratio: 0.5}
+"""
+FRAME = """\
+rps: 1
+superstructure: {storeys: 0}
+podium:
+  bearing:
+    dimensions: {height: 3000 mm, width: 400 mm, wedge_width: 900 mm, radius: 1.2}
+  cap_beam_mass: 200 t
+  column_mass: 5 t
+  columns: 4
+"""
+
+Faults = Callable[..., str]
+
+
+@pytest.fixture
+def building() -> str:
+    return BUILDING
+
+
+@pytest.fixture
+def frame() -> str:
+    return FRAME
+
+
+@pytest.fixture
+def faults() -> Faults:
+    """What a case is refused with, after one replacement in its text."""
+
+    def of(text: str, old: str = "", new: str = "", overrides: Sequence[str] = ()) -> str:
+        assert old in text
+        with pytest.raises(CaseError) as refusal:
+            parse_case(text.replace(old, new) if old else text, name="c.yaml", overrides=overrides)
+        return str(refusal.value)
+
+    return of

@@ -1,0 +1,85 @@
+"""The JSON schema says what each number is and how it is bounded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from rpscli.case.json_schema import case_json_schema
+from rpscli.case.known_keys import field_at, known_paths, section_of
+from rpscli.case.schema import CaseFile
+
+SCHEMA = case_json_schema()
+UNITS = {
+    ("superstructure", "storey_mass"): "kg",
+    ("superstructure", "stiffness"): "N/m",
+    ("superstructure", "storey_height"): "m",
+    ("superstructure", "period"): "s",
+    ("superstructure", "damping", "ratio"): "1",
+    ("podium", "bearing", "dimensions", "radius"): "m",
+    ("podium", "bearing", "curvature_ratio"): "1",
+    ("podium", "cap_beam_mass"): "kg",
+    ("record", "dt"): "s",
+    ("analysis", "gravity"): "m/s2",
+    ("analysis", "free_vibration"): "s",
+}
+
+
+def resolved(schema: dict[str, Any]) -> dict[str, Any]:
+    """A schema with its reference followed."""
+    reference = schema.get("$ref")
+    if reference is None:
+        return schema
+    return {**SCHEMA["$defs"][reference.rsplit("/", 1)[1]], **schema}
+
+
+def key(path: tuple[str | int, ...]) -> dict[str, Any]:
+    schema = SCHEMA
+    for part in path:
+        schema = resolved(schema)["properties"][part]
+    return resolved(schema)
+
+
+def walk(value: object) -> Iterator[object]:
+    yield value
+    items = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    for item in items:
+        yield from walk(item)
+
+
+@pytest.mark.parametrize(("path", "unit"), UNITS.items())
+def test_numbers_have_units(path: tuple[str, ...], unit: str) -> None:
+    assert key(path)["unit"] == unit
+
+
+@pytest.mark.parametrize("path", known_paths(CaseFile))
+def test_every_key_is_described(path: tuple[str | int, ...]) -> None:
+    found = key(path)
+    assert found["description"]
+    field = field_at(CaseFile, path)
+    assert field is not None
+    bounded = {"type", "anyOf", "enum", "const"} & found.keys()
+    assert bounded or section_of(field.annotation)
+
+
+def test_bounds_words_lists_and_defaults() -> None:
+    rho = key(("podium", "bearing", "curvature_ratio"))
+    assert rho["anyOf"] == [{"type": "number", "minimum": 0}, {"enum": ["critical"]}]
+    assert rho["symbol"] == "rho = r/2H"
+    mass = key(("superstructure", "storey_mass"))["anyOf"]
+    assert [option["type"] for option in mass] == ["number", "string", "array"]
+    assert mass[0]["exclusiveMinimum"] == 0
+    assert key(("superstructure", "damping", "modes"))["minItems"] == 2
+    assert key(("analysis", "recontact_tolerance"))["default"] == 1e-6
+    assert key(("rps",))["maximum"] == 1
+
+
+def test_closed_and_without_null() -> None:
+    sections = [item for item in walk(SCHEMA) if isinstance(item, dict) and "properties" in item]
+    assert len(sections) == 10
+    assert all(section["additionalProperties"] is False for section in sections)
+    assert None not in [item for item in walk(SCHEMA) if not isinstance(item, dict | list)]
+    assert "null" not in list(walk(SCHEMA))
+    assert set(SCHEMA["required"]) == {"rps", "superstructure", "podium"}

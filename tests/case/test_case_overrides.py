@@ -1,0 +1,139 @@
+"""Values put over a case: from the command line as text, from a study as Python values."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+import pytest
+
+from rpscli.case.case import case_from_mapping, parse_case
+from rpscli.case.document import Document
+from rpscli.case.overrides import Overrides, apply_overrides
+from rpscli.case.yaml_text import read_yaml
+from rpscli.errors import CaseError
+
+
+def refusal(text: str, overrides: Overrides, label: str = "--set") -> str:
+    with pytest.raises(CaseError) as error:
+        apply_overrides(read_yaml(text, "c.yaml"), overrides, label=label)
+    return str(error.value)
+
+
+def test_values_are_yaml(building: str) -> None:
+    document = read_yaml(building, "c.yaml")
+    before = copy.deepcopy(document.content)
+    changed = apply_overrides(
+        document,
+        [
+            "podium.bearing.slenderness=0.2",
+            "superstructure.storey_mass=[1 t, 2 t, 3 t]",
+            "superstructure.storey_mass.0=4 t",
+            "podium.impact={law: value, restitution: 0.9}",
+            "record.source=pulse:sine?amplitude=0.4g&period=1.2",
+            "limits.drift_ratio=5e-3",
+            "title=no",
+        ],
+    )
+    assert changed.at(("podium", "bearing", "slenderness")) == 0.2
+    assert changed.at(("superstructure", "storey_mass")) == ["4 t", "2 t", "3 t"]
+    assert changed.at(("podium", "impact")) == {"law": "value", "restitution": 0.9}
+    assert changed.at(("record", "source")) == "pulse:sine?amplitude=0.4g&period=1.2"
+    assert changed.at(("limits",)) == {"rotation_ratio": 0.5, "drift_ratio": 5e-3}
+    assert changed.at(("title",)) == "no"
+    assert document.content == before
+    assert str(document.value_place(("podium", "bearing", "slenderness"))) == "c.yaml:12:18"
+
+
+def test_sections_that_are_not_written_come_into_being(frame: str) -> None:
+    case = parse_case(frame, name="c.yaml", overrides=["record.source=a.at2", "record.scale=2"])
+    assert case.record is not None
+    assert (case.record.source, case.record.scale) == ("a.at2", 2.0)
+
+
+def test_null_takes_a_key_out(building: str) -> None:
+    overrides = ["podium.superstructure_mass_ratio=null", "podium.cap_beam_mass=150 t"]
+    structure = parse_case(building, name="c.yaml", overrides=overrides).structure
+    assert structure.eta == pytest.approx(4.0, rel=1e-15)
+    case = parse_case(building, name="c.yaml", overrides=["record=null", "record.vertical=null"])
+    assert case.record is None
+
+
+def test_python_values_of_a_study(building: str) -> None:
+    document = read_yaml(building, "c.yaml")
+    point = {
+        "superstructure.storeys": np.int64(2),
+        "podium.bearing.slenderness": np.float64(0.1),
+        "podium.bearing.curvature_ratio": "critical",
+        "superstructure.damping.modes": (1, 2),
+        "superstructure.storey_mass": np.array([1000.0, 2000.0]),
+        "podium.impact": {"law": "flexible"},
+    }
+    case = case_from_mapping(document, "c.yaml", None, point, label="vary")
+    structure = case.structure
+    assert structure.storeys == 2
+    assert structure.superstructure_mass == 3000.0
+    assert structure.bearing.curvature_ratio == pytest.approx(1.0 / 3.0, rel=1e-15)
+    assert structure.impact_law.kind == "flexible"
+
+
+def test_a_fault_of_a_value_is_placed_at_its_override(building: str) -> None:
+    document = read_yaml(building, "c.yaml")
+    with pytest.raises(CaseError) as error:
+        case_from_mapping(
+            document, "c.yaml", None, {"podium.bearing.slenderness": -0.5}, label="vary"
+        )
+    start = "vary podium.bearing.slenderness=-0.5: podium.bearing.slenderness = -0.5 must be > 0"
+    assert str(error.value) == start
+    with pytest.raises(CaseError, match=r"both fix") as error:
+        parse_case(building, name="c.yaml", overrides=["podium.cap_beam_mass=1"])
+    assert str(error.value).startswith("--set podium.cap_beam_mass=1: podium.cap_beam_mass and")
+    assert "(line 16)" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("override", "parts"),
+    [
+        ("podium.bering.slenderness=1", ["podium.bering is not a key", "mean podium.bearing?"]),
+        ("podium.bearing.slendernes=1", ["did you mean podium.bearing.slenderness?"]),
+        ("slenderness=1", ["slenderness belongs under podium.bearing"]),
+        ("xyz=1", ["xyz is not a key", "known here: rps, title"]),
+        ("xyz=null", ["xyz is not a key"]),
+        ("podium.columns.x=1", ["podium.columns holds no keys"]),
+        ("superstructure.storey_mass.0=1", ["'200 t' is a single value"]),
+        ("superstructure.damping.modes.2=1", ["modes has 2 values", "there is no 2"]),
+        ("superstructure.damping.modes.0=null", ["cannot be taken out"]),
+        ("superstructure.damping.modes.0.1=3", ["= 1 is a single value"]),
+        ("podium.0=1", ["podium is not a list"]),
+        ("0=1", ["an index alone"]),
+        ("podium..columns=1", ["is not a key"]),
+        ("podium.columns", ["write --set dotted.key=value"]),
+        ("=3", ["write --set dotted.key=value"]),
+        ("podium.columns=", ["no value", "null"]),
+        ("podium.columns=[1", ["bracket"]),
+        ("podium.impact={law: rigid, law: rigid}", ["law is written twice"]),
+    ],
+)
+def test_refusals(building: str, override: str, parts: list[str]) -> None:
+    message = refusal(building, [override])
+    assert message.startswith(f"--set {override}:")
+    for part in parts:
+        assert part in message
+
+
+def test_a_key_below_a_list(building: str) -> None:
+    message = refusal(building.replace("{source: motion.at2}", "[a]"), ["record.source=b"])
+    assert message == "--set record.source=b: record is a list, without a key source"
+
+
+def test_keys_of_a_study_are_checked_together(building: str) -> None:
+    message = refusal(building, {"podium.foo": 1, "record.bar": 2}, label="vary")
+    assert [line.split(":")[0] for line in message.splitlines()] == [
+        "vary podium.foo=1",
+        "vary record.bar=2",
+    ]
+
+
+def test_a_document_without_positions() -> None:
+    document = Document("base", {"podium": {"columns": 2}})
+    assert apply_overrides(document, ["podium.columns=3"]).content == {"podium": {"columns": 3}}

@@ -1,0 +1,84 @@
+"""The cases that come with the program: valid, and the same again from their resolved form."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.case.case import Case, load_case, parse_case
+from rpscli.case.starter import starter_text
+from rpscli.model.podium import PodiumStructure
+
+FOLDER = Path(__file__).parents[2] / "cases"
+NAMES = ["acceptance", "free_standing_block", "measured_column", "rigid_frame", "six_storey"]
+
+
+def numbers(structure: PodiumStructure) -> list[float]:
+    """Everything that moves the structure, as a list."""
+    bearing, floors = structure.bearing, structure.superstructure
+    shape = [bearing.semi_diagonal, bearing.slenderness, bearing.wedge_slenderness]
+    shape += [bearing.curvature_ratio, bearing.inertia_ratio]
+    masses = [structure.columns_mass, structure.cap_beam_mass, structure.gravity]
+    values = [*shape, *masses, structure.restitution]
+    if floors is not None:
+        values += [*floors.masses, *floors.stiffnesses, *np.ravel(floors.damping_matrix)]
+    return [float(value) for value in values]
+
+
+def case(name: str) -> Case:
+    if name == "starter":
+        return parse_case(starter_text(), name="starter.yaml")
+    return load_case(FOLDER / f"{name}.yaml")
+
+
+@pytest.mark.parametrize("name", [*NAMES, "starter"])
+def test_it_loads_and_comes_back(name: str) -> None:
+    first = case(name)
+    text = json.dumps(first.document, allow_nan=False)
+    second = parse_case(text, name=f"{name}.json", folder=first.folder)
+    assert first.warnings == ()
+    assert first.title != first.name
+    assert first.record is not None
+    assert second.document == first.document
+    assert second.analysis == first.analysis
+    assert second.limits == first.limits
+    assert numbers(second.structure) == numbers(first.structure)
+
+
+def test_every_case_of_the_folder_is_tested() -> None:
+    folder = {path.stem for path in FOLDER.glob("*.yaml") if "\nbase:" not in path.read_text()}
+    assert folder == set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_record_that_is_a_file_is_there(name: str) -> None:
+    record = case(name).record
+    assert record is not None
+    assert ":" in record.source or (FOLDER / record.source).is_file()
+
+
+def test_the_measured_column_in_ratios() -> None:
+    structure = case("measured_column").structure
+    assert structure.bearing.slenderness == pytest.approx(0.1498, abs=5e-5)  # 445/2970
+    assert structure.bearing.curvature_ratio == pytest.approx(0.5, rel=1e-15)
+    assert structure.columns_mass == 6 * 4300.0
+
+
+def test_the_block_is_the_one_of_its_comment() -> None:
+    bearing = case("free_standing_block").structure.bearing
+    assert (bearing.half_width, bearing.half_height) == pytest.approx((0.5, 1.5), rel=1e-15)
+    assert case("free_standing_block").structure.gamma == 0.0
+
+
+def test_what_the_starter_offers_as_alternatives_is_valid() -> None:
+    """Its commented lines, put in the place of those that they replace."""
+    text = starter_text().replace("  # stiffness", "  stiffness").replace("  period: ", "  # ")
+    text = text.replace("  profile: ", "  # ").replace("    # dimensions", "    dimensions")
+    for name in ("semi_diagonal", "slenderness", "wedge_slenderness", "curvature_ratio"):
+        text = text.replace(f"    {name}:", f"    # {name}:")
+    structure = parse_case(text, name="starter.yaml").structure
+    assert structure.bearing.semi_diagonal == pytest.approx(1.5, abs=2e-3)  # sizes in whole mm
+    assert structure.bearing.wedge_slenderness == pytest.approx(0.30, abs=5e-4)

@@ -1,0 +1,110 @@
+"""A command line in a working folder of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from rpscli.cli import program
+
+ROOT = Path(__file__).parents[2]
+
+SMALL_CASE = """\
+rps: 1
+title: "Three storeys [test]"
+superstructure:
+  storeys: 3
+  storey_mass: [200000, 200000, 150000]
+  storey_height: 3.0
+  period: 0.3
+  damping: {ratio: 0.05, modes: [1, 2]}
+podium:
+  bearing:
+    semi_diagonal: 1.5
+    slenderness: 0.15
+    wedge_slenderness: 0.30
+    curvature_ratio: 0.5
+  cap_beam_mass_ratio: 10
+  superstructure_mass_ratio: 3
+record: {source: "pulse:half_sine?amplitude=0.3g&period=0.6"}
+analysis: {free_vibration: 1.0}
+"""
+
+Invoke = Callable[..., Result]
+
+
+def _refuse(constant: str) -> None:
+    raise AssertionError(f"{constant} is no JSON")
+
+
+@pytest.fixture
+def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working folder with a case that takes no time."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("COLUMNS", raising=False)
+    (tmp_path / "small.yaml").write_text(SMALL_CASE, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def figures() -> None:
+    """Asked for by tests that want real figures."""
+
+
+@pytest.fixture(autouse=True)
+def _figures_cost_nothing(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What figures look like is tested elsewhere; here they only have to be written."""
+    if "figures" not in request.fixturenames:
+        monkeypatch.setattr("rpscli.report.style.png", lambda *_: b"a figure")
+
+
+@pytest.fixture
+def rps(workplace: Path) -> Invoke:
+    """Run `rps` with these arguments in this process."""
+
+    def invoke(*arguments: str, **options: Any) -> Result:
+        return CliRunner().invoke(program, list(arguments), **options)
+
+    return invoke
+
+
+@pytest.fixture
+def rps_json(rps: Invoke) -> Callable[..., dict[str, Any]]:
+    """Run `rps ... --json`; the standard output must hold one document and nothing else."""
+
+    def invoke(*arguments: str, exit_code: int = 0, **options: Any) -> dict[str, Any]:
+        result = rps(*arguments, "--json", **options)
+        assert result.exit_code == exit_code, result.stderr
+        document: dict[str, Any] = json.loads(result.stdout, parse_constant=_refuse)
+        assert document["schema_version"] == 1
+        return document
+
+    return invoke
+
+
+@pytest.fixture
+def shell(workplace: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run a line of bash in which ``rps`` is the program, in a process of its own."""
+
+    def run(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+        search = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+        function = f'rps() {{ "{sys.executable}" -m rpscli "$@"; }}\n'
+        return subprocess.run(
+            ["bash", "-c", function + line],
+            cwd=workplace,
+            env={**os.environ, "PYTHONPATH": search, **environment},
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=120,
+        )
+
+    return run

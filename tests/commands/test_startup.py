@@ -1,0 +1,64 @@
+"""What is not imported does not cost the user a second."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HEAVY = {"numba", "scipy", "matplotlib", "pydantic", "yaml", "rich", "numpy", "pint"}
+SCRIPT = """
+import atexit, json, sys
+from rpscli.cli import program
+atexit.register(lambda: print(json.dumps(sorted(sys.modules)), file=sys.stderr))
+program(sys.argv[1:])
+"""
+
+
+def imported(folder: Path, *arguments: str) -> set[str]:
+    """Modules that a command has imported when it ends."""
+    root = str(Path(__file__).parents[2])
+    result = subprocess.run(
+        [sys.executable, "-c", SCRIPT, *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": root},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return set(json.loads(result.stderr.splitlines()[-1]))
+
+
+@pytest.mark.parametrize("command", [["--help"], ["--version"], ["record", "--help"]], ids=" ".join)
+def test_help_and_version_import_nothing_heavy(workplace: Path, command: list[str]) -> None:
+    assert not imported(workplace, *command) & HEAVY
+
+
+def test_the_help_of_a_command_imports_nothing_heavy(workplace: Path) -> None:
+    assert not imported(workplace, "timehistory", "--help") & {"numba", "scipy", "matplotlib"}
+
+
+def test_check_needs_no_kernels_and_no_pictures(workplace: Path) -> None:
+    found = imported(workplace, "check", "small.yaml", "--json")
+    assert not found & {"numba", "scipy", "matplotlib", "rich"}
+
+
+def test_modal_without_its_picture_is_plain_numpy(workplace: Path) -> None:
+    assert not imported(workplace, "modal", "small.yaml") & {"numba", "scipy"}
+
+
+def test_the_package_itself_imports_nothing(workplace: Path) -> None:
+    code = "import sys, rpscli; print(sorted(m for m in sys.modules if m.startswith('rpscli')))"
+    root = str(Path(__file__).parents[2])
+    result = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "PYTHONPATH": root},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert result.stdout.strip() == "['rpscli']"

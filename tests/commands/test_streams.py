@@ -1,0 +1,212 @@
+"""What goes where: results, errors, colours, pipes, and the exit code that ends it."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import Result
+
+from rpscli.cli import COMMANDS
+from rpscli.commands.record import MEMBERS
+
+Invoke = Callable[..., Result]
+InvokeJson = Callable[..., dict[str, Any]]
+Shell = Callable[..., subprocess.CompletedProcess[str]]
+
+EXAMPLES = [
+    ("check", "small.yaml"),
+    ("modal", "small.yaml"),
+    ("pushover", "small.yaml"),
+    ("timehistory", "small.yaml"),
+    ("record", "info", "pulse:sine?amplitude=0.3g&period=1"),
+    ("record", "plot", "pulse:sine?amplitude=0.3g&period=1"),
+    ("record", "convert", "pulse:sine?amplitude=0.3g&period=1"),
+    ("record", "synth", "pulse:sine?amplitude=0.3g&period=1"),
+]
+
+
+@pytest.mark.parametrize("command", EXAMPLES, ids=" ".join)
+def test_a_document_is_all_that_json_prints(rps_json: InvokeJson, command: tuple[str, ...]) -> None:
+    document = rps_json(*command)
+    assert document["status"] == "ok"
+    assert document["command"] == " ".join(command[:-1])
+    assert {"rps_version", "warnings"} <= set(document)
+    assert all(Path(file).is_file() for file in document.get("files", ()))
+
+
+@pytest.mark.parametrize("command", EXAMPLES[:5], ids=" ".join)
+def test_quiet_prints_nothing(rps: Invoke, command: tuple[str, ...]) -> None:
+    result = rps(*command, "--quiet")
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_a_document_is_data_that_quiet_does_not_take_away(rps_json: InvokeJson) -> None:
+    assert rps_json("modal", "small.yaml", "--quiet")["status"] == "ok"
+
+
+def test_tables_go_to_stdout_and_notes_to_stderr(rps: Invoke) -> None:
+    result = rps("modal", "small.yaml")
+    assert result.stdout.startswith("Three storeys [test]\n")  # brackets are no markup
+    assert "written to" not in result.stdout
+    assert result.stderr == f"written to {Path('results', 'small', 'modal')}\n"
+
+
+FAILURES = [
+    (("check", "none.yaml"), 3, "CaseError", "there is no such file"),
+    (("check", "small.yaml", "--set", "podium.bearing.rho=1"), 3, "CaseError", "rho is not a key"),
+    (("timehistory", "small.yaml", "--record", "none.at2"), 3, "RecordError", "none.at2"),
+    (("timehistory", "small.yaml", "--scale", "nan"), 2, "UsageError", "finite"),
+    (("timehistory", "small.yaml", "--animate", "film.mp4"), 2, "UsageError", ".gif"),
+    (("timehistory", "small.yaml", "--set", "record=null"), 2, "UsageError", "--record"),
+    (("timehistory", "small.yaml", "--fail-on", "rotation_rati=1"), 2, "UsageError", "_ratio?"),
+    (("timehistory", "small.yaml", "--fail-on", "rotation_ratio"), 2, "UsageError", "=NUMBER"),
+    (("pushover", "small.yaml", "--pattern", "1,2"), 2, "UsageError", "3 floor forces"),
+    (("pushover", "small.yaml", "--pattern", "mode"), 2, "UsageError", "first_mode"),
+    (("record", "synth", "small.yaml"), 3, "RecordError", "small.yaml"),
+    (("check",), 2, "UsageError", "CASE"),
+    (("check", "small.yaml", "--colour"), 2, "UsageError", "--colour"),
+    (("chek", "small.yaml"), 2, "UsageError", "did you mean check?"),
+    (("record", "show"), 2, "UsageError", "no such command: show"),
+]
+
+
+@pytest.mark.parametrize(
+    ("command", "code", "kind", "says"), FAILURES, ids=[" ".join(row[0]) for row in FAILURES]
+)
+def test_failures(
+    rps: Invoke, rps_json: InvokeJson, command: tuple[str, ...], code: int, kind: str, says: str
+) -> None:
+    result = rps(*command)
+    assert (result.exit_code, result.stdout) == (code, "")
+    assert says in result.stderr
+    assert "error: " in result.stderr
+    assert "Traceback" not in result.stderr
+    document = rps_json(*command, exit_code=code)
+    assert document["status"] == "error"
+    assert document["error"]["type"] == kind
+    assert document["error"]["exit_code"] == code
+    assert says in document["error"]["message"]
+    assert not Path("results").exists()
+
+
+def test_every_fault_of_a_case_is_a_line(rps: Invoke) -> None:
+    result = rps("check", "small.yaml", "--set", "podium.columns=0", "--set", "rps=2")
+    lines = result.stderr.splitlines()
+    assert len(lines) >= 2
+    assert all(line.startswith("error: ") for line in lines)
+
+
+def test_an_unreadable_record_leaves_the_derived_quantities(rps: Invoke) -> None:
+    result = rps("check", "small.yaml", "--set", "record.source=none.at2", "--json")
+    document = json.loads(result.stdout)
+    assert document["status"] == "error"
+    assert document["record"] is None
+    assert document["T1"] == pytest.approx(0.3, rel=1e-12)
+
+
+def test_an_interruption_ends_with_130(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rpscli.analyses.modal.modal", interrupted)
+    result = rps("modal", "small.yaml", "--json")
+    assert result.exit_code == 130
+    assert "interrupted" in result.stderr
+    assert json.loads(result.stdout)["error"]["type"] == "Interrupted"
+    assert not Path("results").exists()
+
+
+def test_a_fault_of_ours_says_so(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("by accident")
+
+    monkeypatch.setattr("rpscli.analyses.modal.modal", broken)
+    result = rps("modal", "small.yaml")
+    assert result.exit_code == 1
+    assert "internal error (test_streams.py:" in result.stderr
+    assert "ZeroDivisionError: by accident" in result.stderr
+    assert "Traceback" not in result.stderr
+    monkeypatch.setenv("RPS_TRACEBACK", "1")
+    assert "Traceback" in rps("modal", "small.yaml").stderr
+
+
+def test_no_arguments_show_the_help(rps: Invoke) -> None:
+    result = rps()
+    assert "timehistory" in result.output
+    assert "error:" not in result.output
+
+
+def test_standard_input(rps: Invoke, rps_json: InvokeJson) -> None:
+    text = Path("small.yaml").read_text(encoding="utf-8")
+    document = rps_json("modal", "-", input=text)
+    assert document["case"]["name"] == "stdin"
+    assert Path("results/stdin/modal/modes.csv").is_file()
+    result = rps("check", "-", input="rps: 1\nsuperstructure: {storeys: 0}\n")
+    assert result.exit_code == 3
+    assert "error: <stdin>" in result.stderr
+
+
+def test_no_colours_in_a_pipe(shell: Shell) -> None:
+    result = shell("rps check small.yaml")
+    assert result.returncode == 0
+    assert "\x1b" not in result.stdout + result.stderr
+
+
+def test_no_color_is_respected_on_a_terminal(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm-256color")
+    assert "\x1b[1m" in rps("check", "small.yaml").stdout
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b[3" not in rps("check", "small.yaml").stdout
+
+
+def test_narrow_terminals_fold_words_and_break_no_number(
+    rps: Invoke, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    numbers = re.findall(r"\d+\.\d+", rps("pushover", "small.yaml").stdout)
+    monkeypatch.setenv("COLUMNS", "44")
+    narrow = rps("pushover", "small.yaml").stdout
+    assert max(len(line) for line in narrow.splitlines()) <= 44
+    assert sorted(re.findall(r"\d+\.\d+", narrow)) == sorted(numbers)
+    assert "…" not in narrow
+
+
+def test_a_reader_that_leaves_is_no_error(shell: Shell) -> None:
+    line = "rps {} | true; echo ${{PIPESTATUS[0]}}"
+    for command in ("check small.yaml", "check small.yaml --json", "schema"):
+        result = shell(line.format(command))
+        assert result.stderr == ""
+        assert result.stdout.splitlines()[-1].endswith("0")
+
+
+def test_ascii_output_is_no_obstacle(shell: Shell) -> None:
+    text = "sed 's/Three storeys/Drei Geschosse über Lagern/' small.yaml"
+    result = shell(f"{text} | rps check -", PYTHONIOENCODING="ascii")
+    assert result.returncode == 0
+    assert "Drei Geschosse ?ber Lagern" in result.stdout
+
+
+def test_every_command_has_a_help(rps: Invoke) -> None:
+    for path in [(name,) for name in COMMANDS] + [("record", name) for name in MEMBERS]:
+        result = rps(*path, "--help")
+        assert result.exit_code == 0
+        assert result.stdout.startswith(f"Usage: program {' '.join(path)}")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full here")
+@pytest.mark.parametrize("options", ["", "--json"])
+def test_a_full_disk_behind_the_output_is_named(shell: Shell, options: str) -> None:
+    result = shell(f"rps check small.yaml {options} > /dev/full")
+    assert result.returncode == 1
+    assert result.stderr == "error: standard output: cannot be written: No space left on device\n"
+
+
+def test_no_standard_output_at_all(shell: Shell) -> None:
+    result = shell("rps check small.yaml >&-")
+    assert (result.returncode, result.stderr) == (0, "")

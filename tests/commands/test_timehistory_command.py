@@ -1,0 +1,241 @@
+"""rps timehistory: its files, its numbers, its verdicts."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+from PIL import Image
+
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.timehistory import time_history
+from rpscli.case.case import load_case
+from rpscli.records.source import load_record
+
+Invoke = Callable[..., Result]
+InvokeJson = Callable[..., dict[str, Any]]
+
+FOLDER = Path("results/small/timehistory")
+FIGURES = {
+    "rotation.png", "displacements.png", "storey_shears.png", "moment_rotation.png", "energy.png"
+}  # fmt: skip
+TABLES = {"timehistory.csv", "events.csv", "storeys.csv", "summary.json", "run.json"}
+STRONG = "pulse:sine?amplitude=0.9g&period=1.5"  # overturns the small case
+TEN_DIGITS = 1e-9  # a CSV holds ten significant digits
+
+
+def small_result() -> TimeHistoryResult:
+    case = load_case("small.yaml")
+    assert case.record is not None
+    return time_history(case.structure, load_record(case.record.source), case.analysis)
+
+
+def columns(path: Path) -> dict[str, list[str]]:
+    """A CSV file by its header."""
+    with path.open(encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
+
+
+@pytest.mark.usefixtures("figures")
+def test_files_and_numbers(rps_json: InvokeJson) -> None:
+    document, result = rps_json("timehistory", "small.yaml"), small_result()
+    assert {Path(file).name for file in document["files"]} == FIGURES | TABLES
+    assert {file.name for file in FOLDER.iterdir()} == FIGURES | TABLES
+    assert json.loads((FOLDER / "summary.json").read_text(encoding="utf-8")) == document
+    assert {key: document[key] for key in result.scalars()} == result.scalars()
+    assert document["storey_shears"] == result.storey_shears.tolist()
+    assert document["floor_accelerations"] == result.floor_accelerations.tolist()
+    assert document["energy"]["residual"] == result.energy.residual
+    assert set(document["energy"]) >= {"input", "damped", "impact", "stored", "residual"}
+    check_history(columns(FOLDER / "timehistory.csv"), result)
+    check_events(columns(FOLDER / "events.csv"), result)
+    check_storeys(columns(FOLDER / "storeys.csv"), result)
+    for name in FIGURES:
+        with Image.open(FOLDER / name) as figure:
+            width, height = figure.size
+        assert 800 <= width <= 1300
+        assert 450 <= height <= 1000
+
+
+def check_history(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
+    assert list(table) == [
+        "time [s]", "ground_acceleration [m/s2]", "rotation [rad]", "rotation_rate [rad/s]",
+        "cap_beam_displacement [m]", "lift [m]",
+        "floor_1_displacement [m]", "floor_2_displacement [m]", "floor_3_displacement [m]",
+        "storey_1_drift [m]", "storey_2_drift [m]", "storey_3_drift [m]",
+        "storey_1_shear [N]", "storey_2_shear [N]", "storey_3_shear [N]",
+        "floor_1_acceleration [m/s2]", "floor_2_acceleration [m/s2]",
+        "floor_3_acceleration [m/s2]", "driving_moment [N m]", "energy_input [J]",
+        "energy_damped [J]", "energy_impact [J]", "energy_stored [J]", "phase [-]",
+    ]  # fmt: skip
+    trace = result.trace
+    for name, expected in {
+        "time [s]": trace.time,
+        "rotation [rad]": trace.rotation,
+        "floor_2_displacement [m]": trace.floor_displacements[:, 1],
+        "storey_3_shear [N]": trace.storey_shears[:, 2],
+        "floor_1_acceleration [m/s2]": trace.floor_accelerations[:, 0],
+        "energy_stored [J]": trace.energy_stored,
+        "phase [-]": trace.phase,
+    }.items():
+        written = np.array(table[name], dtype=float)
+        assert written == pytest.approx(expected, rel=TEN_DIGITS), name
+
+
+def check_events(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
+    assert list(table) == [
+        "time [s]", "kind [-]", "rotation [rad]", "rotation_rate_before [rad/s]",
+        "rotation_rate_after [rad/s]", "energy_lost [J]",
+    ]  # fmt: skip
+    assert table["kind [-]"] == [event.kind for event in result.events]
+    assert table["kind [-]"].count("uplift") == result.uplifts > 0
+    times = [float(time) for time in table["time [s]"]]
+    assert times == pytest.approx([event.time for event in result.events], rel=TEN_DIGITS)
+
+
+def check_storeys(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
+    assert list(table) == [
+        "storey [-]", "max_drift [m]", "drift_ratio [-]", "max_shear [N]",
+        "floor_acceleration [m/s2]", "fixed_base_max_drift [m]", "fixed_base_drift_ratio [-]",
+        "fixed_base_max_shear [N]", "fixed_base_floor_acceleration [m/s2]",
+    ]  # fmt: skip
+    fixed = result.fixed_base
+    assert fixed is not None
+    shears = [float(value) for value in table["max_shear [N]"]]
+    assert shears == pytest.approx(result.storey_shears, rel=TEN_DIGITS)
+    shears = [float(value) for value in table["fixed_base_max_shear [N]"]]
+    assert shears == pytest.approx(fixed.storey_shears, rel=TEN_DIGITS)
+    ratios = [float(value) for value in table["drift_ratio [-]"]]
+    assert max(ratios) == pytest.approx(result.drift_ratio, rel=TEN_DIGITS)
+
+
+def test_the_tables_say_what_happened(rps: Invoke) -> None:
+    result = rps("timehistory", "small.yaml")
+    assert result.exit_code == 0
+    assert "uplifts and comes back" in result.stdout
+    for text in ("theta_cr", "V_st", "fixed base", "friction demand", "energy input", "shear kN"):
+        assert text in result.stdout
+    assert "limit" not in result.stdout
+
+
+def test_overturning_is_a_result(rps_json: InvokeJson) -> None:
+    document = rps_json("timehistory", "small.yaml", "--record", STRONG)
+    assert document["status"] == "ok"
+    assert document["outcome"].startswith("overturned_")
+    assert document["record"]["source"] == STRONG
+
+
+@pytest.mark.parametrize(
+    ("conditions", "code"),
+    [
+        (["overturning"], 10),
+        (["uplift"], 10),
+        (["rotation_ratio=0.5"], 10),
+        (["rotation_ratio=5"], 0),
+        (["rotation_ratio=5", "uplifts=0"], 10),
+    ],
+)
+def test_fail_on(rps_json: InvokeJson, conditions: list[str], code: int) -> None:
+    options = [word for text in conditions for word in ("--fail-on", text)]
+    document = rps_json("timehistory", "small.yaml", "--record", STRONG, *options, exit_code=code)
+    assert document["status"] == "ok"
+    assert [row["name"] for row in document["verdicts"]] == [
+        text.partition("=")[0] for text in conditions
+    ]
+    assert any(row["exceeded"] for row in document["verdicts"]) == (code == 10)
+    assert (FOLDER / "timehistory.csv").is_file()
+
+
+def test_limits_of_the_case(rps: Invoke) -> None:
+    passing = ("--set", "limits.rotation_ratio=0.9")
+    result = rps("timehistory", "small.yaml", *passing)
+    assert result.exit_code == 0
+    assert "met" in result.stdout
+    result = rps("timehistory", "small.yaml", *passing, "--set", "limits.base_shear_ratio=0.5")
+    assert result.exit_code == 10
+    assert "EXCEEDED" in result.stdout
+    assert "error: limit exceeded: base_shear_ratio = " in result.stderr
+    assert (FOLDER / "rotation.png").is_file()
+
+
+def test_what_falls_meets_no_limit(rps: Invoke) -> None:
+    # Its drifts were small as long as it stood.
+    limit = ("--set", "limits.drift_ratio=0.9")
+    result = rps("timehistory", "small.yaml", "--record", STRONG, *limit)
+    assert result.exit_code == 10
+    assert "limit exceeded: overturning" in result.stderr
+
+
+def test_a_limit_that_does_not_exist_here(rps: Invoke) -> None:
+    without = ("--set", "superstructure.storey_height=null")
+    result = rps("timehistory", "small.yaml", *without, "--fail-on", "drift_ratio=0.01")
+    assert result.exit_code == 2
+    assert "storey_height" in result.stderr
+
+
+def test_an_analysis_that_fails(rps: Invoke) -> None:
+    result = rps("timehistory", "small.yaml", "--set", "analysis.max_events=1", "--json")
+    document = json.loads(result.stdout)
+    assert result.exit_code == 4
+    assert document["status"] == "error"
+    assert document["outcome"] == "failed"
+    assert document["error"]["exit_code"] == 4
+    assert "max_events" in document["error"]["message"]
+    assert "at t = " in result.stderr
+    assert {file.name for file in FOLDER.iterdir()} == FIGURES | TABLES
+
+
+def test_scale_multiplies_the_record(rps_json: InvokeJson) -> None:
+    whole = rps_json("timehistory", "small.yaml")
+    document = rps_json("timehistory", "small.yaml", "--scale", "-0.25")
+    assert document["record"]["pga"] == pytest.approx(0.25 * whole["record"]["pga"], rel=1e-14)
+    assert document["record"]["scale"] == -0.25
+    # Far below the uplift the building is linear, whatever its sign: g tan(alpha) is 0.15 g.
+    assert document["outcome"] == "at_rest"
+    assert document["max_base_shear"] == pytest.approx(
+        0.25 * whole["fixed_base"]["storey_shears"][0], rel=1e-9
+    )
+
+
+def test_a_vertical_component(rps_json: InvokeJson, rps: Invoke) -> None:
+    vertical = "pulse:sine?amplitude=0.2g&period=0.6"  # the same step as half of 1.2 s
+    whole = rps_json("timehistory", "small.yaml")
+    document = rps_json("timehistory", "small.yaml", "--vertical", vertical)
+    assert document["max_rotation"] != whole["max_rotation"]
+    other = rps("timehistory", "small.yaml", "--vertical", "pulse:sine?amplitude=0.2g&period=1")
+    assert other.exit_code == 3
+    assert "dt" in other.stderr
+
+
+def test_a_frame_without_storeys(rps_json: InvokeJson) -> None:
+    frame = Path(__file__).parents[2] / "cases" / "free_standing_block.yaml"
+    document = rps_json("timehistory", str(frame))
+    assert document["storey_shears"] == []
+    assert document["fixed_base"] is None
+    assert "storey_shears.png" not in {Path(file).name for file in document["files"]}
+
+
+def test_an_animation(rps_json: InvokeJson) -> None:
+    record = "pulse:half_sine?amplitude=0.3g&period=0.3"
+    document = rps_json(
+        "timehistory", "small.yaml", "--record", record, "--animate", "film.gif",
+        "--set", "analysis.free_vibration=0.1",
+    )  # fmt: skip
+    assert "film.gif" in document["files"]
+    with Image.open("film.gif") as film:
+        assert film.format == "GIF"
+        assert 2 <= getattr(film, "n_frames", 1) <= 180
+
+
+def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "compiling" not in rps("timehistory", "small.yaml").stderr
+    monkeypatch.setattr("rpscli.physics.jit.is_compiled", lambda _: False)
+    assert "compiling the kernels" in rps("timehistory", "small.yaml").stderr
+    assert rps("timehistory", "small.yaml", "--quiet").stderr == ""

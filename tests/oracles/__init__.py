@@ -1,0 +1,1 @@
+"""Second solutions that share nothing with the program but the statement of the problem."""

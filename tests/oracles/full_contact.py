@@ -1,0 +1,82 @@
+"""Full contact: the fixed-base building under a linear ground acceleration, by exponentials."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm
+
+from .crossings import Array, first_crossing, monotone_pieces
+from .storey_lagrangian import StoreyLagrangian
+
+_TAYLOR_ORDER = 20  # 1/21! of the leading term with sub-intervals of one radian of the fastest mode
+
+
+@dataclass(frozen=True)
+class LinearGround:
+    """Ground acceleration over one interval, linear in the time since its start."""
+
+    horizontal: float
+    horizontal_rate: float
+    vertical: float
+    vertical_rate: float
+
+    def later(self, tau: float) -> LinearGround:
+        return LinearGround(
+            self.horizontal + tau * self.horizontal_rate,
+            self.horizontal_rate,
+            self.vertical + tau * self.vertical_rate,
+            self.vertical_rate,
+        )
+
+
+class FullContact:
+    """The fixed-base building under a linear load, z = [d, d', a_g, a_g'], by exponentials."""
+
+    def __init__(self, lagrangian: StoreyLagrangian) -> None:
+        system, n = lagrangian.system, lagrangian.storeys
+        flow = np.zeros((2 * n + 2, 2 * n + 2))
+        flow[:n, n : 2 * n] = np.eye(n)
+        if n > 0:
+            forces = np.column_stack((np.diag(system.stiffnesses), lagrangian.drift_damping))
+            flow[n : 2 * n, : 2 * n] = -np.linalg.solve(lagrangian.drift_mass, forces)
+            flow[n, 2 * n] = -1.0  # the first storey alone sees the ground
+        flow[2 * n, 2 * n + 1] = 1.0
+        # horizontal force that tries to lift the storey towards theta > 0: V - (N m_c/2 + m_b) a_g
+        push = np.zeros(2 * n + 2)
+        if n > 0:
+            push[0] = system.stiffnesses[0]
+            push[n : 2 * n] = lagrangian.drift_damping[0]
+        push[2 * n] = -lagrangian.pushed_mass
+        self.flow, self.fastest = flow, float(np.max(np.abs(np.linalg.eigvals(flow))))
+        self.hold = lagrangian.lifted_mass * system.tan_alpha
+        self.gravity = system.gravity
+        rows = [push]
+        for order in range(1, _TAYLOR_ORDER + 1):
+            rows.append(rows[-1] @ flow / order)
+        self.taylor = np.array(rows)
+        self._steps: dict[float, Array] = {}
+
+    def over(self, z: Array, tau: float) -> Array:
+        if tau not in self._steps:
+            self._steps[tau] = expm(self.flow * tau)
+        return self._steps[tau] @ z
+
+    def uplift(self, z: Array, ground: LinearGround, h: float) -> tuple[float, int] | None:
+        """First instant in [0, h] at which the push exceeds what the weight holds, and its side."""
+        push = self.taylor @ z * h ** np.arange(_TAYLOR_ORDER + 1)
+        hold = self.hold * np.array([self.gravity + ground.vertical, h * ground.vertical_rate])
+        if np.sum(np.abs(push)) < hold[0] - abs(hold[1]):
+            return None
+        found: list[tuple[float, int]] = []
+        for side in (1, -1):
+            excess = side * push
+            excess[:2] -= hold
+            if excess[0] > 0.0:
+                return 0.0, side
+            pieces = monotone_pieces(excess)
+            root = first_crossing(excess, pieces, 0.0, 1, end=float(np.sum(excess)))
+            if root is not None:
+                found.append((root * h, side))
+        return min(found, default=None)

@@ -1,0 +1,210 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import RecordError
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.source import load_record
+
+TITLE = "PEER NGA STRONG MOTION DATABASE RECORD"
+EVENT = "Northridge-01, 1/17/1994, Somewhere, 9"
+UNITS = "ACCELERATION TIME SERIES IN UNITS OF G"
+NPTS = "NPTS=      7, DT=   .0050 SEC"
+VALUES = "  .1000000E-01 -.2000000E-01  .3000000E+00  .4000000E-01  .5000000E-01\n"
+VALUES += "  .6000000E-01 -.7000000E-01\n"
+IN_G = [0.01, -0.02, 0.3, 0.04, 0.05, 0.06, -0.07]
+
+
+def at2(npts: str = NPTS, values: str = VALUES, units: str = UNITS) -> str:
+    return f"{TITLE}\n{EVENT}\n{units}\n{npts}\n{values}"
+
+
+def load(folder: Path, text: str, name: str = "rec.AT2", options: str = "") -> GroundMotion:
+    (folder / name).write_bytes(text.encode("latin-1"))
+    return load_record(name + options, folder=folder)
+
+
+def test_an_ordinary_file(tmp_path: Path) -> None:
+    made = load(tmp_path, at2())
+    # One multiplication separates the samples from the printed numbers.
+    np.testing.assert_allclose(made.acceleration, np.array(IN_G) * STANDARD_GRAVITY, rtol=1e-15)
+    assert made.dt == 0.005
+    assert made.npts == 7
+    assert made.name == "rec"
+    assert made.source == "rec.AT2"
+    assert made.format == "PEER AT2"
+    assert EVENT in made.description
+    assert "values in g" in made.description
+    assert made.warnings == ()
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "NPTS=  7, DT= .00500 SEC",
+        "NPTS=   7, DT=   .0050 SEC,                                           ",
+        "NPTS=   7, DT=   .0050 SEC,   0 POLE @    30.00000 HZ,  -5 POLE @      .12000",
+        "NPTS=   7  DT=  0.0050 SEC,",
+        "NPTS= 7 DT= 0.0050000",
+        "npts=  7, dt= .00500 sec",
+        "NPTS = 7 , DT = 5.0E-03",
+        "NPTS=7,DT=.005SEC",
+        "    7    .0050    NPTS, DT",
+        "7 0.00500 NPTS, DT",
+        "  7, .0050, NPTS,DT",
+        "NPTS, DT = 7, .0050",
+        "NPTS=  7\nDT= .005 SEC",
+        "DT= .005 SEC\nNPTS=  7",
+    ],
+)
+def test_spellings_of_count_and_step(tmp_path: Path, line: str) -> None:
+    made = load(tmp_path, at2(line))
+    assert (made.npts, made.dt) == (7, 0.005)
+    assert made.pga == pytest.approx(0.3 * STANDARD_GRAVITY, rel=1e-15)
+
+
+@pytest.mark.parametrize("width", [1, 3, 5, 7, 8])
+def test_values_on_a_line(tmp_path: Path, width: int) -> None:
+    numbers = [f"{value:15.7E}" for value in IN_G]
+    rows = ["".join(numbers[start : start + width]) for start in range(0, 7, width)]
+    made = load(tmp_path, at2(values="\n".join(rows)))
+    np.testing.assert_allclose(made.acceleration, np.array(IN_G) * STANDARD_GRAVITY, rtol=1e-15)
+
+
+def test_a_header_of_seven_lines(tmp_path: Path) -> None:
+    text = f"{TITLE}\n{EVENT}\nFilter: HP 0.1\n{UNITS}\n{NPTS}\n\n10/15/79 BASEMENT\n{VALUES}"
+    assert load(tmp_path, text).npts == 7
+
+
+@pytest.mark.parametrize("end", ["\r\n", "\r\r\n", "\r", "\n"])
+def test_line_ends(tmp_path: Path, end: str) -> None:
+    made = load(tmp_path, at2().replace("\n", end))
+    assert made.npts == 7
+    assert made.acceleration[-1] == pytest.approx(-0.07 * STANDARD_GRAVITY, rel=1e-15)
+
+
+def test_glued_and_ragged_values(tmp_path: Path) -> None:
+    values = " -.1234E-02-.5678E-03\n.1D+00  -.5d-1+.25E-1\n   .3 \n -0.125   \n\n   \n"
+    made = load(tmp_path, at2(values=values))
+    in_g = [-0.001234, -0.0005678, 0.1, -0.05, 0.025, 0.3, -0.125]
+    np.testing.assert_allclose(made.acceleration, np.array(in_g) * STANDARD_GRAVITY, rtol=1e-15)
+
+
+def test_text_after_the_values_is_a_warning(tmp_path: Path) -> None:
+    made = load(tmp_path, at2(values=VALUES + "\nEND OF RECORD, checked by X.Y.\n"))
+    assert made.npts == 7
+    assert "END OF RECORD" in made.warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("line", "factor"),
+    [
+        ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.07 Hz LP=23.0 Hz", 9.80665),
+        ("acceleration time series in units of g", 9.80665),
+        ("ACCELERATION TIME SERIES IN UNITS OF CM/S2", 0.01),
+        ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", 0.01),
+        ("ACCELERATION TIME SERIES, UNITS: (m/s^2)", 1.0),
+        ("ACCELERATION IN GAL", 0.01),
+    ],
+)
+def test_units_are_those_of_the_units_line(tmp_path: Path, line: str, factor: float) -> None:
+    made = load(tmp_path, at2(units=line))
+    assert made.acceleration[2] == pytest.approx(0.3 * factor, rel=1e-15)
+
+
+def test_the_conversion_is_said(tmp_path: Path) -> None:
+    made = load(tmp_path, at2(units="ACCELERATION TIME SERIES IN UNITS OF CM/S2"))
+    assert "values in cm/s2" in made.description
+
+
+def test_absent_units_have_to_be_given(tmp_path: Path) -> None:
+    text = at2(units="CORRECTED ACCELERATION, RECORDED IN THE BASEMENT")
+    with pytest.raises(RecordError, match=r"does not state the units.*\?units=g"):
+        load(tmp_path, text)
+    made = load(tmp_path, text, options="?units=g")
+    assert made.pga == pytest.approx(0.3 * STANDARD_GRAVITY, rel=1e-15)
+    assert load_record("rec.AT2", folder=tmp_path, units="m/s2").pga == 0.3
+
+
+def test_contradicting_options_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(RecordError, match=r"units = m/s2 contradicts the file, which says g"):
+        load(tmp_path, at2(), options="?units=m/s2")
+    with pytest.raises(RecordError, match=r"dt = 0.01 s contradicts the file, which says 0.005"):
+        load(tmp_path, at2(), options="?dt=0.01")
+    assert load(tmp_path, at2(), options="?dt=0.005&units=g").dt == 0.005
+
+
+def test_a_step_that_printing_may_have_rounded(tmp_path: Path) -> None:
+    text = at2("NPTS=  7, DT=   .0039 SEC")
+    made = load(tmp_path, text)
+    assert made.dt == 0.0039
+    assert "may be rounded" in made.warnings[0]
+    assert "?dt=0.00390625" in made.warnings[0]
+    exact = load(tmp_path, text, options="?dt=0.00390625")
+    assert (exact.dt, exact.warnings) == (0.00390625, ())
+
+
+@pytest.mark.parametrize("step", [".0050", ".0150", ".0200", ".0025", "0.00390625", ".0300"])
+def test_steps_that_cannot_be_a_rounded_rate_are_not_doubted(tmp_path: Path, step: str) -> None:
+    assert load(tmp_path, at2(f"NPTS=  7, DT=   {step} SEC")).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (at2("NPTS=  9, DT= .005 SEC"), r"rec.AT2:4: NPTS = 9, but the file holds 7 .*NPTS=7"),
+        (at2("NPTS=  6, DT= .005 SEC"), r"NPTS = 6, but the file holds 7 .*NPTS=6|NPTS=7"),
+        (at2("NPTS=  7, DT= .000 SEC"), "DT = .000 s must be positive"),
+        (at2("NPTS=  7, DT= -.01 SEC"), "must be positive"),
+        (at2(values=""), "NPTS = 7, but the file holds 0 values: it is cut short"),
+        (at2("NPTS=  7"), "no header line gives NPTS and DT"),
+        (at2("DT= .005"), "no header line gives NPTS and DT"),
+        (at2(values="  .1 .2 NaN .4 .5 .6 .7"), "NaN.*not a row of finite numbers"),
+        (
+            at2(values=VALUES.replace(".6000000E-01", "************")),
+            r"rec.AT2:6: .*after 5 values",
+        ),
+        (at2(values=VALUES.replace(".6000000E-01", "1E999")), "sample 6 is inf, not finite"),
+        (at2(values=VALUES.replace("-.7", "0.6.7")), "not a row of finite numbers"),
+        (at2(values=VALUES.replace("\n", "\nNEXT RECORD\n", 1)), "after 5 values comes 'NEXT"),
+        (at2(values=VALUES + "NEXT RECORD\n .1 .2\n"), "more numbers follow after the 7 values"),
+        (at2(units="ACCELERATION TIME SERIES IN UNITS OF FURLONGS"), "no unit of acceleration"),
+        (at2(units="VELOCITY TIME SERIES IN UNITS OF CM/S"), "this is a velocity record"),
+        (at2(units="DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "this is a displacement record"),
+        (at2(units="ACCELERATION TIME SERIES IN UNITS OF CM/S"), "no unit of acceleration"),
+    ],
+)
+def test_refuses(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message) as raised:
+        load(tmp_path, text)
+    assert str(tmp_path / "rec.AT2") in str(raised.value) or "rec.AT2" in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity"), [("rec.VT2", "velocity"), ("rec.dt2", "displacement")]
+)
+def test_refuses_other_quantities_by_extension(tmp_path: Path, name: str, quantity: str) -> None:
+    with pytest.raises(RecordError, match=f"hold {quantity}; give the acceleration.*rec.AT2"):
+        load(tmp_path, at2(), name)
+
+
+def test_content_decides_whatever_the_extension(tmp_path: Path) -> None:
+    assert load(tmp_path, at2(), "rec.txt").format == "PEER AT2"
+    assert load(tmp_path, at2(), "rec").format == "PEER AT2"
+
+
+def test_a_title_may_mention_other_units(tmp_path: Path) -> None:
+    text = f"{TITLE}\npeak in units of cm/s2: 294\n{UNITS}\n{NPTS}\n{VALUES}"
+    assert load(tmp_path, text).pga == pytest.approx(0.3 * STANDARD_GRAVITY, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [(".1 .2 .3 .4 .5 .6 5.0", "beyond any recorded"), ("0 0 0 0 0 1E-5 0", "weaker than")],
+)
+def test_implausible_peaks_are_a_warning(tmp_path: Path, values: str, message: str) -> None:
+    assert message in load(tmp_path, at2(values=values)).warnings[-1]

@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rpscli.errors import RecordError
+from rpscli.records.ground_motion import GroundMotion
+
+
+def motion(values: list[float], dt: float = 0.5) -> GroundMotion:
+    return GroundMotion(np.array(values), dt, "name", "source.at2", "PEER AT2")
+
+
+def test_samples_are_a_read_only_contiguous_copy() -> None:
+    values = np.arange(10.0)[::2]
+    made = GroundMotion(values, 0.1, "n", "s", "f")
+    values[0] = 99.0
+    assert made.acceleration.flags.c_contiguous
+    assert made.acceleration[0] == 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        made.acceleration[0] = 1.0
+
+
+def test_derived_quantities() -> None:
+    made = motion([0.0, 1.0, -4.0, 2.0])
+    assert made.npts == 4
+    assert made.duration == 1.5
+    assert made.time.tolist() == [0.0, 0.5, 1.0, 1.5]
+    assert made.pga == 4.0
+
+
+def test_scaled_says_so_and_keeps_the_rest() -> None:
+    made = motion([0.0, 1.0, -4.0])
+    twice = made.scaled(-2.0)
+    assert twice.acceleration.tolist() == [0.0, -2.0, 8.0]
+    assert twice.pga == 8.0
+    assert twice.description == "scaled by -2"
+    assert twice.scaled(0.5).description == "scaled by -2; scaled by 0.5"
+    assert (twice.name, twice.source, twice.dt) == (made.name, made.source, made.dt)
+
+
+def test_digest_depends_on_step_and_samples_only() -> None:
+    made = motion([0.0, 1.0])
+    same = GroundMotion(np.array([0.0, 1.0]), 0.5, "other", "elsewhere", "pulse")
+    assert made.digest == same.digest
+    assert made.digest != motion([0.0, 1.0], 0.25).digest
+    assert made.digest != motion([0.0, 1.0 + 1e-15]).digest
+    assert made.digest != made.scaled(2.0).digest
+
+
+@pytest.mark.parametrize(
+    ("values", "dt", "message"),
+    [
+        ([1.0], 0.1, "at least 2 samples"),
+        ([0.0, np.nan, 1.0], 0.1, "sample 2 is nan, not finite"),
+        ([0.0, 1.0], 0.0, "dt = 0.0 s must be positive"),
+        ([0.0, 1.0], np.inf, "must be positive and finite"),
+    ],
+)
+def test_refuses(values: list[float], dt: float, message: str) -> None:
+    with pytest.raises(RecordError, match=message) as raised:
+        motion(values, dt)
+    assert "source.at2" in str(raised.value)
+
+
+def test_refuses_two_rows() -> None:
+    with pytest.raises(RecordError, match="one row"):
+        GroundMotion(np.zeros((2, 5)), 0.1, "n", "s", "f")

