@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from rpscli.physics.events import NO_PASSAGE, first_descent, lower_hull, quintic
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, part
 from rpscli.physics.oscillator import transition
 from rpscli.physics.parameters import Floats, Systems
 
@@ -69,7 +69,9 @@ class Push(NamedTuple):
 def load_modes(systems: Systems, s: int, z: Floats, h: float) -> None:
     """Fill the modal rows of a lane at rest; h is its contact step."""
     n = z.shape[1]
-    z[:] = 0.0
+    for row in range(z.shape[0]):
+        for i in range(n):
+            z[row, i] = 0.0
     for r in range(n):
         w, xi = systems.omega[s, r], systems.xi[s, r]
         z[OMEGA, r], z[XI, r] = w, xi
@@ -122,14 +124,14 @@ def push_of(z: Floats, row: int, across: float) -> Push:
     return Push(V, dV, ddV)
 
 
-@kernel
+@part
 def keep_end(z: Floats) -> None:
     """Make the end of the step the present state."""
     for r in range(z.shape[1]):
         z[Q, r], z[DQ, r] = z[Q_END, r], z[DQ_END, r]
 
 
-@kernel
+@part
 def contact_energies(z: Floats, across: float, slope: float, h: float) -> tuple[float, float]:
     """Energy put in by the ground and damped during an exact step [J].
 
@@ -165,7 +167,7 @@ def margin_after(
     return limit - side * q, stance.lift * stance.upwards_slope - side * dq
 
 
-@kernel
+@part
 def locate_uplift(
     z: Floats, stance: Stance, time: float, h: float, guess: float, side: float
 ) -> float:
@@ -187,7 +189,7 @@ def locate_uplift(
     return t
 
 
-@kernel
+@part
 def step_contact(
     z: Floats, stance: Stance, time: float, h: float, row: int, before: Push, piece: Floats
 ) -> tuple[float, float, Push]:

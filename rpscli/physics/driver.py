@@ -18,7 +18,7 @@ from rpscli.physics.contact import SHAPES, load_modes
 from rpscli.physics.energy import building_energy, uplifted_energy
 from rpscli.physics.flight import attend, go_on, plan_step, set_step, settle, watch_peak
 from rpscli.physics.inspection import observe, search_events, take_over
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
@@ -155,7 +155,8 @@ def integrate(
         results.log,
     )
     b, whole = lanes.buffer, lanes.integers
-    whole[:, POINT] = NO_POINT
+    for l in range(L):
+        whole[l, POINT] = NO_POINT
     waiting, active, started = 0, L, False
     while active > 0:
         if started:
@@ -187,7 +188,7 @@ def integrate(
         started = True
 
 
-@kernel
+@part
 def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
     """Accelerations of one lane at its present state and time."""
     n, L = len(shape.floors), len(shape.stride)
@@ -210,7 +211,7 @@ def alone(shape: Shape) -> Shape:
     return Shape(shape.floors, shape.stride, (0,), (0,), shape.audit, shape.dense)
 
 
-@kernel
+@part
 def engage(
     lanes: Lanes,
     shape: Shape,
@@ -248,7 +249,7 @@ def engage(
     return waiting
 
 
-@kernel
+@part
 def begin(
     lanes: Lanes,
     shape: Shape,
@@ -263,9 +264,11 @@ def begin(
     b, whole = lanes.buffer, lanes.integers
     for row in range(b.shape[0] // L):
         b[row * L + l] = 0.0
-    whole[l] = 0
+    for i in range(WHOLE_NUMBERS):
+        whole[l, i] = 0
     s, motion, vertical = points.system[point], points.motion[point], points.vertical[point]
-    lanes.podium[l] = systems.podium[s]
+    for i in range(lanes.podium.shape[1]):
+        lanes.podium[l, i] = systems.podium[s, i]
     podium = podium_of(lanes.podium, l)
     dt = motions.dt[motion]
     whole[l, POINT], whole[l, OUTCOME] = point, RUNNING
@@ -283,7 +286,7 @@ def begin(
     shake(lanes, L, l)
 
 
-@kernel
+@part
 def load_podium(b: Floats, L: int, l: int, podium: Podium) -> None:
     """Fold the constants of the rocking storey."""
     gamma, eta = podium.gamma, podium.eta
@@ -306,7 +309,7 @@ def load_podium(b: Floats, L: int, l: int, podium: Podium) -> None:
     b[NORMAL_TOP * L + l], b[NORMAL_BOTTOM * L + l] = math.inf, math.inf
 
 
-@kernel
+@part
 def load_floors(b: Floats, shape: Shape, l: int, a1: float, systems: Systems, s: int) -> None:
     """Masses, stiffnesses and damping of the floors."""
     n, L = len(shape.floors), len(shape.stride)
@@ -322,7 +325,7 @@ def load_floors(b: Floats, shape: Shape, l: int, a1: float, systems: Systems, s:
                 b[(matrix + i * n + j) * L + l] = systems.damping[s, i, j]
 
 
-@kernel
+@part
 def lean(lanes: Lanes, shape: Shape, l: int, rotation: float) -> None:
     """Start from rest at a rotation, the building unstrained."""
     n, L = len(shape.floors), len(shape.stride)
@@ -335,7 +338,7 @@ def lean(lanes: Lanes, shape: Shape, l: int, rotation: float) -> None:
     b[STALE * L + l] = LEANING
 
 
-@kernel
+@part
 def finish(lanes: Lanes, shape: Shape, l: int, results: Results) -> None:
     """Write what the history leaves behind."""
     n, L = len(shape.floors), len(shape.stride)

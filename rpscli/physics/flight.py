@@ -11,7 +11,7 @@ import math
 
 from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, offset, slope, value
 from rpscli.physics.inspection import tilt_path
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
@@ -114,7 +114,7 @@ def plan_step(b: Floats, shape: Shape, l: int) -> None:
     b[LOCATING * L + l] = 0.0
 
 
-@kernel
+@part
 def crest(path: Quintic) -> tuple[float, float]:
     """Fraction of the step and height of the tilt's maximum, where x' falls through zero.
 
@@ -130,7 +130,7 @@ def crest(path: Quintic) -> tuple[float, float]:
     return low, value(path, low)
 
 
-@kernel
+@part
 def watch_peak(lanes: Lanes, shape: Shape, l: int) -> None:
     """Raise the largest tilt by that of the step just taken, turning points included."""
     n, L = len(shape.floors), len(shape.stride)
@@ -147,7 +147,7 @@ def watch_peak(lanes: Lanes, shape: Shape, l: int) -> None:
             note_critical_passage(lanes, shape, l)
 
 
-@kernel
+@part
 def note_critical_passage(lanes: Lanes, shape: Shape, l: int) -> None:
     """Note when theta_cr was passed for the first time, within the step just taken."""
     n, L = len(shape.floors), len(shape.stride)
@@ -175,7 +175,7 @@ def pass_time(lanes: Lanes, shape: Shape, l: int) -> None:
         b[DAMPED_POWER * L + l] = b[(DAMPED_POWER + LAST) * L + l]
 
 
-@kernel
+@part
 def aim(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> bool:
     """Find the first event within the step just taken, and plan the re-step that leads there.
 
@@ -205,7 +205,7 @@ def aim(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> bool:
     return True
 
 
-@kernel
+@part
 def correct(b: Floats, shape: Shape, l: int) -> bool:
     """Whether the re-step ends on the event; if not, correct its length."""
     n, L = len(shape.floors), len(shape.stride)
@@ -223,7 +223,7 @@ def correct(b: Floats, shape: Shape, l: int) -> bool:
     return False
 
 
-@kernel
+@part
 def arrive(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> None:
     """Take over the step that ends on an event, and switch."""
     n, L = len(shape.floors), len(shape.stride)
@@ -255,7 +255,7 @@ def arrive(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> None:
     b[STALE * L + l] = MOVED_ON
 
 
-@kernel
+@part
 def too_many(lanes: Lanes, l: int, podium: Podium) -> bool:
     """Whether events pile up; sets the outcome."""
     whole, events = lanes.integers, 0
@@ -270,7 +270,7 @@ def too_many(lanes: Lanes, l: int, podium: Podium) -> bool:
     return False
 
 
-@kernel
+@part
 def go_on(lanes: Lanes, shape: Shape, l: int) -> bool:
     """Book a quiet step and plan the next; False if the history of the lane is over."""
     L = len(shape.stride)
@@ -285,7 +285,7 @@ def go_on(lanes: Lanes, shape: Shape, l: int) -> bool:
     return True
 
 
-@kernel
+@part
 def attend(lanes: Lanes, shape: Shape, l: int) -> bool:
     """Deal with a step that holds an event; False if the history of the lane is over."""
     L = len(shape.stride)
@@ -301,7 +301,7 @@ def attend(lanes: Lanes, shape: Shape, l: int) -> bool:
     return not (whole[l, OUTCOME] >= 0 or too_many(lanes, l, podium))
 
 
-@kernel
+@part
 def settle(lanes: Lanes, shape: Shape, l: int) -> bool:
     """After accelerations were computed anew; False if the history of the lane is over."""
     n, L = len(shape.floors), len(shape.stride)

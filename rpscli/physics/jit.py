@@ -19,6 +19,9 @@ import numba
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+CONTRACTION = {"contract"}
+"""The only liberty that the compiler has: a product and a sum may be rounded once."""
+
 
 @cache
 def cache_folder() -> Path | None:
@@ -52,10 +55,7 @@ def _is_writable(folder: Path) -> bool:
 
 
 def kernel(function: Function) -> Function:
-    """Compile at the first call, without the GIL, and keep the machine code on disk.
-
-    A product and a sum may be contracted to one rounding; nothing else is reordered.
-    """
+    """Compile at the first call, without the GIL, and keep the machine code on disk."""
     return _compiled(function, merged_into_callers=False)
 
 
@@ -66,6 +66,18 @@ def merged(function: Function) -> Function:
     lanes know that their rows do not overlap.
     """
     return _compiled(function, merged_into_callers=True)
+
+
+def part(function: Function) -> Function:
+    """A step of a longer kernel, written apart for the reader and put back before compilation.
+
+    Every function that is compiled by itself is optimised again inside each function above it;
+    what has a single caller need not be.
+    """
+    compiled: Any = numba.njit(
+        function, nogil=True, error_model="numpy", fastmath=CONTRACTION, inline="always"
+    )
+    return cast("Function", compiled)
 
 
 def _compiled(function: Function, *, merged_into_callers: bool) -> Function:
@@ -79,7 +91,7 @@ def _compiled(function: Function, *, merged_into_callers: bool) -> Function:
             cache=folder is not None,
             nogil=True,
             error_model="numpy",
-            fastmath={"contract"},
+            fastmath=CONTRACTION,
             forceinline=merged_into_callers,
         )
     finally:

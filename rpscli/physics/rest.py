@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.contact import DQ, DRAG, OMEGA, PARTICIPATION, SHAPES, Q
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import part
 from rpscli.physics.layout import (
     FLOOR_ACCELERATION,
     FULL_CONTACT,
@@ -17,7 +17,7 @@ from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
 from rpscli.physics.table import podium_of
 
 
-@kernel
+@part
 def is_over(lanes: Lanes, shape: Shape, l: int) -> bool:
     """Whether no later moment of the free vibration can bring a new maximum.
 
@@ -31,14 +31,14 @@ def is_over(lanes: Lanes, shape: Shape, l: int) -> bool:
     return stays_down(lanes, l, podium) and demands_stand(lanes, len(shape.stride), l)
 
 
-@kernel
+@part
 def modal_speed(z: Floats, r: int) -> float:
     """sqrt(2 E_r): mode r never moves faster than this, nor farther than this over w."""
     w = z[OMEGA, r]
     return math.sqrt(z[DQ, r] ** 2 + (w * z[Q, r]) ** 2)
 
 
-@kernel
+@part
 def stays_down(lanes: Lanes, l: int, podium: Podium) -> bool:
     """Whether the freely vibrating building can never again push hard enough to uplift."""
     z = lanes.modes[l]
@@ -51,7 +51,7 @@ def stays_down(lanes: Lanes, l: int, podium: Podium) -> bool:
     return z.shape[1] == 0 or carried / podium.floors_mass * largest < limit
 
 
-@kernel
+@part
 def demands_stand(lanes: Lanes, L: int, l: int) -> bool:
     """Whether free vibration in full contact can raise no storey shear and no acceleration."""
     b, z = lanes.buffer, lanes.modes[l]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import part
 from rpscli.physics.layout import (
     ACROSS,
     ACROSS_SLOPE,
@@ -20,7 +20,7 @@ from rpscli.physics.layout import (
 from rpscli.physics.parameters import Floats, Lanes
 
 
-@kernel
+@part
 def shake(lanes: Lanes, L: int, l: int) -> None:
     """Set the acceleration of the interval that begins: linear, and zero after the record."""
     b, whole = lanes.buffer, lanes.integers
@@ -39,7 +39,7 @@ def shake(lanes: Lanes, L: int, l: int) -> None:
         b[UPWARDS_SLOPE * L + l] = (end - start) * per_time
 
 
-@kernel
+@part
 def between(acceleration: Floats, i: int, scale: float) -> tuple[float, float]:
     """Scaled accelerations at the ends of an interval [m/s2]."""
     return scale * acceleration[i], scale * acceleration[i + 1]

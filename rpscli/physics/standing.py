@@ -23,7 +23,7 @@ from rpscli.physics.contact import (
     step_contact,
 )
 from rpscli.physics.inspection import raise_contacts
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
     ACROSS,
     ACROSS_SLOPE,
@@ -53,7 +53,7 @@ from rpscli.physics.switch import lift_off
 from rpscli.physics.table import podium_of
 
 
-@kernel
+@part
 def stance_of(lanes: Lanes, L: int, l: int) -> Stance:
     """Margin and ground motion of the present interval."""
     b, z = lanes.buffer, lanes.modes[l]
@@ -74,7 +74,7 @@ def stance_of(lanes: Lanes, L: int, l: int) -> Stance:
     )
 
 
-@kernel
+@part
 def moved_on(stance: Stance, b: Floats, L: int, l: int) -> Stance:
     """The same margin under the ground motion of the interval that has begun."""
     return Stance(
@@ -89,7 +89,7 @@ def moved_on(stance: Stance, b: Floats, L: int, l: int) -> Stance:
     )
 
 
-@kernel
+@part
 def to_modes(lanes: Lanes, L: int, l: int) -> None:
     """Modal state of the floors: Phi^T M u."""
     b, z = lanes.buffer, lanes.modes[l]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.energy import building_energy, uplifted_energy
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
     ACCELERATION,
     ARC,
@@ -89,20 +89,20 @@ def enter_phase(lanes: Lanes, L: int, l: int, podium: Podium, motion: int) -> No
     lanes.integers[l, MOTION] = motion
 
 
-@kernel
+@part
 def event_below(podium: Podium, motion: int) -> int:
     """What happens where the tilt falls below the range of its phase."""
     return ROCKING_TO_ROLLING if motion == ROCKING and podium.beta > 0.0 else IMPACT
 
 
-@kernel
+@part
 def event_above(podium: Podium, motion: int) -> int:
     """What happens where the tilt rises above the range of its phase."""
     rolls_on = motion == ROLLING and podium.beta < podium.theta_limit
     return ROLLING_TO_ROCKING if rolls_on else OVERTURNING
 
 
-@kernel
+@part
 def lift_off(lanes: Lanes, L: int, l: int, side: float) -> None:
     """Leave full contact towards `side`; the floors' state is set already."""
     b = lanes.buffer
@@ -120,7 +120,7 @@ def shift_floors(b: Floats, n: int, L: int, l: int, change: float) -> None:
         b[(SCALARS + VELOCITY * (n + 1) + i + 1) * L + l] += change
 
 
-@kernel
+@part
 def go_over(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
     """Impact: from the edge on one side to the other.
 
@@ -138,7 +138,7 @@ def go_over(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
         shift_floors(b, n, L, l, jump)
 
 
-@kernel
+@part
 def lock(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
     """Full contact from now on.
 
@@ -151,7 +151,7 @@ def lock(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
     b[rate] = 0.0
 
 
-@kernel
+@part
 def is_negligible(podium: Podium, rate: float, acceleration: float) -> bool:
     """Whether the excursion that begins with x' = rate at x = 0 is too small to follow.
 
@@ -162,7 +162,7 @@ def is_negligible(podium: Podium, rate: float, acceleration: float) -> bool:
     return acceleration < 0.0 and rate**2 < 2.0 * abs(acceleration) * least
 
 
-@kernel
+@part
 def land(lanes: Lanes, n: int, L: int, l: int, podium: Podium) -> None:
     """Impact at theta = 0."""
     b = lanes.buffer
@@ -180,7 +180,7 @@ def land(lanes: Lanes, n: int, L: int, l: int, podium: Podium) -> None:
     b[STALE * L + l] = LANDED
 
 
-@kernel
+@part
 def comes_to_rest(lanes: Lanes, n: int, L: int, l: int) -> bool:
     """After an impact: lock the storey if the next excursion would be negligible."""
     b = lanes.buffer

@@ -1,0 +1,1 @@
+def histories(): return iter(())
