@@ -15,6 +15,7 @@ from rpscli.case.draft import Draft
 from rpscli.case.faults import Fault
 from rpscli.case.files import STDIN, read_text
 from rpscli.case.overrides import Overrides, apply_overrides
+from rpscli.case.release_rule import release_rule
 from rpscli.case.restitution_rule import restitution_rule
 from rpscli.case.rules_bearing import bearing_rules, impact_rules
 from rpscli.case.rules_masses import masses_rules
@@ -173,6 +174,6 @@ def _checked(document: Document) -> tuple[CaseFile, tuple[str, ...]]:
 
 def _model_faults(file: CaseFile, document: Document) -> list[Fault]:
     try:
-        return list(restitution_rule(file, document))
+        return [*restitution_rule(file, document), *release_rule(file)]
     except ValueError as error:
         return [Fault(("podium",), f"podium: {error}", at_key=True)]
