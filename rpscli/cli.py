@@ -19,6 +19,7 @@ COMMANDS = {
     "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
     "sweep": Member("rpscli.commands.sweep", "all points of a study, stored as they end; reports"),
     "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
+    "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
 }
 
 

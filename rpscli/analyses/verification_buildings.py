@@ -41,9 +41,7 @@ def buildings() -> Iterator[Comparison]:
     yield _after_impact()
 
 
-def exact_displacements(
-    building: Superstructure, record: GroundMotion
-) -> NDArray[np.float64]:
+def exact_displacements(building: Superstructure, record: GroundMotion) -> NDArray[np.float64]:
     """(npts, n) floor displacements on a fixed base [m], by one matrix exponential a sample."""
     from scipy.linalg import expm  # noqa: PLC0415 -- slow to load
 

@@ -31,8 +31,7 @@ ROUNDED_GRAVITY = 9.81
 def paper_podium(
     storeys: int, tan_alpha: float, rho: float, semi_diagonal: float = 1.5
 ) -> PodiumStructure:
-    """The paper's structure: gamma = 10, eta = n, T1 = n/10 s, 5 % in modes 1 and 2 (Theory,
-    section 7)."""
+    """The paper's: gamma = 10, eta = n, T1 = n/10 s, 5 % in modes 1 and 2 (Theory, section 7)."""
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, storeys / 10.0, "sine")
     building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))

@@ -1,0 +1,166 @@
+"""All results of a study as columns, in its order; the ground on which statistics stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.sweep.design import Design
+from rpscli.sweep.results import FAILED, SCALARS, value_at
+from rpscli.sweep.store import Stored
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+MISSING = ""
+"""Outcome of a point that has not been computed."""
+
+WHOLE = frozenset({"uplifts", "impacts", "creating_impacts"})
+"""Results that are counts."""
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Outcomes and scalar results of all points.
+
+    Parameters
+    ----------
+    design
+        The study, laid out.
+    outcomes
+        (points,) words.
+    scale
+        (points,) factors on the records; NaN where it is not known.
+    columns
+        (points,) of each scalar result under its name; NaN where there is none.
+    messages
+        Why points failed, by their number.
+    storey_shears
+        (points, most storeys) largest storey shears from the bottom [N], NaN above the roof.
+    """
+
+    design: Design
+    outcomes: NDArray[np.str_]
+    scale: Array
+    columns: dict[str, Array]
+    messages: dict[int, str]
+    storey_shears: Array
+
+    def __len__(self) -> int:
+        return len(self.outcomes)
+
+    @cached_property
+    def failed(self) -> NDArray[np.bool_]:
+        """(points,) which have no result."""
+        return np.asarray((self.outcomes == FAILED) | (self.outcomes == MISSING))
+
+    @cached_property
+    def overturned(self) -> NDArray[np.bool_]:
+        """(points,) which overturned."""
+        return np.char.startswith(self.outcomes, "overturned")
+
+    @property
+    def missing(self) -> int:
+        """Points that have not been computed."""
+        return int(np.sum(self.outcomes == MISSING))
+
+
+def tabulate(design: Design, stored: Iterable[Stored | None]) -> Table:
+    """Columns from the rows of the store, given in the order of the study."""
+    names, count = SCALARS[design.plan.analysis], len(design)
+    values = np.full((len(names), count), np.nan)
+    outcomes = np.full(count, MISSING, dtype="U20")
+    scale = np.full(count, np.nan)
+    messages: dict[int, str] = {}
+    shears = np.full((count, max(facts.storeys for facts in design.facts)), np.nan)
+    for number, row in enumerate(stored):
+        if row is None:
+            continue
+        outcomes[number] = row.outcome
+        if row.outcome == FAILED:
+            messages[number] = row.message or "no reason was given"
+        scale[number] = row.results.get("scale", np.nan)
+        for place, name in enumerate(names):
+            value = value_at(row.results, name)
+            if value is not None:
+                values[place, number] = value
+        profile = row.results.get("storey_shears", ())
+        shears[number, : len(profile)] = profile
+    columns = dict(zip(names, values, strict=True))
+    return Table(design, outcomes, scale, columns, messages, shears)
+
+
+class Dimension(NamedTuple):
+    """One axis of the product: the keys that name it, and their values along it."""
+
+    keys: tuple[str, ...]
+    rows: Sequence[tuple[object, ...]]
+
+
+def dimensions(design: Design) -> tuple[Dimension, ...]:
+    """Axes of the study, then sample, record, scale and member: those of `Design.shape`."""
+    axes = [Dimension(axis.keys, axis.rows) for axis in design.study.axes]
+    sources = [(None if r is None else r.source,) for r in design.records]
+    return (
+        *axes,
+        Dimension((), [()] * design.combinations.shape[-1]),
+        Dimension(("record",), sources),
+        Dimension(("scale",), [(scale,) for scale in design.scales]),
+        Dimension((), [()] * len(design.members)),
+    )
+
+
+class Group(NamedTuple):
+    """Points that have the same values at some keys."""
+
+    values: tuple[object, ...]
+    points: Indices
+
+
+def groups(design: Design, keys: Sequence[str], within: Indices | None = None) -> list[Group]:
+    """Points grouped by the values of keys, in the order in which the keys are named.
+
+    Parameters
+    ----------
+    keys
+        Varied keys, ``record`` or ``scale``; without any there is one group.
+    within
+        Points to be grouped; all of them by default.
+    """
+    known, shape = dimensions(design), design.shape
+    numbers = np.arange(len(design)) if within is None else within
+    places = np.unravel_index(numbers, shape)
+    axes = list(dict.fromkeys(_axis(known, key) for key in keys))
+    if not axes:
+        return [Group((), numbers)]
+    found: list[Group] = []
+    for row in np.ndindex(*(shape[axis] for axis in axes)):
+        chosen = np.ones(len(numbers), dtype=bool)
+        for axis, place in zip(axes, row, strict=True):
+            chosen &= places[axis] == place
+        if chosen.any():
+            at = dict(zip(axes, row, strict=True))
+            values = tuple(_value(known[_axis(known, key)], key, at, known) for key in keys)
+            found.append(Group(values, numbers[chosen]))
+    return found
+
+
+def _axis(known: Sequence[Dimension], key: str) -> int:
+    return next(axis for axis, dimension in enumerate(known) if key in dimension.keys)
+
+
+def _value(
+    dimension: Dimension, key: str, at: dict[int, int], known: Sequence[Dimension]
+) -> object:
+    row = dimension.rows[at[_axis(known, key)]]
+    return row[dimension.keys.index(key)]
+
+
+def leading_keys(design: Design) -> tuple[str, ...]:
+    """The first key of each varied axis: what tells systems apart, sample aside."""
+    return tuple(axis.keys[0] for axis in design.study.axes)

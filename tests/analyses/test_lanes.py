@@ -1,0 +1,165 @@
+"""Many histories side by side give the bits of each one alone, in any order and company."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple, replace
+
+import numpy as np
+import pytest
+from paper_structures import FLAT, building, needs_compiled_kernels, podium, waves
+
+from rpscli.analyses.demand import LANES, Demand, Request, demand_of, demands
+from rpscli.analyses.history import sampled_history
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import GroundMotion
+
+pytestmark = needs_compiled_kernels
+
+ALONE = 10**9
+"""Worth lanes only for more histories than there ever are: all run in the kernel of one."""
+
+SIDE_BY_SIDE = 1
+
+RECORDS = [waves(2.5, 0.02, 4.0, seed=41), waves(1.7, 0.01, 4.0, seed=42)]
+"""Of different lengths and time steps."""
+
+UPWARDS = [waves(2.5, 0.02, 2.0, seed=43), waves(0.9, 0.01, 2.0, seed=44)]
+
+LAWS = [ImpactLaw(), ImpactLaw("flexible"), ImpactLaw("value", 0.85)]
+
+SETTINGS = [
+    TimeHistorySettings(free_vibration=0.5),
+    TimeHistorySettings(free_vibration=0.3, accuracy=2.0, recontact_rule="limit"),
+    TimeHistorySettings(free_vibration=1.0, recontact_tolerance=1e-4),
+    TimeHistorySettings(),
+    TimeHistorySettings(free_vibration=0.5, initial_rotation=-0.03),
+    TimeHistorySettings(free_vibration=0.5, max_events=5),
+]
+
+
+def structures(storeys: int, modal: bool) -> list[PodiumStructure]:
+    """Six that differ in shape, size, law and damping."""
+    rng = np.random.default_rng(10 * storeys + modal)
+    found = []
+    for ratio in (0.0, 0.02, 0.05, 0.05, 0.1, 0.3):
+        damping = ModalDamping(ratio) if modal else RayleighDamping(ratio)
+        period = float(rng.uniform(0.05, 0.2)) * storeys
+        found.append(
+            podium(
+                storeys,
+                float(rng.uniform(0.08, 0.2)),
+                float(rng.choice([FLAT, 0.3, 0.5, 1.5])),
+                R=float(rng.uniform(0.7, 2.0)),
+                law=LAWS[int(rng.integers(3))],
+                superstructure=building(storeys, period, damping) if storeys else None,
+            )
+        )
+    return found
+
+
+SCALES = (0.1, 0.7, 1.0, 1.9, 4.0)
+POWERS_OF_TWO = (0.25, 0.5, 1.0, 2.0, 4.0)
+
+
+def ensemble(
+    groups: Sequence[tuple[int, bool]], each: int, scales: Sequence[float] = SCALES
+) -> list[Request]:
+    """Random histories: some at rest, some overturning, some that fail."""
+    rng = np.random.default_rng(7)
+    requests = []
+    for storeys, modal in groups:
+        shelf = structures(storeys, modal)
+        for i in range(each):
+            structure, motion = shelf[int(rng.integers(len(shelf)))], int(rng.integers(2))
+            requests.append(
+                Request(
+                    structure,
+                    RECORDS[motion],
+                    SETTINGS[i % len(SETTINGS)],
+                    float(rng.choice(scales)),
+                    UPWARDS[motion] if rng.integers(2) else None,
+                )
+            )
+    # and one whose motion is soon no longer finite, which must not spread
+    requests.append(replace(requests[0], scale=2.0**800))
+    return [requests[i] for i in rng.permutation(len(requests))]
+
+
+def bits(found: Demand) -> list[object]:
+    """All fields, arrays as bytes: equal only if every bit is."""
+    return [v.tobytes() if isinstance(v, np.ndarray) else v for v in astuple(found)]
+
+
+def all_bits(requests: Sequence[Request], worth_lanes: int) -> list[list[object]]:
+    with np.errstate(all="ignore"):
+        return [bits(found) for found in demands(requests, worth_lanes=worth_lanes)]
+
+
+def companies(requests: Sequence[Request]) -> Iterator[list[int]]:
+    """Batches of many sizes, in orders of their own, that leave lanes empty or not."""
+    rng = np.random.default_rng(3)
+    everyone = np.arange(len(requests))
+    yield everyone.tolist()
+    yield everyone[::-1].tolist()
+    for size in (1, 2, LANES - 1, LANES, LANES + 1, 3 * LANES + 5):
+        yield rng.permutation(everyone)[:size].tolist()
+    yield [*everyone[:20].tolist(), *everyone[:20].tolist()]  # twice the same
+
+
+def check(requests: Sequence[Request]) -> None:
+    alone = [all_bits([request], ALONE)[0] for request in requests]
+    for company in companies(requests):
+        together = all_bits([requests[i] for i in company], SIDE_BY_SIDE)
+        assert together == [alone[i] for i in company]
+
+
+def test_lanes_give_the_bits_of_single_histories() -> None:
+    check(ensemble([(3, False)], 60))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "groups",
+    [
+        [(0, False), (1, False), (2, False), (3, True)],
+        [(1, True), (0, False), (2, True), (3, False)],
+    ],
+)
+def test_lanes_give_the_bits_of_single_histories_for_every_kernel(
+    groups: list[tuple[int, bool]],
+) -> None:
+    check(ensemble(groups, 40))
+
+
+MIXED = ensemble([(0, False), (1, False), (2, True), (3, False), (3, True)], 12, POWERS_OF_TWO)
+
+
+def test_a_history_alone_is_that_of_the_scaled_record() -> None:
+    """One kernel for all heights and dampings: mixed batches, and `sampled_history`.
+
+    The kernel rounds a scaled acceleration and what is added to it once, the scaled record twice:
+    only a power of two makes no difference.
+    """
+    together = all_bits(MIXED, ALONE)
+    assert together[::-1] == all_bits(MIXED[::-1], ALONE)
+    for request, found in zip(MIXED, together, strict=True):
+        upwards = None if request.vertical is None else request.vertical.scaled(request.scale)
+        record: GroundMotion = request.record.scaled(request.scale)
+        with np.errstate(all="ignore"):
+            run = sampled_history(request.structure, record, upwards, request.settings)
+        assert bits(demand_of(run.history)) == found
+
+
+def test_the_histories_compared_are_of_all_kinds() -> None:
+    with np.errstate(all="ignore"):
+        found = demands(MIXED, worth_lanes=ALONE)
+    outcomes = {d.outcome for d in found}
+    assert {"at_rest", "survived", "failed"} < outcomes
+    assert any(outcome.startswith("overturned") for outcome in outcomes)
+    assert sum(d.impacts > 5 for d in found) > len(found) / 4
+    assert any(d.failure is not None and "no longer finite" in d.failure for d in found)
+    assert any(d.failure is not None and "max_events" in d.failure for d in found)

@@ -1,0 +1,178 @@
+"""Modes in each state: matrices built anew, closed forms, and the amplifications of the paper."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from paper_structures import FLAT, Array, building, podium
+from scipy.linalg import eig
+
+from rpscli.analyses.modal import UpliftedModes, modal
+from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.podium import PodiumStructure
+
+SIZES = [(n, rho) for n in (1, 2, 3, 6, 10) for rho in (FLAT, 0.25, 0.5, 1.5)]
+SIZES += [(50, FLAT), (50, 0.5), (100, 1.5)]
+
+
+def eigenvalues_anew(structure: PodiumStructure, *, rolling: bool) -> Array:
+    """Roots of the linearised system in base and drifts, by a generalised eigenproblem.
+
+    Coordinates [u_b, d_1 ... d_n]: springs and dampers of the storeys are then uncoupled, the mass
+    matrix is full; columns share u_b/2 and turn by u_b/2R, floors rise by a u_b.
+    """
+    above, bearing, n = structure.superstructure, structure.bearing, structure.storeys
+    a = bearing.alpha if rolling else bearing.alpha_wedge
+    kappa = 2.0 * bearing.curvature_ratio - 1.0 if rolling else -1.0
+    climb = np.tril(np.ones((n + 1, n + 1)))  # [u_b, u_1 ...] from [u_b, d_1 ...]
+    masses, C, K = np.zeros(n + 1), np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
+    masses[0] = structure.columns_mass * bearing.inertia_ratio / 4.0 + structure.cap_beam_mass
+    masses[0] += structure.superstructure_mass * a**2
+    if above is not None:
+        masses[1:] = above.masses
+        drifts = np.tril(np.ones((n, n)))
+        K[1:, 1:] = np.diag(above.stiffnesses)
+        C[1:, 1:] = drifts.T @ above.damping_matrix @ drifts
+    K[0, 0] = structure.weight * kappa / (2.0 * bearing.semi_diagonal)
+    M = climb.T @ np.diag(masses) @ climb
+    left = np.block([[np.zeros_like(M), np.eye(n + 1)], [-K, -C]])
+    right = np.block([[np.eye(n + 1), np.zeros_like(M)], [np.zeros_like(M), M]])
+    return np.asarray(eig(left, right, right=False))
+
+
+def states(structure: PodiumStructure) -> list[tuple[UpliftedModes, bool]]:
+    result = modal(structure)
+    rolling = [] if result.rolling is None else [(result.rolling, True)]
+    return [*rolling, (result.rocking, False)]
+
+
+@pytest.mark.parametrize(("storeys", "rho"), SIZES)
+def test_eigenvalues_are_those_of_matrices_built_in_drifts(storeys: int, rho: float) -> None:
+    structure = podium(storeys, 0.15, rho)
+    for modes, rolling in states(structure):
+        expected = eigenvalues_anew(structure, rolling=rolling)
+        got = modes.eigenvalues
+        assert len(got) == len(expected) == 2 * storeys + 2
+        # each has a partner; a double zero is found to the root of eps only
+        size = 1e-7 * float(np.max(np.abs(expected)))
+        for value in got:
+            assert np.min(np.abs(expected - value)) < size
+        for value in expected:
+            assert np.min(np.abs(got - value)) < size
+
+
+@pytest.mark.parametrize(("storeys", "rho"), SIZES)
+def test_frequencies_and_damping_belong_to_their_eigenvalues(storeys: int, rho: float) -> None:
+    for modes, _ in states(podium(storeys, 0.15, rho)):
+        first, second = modes.eigenvalues[2::2], modes.eigenvalues[3::2]
+        products = np.sqrt((first * second).real)
+        assert modes.frequencies == pytest.approx(products, rel=1e-9)
+        sums = -(first + second).real / (2.0 * products)
+        assert modes.damping == pytest.approx(sums, rel=1e-7)
+        assert np.all(modes.damping > 0.0)
+        assert np.all(np.diff(modes.frequencies) > 0.0)
+        swinging = modes.eigenvalues[2:][modes.eigenvalues[2:].imag > 0.0]
+        for value in swinging:
+            assert np.min(np.abs(modes.frequencies - abs(value))) < 1e-8 * abs(value)
+
+
+@pytest.mark.parametrize(("storeys", "ratio"), [(30, 0.05), (30, 0.2), (100, 0.05)])
+def test_overdamped_modes_are_paired_as_without_damping(storeys: int, ratio: float) -> None:
+    """High modes of tall buildings: the product of the paired roots is the squared frequency.
+
+    For C = a1 K and gravity neglected each mode has the undamped frequency however damped it is.
+    """
+    damping = RayleighDamping(ratio, (1, 1))  # stiffness-proportional
+    damped, undamped = (
+        modal(podium(storeys, superstructure=building(storeys, damping=d), rho=0.5)).rolling
+        for d in (damping, RayleighDamping(0.0))
+    )
+    assert damped is not None
+    assert undamped is not None
+    assert damped.damping[-1] > 1.0
+    assert damped.frequencies == pytest.approx(undamped.frequencies, rel=1e-6)
+
+
+@pytest.mark.parametrize("storeys", [1, 10, 30, 50, 100])
+def test_one_root_grows_where_the_stiffness_is_negative(storeys: int) -> None:
+    """In tall buildings vibration modes are slower than the storey's own motion."""
+    for modes, _ in states(podium(storeys, 0.15, FLAT)):
+        own, rest = modes.eigenvalues[:2], modes.eigenvalues[2:]
+        assert own.imag.tolist() == [0.0, 0.0]
+        assert own[0].real > 0.0 > own[1].real
+        assert np.all(rest.real < 0.0)
+        growth = modes.frequency_parameter
+        assert growth == pytest.approx(math.sqrt(-(own[0] * own[1]).real), rel=1e-12)
+        assert abs(modes.shapes[0, 0]) == pytest.approx(np.max(np.abs(modes.shapes[:, 0])))
+
+
+@pytest.mark.parametrize(("tan_alpha", "period"), [(0.05, 0.1), (0.15, 0.3), (0.3, 1.0)])
+def test_one_storey_in_closed_form(tan_alpha: float, period: float) -> None:
+    """omega_u/omega_0 = sqrt(1 + M_tot/(N m_c Io/4 + m_b + M_tot a^2)); xi takes the same factor.
+
+    At rho = 1/2 gravity drops out, so the form is exact.
+    """
+    structure = podium(1, tan_alpha, 0.5, superstructure=building(1, period))
+    modes = modal(structure).rolling
+    assert modes is not None
+    total, a = structure.superstructure_mass, structure.bearing.alpha
+    base = structure.columns_mass / 3.0 + structure.cap_beam_mass + total * a**2
+    factor = math.sqrt(1.0 + total / base)
+    assert modes.frequency_ratio[0] == pytest.approx(factor, rel=1e-7)
+    assert modes.damping_ratio[0] == pytest.approx(factor, rel=1e-7)
+
+
+@pytest.mark.parametrize("storeys", [0, 1, 6, 100])
+def test_zero_stiffness_has_a_double_zero(storeys: int) -> None:
+    modes = modal(podium(storeys, 0.15, 0.5)).rolling
+    assert modes is not None
+    assert modes.eigenvalues[:2].tolist() == [0.0, 0.0]
+    assert modes.frequency_parameter == modes.frequency_parameter_rigid == 0.0
+    assert modes.shapes[:, 0].tolist() == [1.0] * (storeys + 1)  # all move along
+    if storeys:
+        assert np.abs(modes.elastic_shapes[:, 0]).max() == 0.0
+
+
+def test_a_rigid_frame_has_only_its_own_mode() -> None:
+    for rho, kappa in ((FLAT, -1.0), (0.25, -0.5), (1.5, 2.0)):
+        structure = podium(0, 0.15, rho)
+        result = modal(structure)
+        modes = result.rocking if rho == FLAT else result.rolling
+        assert modes is not None
+        assert len(modes.frequencies) == 0
+        p = structure.rigid_frequency_parameter * math.sqrt(abs(kappa))
+        assert modes.frequency_parameter == pytest.approx(p, rel=1e-12)
+        assert modes.frequency_parameter_rigid == pytest.approx(p, rel=1e-12)
+        squares = modes.eigenvalues**2
+        assert squares.real == pytest.approx([-kappa / abs(kappa) * p**2] * 2, rel=1e-12)
+    assert modal(podium(0)).fixed_base is None
+    assert modal(podium(2, 0.15, FLAT)).rolling is None
+
+
+def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() -> None:
+    structure = podium(6, 0.15, 1.5)
+    above = structure.superstructure
+    assert above is not None
+    result = modal(structure)
+    assert result.fixed_base is not None
+    assert result.fixed_base.frequencies == pytest.approx(above.frequencies)
+    assert result.fixed_base.damping == pytest.approx(above.damping_ratios)
+    assert result.fixed_base.periods[0] == pytest.approx(0.6, rel=1e-12)
+    assert np.max(np.abs(result.fixed_base.shapes), axis=0) == pytest.approx(np.ones(6))
+    assert result.rolling is not None
+    assert result.rolling.shapes.shape == (7, 7)
+    assert np.max(np.abs(result.rolling.shapes), axis=0) == pytest.approx(np.ones(7))
+    # in the storey's own mode the building is carried along (paper, Figure 6)
+    assert np.abs(result.rolling.elastic_shapes[:, 0]).max() < 0.1
+    # undamped shapes are real and diagonalise both matrices
+    undamped = podium(6, 0.15, 1.5, superstructure=building(6, damping=ModalDamping(0.0)))
+    modes = modal(undamped).rolling
+    assert modes is not None
+    masses = np.full(7, 2e5)
+    a = structure.bearing.alpha
+    masses[0] = 2e4 / 3.0 + 2e5 + 12e5 * a**2
+    generalised = modes.shapes.T @ np.diag(masses) @ modes.shapes
+    off = generalised - np.diag(np.diag(generalised))
+    assert np.abs(off).max() < 1e-9 * masses[0]

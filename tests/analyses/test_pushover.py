@@ -1,0 +1,113 @@
+"""Capacity curves: statics of the storey, and of the building that it carries."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from paper_structures import FLAT, building, podium
+
+from rpscli.analyses.pushover import PATTERNS, load_pattern, pushover
+from rpscli.model.damping import RayleighDamping
+from rpscli.model.superstructure import Superstructure
+
+
+@pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])
+@pytest.mark.parametrize("storeys", [0, 3])
+def test_storey_curve(storeys: int, rho: float) -> None:
+    structure = podium(storeys, 0.15, rho)
+    result = pushover(structure, points=401)
+    curve, W = result.curve, structure.weight
+    assert curve.rotation[0] == curve.displacement[0] == curve.lift[0] == 0.0
+    assert curve.force[0] == pytest.approx(result.uplift_force, rel=1e-13)
+    assert curve.force[0] == pytest.approx(W * 0.15, rel=1e-13)
+    assert curve.rotation[-1] == result.critical_rotation == structure.critical_rotation
+    assert curve.displacement[-1] == result.critical_displacement
+    assert abs(curve.force[-1]) < 1e-12 * W
+    assert np.all(np.diff(curve.displacement) > 0.0)
+    assert np.all(curve.force[:-1] > 0.0)
+    # int F du_b = W v_b; trapezoids over 400 parts: 1/12/400^2 of a smooth curve
+    work = np.trapezoid(curve.force, curve.displacement)
+    assert work == pytest.approx(W * curve.lift[-1], rel=2e-5)
+    beta = structure.bearing.beta
+    rolls_then_rocks = 0.0 < beta < structure.critical_rotation
+    assert len(curve.rotation) == (402 if rolls_then_rocks else 401)
+    assert (beta in curve.rotation) is (rolls_then_rocks or rho == FLAT)
+
+
+def test_figure_1_of_the_paper() -> None:
+    """Slope after uplift: negative, zero, positive for rho < 0.5, = 0.5, > 0.5."""
+    slopes = []
+    for rho in (FLAT, 0.3, 0.5, 0.7, 1.5):
+        structure = podium(0, 0.10, rho)
+        result = pushover(structure)
+        curve = result.curve
+        slope = (curve.force[1] - curve.force[0]) / curve.displacement[1]
+        assert slope == pytest.approx(result.initial_stiffness, abs=0.02 * structure.weight / 3.0)
+        slopes.append(result.initial_stiffness / (structure.weight / 3.0))
+    assert np.all(np.diff(slopes) > 0.0)
+    assert slopes == pytest.approx([-1.0, -0.4, 0.0, 0.4, 2.0], abs=0.05)  # (2 rho - 1)
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern: str) -> None:
+    structure = podium(4, 0.15, 0.5)
+    above = structure.superstructure
+    assert above is not None
+    result = pushover(structure)
+    capacity = next(c for c in result.capacity if c.pattern == pattern)
+    assert capacity.forces.sum() == pytest.approx(1.0, rel=1e-14)
+    assert capacity.base_shear[0] == capacity.roof_displacement[0] == 0.0
+    # up to uplift the building alone yields, on a fixed base
+    shears = np.cumsum(capacity.forces[::-1])[::-1]
+    sway = float(np.sum(shears / above.stiffnesses))
+    assert capacity.base_shear[1] == pytest.approx(structure.uplift_force, rel=1e-13)
+    uplift = structure.uplift_force * sway
+    assert capacity.roof_displacement_at_uplift == pytest.approx(uplift, rel=1e-12)
+    assert capacity.roof_displacement[1] == pytest.approx(uplift, rel=1e-12)
+    # beyond, it is carried along and unloads with the storey
+    assert capacity.base_shear[1:].tolist() == result.curve.force.tolist()
+    assert capacity.cap_beam_displacement[1:].tolist() == result.curve.displacement.tolist()
+    expected = capacity.cap_beam_displacement + capacity.base_shear * sway
+    assert capacity.roof_displacement == pytest.approx(expected, rel=1e-12)
+    assert capacity.roof_displacement[-1] == pytest.approx(result.critical_displacement, rel=1e-9)
+
+
+def test_patterns() -> None:
+    masses, heights = np.array([3.0, 1.0, 2.0]), np.array([4.0, 3.0, 3.0])
+    k = np.array([9.0, 7.0, 5.0])
+    above = Superstructure(masses, k, RayleighDamping(0.05), heights)
+    assert load_pattern(above, "uniform") == pytest.approx(masses / 6.0)
+    moments = masses * np.array([4.0, 7.0, 10.0])
+    assert load_pattern(above, "triangular") == pytest.approx(moments / moments.sum())
+    without = Superstructure(masses, k, RayleighDamping(0.05))
+    counted = masses * np.array([1.0, 2.0, 3.0])
+    assert load_pattern(without, "triangular") == pytest.approx(counted / counted.sum())
+    # inertia forces of free vibration in the first mode bend the building into that mode
+    bent = np.linalg.solve(above.stiffness_matrix, load_pattern(above, "first_mode"))
+    assert bent / bent[-1] == pytest.approx(above.shapes[:, 0] / above.shapes[-1, 0], rel=1e-12)
+    assert load_pattern(above, [0.0, 0.0, 5.0]).tolist() == [0.0, 0.0, 1.0]
+
+
+@given(st.lists(st.floats(-5.0, 5.0), min_size=3, max_size=3))
+def test_any_pattern_that_pushes_is_scaled_to_one(forces: list[float]) -> None:
+    above = building(3)
+    if sum(forces) <= 0.0:
+        with pytest.raises(ValueError, match="sum > 0"):
+            load_pattern(above, forces)
+    elif sum(forces) > 1e-9:
+        assert load_pattern(above, forces).sum() == pytest.approx(1.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("forces", [[1.0, 1.0], [], [1.0, 1.0, float("nan")], [1.0, 0.0, -1.0]])
+def test_patterns_that_do_not_fit_are_refused(forces: list[float]) -> None:
+    with pytest.raises(ValueError, match="must be 3 floor forces"):
+        pushover(podium(3), patterns=[forces])
+
+
+def test_a_given_pattern_is_called_given_and_a_frame_has_no_capacity_curve() -> None:
+    (capacity,) = pushover(podium(2), patterns=[[1.0, 3.0]]).capacity
+    assert capacity.pattern == "given"
+    assert capacity.forces.tolist() == [0.25, 0.75]
+    assert pushover(podium(0)).capacity == ()

@@ -1,0 +1,229 @@
+"""What a time history reports must agree with its own samples and with statics."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_structures import (
+    COMPILED,
+    FLAT,
+    building,
+    ground,
+    needs_compiled_kernels,
+    podium,
+    waves,
+)
+
+from rpscli.analyses.demand import demand
+from rpscli.analyses.history import FIRST_LOG
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.damping import ModalDamping
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
+
+SECONDS = 5.0 if COMPILED else 1.5
+SETTINGS = TimeHistorySettings(free_vibration=1.0)
+RECORD = waves(SECONDS, 0.02, 4.0, seed=21)
+VERTICAL = waves(0.6 * SECONDS, 0.02, 2.0, seed=22)
+
+STRUCTURES = [
+    podium(0, 0.15, 0.5),
+    podium(2, 0.15, FLAT),
+    podium(3, 0.20, 0.26, law=ImpactLaw("flexible")),
+    podium(3, 0.10, 1.5, superstructure=building(3, damping=ModalDamping(0.04))),
+]
+
+
+def name(structure: PodiumStructure) -> str:
+    return f"{structure.storeys}-{structure.bearing.curvature_ratio}"
+
+
+@pytest.fixture(scope="module", params=STRUCTURES, ids=name)
+def result(request: pytest.FixtureRequest) -> TimeHistoryResult:
+    return time_history(request.param, RECORD, SETTINGS, vertical=VERTICAL)
+
+
+def test_maxima_are_those_of_the_samples(result: TimeHistoryResult) -> None:
+    trace = result.trace
+    sampled = float(np.max(np.abs(trace.rotation)))
+    # turning points lie between samples: x'' dt^2/8 above the nearest at most
+    assert sampled <= result.max_rotation <= sampled + 50.0 * 0.02**2 / 8.0
+    if result.structure.storeys == 0:
+        assert result.max_base_shear == 0.0
+        assert result.base_shear_ratio is None
+        return
+    shears = np.max(np.abs(trace.storey_shears), axis=0)
+    assert result.storey_shears == pytest.approx(shears, rel=1e-11)
+    accelerations = np.max(np.abs(trace.floor_accelerations), axis=0)
+    assert result.floor_accelerations == pytest.approx(accelerations, rel=1e-9)
+    drifts = np.max(np.abs(trace.drifts), axis=0)
+    assert result.max_drifts == pytest.approx(drifts, rel=1e-11)
+    ratio = shears[0] / result.structure.static_base_shear
+    assert result.base_shear_ratio == pytest.approx(ratio, rel=1e-11)
+
+
+def test_floors_stand_on_the_cap_beam(result: TimeHistoryResult) -> None:
+    trace, above = result.trace, result.structure.superstructure
+    _, u, lift = result.structure.path(np.abs(trace.rotation))
+    assert trace.cap_beam_displacement == pytest.approx(np.sign(trace.rotation) * u, abs=1e-15)
+    assert trace.lift == pytest.approx(lift, abs=1e-15)
+    assert np.all(trace.lift >= -1e-16)
+    if above is None:
+        return
+    stacked = trace.cap_beam_displacement[:, None] + np.cumsum(trace.drifts, axis=1)
+    assert trace.floor_displacements == pytest.approx(stacked, abs=1e-14)
+    assert trace.storey_shears == pytest.approx(above.stiffnesses * trace.drifts, rel=1e-15)
+
+
+def test_the_record_is_zero_after_its_end(result: TimeHistoryResult) -> None:
+    a = result.trace.ground_acceleration
+    assert len(a) == RECORD.npts + 50
+    assert a[: RECORD.npts].tolist() == RECORD.acceleration.tolist()
+    assert not np.any(a[RECORD.npts :])
+    assert result.trace.time == pytest.approx(0.02 * np.arange(len(a)), abs=1e-12)
+    assert result.duration == pytest.approx(RECORD.duration + 1.0, rel=1e-12)
+
+
+def test_the_energy_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
+    trace, energy = result.trace, result.energy
+    assert result.impacts > 0
+    gap = trace.energy_input - trace.energy_damped - trace.energy_impact - trace.energy_stored
+    # order 5 with w h = 1/4 in flight, order 4 with w h = 1/2 for damping in full contact
+    assert np.max(np.abs(gap)) < 2e-5 * energy.input
+    assert energy.residual == pytest.approx(gap[-1], abs=1e-9 * energy.input)
+    assert energy.stored == pytest.approx(trace.energy_stored[-1], rel=1e-9, abs=1e-6)
+    assert np.all(np.diff(trace.energy_damped) >= -1e-9 * energy.input)
+    lost = [event.energy_lost for event in result.events]
+    assert sum(lost) == pytest.approx(energy.impact, rel=1e-9)
+    impacts = [event.energy_lost for event in result.events if event.kind == "impact"]
+    created = -sum(change for change in impacts if change < 0.0)
+    assert energy.created == pytest.approx(created, rel=1e-9, abs=1e-12)
+    assert result.history.creating_impacts == sum(change < 0.0 for change in impacts)
+
+
+def test_events_are_in_order_and_make_sense(result: TimeHistoryResult) -> None:
+    events = result.events
+    times = [event.time for event in events]
+    assert times == sorted(times)
+    assert 0.0 <= times[0] <= times[-1] <= result.duration
+    assert events[0].kind == "uplift"
+    assert result.uplifts == sum(event.kind == "uplift" for event in events)
+    assert result.impacts == sum(event.kind == "impact" for event in events)
+    beta = result.structure.bearing.beta
+    tilt = {"uplift": 0.0, "impact": 0.0, "recontact": 0.0}
+    tilt |= {"rolling_to_rocking": beta, "rocking_to_rolling": beta}
+    for event in events:
+        if event.kind in tilt:
+            assert abs(event.rotation) == tilt[event.kind]
+        if event.kind == "impact":
+            # the column goes over to the other edge without changing its sense of turning
+            assert event.rotation_rate_before * event.rotation_rate_after >= 0.0
+        if event.kind == "rolling_to_rocking":
+            assert event.rotation * event.rotation_rate_before >= 0.0
+            assert event.rotation_rate_before == event.rotation_rate_after
+    # what leaves full contact returns to it, or ends uplifted
+    kinds = [event.kind for event in events if event.kind in {"uplift", "recontact"}]
+    assert kinds == ["uplift", "recontact"] * (len(kinds) // 2) + ["uplift"] * (len(kinds) % 2)
+
+
+def test_phases_of_the_samples_fit_their_rotations(result: TimeHistoryResult) -> None:
+    trace, beta = result.trace, result.structure.bearing.beta
+    x = np.abs(trace.rotation)
+    assert np.all(x[trace.phase == 0] == 0.0)
+    assert np.all(x[trace.phase == 1] <= beta)
+    assert np.all(x[trace.phase == 2] >= beta)
+
+
+def test_a_study_sees_the_same_numbers(result: TimeHistoryResult) -> None:
+    quick = demand(result.structure, RECORD, SETTINGS, vertical=VERTICAL)
+    assert quick.outcome == result.outcome
+    assert quick.max_rotation == result.max_rotation
+    assert quick.storey_shears.tolist() == result.storey_shears.tolist()
+    assert quick.floor_accelerations.tolist() == result.floor_accelerations.tolist()
+    assert quick.friction_demand == result.friction_demand
+    assert (quick.uplifts, quick.impacts) == (result.uplifts, result.impacts)
+    assert quick.duration == result.duration
+    assert quick.energy_created == result.energy.created
+
+
+def test_scalars_are_plain_and_complete(result: TimeHistoryResult) -> None:
+    scalars = result.scalars()
+    assert scalars["outcome"] == result.outcome
+    assert scalars["max_rotation"] == result.max_rotation
+    assert scalars["rotation_ratio"] == result.max_rotation / result.structure.critical_rotation
+    for value in scalars.values():
+        assert value is None or type(value) in {str, int, float}
+    assert "failure" not in scalars or scalars["failure"] is None
+
+
+def test_the_restoring_moment_lifts_the_weight() -> None:
+    """dW v_b/dtheta, odd in theta, zero at theta_cr."""
+    structure = podium(2, 0.15, 0.5)
+    result = time_history(structure, ground([0.0, 0.1, 0.0], 0.02), SETTINGS)
+    beta, end, h = structure.bearing.beta, structure.critical_rotation, 1e-5
+    tilt = np.array([0.01, 0.5 * beta, 0.5 * (beta + end)])
+    (_, _, above), (_, _, below) = structure.path(tilt + h), structure.path(tilt - h)
+    slope = structure.weight * (above - below) / (2.0 * h)
+    moment = result.restoring_moment(tilt)
+    assert moment == pytest.approx(slope, rel=1e-8)  # h^2, and rounding eps/h of v_b
+    assert result.restoring_moment(-tilt).tolist() == (-moment).tolist()
+    assert abs(result.restoring_moment(np.array([end]))[0]) < 1e-10 * moment[0]
+
+
+def test_slow_rocking_is_driven_by_what_restores_it() -> None:
+    """Held still at the limit of uplift the driving moment is 2 R W B(0)."""
+    structure = podium(2, 0.15, 0.5)
+    rise = np.concatenate((np.linspace(0.0, -1.0000001, 4001), np.full(2, -1.0000001)))
+    # applied over 40 s, far slower than the building: V = -M_tot a_g
+    slow = ground(rise * structure.uplift_acceleration, 0.01)
+    result = time_history(structure, slow, TimeHistorySettings(free_vibration=0.0))
+    moment = 2.0 * structure.bearing.half_height * structure.uplift_force
+    assert result.trace.driving_moment[4000] == pytest.approx(moment, rel=1e-5)
+    assert result.trace.storey_shears[4000, 0] == pytest.approx(
+        structure.static_base_shear, rel=1e-4
+    )
+
+
+def test_drift_ratios_need_storey_heights() -> None:
+    above = building(2)
+    tall = Superstructure(above.masses, above.stiffnesses, above.damping, np.array([4.0, 2.0]))
+    with_heights = time_history(podium(2, superstructure=tall), RECORD, SETTINGS)
+    expected = float(np.max(with_heights.max_drifts / [4.0, 2.0]))
+    assert with_heights.drift_ratio == pytest.approx(expected, rel=1e-15)
+    assert time_history(podium(2), RECORD, SETTINGS).drift_ratio is None
+
+
+def test_a_shorter_component_goes_on_as_zero() -> None:
+    structure = podium(1)
+    longer = ground(np.concatenate((RECORD.acceleration, np.zeros(30))), 0.02)
+    settings = replace(SETTINGS, free_vibration=0.0)
+    one = time_history(structure, RECORD, replace(SETTINGS, free_vibration=0.6), vertical=VERTICAL)
+    two = time_history(structure, longer, settings, vertical=VERTICAL)
+    assert len(one.trace.time) == len(two.trace.time)
+    assert two.trace.rotation == pytest.approx(one.trace.rotation, abs=1e-12)
+    # the vertical component may be the longer one
+    upwards = ground(np.zeros(longer.npts), 0.02)
+    three = time_history(structure, RECORD, settings, vertical=upwards)
+    assert len(three.trace.time) == longer.npts
+    with pytest.raises(ValueError, match="they must agree"):
+        time_history(structure, RECORD, SETTINGS, vertical=ground([0.0, 1.0], 0.01))
+
+
+@needs_compiled_kernels
+def test_a_log_that_overflows_is_written_again() -> None:
+    """More events than the first attempt has room for: all are listed."""
+    structure = podium(0, 0.05, FLAT)
+    pulse = 1.05 * structure.uplift_acceleration * np.sin(np.linspace(0.0, np.pi, 11))
+    shaking = np.tile(np.concatenate((pulse, np.zeros(89))), 24)
+    settings = TimeHistorySettings(free_vibration=0.0, recontact_tolerance=1e-9)
+    result = time_history(structure, ground(shaking, 0.02), settings)
+    assert len(result.events) > FIRST_LOG
+    assert len(result.events) == int(result.history.counts.sum())
+    times = [event.time for event in result.events]
+    assert times == sorted(times)
+    assert times[-1] > times[FIRST_LOG - 1]

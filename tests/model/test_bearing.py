@@ -1,0 +1,141 @@
+"""One bearing: the published table of geometry, the limit rho_cr, and shapes that are refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from paper_structures import FLAT
+from scipy.optimize import brentq
+
+from rpscli.model.bearing import Bearing
+from rpscli.model.podium import PodiumStructure
+
+# tan alpha, rho, beta, theta_cr, u_b(theta_cr), v_b(theta_cr); R = 1.5 m, tan alpha' = 2 tan alpha.
+# The printed digits differ from row to row; half of the last one is the tolerance.
+GEOMETRY = [
+    (0.10, 0.25, "0.2014", "0.1974", "0.593", "0.030"),
+    (0.10, 0.5, "0.1002", "0.1984", "0.5975", "0.044"),
+    (0.10, 1.5, "0.0333", "0.1977", "0.5971", "0.054"),
+    (0.15, 0.25, "0.3047", "0.2915", "0.877", "0.065"),
+    (0.15, 0.5, "0.1506", "0.2946", "0.8917", "0.099"),
+    (0.15, 1.5, "0.0500", "0.2925", "0.8902", "0.120"),
+    (0.20, 0.25, "0.4115", "0.3805", "1.148", "0.113"),
+    (0.20, 0.5, "0.2014", "0.3876", "1.1807", "0.172"),
+    (0.20, 1.5, "0.0667", "0.3828", "1.1771", "0.208"),
+    (0.10, FLAT, "0", "0.0997", "0.2985", "0.015"),
+    (0.15, FLAT, "0", "0.1489", "0.4450", "0.033"),
+    (0.20, FLAT, "0", "0.1974", "0.5883", "0.058"),
+]
+
+
+def printed(text: str) -> object:
+    """The number, good to half of its last digit; .098495 is printed as .099, rounded twice."""
+    digits = len(text.partition(".")[2])
+    return pytest.approx(float(text), abs=0.51 * 10.0**-digits)
+
+
+@pytest.mark.parametrize(("tan_alpha", "rho", "beta", "critical", "u_b", "lift"), GEOMETRY)
+def test_table_of_geometry(
+    tan_alpha: float, rho: float, beta: str, critical: str, u_b: str, lift: str
+) -> None:
+    bearing = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, rho)
+    _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(np.array([bearing.critical_rotation]))
+    assert bearing.beta == printed(beta)
+    assert bearing.critical_rotation == printed(critical)
+    assert u[0] == printed(u_b)
+    assert v[0] == printed(lift)
+
+
+slopes = st.floats(0.01, 0.5)
+widenings = st.floats(1.02, 2.9)
+
+
+@given(slopes, widenings)
+def test_the_exact_limit_of_overturning_while_rolling(tan_alpha: float, widening: float) -> None:
+    rise = tan_alpha * (widening - 1.0)
+
+    def excess(rho: float) -> float:
+        """tan(beta) (1 - 2 rho) - tan(alpha), multiplied out by cos(beta)."""
+        return rise / (2.0 * rho) * (1.0 - 2.0 * rho) - tan_alpha * math.sqrt(
+            1.0 - min(rise / (2.0 * rho), 1.0) ** 2
+        )
+
+    bearing = Bearing(1.0, tan_alpha, tan_alpha + rise, 5.0)
+    expected = brentq(excess, 0.5 * rise * (1.0 + 1e-12), 0.5, xtol=1e-15)
+    rho_cr = bearing.critical_curvature_ratio
+    assert rho_cr == pytest.approx(expected, rel=1e-10)
+    below, at, above = (
+        Bearing(1.0, tan_alpha, tan_alpha + rise, factor * rho_cr)
+        for factor in (1.0 - 1e-6, 1.0, 1.0 + 1e-6)
+        if 2.0 * factor * rho_cr > rise
+    )
+    assert at.critical_rotation == pytest.approx(at.beta, rel=1e-7)
+    assert below.overturns_rolling
+    assert not above.overturns_rolling
+    # the first-order value is near, and goes over into it for slender columns
+    paper = at.critical_curvature_ratio_of_paper
+    assert paper == pytest.approx(rho_cr, rel=2.0 * (widening * tan_alpha) ** 2 * widening)
+
+
+@pytest.mark.parametrize(("tan_alpha", "exact"), [(0.10, 0.2525), (0.15, 0.2556), (0.20, 0.2600)])
+def test_exact_limits_that_the_theory_prints(tan_alpha: float, exact: float) -> None:
+    bearing = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, 0.5)
+    assert bearing.critical_curvature_ratio == pytest.approx(exact, abs=5e-5)
+    assert bearing.critical_curvature_ratio_of_paper == pytest.approx(0.25, abs=1e-15)
+
+
+@given(slopes, st.floats(0.3, 5.0), st.sampled_from([FLAT, 0.5, 2.0]))
+def test_sizes_fit_together(tan_alpha: float, size: float, rho: float) -> None:
+    bearing = Bearing(size, tan_alpha, 1.5 * tan_alpha, rho)
+    H, B = bearing.half_height, bearing.half_width
+    assert math.hypot(H, B) == pytest.approx(size, rel=1e-14)
+    assert pytest.approx(tan_alpha * H, rel=1e-14) == B
+    assert bearing.radius == pytest.approx(2.0 * H * rho, rel=1e-14)
+    # the arc of radius r spans from B to B' = H tan(alpha')
+    if rho:
+        reach = B + bearing.radius * math.sin(bearing.beta)
+        assert reach == pytest.approx(H * math.tan(bearing.alpha_wedge), rel=1e-12)
+    else:
+        assert bearing.alpha_wedge == bearing.alpha
+
+
+def test_an_arc_of_no_width_is_a_flat_end() -> None:
+    """tan alpha' = tan alpha with a radius: the column never rolls."""
+    without, flat = Bearing(1.5, 0.15, 0.15, 0.5), Bearing(1.5, 0.15, 0.15, FLAT)
+    assert without.is_flat
+    assert without.beta == 0.0
+    assert without.critical_rotation == pytest.approx(flat.critical_rotation, rel=1e-15)
+    assert without.critical_curvature_ratio == 0.0
+    stiffness = PodiumStructure(without, 2e4, 2e5).initial_stiffness
+    assert stiffness == pytest.approx(PodiumStructure(flat, 2e4, 2e5).initial_stiffness, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"semi_diagonal": 0.0}, "semi_diagonal = 0.0 must be > 0"),
+        ({"semi_diagonal": math.inf}, "semi_diagonal = inf must be > 0 and finite"),
+        ({"slenderness": -0.1}, "slenderness = -0.1 must be > 0"),
+        ({"slenderness": math.nan}, "slenderness = nan must be > 0"),
+        ({"inertia_ratio": 0.0}, "inertia_ratio = 0.0 must be > 0"),
+        ({"curvature_ratio": -0.2}, "curvature_ratio = -0.2 must be >= 0"),
+        ({"curvature_ratio": math.nan}, "curvature_ratio = nan must be >= 0"),
+        ({"wedge_slenderness": 0.1}, "wedge_slenderness = 0.1 must be >= slenderness = 0.15"),
+        ({"wedge_slenderness": math.nan}, "wedge_slenderness = nan must be"),
+        ({"curvature_ratio": 0.07}, "curvature_ratio = 0.07 must be >= 0.075"),
+    ],
+)
+def test_shapes_that_cannot_be_built_are_refused(changes: dict[str, float], said: str) -> None:
+    shape = {
+        "semi_diagonal": 1.5,
+        "slenderness": 0.15,
+        "wedge_slenderness": 0.30,
+        "curvature_ratio": 0.5,
+        "inertia_ratio": 4.0 / 3.0,
+    }
+    with pytest.raises(ValueError, match=said):
+        Bearing(**(shape | changes))

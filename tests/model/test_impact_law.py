@@ -1,0 +1,121 @@
+"""Restitution from momentum balances made anew with numbers, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from oracles.storey_lagrangian import StoreyLagrangian
+from paper_structures import FLAT, building, oracle_system, podium
+
+from rpscli.model.bearing import Bearing
+from rpscli.model.impact import ImpactLaw, flexible_restitution, rigid_restitution
+from rpscli.model.podium import PodiumStructure
+
+bearings = st.builds(
+    lambda tan_alpha, inertia: Bearing(1.3, tan_alpha, 2.0 * tan_alpha, 0.5, inertia),
+    st.floats(0.02, 0.45),
+    st.floats(1.0, 1.6),
+)
+ratios = st.floats(0.0, 50.0)
+
+
+def angular_momentum_ratio(
+    bearing: Bearing, gamma: float, eta: float, *, floors_jump: bool
+) -> float:
+    """theta'+/theta'- of one column and its share of beam and floors, by Newton's laws.
+
+    Unknown: the rate after, and the impulses (X, Y) at the new lower and upper edges, where the
+    ground and the beam hold the column. Old edges leave without impulse. m_c = R = 1; positions
+    from the column's centre, tilting right before and on. Floors take part in horizontal momentum
+    if they jump, in vertical momentum always.
+    """
+    h, b = math.cos(bearing.alpha), math.sin(bearing.alpha)
+    spin = bearing.inertia_ratio - 1.0
+    beam, floors = gamma, gamma * eta
+
+    # Velocities per unit rate. Rate > 0 turns clockwise. Before, the column turns about the lower
+    # left edge (-b, -h) while falling from theta < 0 to 0; after, about the lower right (b, -h).
+    def centre(pivot_x: float) -> tuple[float, float]:
+        return h, pivot_x  # (u, v) of the centre: clockwise about (pivot_x, -h)
+
+    before, after = centre(-b), centre(b)
+    # the beam moves twice as far as the centre, without turning
+    matrix, known = np.zeros((5, 5)), np.zeros(5)
+    for row, axis in ((0, 0), (1, 1)):  # column, horizontal and vertical
+        matrix[row, 0], known[row] = after[axis], before[axis]
+        matrix[row, 1 + axis] = matrix[row, 3 + axis] = -1.0
+    # clockwise moment of (X, Y) at (x, y): y X - x Y; at (b, -h) and the upper edge (-b, h)
+    matrix[2] = [spin, h, b, -h, -b]
+    known[2] = spin
+    carried = (beam + floors if floors_jump else beam, beam + floors)
+    for row, axis in ((3, 0), (4, 1)):  # what is carried gets the opposite impulse
+        matrix[row, 0] = 2.0 * carried[axis] * after[axis]
+        known[row] = 2.0 * carried[axis] * before[axis]
+        matrix[row, 3 + axis] = 1.0
+    return float(np.linalg.solve(matrix, known)[0])
+
+
+@given(bearings, ratios, ratios)
+def test_restitution_is_the_momentum_balance(bearing: Bearing, gamma: float, eta: float) -> None:
+    for law, floors_jump in ((rigid_restitution, True), (flexible_restitution, False)):
+        expected = angular_momentum_ratio(bearing, gamma, eta, floors_jump=floors_jump)
+        assert law(bearing, gamma, eta) == pytest.approx(expected, abs=1e-11)
+
+
+@given(bearings, ratios)
+def test_without_a_building_both_laws_are_one(bearing: Bearing, gamma: float) -> None:
+    rigid, flexible = (
+        law(bearing, gamma, 0.0) for law in (rigid_restitution, flexible_restitution)
+    )
+    assert rigid == pytest.approx(flexible, abs=1e-14)
+
+
+@given(st.floats(0.01, 0.5))
+def test_a_rectangular_block_has_housners_restitution(tan_alpha: float) -> None:
+    bearing = Bearing(1.0, tan_alpha, tan_alpha, FLAT)
+    expected = 1.0 - 1.5 * math.sin(bearing.alpha) ** 2
+    assert rigid_restitution(bearing, 0.0, 0.0) == pytest.approx(expected, abs=1e-15)
+
+
+@given(bearings)
+def test_the_second_integrator_uses_the_same_restitution(bearing: Bearing) -> None:
+    law: Literal["rigid", "flexible"]
+    for law in ("rigid", "flexible"):
+        structure = podium(1, bearing.slenderness, law=ImpactLaw(law))
+        own = StoreyLagrangian(oracle_system(structure)).restitution
+        assert structure.restitution == pytest.approx(own, abs=1e-12)
+
+
+def test_value_and_factor() -> None:
+    bearing = Bearing(1.5, 0.15, 0.3, 0.5)
+    assert ImpactLaw("value", 0.7).ratio(bearing, 10.0, 3.0) == 0.7
+    assert ImpactLaw("value", 0.7, factor=0.5).ratio(bearing, 10.0, 3.0) == 0.35
+    e = rigid_restitution(bearing, 10.0, 3.0)
+    assert ImpactLaw("rigid", factor=0.9).ratio(bearing, 10.0, 3.0) == pytest.approx(0.9 * e)
+    assert ImpactLaw("value", 0.7).floors_jump
+    assert not ImpactLaw("flexible").floors_jump
+    with pytest.raises(ValueError, match="needs a restitution"):
+        ImpactLaw("value").ratio(bearing, 10.0, 3.0)
+
+
+@pytest.mark.parametrize("restitution", [0.0, -0.2, 1.2, math.nan])
+def test_a_restitution_outside_0_to_1_is_refused(restitution: float) -> None:
+    with pytest.raises(ValueError, match=r"restitution e = .* must be in \(0, 1\]"):
+        podium(2, law=ImpactLaw("value", restitution))
+
+
+def test_columns_too_stout_to_go_over_are_refused_with_a_remedy() -> None:
+    """1 - 2 sin^2(alpha) <= 0 from 45 degrees on."""
+    for tan_alpha, admissible in ((0.99, True), (1.01, False)):
+        bearing = Bearing(1.5, tan_alpha, tan_alpha, FLAT)
+        if admissible:
+            assert PodiumStructure(bearing, 2e4, 2e5, building(3)).restitution > 0.0
+            continue
+        with pytest.raises(ValueError, match="more slender columns") as refusal:
+            PodiumStructure(bearing, 2e4, 2e5, building(3))
+        assert "other edge" in str(refusal.value)

@@ -1,0 +1,124 @@
+"""The storey and its building as one structure: ratios, statics, limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from paper_structures import FLAT, building, podium
+from scipy.integrate import quad
+
+from rpscli.model.bearing import Bearing
+from rpscli.model.podium import PodiumStructure
+
+structures = st.builds(
+    lambda n, tan_alpha, rho, size: podium(n, tan_alpha, rho, R=size),
+    st.sampled_from([0, 2]),
+    st.floats(0.05, 0.3),
+    st.sampled_from([FLAT, 0.26, 0.5, 1.5]),
+    st.floats(0.3, 5.0),
+)
+
+
+def test_ratios_of_the_paper() -> None:
+    structure = podium(6, 0.15, 0.5)
+    assert structure.gamma == 10.0
+    assert structure.eta == pytest.approx(6.0, rel=1e-15)
+    assert structure.gamma_total == pytest.approx(70.0, rel=1e-15)
+    assert structure.superstructure_mass == pytest.approx(12e5)
+    assert structure.restoring_mass == pytest.approx(1e4 + 2e5 + 12e5)
+    assert structure.weight == pytest.approx(141e4 * 9.80665)
+    assert structure.uplift_acceleration == pytest.approx(0.15 * 9.80665)
+    assert structure.static_base_shear == pytest.approx(12e5 * 0.15 * 9.80665)
+    assert structure.uplift_force == pytest.approx(structure.weight * 0.15)
+    assert podium(0).eta == podium(0).static_base_shear == 0.0
+
+
+@given(structures)
+def test_force_falls_from_w_tan_alpha_to_zero_at_theta_cr(structure: PodiumStructure) -> None:
+    force, u, v = structure.path(np.array([0.0, structure.critical_rotation]))
+    assert force[0] == pytest.approx(structure.uplift_force, rel=1e-13)
+    assert abs(force[1]) < 1e-12 * structure.weight
+    assert u[0] == v[0] == 0.0
+    assert v[1] > 0.0
+
+
+@given(structures, st.floats(0.05, 1.5))
+def test_the_force_does_the_work_that_lifts_the_weight(
+    structure: PodiumStructure, share: float
+) -> None:
+    """Integral of F du_b = W v_b, across beta and beyond theta_cr."""
+    bearing, end = structure.bearing, share * structure.critical_rotation
+    diameter = 2.0 * bearing.semi_diagonal
+
+    def power(x: float) -> float:
+        force, _, _ = structure.path(np.array([x]))
+        phase = bearing.rolling if x < bearing.beta else bearing.rocking
+        C = phase.c + phase.p * math.sin(x) - phase.q * math.cos(x)
+        return float(force[0]) * diameter * C
+
+    points = [bearing.beta] if 0.0 < bearing.beta < end else None
+    work, _ = quad(power, 0.0, end, points=points, epsabs=0.0, epsrel=1e-11)
+    _, _, lift = structure.path(np.array([end]))
+    assert work == pytest.approx(structure.weight * lift[0], rel=1e-9, abs=1e-9 * structure.weight)
+
+
+@given(structures)
+def test_initial_stiffness_is_the_slope_of_the_curve(structure: PodiumStructure) -> None:
+    x = np.array([0.0, 1e-4, 2e-4, 3e-4])
+    force, u, _ = structure.path(x)
+    # cubic through four points; their spacing of 1e-4 leaves rounding 1e-16/1e-4
+    slope = np.polynomial.Polynomial.fit(u, force, 3, domain=[0.0, u[-1]]).deriv()(0.0)
+    size = structure.weight / structure.bearing.semi_diagonal
+    assert structure.initial_stiffness == pytest.approx(float(slope), abs=1e-6 * size)
+
+
+@pytest.mark.parametrize(("rho", "sign"), [(FLAT, -1), (0.25, -1), (1.5, 1)])
+def test_the_curvature_sets_the_sign_of_the_stiffness(rho: float, sign: int) -> None:
+    for tan_alpha in (0.05, 0.15):
+        structure = podium(0, tan_alpha, rho)
+        first_order = structure.weight * (2.0 * rho - 1.0) / 3.0
+        stiffness = structure.initial_stiffness
+        assert math.copysign(1.0, stiffness) == sign
+        assert stiffness == pytest.approx(first_order, rel=5.0 * tan_alpha**2)
+
+
+def test_zero_stiffness_is_zero_to_first_order() -> None:
+    for tan_alpha in (0.05, 0.15):
+        structure = podium(0, tan_alpha, 0.5)
+        size = structure.weight / 3.0
+        assert abs(structure.initial_stiffness) < 2.0 * tan_alpha**2 * size
+
+
+@pytest.mark.parametrize(("rho", "trend"), [(0.26, -1), (1.5, 1)])
+def test_the_slope_of_the_curve_after_uplift(rho: float, trend: int) -> None:
+    """The pushover curve falls or rises with the curvature, and is nearly level between."""
+    structure, level = podium(0, 0.10, rho), podium(0, 0.10, 0.5)
+    x = np.linspace(0.0, 0.9 * min(structure.bearing.beta, structure.critical_rotation), 50)
+    force, u, _ = structure.path(x)
+    assert np.all(trend * np.diff(force) / np.diff(u) > 0.0)
+    flat_part, _, _ = level.path(np.linspace(0.0, level.bearing.beta, 50))
+    assert np.ptp(flat_part) < 0.03 * level.uplift_force
+
+
+def test_the_rigid_frequency_parameter_of_a_block_is_housners() -> None:
+    block = PodiumStructure(Bearing(2.0, 0.2, 0.2, FLAT), 1e3, 0.0)
+    expected = math.sqrt(0.75 * 9.80665 / 2.0)
+    assert block.rigid_frequency_parameter == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("columns", "beam", "gravity"),
+    [(0.0, 1.0, 9.8), (-1.0, 1.0, 9.8), (1.0, -1.0, 9.8), (1.0, 1.0, 0.0), (math.nan, 1.0, 9.8)],
+)
+def test_masses_outside_the_model_are_refused(columns: float, beam: float, gravity: float) -> None:
+    with pytest.raises(ValueError, match=r"must be > 0, cap_beam_mass >= 0"):
+        PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), columns, beam, gravity=gravity)
+
+
+def test_a_building_needs_a_beam_to_stand_on() -> None:
+    with pytest.raises(ValueError, match="the superstructure stands on it"):
+        PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 2e4, 0.0, building(2))

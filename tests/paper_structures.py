@@ -1,0 +1,129 @@
+"""Structures of the paper, single blocks, and ground motions, for the tests of every layer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numba
+import numpy as np
+import pytest
+from numpy.typing import ArrayLike, NDArray
+from oracles.storey_lagrangian import OracleSystem
+
+from rpscli.analyses.kernel_input import flight_rate
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.model.bearing import Bearing
+from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Profile, Superstructure, profile_stiffnesses
+from rpscli.records.ground_motion import GroundMotion
+
+Array = NDArray[np.float64]
+
+RecordLoader = Callable[[str], GroundMotion]
+"""From the name of a component to its motion."""
+
+COMPILED = not getattr(numba.config, "DISABLE_JIT")  # noqa: B009
+"""Whether the kernels are machine code; interpreted they are some hundred times slower."""
+
+needs_compiled_kernels = pytest.mark.skipif(
+    not COMPILED, reason="many time steps: too slow with NUMBA_DISABLE_JIT=1"
+)
+
+SLENDER = 1e-3
+"""A tan alpha at which the linear theory leaves out terms of alpha^2 = 1e-6 only."""
+
+FLAT = 0.0
+"""Curvature ratio of flat ends."""
+
+
+def building(
+    storeys: int,
+    period: float | None = None,
+    damping: RayleighDamping | ModalDamping | None = None,
+    profile: Profile = "sine",
+) -> Superstructure:
+    """Equal floors, T_1 = n/10 s, 5 % in modes 1 and 2 unless said otherwise."""
+    masses = np.full(storeys, 2e5)
+    stiffnesses = profile_stiffnesses(masses, period or storeys / 10.0, profile)
+    return Superstructure(masses, stiffnesses, damping or RayleighDamping(0.05, (1, 2)))
+
+
+def podium(
+    storeys: int,
+    tan_alpha: float = 0.15,
+    rho: float = 0.5,
+    *,
+    R: float = 1.5,
+    law: ImpactLaw | None = None,
+    superstructure: Superstructure | None = None,
+    gravity: float = STANDARD_GRAVITY,
+) -> PodiumStructure:
+    """gamma = 10, eta = n, tan alpha' = 2 tan alpha; a rigid frame for n = 0."""
+    above = superstructure or (building(storeys) if storeys else None)
+    bearing = Bearing(R, tan_alpha, 2.0 * tan_alpha, rho)
+    return PodiumStructure(bearing, 2e4, 2e5, above, law or ImpactLaw(), gravity)
+
+
+def block(
+    half_width: float, half_height: float, restitution: float | None = None
+) -> PodiumStructure:
+    """A rectangular block that stands alone; Housner's restitution unless given."""
+    law = ImpactLaw() if restitution is None else ImpactLaw("value", restitution)
+    size, slope = math.hypot(half_width, half_height), half_width / half_height
+    return PodiumStructure(Bearing(size, slope, slope, FLAT), 1e3, 0.0, None, law)
+
+
+def slender_block(size: float, restitution: float | None = None) -> PodiumStructure:
+    """A block of semi-diagonal `size` so slender that it obeys the linear theory."""
+    alpha = math.atan(SLENDER)
+    return block(size * math.sin(alpha), size * math.cos(alpha), restitution)
+
+
+def ground(acceleration: ArrayLike, dt: float) -> GroundMotion:
+    """A ground motion from its samples [m/s2]."""
+    return GroundMotion(np.asarray(acceleration, dtype=float), dt, "made", "made", "made")
+
+
+def stillness(dt: float) -> GroundMotion:
+    """No ground motion at all, for free motions that are stored every dt."""
+    return ground(np.zeros(2), dt)
+
+
+def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
+    """Twelve sines of 0.4 to 4 Hz with random phases under a rounded envelope."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(round(seconds / dt) + 1) * dt
+    frequencies, phases = rng.uniform(0.4, 4.0, 12), rng.uniform(0.0, 2.0 * np.pi, 12)
+    a = np.sin(2.0 * np.pi * np.outer(t, frequencies) + phases).sum(axis=1)
+    a *= np.sin(np.pi * t / seconds).clip(0.0) ** 0.5
+    a[0] = a[-1] = 0.0
+    return ground(peak * a / np.max(np.abs(a)), dt)
+
+
+def steps_an_interval(structure: PodiumStructure, dt: float, accuracy: float = 1.0) -> int:
+    """Runge-Kutta steps of an uplifted structure in a sampling interval without event."""
+    return max(math.ceil(dt * accuracy * flight_rate(structure)), 1)
+
+
+def oracle_system(structure: PodiumStructure) -> OracleSystem:
+    """The same structure as the second integrator wants it."""
+    bearing, above, law = structure.bearing, structure.superstructure, structure.impact_law
+    none = np.zeros(0)
+    return OracleSystem(
+        bearing.semi_diagonal,
+        bearing.slenderness,
+        bearing.wedge_slenderness,
+        bearing.curvature_ratio,
+        bearing.inertia_ratio,
+        structure.columns_mass,
+        structure.cap_beam_mass,
+        none if above is None else above.masses,
+        none if above is None else above.stiffnesses,
+        np.zeros((0, 0)) if above is None else above.damping_matrix,
+        structure.gravity,
+        law="flexible" if law.kind == "flexible" else "rigid",
+        restitution=structure.restitution if law.kind == "value" or law.factor != 1.0 else None,
+    )

@@ -1,0 +1,97 @@
+"""A structure in one lane of the kernels, put where a test wants it."""
+
+from __future__ import annotations
+
+import numpy as np
+from paper_structures import Array, stillness
+
+from rpscli.analyses.history import empty_results, shape_of_one
+from rpscli.analyses.kernel_input import has_dense_damping, joined_motions, stacked_systems
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.podium import PodiumStructure
+from rpscli.physics import layout, switch
+from rpscli.physics.contact import SHAPES
+from rpscli.physics.driver import begin, refresh
+from rpscli.physics.energy import uplifted_energy
+from rpscli.physics.parameters import Lanes, Points
+from rpscli.physics.table import podium_of
+
+LEAST_DT = 0.01
+
+
+class OneLane:
+    """The buffer of a single lane after `begin`, in a phase of motion at theta = 0.
+
+    States are [x, u_1 ... u_n] and their rates: the tilt x = |theta| first, then the floors.
+    """
+
+    def __init__(
+        self,
+        structure: PodiumStructure,
+        motion: int,
+        side: float = 1.0,
+        settings: TimeHistorySettings | None = None,
+    ) -> None:
+        n = self.storeys = structure.storeys
+        self.shape = shape_of_one(structure)
+        systems = stacked_systems([(structure, settings or TimeHistorySettings())])
+        motions = joined_motions([stillness(LEAST_DT)])
+        first = np.zeros(1, dtype=np.int64)
+        points = Points(first, first, first - 1, np.ones(1))
+        nothing = empty_results(1, n)
+        rows = layout.SCALARS + layout.BLOCKS * (n + 1)
+        rows += n * n if has_dense_damping(structure) else 0
+        self.lanes = Lanes(
+            np.zeros(rows),
+            np.zeros((1, layout.WHOLE_NUMBERS), dtype=np.int64),
+            np.zeros((1, systems.podium.shape[1])),
+            np.zeros((1, SHAPES + 2 * n, n)),
+            np.zeros(6),
+            motions.acceleration,
+            nothing.samples,
+            nothing.log,
+        )
+        self.buffer = self.lanes.buffer
+        begin(self.lanes, self.shape, 0, 0, systems, motions, points)
+        self.podium = podium_of(self.lanes.podium, 0)
+        self.buffer[layout.SIDE] = side
+        switch.enter_phase(self.lanes, 1, 0, self.podium, motion)
+
+    def block(self, number: int) -> Array:
+        """A view of one of the blocks of n + 1 rows."""
+        start = layout.SCALARS + number * (self.storeys + 1)
+        return self.buffer[start : start + self.storeys + 1]
+
+    @property
+    def side(self) -> float:
+        """Sign of theta."""
+        return float(self.buffer[layout.SIDE])
+
+    @property
+    def position(self) -> Array:
+        """The tilt and the floors' displacements; may be written to."""
+        return self.block(layout.POSITION)
+
+    @property
+    def velocity(self) -> Array:
+        """Their rates; may be written to."""
+        return self.block(layout.VELOCITY)
+
+    def accelerations(self, horizontal: float = 0.0, vertical: float = 0.0) -> Array:
+        """x'' and u'' at the present state while the ground moves with these accelerations."""
+        self.buffer[layout.ACROSS] = horizontal
+        self.buffer[layout.UPWARDS] = self.podium.gravity + vertical
+        refresh(self.lanes, self.shape, 0)
+        return self.block(layout.ACCELERATION).copy()
+
+    def energy(self) -> float:
+        """Kinetic, strain and potential energy [J]."""
+        return float(uplifted_energy(self.buffer, self.storeys, 1, 0))
+
+    def go_over(self) -> None:
+        """Let the storey go over to its other edge."""
+        switch.go_over(self.buffer, self.storeys, 1, 0, self.podium)
+
+    def lock(self) -> None:
+        """Let the storey come to rest."""
+        switch.lock(self.buffer, self.storeys, 1, 0, self.podium)

@@ -1,0 +1,104 @@
+"""Full contact is the linear fixed-base building, solved without error."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from paper_structures import Array, building, ground, podium, waves
+from scipy.linalg import expm
+from scipy.signal import lsim
+
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.superstructure import Superstructure
+
+BUILDINGS = [
+    building(1),
+    building(3),
+    building(9),
+    building(3, damping=ModalDamping(0.03)),
+    building(3, damping=RayleighDamping(0.0)),
+    building(2, damping=RayleighDamping(1.4)),  # both modes overdamped
+    building(30),
+]
+
+
+def state_matrix(above: Superstructure) -> Array:
+    n = above.storeys
+    K, C = above.stiffness_matrix, above.damping_matrix
+    lower = -np.linalg.solve(above.mass_matrix, np.hstack([K, C]))
+    return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
+
+
+@pytest.mark.parametrize("above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}")
+def test_full_contact_equals_lsim(above: Superstructure) -> None:
+    n, dt = above.storeys, 0.02
+    record = waves(4.0, dt, 0.2, seed=n)
+    settings = TimeHistorySettings(free_vibration=1.0)
+    result = time_history(podium(n, superstructure=above), record, settings)
+    assert result.outcome == "at_rest"
+    load = np.concatenate((np.zeros(n), -np.ones(n)))[:, None]
+    system = (state_matrix(above), load, np.eye(2 * n), np.zeros((2 * n, 1)))
+    a_g = np.pad(record.acceleration, (0, 50))
+    _, flow, _ = lsim(system, a_g, dt * np.arange(len(a_g)))
+    states = flow.reshape(len(a_g), 2 * n)
+    u = states[:, :n]
+    # both are exact for a load linear between samples: what is left is the rounding of 250 steps,
+    # and scipy's exponential of a matrix whose norm is the square of the highest frequency
+    tolerance = 1e-10 * float(np.max(np.abs(u)))
+    assert result.trace.floor_displacements == pytest.approx(u, abs=tolerance)
+    shears = above.stiffnesses * np.diff(u, axis=1, prepend=0.0)
+    size = float(np.max(np.abs(shears)))
+    assert result.trace.storey_shears == pytest.approx(shears, abs=1e-9 * size)
+    assert result.storey_shears == pytest.approx(np.max(np.abs(shears), axis=0), rel=1e-9)
+    absolute = states @ state_matrix(above)[n:].T
+    size = float(np.max(np.abs(absolute)))
+    assert result.trace.floor_accelerations == pytest.approx(absolute, abs=1e-9 * size)
+    assert result.floor_accelerations == pytest.approx(np.max(np.abs(absolute), axis=0), rel=1e-9)
+
+
+@pytest.mark.parametrize("above", BUILDINGS[:3], ids=lambda b: str(b.storeys))
+def test_one_long_step_is_as_good_as_many(above: Superstructure) -> None:
+    """Two samples 1.3 s apart: one interval, against one exponential."""
+    n, dt = above.storeys, 1.3
+    a0, a1 = 0.1, -0.15
+    result = time_history(
+        podium(n, superstructure=above), ground([a0, a1], dt), TimeHistorySettings(free_vibration=0)
+    )
+    flow = np.zeros((2 * n + 2, 2 * n + 2))
+    flow[: 2 * n, : 2 * n] = state_matrix(above)
+    flow[n : 2 * n, 2 * n] = -1.0
+    flow[2 * n, 2 * n + 1] = 1.0
+    state = expm(flow * dt) @ np.concatenate((np.zeros(2 * n), [a0, (a1 - a0) / dt]))
+    expected = state[:n]
+    got = result.trace.floor_displacements[-1]
+    assert got == pytest.approx(expected, abs=1e-12 * float(np.max(np.abs(expected))) * n**2)
+
+
+@pytest.mark.parametrize("above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}")
+def test_the_fixed_base_yardstick_is_the_same_building(above: Superstructure) -> None:
+    record = waves(4.0, 0.02, 0.2, seed=4)
+    result = time_history(podium(above.storeys, superstructure=above), record)
+    assert result.outcome == "at_rest"
+    assert result.fixed_base is not None
+    fixed, trace = result.fixed_base, result.trace
+    size = float(np.max(np.abs(fixed.floor_displacements)))
+    assert trace.floor_displacements == pytest.approx(fixed.floor_displacements, abs=1e-10 * size)
+    assert result.storey_shears == pytest.approx(fixed.storey_shears, rel=1e-9)
+    assert result.floor_accelerations == pytest.approx(fixed.floor_accelerations, rel=1e-9)
+    assert fixed.drifts == pytest.approx(result.max_drifts, rel=1e-9)
+    assert fixed.base_shear == pytest.approx(result.max_base_shear, rel=1e-9)
+
+
+@pytest.mark.parametrize("above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}")
+def test_the_energy_of_full_contact_is_accounted_for(above: Superstructure) -> None:
+    record = waves(4.0, 0.02, 0.2, seed=4)
+    result = time_history(podium(above.storeys, superstructure=above), record)
+    energy = result.energy
+    assert energy.impact == energy.created == 0.0
+    assert energy.input > 0.0
+    # the damped energy is integrated by a rule of order 4: (w h)^4/720, w h <= 1/2
+    assert abs(energy.residual) < 1e-4 * energy.input
+    if above.damping.ratio == 0.0:
+        assert abs(energy.residual) < 1e-11 * energy.input

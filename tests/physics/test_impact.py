@@ -1,0 +1,165 @@
+"""What an impact and a re-contact do to the floors, and to energy."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from paper_structures import FLAT, Array, building, podium
+
+from rpscli.analyses.kernel_input import podium_parameters
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.impact import ImpactKind, ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.physics.energy import building_energy
+from rpscli.physics.layout import ROCKING, ROLLING
+from rpscli.physics.switch import is_negligible
+
+from .one_lane import OneLane
+
+LIMIT = TimeHistorySettings(recontact_rule="limit")
+
+velocities = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3)
+rates = st.floats(-1.0, -0.01)
+
+
+def arriving(
+    structure: PodiumStructure,
+    rate: float,
+    floors: list[float],
+    settings: TimeHistorySettings | None = None,
+) -> OneLane:
+    """At theta = 0, coming from the right with theta' = rate < 0."""
+    motion = ROCKING if structure.bearing.is_flat else ROLLING
+    lane = OneLane(structure, motion, settings=settings)
+    lane.velocity[:] = [rate, *floors]
+    return lane
+
+
+def after_impact(
+    structure: PodiumStructure, rate: float, floors: list[float]
+) -> tuple[Array, float]:
+    """Rates after an impact from the right; energy lost over energy."""
+    lane = arriving(structure, rate, floors)
+    before = lane.energy()
+    lane.go_over()
+    assert lane.side == -1.0
+    assert lane.velocity[0] >= 0.0  # the tilt |theta| grows again, on the other side
+    return lane.velocity, (before - lane.energy()) / before
+
+
+@given(velocities, rates, st.sampled_from([FLAT, 0.5]))
+def test_flexible_always_loses_energy(floors: list[float], rate: float, rho: float) -> None:
+    structure = podium(3, 0.15, rho, law=ImpactLaw("flexible"))
+    after, lost = after_impact(structure, rate, floors)
+    assert lost > 0.0
+    assert after[1:].tolist() == floors
+
+
+@given(velocities, rates)
+def test_rigid_keeps_the_relative_velocities(floors: list[float], rate: float) -> None:
+    structure = podium(3, 0.15, 0.5)
+    e, reach = structure.restitution, 2.0 * structure.bearing.half_height
+    after, _ = after_impact(structure, rate, floors)
+    # theta keeps its sense of turning: theta'+ = e theta'-
+    assert after[0] == pytest.approx(-e * rate, rel=1e-15)
+    relative = np.array(floors) - reach * rate
+    assert after[1:] - reach * e * rate == pytest.approx(relative, abs=1e-14)
+
+
+def test_rigid_loses_energy_when_all_moves_together_and_creates_it_against_the_base() -> None:
+    structure, rate = podium(3, 0.15, 0.5), -0.5
+    base = 2.0 * structure.bearing.half_height * rate
+    _, together = after_impact(structure, rate, [base] * 3)
+    # the rigid frame's kinetic energy falls to e^2
+    assert together == pytest.approx(1.0 - structure.restitution**2, rel=1e-10)
+    _, against = after_impact(structure, rate, [-base] * 3)
+    assert against < -0.01
+    flexible = podium(3, 0.15, 0.5, law=ImpactLaw("flexible"))
+    assert after_impact(flexible, rate, [-base] * 3)[1] > 0.0
+
+
+@given(velocities, rates, st.sampled_from([FLAT, 0.5]))
+def test_locking_keeps_the_relative_velocities(
+    floors: list[float], rate: float, rho: float
+) -> None:
+    structure = podium(3, 0.15, rho)
+    lane = arriving(structure, rate, floors)
+    base_rate = 2.0 * structure.bearing.half_height * rate
+    lane.lock()
+    assert lane.velocity[0] == 0.0
+    assert lane.velocity[1:] == pytest.approx(np.array(floors) - base_rate, abs=1e-15)
+
+
+@given(
+    velocities, rates, st.sampled_from(["rigid", "flexible", "value"]), st.sampled_from([FLAT, 0.5])
+)
+def test_the_limit_is_what_endless_bounces_leave(
+    floors: list[float], rate: float, law: ImpactKind, rho: float
+) -> None:
+    """Excursions too short for the springs return the tilt's speed and change no floor."""
+    law_of = ImpactLaw(law, 0.9 if law == "value" else None, factor=0.5)
+    structure = podium(3, 0.15, rho, law=law_of)
+    bouncing, locking = (arriving(structure, -rate, floors, LIMIT) for _ in range(2))
+    locking.lock()  # just after an impact, the tilt growing again
+    while bouncing.velocity[0] > 1e-17:
+        bouncing.velocity[0] *= -1.0
+        bouncing.go_over()
+    # some fifty bounces round
+    assert locking.velocity[1:] == pytest.approx(bouncing.velocity[1:], abs=1e-14)
+
+
+@pytest.mark.parametrize(("law", "share"), [("rigid", None), ("flexible", 1.0)])
+def test_what_the_limit_adds(law: ImpactKind, share: float | None) -> None:
+    """2/(1 + e) u_b' where the floors jump with the cap beam, 1 u_b' where they do not."""
+    structure = podium(2, 0.15, 0.5, law=ImpactLaw(law))
+    expected = 2.0 / (1.0 + structure.restitution) if share is None else share
+    relative, limit = TimeHistorySettings(), LIMIT
+    assert podium_parameters(structure, relative).bounces == 0.0
+    assert podium_parameters(structure, limit).bounces == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
+def test_an_excursion_is_negligible_below_the_tolerance(tolerance: float) -> None:
+    """Height x'^2/(2 |x''|) against tol alpha, but only if x'' points back."""
+    settings = TimeHistorySettings(recontact_tolerance=tolerance)
+    structure = podium(0, 0.15, FLAT)
+    parameters = podium_parameters(structure, settings)
+    limit = math.sqrt(2.0 * 3.0 * tolerance * structure.bearing.alpha)
+    assert is_negligible(parameters, limit * (1.0 - 1e-12), -3.0)
+    assert not is_negligible(parameters, limit * (1.0 + 1e-12), -3.0)
+    assert not is_negligible(parameters, 0.0, 0.0)
+    assert not is_negligible(parameters, 0.0, 3.0)
+    never = parameters._replace(recontact_tolerance=0.0)
+    assert not is_negligible(never, 1e-300, -3.0)
+
+
+def test_the_energy_of_the_building_alone() -> None:
+    above = building(2)
+    lane = OneLane(podium(2, superstructure=above), ROLLING)
+    lane.position[1:], lane.velocity[1:] = [0.03, 0.05], [1.0, -2.0]
+    kinetic = 0.5 * float(above.masses @ lane.velocity[1:] ** 2)
+    for base, drifts in ((0.01, [0.02, 0.02]), (0.0, [0.03, 0.02])):
+        strain = 0.5 * float(above.stiffnesses @ np.array(drifts) ** 2)
+        energy = building_energy(lane.buffer, 2, 1, 0, base)
+        assert energy == pytest.approx(kinetic + strain, rel=1e-14)
+
+
+def test_energies_of_equal_states_are_equal_up_to_lift() -> None:
+    """At theta = 0 the uplifted energy is the building's and the tilt's kinetic one."""
+    structure = podium(3, 0.15, 0.5)
+    lane = arriving(structure, 0.0, [0.3, -0.2, 0.5])
+    lane.position[1:] = [0.01, 0.03, 0.02]
+    alone = building_energy(lane.buffer, 3, 1, 0, 0.0)
+    assert lane.energy() == pytest.approx(alone, rel=1e-14)
+    lane.velocity[0] = -0.4
+    rigid = replace(structure, superstructure=None)
+    tilting = arriving(rigid, -0.4, []).energy()
+    # floors add their vertical inertia to the tilt: M_tot (2 R B theta')^2/2, B = sin(alpha)
+    rising = 2.0 * structure.bearing.half_width * 0.4
+    tilting += 0.5 * structure.superstructure_mass * rising**2
+    assert lane.energy() == pytest.approx(alone + tilting, rel=1e-13)

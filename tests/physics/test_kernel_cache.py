@@ -1,0 +1,87 @@
+"""Where compiled kernels are kept, and that other sources never find them."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from paper_structures import needs_compiled_kernels
+
+from rpscli.physics import jit
+from rpscli.physics.jit import cache_folder, is_compiled, kernel
+
+
+@pytest.fixture(autouse=True)
+def fresh_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
+    """The folder is remembered for the process; each test looks for it anew."""
+    cache_folder.cache_clear()
+    yield monkeypatch
+    monkeypatch.undo()
+    cache_folder.cache_clear()
+
+
+def test_the_user_may_name_the_place(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "here"))
+    folder = cache_folder()
+    assert folder is not None
+    assert folder.parent == tmp_path / "here"
+    assert folder.is_dir()
+
+
+def test_a_place_that_cannot_be_written_is_passed_over(
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("no folder")
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "file" / "below"))
+    fresh_folder.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    folder = cache_folder()
+    assert folder is not None
+    assert folder.parent == tmp_path / "cache" / "rps"
+
+
+def test_nowhere_to_write_means_no_cache(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("no folder")
+    nowhere = str(tmp_path / "file" / "below")
+    fresh_folder.setenv("RPS_CACHE_DIR", nowhere)
+    fresh_folder.setenv("XDG_CACHE_HOME", nowhere)
+    fresh_folder.setattr(tempfile, "gettempdir", lambda: nowhere)
+    assert cache_folder() is None
+    double = kernel(twice)
+    assert double(3.0) == 6.0
+
+
+def test_the_folder_is_named_after_the_sources(
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A changed kernel must not meet machine code of the old one, inlined functions included."""
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
+    for source in Path(jit.__file__).parent.glob("*.py"):
+        (tmp_path / source.name).write_bytes(source.read_bytes())
+    fresh_folder.setattr(jit, "__file__", str(tmp_path / "jit.py"))
+    before = cache_folder()
+    with (tmp_path / "geometry.py").open("a") as geometry:
+        geometry.write("\n")
+    cache_folder.cache_clear()
+    after = cache_folder()
+    assert before is not None
+    assert after is not None
+    assert before != after
+
+
+def twice(x: float) -> float:
+    return 2.0 * x
+
+
+@needs_compiled_kernels
+def test_a_kernel_is_known_to_be_compiled(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
+    first = kernel(twice)
+    assert not is_compiled(first)
+    assert first(2.0) == 4.0
+    assert is_compiled(first)
+    # another process, so to speak: only the disk knows
+    second = kernel(twice)
+    assert is_compiled(second)
+    assert list(tmp_path.rglob("*.twice-*.nbc"))

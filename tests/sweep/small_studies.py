@@ -1,0 +1,60 @@
+"""Texts of a small case and study, and a way to run `rps` beside the tests."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from rpscli.case.study import Study
+
+ROOT = Path(__file__).parents[2]
+
+BASE = """\
+rps: 1
+superstructure:
+  storeys: 3
+  storey_mass: 200000
+  storey_height: 3.0
+  period: 0.3
+  damping: {ratio: 0.05, modes: [1, 2]}
+podium:
+  bearing:
+    semi_diagonal: 1.5
+    slenderness: 0.15
+    wedge_slenderness: 0.30
+    curvature_ratio: 0.5
+  cap_beam_mass_ratio: 10
+  superstructure_mass_ratio: 3
+analysis: {free_vibration: 1.0}
+"""
+
+STUDY = """\
+rps: 1
+title: "Test [study]"
+base: base.yaml
+vary:
+  - podium.bearing.slenderness: [0.10, 0.15]
+    podium.bearing.wedge_slenderness: [0.20, 0.30]
+  - podium.bearing.curvature_ratio: [critical, 0.5, 0]
+records:
+  - {source: "synthetic:?pga=0.5g&duration=4&dt=0.02", seed: [1, 2, 3]}
+scale: [0.5, 1.0]
+"""
+
+Make = Callable[..., Study]
+
+
+def start(*arguments: str, folder: Path) -> subprocess.Popen[str]:
+    """`rps ...` in a process of its own, interruptible as from a terminal."""
+    search = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    return subprocess.Popen(
+        [sys.executable, "-m", "rpscli", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": search},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )

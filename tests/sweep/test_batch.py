@@ -1,0 +1,105 @@
+"""What comes out for a point depends on the point alone."""
+
+from __future__ import annotations
+
+import pytest
+
+from rpscli.analyses.demand import Demand, Request, demands
+from rpscli.analyses.modal import modal
+from rpscli.analyses.pushover import pushover
+from rpscli.analyses.timehistory import time_history
+from rpscli.records.source import load_record
+from rpscli.sweep.batch import Bench, run_batch
+from rpscli.sweep.design import lay_out
+from rpscli.sweep.results import SCALARS, value_at
+from rpscli.sweep.systems import resolved
+from sweep.small_studies import STUDY, Make
+
+PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
+
+
+def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
+    design = lay_out(study_of())
+    together = run_batch(Bench(design.plan), list(design))
+    backwards = run_batch(Bench(design.plan), list(design)[::-1])
+    alone = [run_batch(Bench(design.plan), [design[number]])[0] for number in (0, 17, 35)]
+    assert backwards[::-1] == together
+    assert alone == [together[number] for number in (0, 17, 35)]
+
+
+def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
+    design = lay_out(study_of(STUDY, PERTURB))
+    bench = Bench(design.plan)
+    for number in (3, 40, 76):
+        point = design[number]
+        assert point.record is not None
+        case = resolved(design.plan, point.values)
+        structure = bench.systems[point].perturbed(point.restitution_change)
+        changed = case.structure.restitution * point.restitution_change
+        assert structure.restitution == pytest.approx(changed, rel=1e-12)
+        motion = load_record(point.record.source).scaled(point.scale * point.scale_change)
+        single = time_history(structure, motion, case.analysis).scalars()
+        row = run_batch(bench, [point])[0]
+        assert row.outcome == single["outcome"]
+        for name in set(single) & set(SCALARS["timehistory"]):
+            # Kernels for one and for many histories round differently; impacts amplify that.
+            expected = (
+                single[name] if single[name] is None else pytest.approx(single[name], rel=1e-6)
+            )
+            assert row.results[name] == expected, name
+
+
+def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: Make) -> None:
+    design = lay_out(study_of())
+    points = list(design)[:4]
+    assert points[0].record is not None
+    bad = points[1]._replace(record=points[0].record._replace(source="gone.at2"))
+    rows = run_batch(Bench(design.plan), [points[0], bad, points[2]])
+    assert [row.outcome for row in rows][1] == "failed"
+    assert "gone.at2" in str(rows[1].message)
+    assert rows[1].results == {}
+    whole = run_batch(Bench(design.plan), points)
+    assert [rows[0], rows[2]] == [whole[0], whole[2]]
+
+
+def test_an_exception_of_the_kernel_is_told_for_its_point_only(
+    study_of: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    design = lay_out(study_of())
+    points = list(design)[:3]
+
+    def fragile(requests: list[Request]) -> list[Demand]:
+        if any(request.scale == 1.0 for request in requests):
+            raise FloatingPointError("boom")
+        return demands(requests)
+
+    monkeypatch.setattr("rpscli.sweep.batch.demands", fragile)
+    rows = run_batch(Bench(design.plan), points)
+    assert [row.outcome == "failed" for row in rows] == [False, True, False]
+    assert rows[1].message == "FloatingPointError: boom"
+
+
+def test_modal_points_have_the_modes(study_of: Make) -> None:
+    begin = STUDY.index("records:")
+    design = lay_out(study_of(STUDY[:begin] + "analysis: modal\n"))
+    bench = Bench(design.plan)
+    rows = run_batch(bench, list(design))
+    flat, curved = rows[2].results, rows[0].results
+    assert flat["rolling"] is None
+    modes = modal(bench.systems[design[0]].structure)
+    assert modes.rolling is not None
+    found = value_at(curved, "rolling.frequency_ratio.0")
+    assert found == modes.rolling.frequency_ratio[0]
+    assert value_at(curved, "rolling.frequency_ratio.7") is None
+    assert curved["fixed_base"]["shapes"][0] == [0.0, *modes.fixed_base.shapes[:, 0]]  # type: ignore[union-attr]
+
+
+def test_pushover_points_have_the_curve(study_of: Make) -> None:
+    begin = STUDY.index("records:")
+    design = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
+    bench = Bench(design.plan)
+    row = run_batch(bench, [design[0]])[0]
+    expected = pushover(bench.systems[design[0]].structure)
+    assert row.outcome == "done"
+    assert row.results["uplift_force"] == expected.uplift_force
+    assert row.results["curve"]["force"] == expected.curve.force.tolist()

@@ -1,0 +1,107 @@
+"""A point that fails is told with its message and its own command; the others go on."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+from rpscli.case.study import load_study
+from rpscli.cli import program
+from rpscli.records.at2_writer import at2_text
+from rpscli.records.source import load_record
+from rpscli.sweep.batch import Bench, run_batch
+from rpscli.sweep.described import reproduction
+from rpscli.sweep.design import lay_out
+from sweep.small_studies import BASE, STUDY
+
+Document = Callable[..., dict[str, Any]]
+
+
+@pytest.fixture
+def spoilt(workplace: Path) -> Path:
+    """A study of two record files, one of which cannot be read."""
+    motion = load_record("synthetic:?pga=0.4g&seed=1&duration=3&dt=0.02")
+    (workplace / "good.at2").write_text(at2_text(motion))
+    (workplace / "bad.at2").write_text("no record at all\n")
+    begin, end = STUDY.index("records:"), STUDY.index("scale:")
+    text = STUDY[:begin] + "records: [good.at2, bad.at2]\nreports: [overturning]\n" + STUDY[end:]
+    (workplace / "study.yaml").write_text(text)
+    return workplace
+
+
+def rows(folder: Path, name: str) -> list[dict[str, str]]:
+    with (folder / "results/study/sweep" / name).open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_rest_goes_on(spoilt: Path, sweep_json: Document) -> None:
+    document = sweep_json("study.yaml", exit_code=5)
+    assert document["status"] == "error"
+    assert document["points"]["failed"] == 12
+    assert document["outcomes"]["failed"] == 12
+    points = rows(spoilt, "points.csv")
+    assert {p["outcome"] == "failed" for p in points if p["record"] == "bad.at2"} == {True}
+    assert {p["outcome"] == "failed" for p in points if p["record"] == "good.at2"} == {False}
+    failed = [p for p in points if p["outcome"] == "failed"]
+    assert all(p["max_rotation"] == "" and p["scale"] in {"0.5", "1.0"} for p in failed)
+    shares = rows(spoilt, "overturning.csv")
+    assert {(row["counted [-]"], row["failed [-]"]) for row in shares} == {("6", "6")}
+
+
+def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json: Document) -> None:
+    document = sweep_json("study.yaml", exit_code=5)
+    failure = document["failures"][0]
+    assert "bad.at2" in failure["message"]
+    words = shlex.split(failure["command"])
+    assert words[:3] == ["rps", "timehistory", "base.yaml"]
+    again = CliRunner().invoke(program, words[1:])
+    assert again.exit_code == 3
+    assert failure["message"] in again.stderr
+    assert rows(spoilt, "failed.csv")[0]["command [-]"] == failure["command"]
+
+
+def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path, sweep_json: Document) -> None:
+    study = load_study("study.yaml", ("perturb={members: 3}", "podium.cap_beam_mass_ratio=8"))
+    design = lay_out(study)
+    bench = Bench(design.plan)
+    point = design[2]
+    row = run_batch(bench, [point])[0]
+    words = shlex.split(reproduction(design, bench, point, Path("base.yaml")))
+    single = CliRunner().invoke(program, [*words[1:], "--json"])
+    found = json.loads(single.stdout)
+    assert found["max_rotation"] == pytest.approx(row.results["max_rotation"], rel=1e-6)
+    assert found["record"]["scale"] == row.results["scale"]
+
+
+def test_a_case_inside_the_study_is_written_for_the_commands(
+    spoilt: Path, sweep_json: Document
+) -> None:
+    inner = "base:\n" + "".join(f"  {line}\n" for line in BASE.splitlines())
+    text = (spoilt / "study.yaml").read_text().replace("base: base.yaml\n", inner)
+    (spoilt / "study.yaml").write_text(text)
+    failure = sweep_json("study.yaml", exit_code=5)["failures"][0]
+    words = shlex.split(failure["command"])
+    assert words[2] == "results/study/sweep/base.yaml"
+    again = CliRunner().invoke(program, [*words[1:]])
+    assert failure["message"] in again.stderr
+
+
+def test_failed_points_are_tried_again_when_asked_or_repaired(
+    spoilt: Path, sweep_json: Document
+) -> None:
+    sweep_json("study.yaml", exit_code=5)
+    kept = sweep_json("study.yaml", exit_code=5)
+    assert (kept["points"]["computed"], kept["points"]["failed"]) == (0, 12)
+    retried = sweep_json("study.yaml", "--retry-failed", exit_code=5)
+    assert (retried["points"]["computed"], retried["points"]["kept"]) == (12, 12)
+    (spoilt / "bad.at2").write_text((spoilt / "good.at2").read_text().replace("0.4", "0.3"))
+    repaired = sweep_json("study.yaml")
+    assert repaired["points"]["failed"] == 0
+    assert not (spoilt / "results/study/sweep/failed.csv").exists()

@@ -1,0 +1,215 @@
+"""Fragility fits against statsmodels, and sense where the data are separated."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from rpscli.case.study_reports import FragilityOptions, LimitStates, SpectrumOptions
+from rpscli.errors import CaseError
+from rpscli.sweep.batch import Bench
+from rpscli.sweep.design import lay_out
+from rpscli.sweep.intensities import intensity
+from rpscli.sweep.lognormal import Lognormal, lognormal_fit
+from rpscli.sweep.probit import probit_fit, separated
+from rpscli.sweep.statistics_fragility import fragility_report
+from rpscli.sweep.statistics_spectrum import pulse_period, spectrum_report
+from rpscli.sweep.store import Stored
+from rpscli.sweep.table import tabulate
+from sweep.small_studies import STUDY, Make
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+MEDIAN, BETA = 0.8, 0.4
+
+
+def drawn(count: int, seed: int = 0) -> tuple[Array, Flags]:
+    """Intensities, and whether structures of a known fragility passed their limit."""
+    random = np.random.default_rng(seed)
+    im = np.exp(random.uniform(math.log(0.2), math.log(3.0), count))
+    capacity = MEDIAN * np.exp(BETA * random.normal(size=count))
+    return im, im > capacity
+
+
+def fit(im: Array, y: Flags, weight: float = 1.0, **options: object) -> Lognormal:
+    cluster = np.arange(len(im))
+    return lognormal_fit(im, y, cluster, weight, np.array([0.8]), FragilityOptions(**options))
+
+
+@pytest.mark.parametrize(("count", "seed"), [(40, 1), (400, 2), (4000, 3)])
+def test_maximum_likelihood_is_that_of_statsmodels(count: int, seed: int) -> None:
+    models = pytest.importorskip("statsmodels.api")
+    im, y = drawn(count, seed)
+    theirs = models.Probit(y.astype(float), models.add_constant(np.log(im))).fit(
+        disp=0, method="newton", tol=1e-14, maxiter=100
+    )
+    a, b = theirs.params
+    ours = fit(im, y, resamples=0)
+    assert ours.method == "maximum likelihood"
+    # Both stop where the likelihood is flat to rounding: parameters agree to its square root.
+    assert ours.median == pytest.approx(math.exp(-a / b), rel=1e-7)
+    assert ours.beta == pytest.approx(1.0 / b, rel=1e-7)
+
+
+def test_the_fit_finds_the_fragility_that_made_the_data() -> None:
+    im, y = drawn(20_000)
+    found = fit(im, y, resamples=0)
+    # Standard errors at this size are 0.5 % of the median and 1 % of beta.
+    assert found.median == pytest.approx(MEDIAN, rel=0.02)
+    assert found.beta == pytest.approx(BETA, rel=0.04)
+
+
+def test_bootstrap_bands_cover_the_truth_about_as_often_as_they_say() -> None:
+    inside = 0
+    for seed in range(40):
+        low, high = fit(*drawn(150, seed), resamples=100, confidence=0.9).median_band
+        inside += low <= MEDIAN <= high
+    # Binomial with p = 0.9 and 40 trials: below 30 or at all 40 has a chance below 2 %.
+    assert 30 <= inside <= 40
+
+
+def test_the_seed_fixes_the_bands() -> None:
+    im, y = drawn(100)
+    bands = [fit(im, y, resamples=50, seed=seed).median_band for seed in (1, 1, 2)]
+    assert bands[0] == bands[1] != bands[2]
+
+
+def test_separated_data_get_a_warning_and_a_sane_beta() -> None:
+    im = np.array([0.2, 0.3, 0.5, 0.6, 0.9, 1.2, 1.5, 2.0])
+    y = im > 0.7
+    found = fit(im, y)
+    assert found.method == "penalised"
+    assert found.note is not None
+    assert "separated: up to 0.6" in found.note
+    assert 0.6 < found.median < 0.9
+    # Far from the spike that an unpenalised fit ends in, and no wider than the data.
+    assert 0.1 < found.beta < 1.0
+    assert np.isfinite(found.median_band).all()
+
+
+def test_variations_of_the_same_motions_do_not_pretend_to_more_data() -> None:
+    im = np.array([0.3, 0.5, 0.9, 1.5])
+    once = fit(im, im > 0.7, resamples=0)
+    often = fit(np.repeat(im, 50), np.repeat(im > 0.7, 50), weight=1 / 50, resamples=0)
+    assert often.beta == pytest.approx(once.beta, rel=1e-6)
+    assert fit(np.repeat(im, 50), np.repeat(im > 0.7, 50), resamples=0).beta < 0.3 * once.beta
+
+
+def test_the_penalised_fit_is_the_maximum_of_its_objective() -> None:
+    x = np.linspace(-1.0, 1.0, 12)
+    y = x > 0.2
+    ones = np.ones((1, 12))
+    found = probit_fit(x, y, ones, np.array([True]))
+
+    def objective(a: float, b: float) -> float:
+        eta = a + b * x
+        p = np.array([0.5 * math.erfc(-e / math.sqrt(2.0)) for e in eta])
+        density = np.exp(-0.5 * eta**2) / math.sqrt(2.0 * math.pi)
+        w = density**2 / (p * (1.0 - p))
+        information = w.sum() * (w @ x**2) - (w @ x) ** 2
+        return float(np.sum(np.log(np.where(y, p, 1.0 - p))) + 0.5 * math.log(information))
+
+    a, b = float(found.intercept[0]), float(found.slope[0])
+    top = objective(a, b)
+    for da, db in ((1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3), (1e-3, 1e-3)):
+        assert objective(a + da, b + db) < top
+
+
+@pytest.mark.parametrize(
+    ("flags", "apart"),
+    [([0, 0, 1, 1], True), ([1, 1, 0, 0], True), ([0, 1, 0, 1], False), ([0, 0, 0, 0], True)],
+)
+def test_separation_is_seen(flags: list[int], apart: bool) -> None:
+    x, y = np.arange(4.0), np.array(flags, dtype=bool)
+    assert separated(x, y, np.ones((1, 4))).tolist() == [apart]
+
+
+@pytest.mark.parametrize(
+    ("flags", "note"),
+    [
+        ([0, 0, 0, 0], "larger intensities"),
+        ([1, 1, 1, 1], "smaller intensities"),
+        ([1, 1, 0, 0], "does not grow"),
+        ([1, 0, 1, 0], "does not grow"),
+    ],
+)
+def test_hopeless_data_get_no_curve_but_a_reason(flags: list[int], note: str) -> None:
+    found = fit(np.array([0.5, 1.0, 1.5, 2.0]), np.array(flags, dtype=bool))
+    assert found.method == "none"
+    assert found.note is not None
+    assert note in found.note
+    assert math.isnan(found.median)
+
+
+def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Make) -> None:
+    measured = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}")
+    design = lay_out(study_of(STUDY, measured))
+
+    def answer(number: int) -> Stored:
+        point = design[number]
+        if number == 0:
+            return Stored("failed", "why", {})
+        falls = point.scale == 0.8
+        ratio = 0.9 if number % 2 else 0.1
+        name = "overturned_rocking" if falls else "survived"
+        return Stored(name, None, {"scale": 1.0, "rotation_ratio": ratio, "drift_ratio": 0.0})
+
+    table = tabulate(design, map(answer, range(len(design))))
+    options = FragilityOptions(
+        limits=LimitStates(rotation_ratio=(0.5,), drift_ratio=(0.01,)), series=(), resamples=0
+    )
+    report = fragility_report(table, intensity(table, Bench(design.plan), options), options)
+    assert [curve.limit.label for curve in report.curves] == [
+        "rotation_ratio > 0.5",
+        "drift_ratio > 0.01",
+        "overturning",
+    ]
+    rotation, drift, overturning = report.curves
+    assert report.intensity.measure == "PGV"
+    assert (rotation.counted, rotation.failed) == (53, 1)
+    assert (drift.exceeded, overturning.exceeded) == (18, 18)
+    assert rotation.exceeded > 18
+    assert rotation.observed.intensity.tolist() == pytest.approx([0.2, 0.4, 0.8], rel=1e-12)
+    assert len(report.notes) == 2  # drift and overturning are separated
+
+
+def test_intensities_follow_records_and_scales(study_of: Make) -> None:
+    design = lay_out(study_of())
+    bench = Bench(design.plan)
+    rows = [Stored("survived", None, {"scale": point.scale}) for point in design]
+    table = tabulate(design, rows)
+    pga = intensity(table, bench, FragilityOptions(measure="PGA"))
+    assert pga.values[1] == pytest.approx(0.5 * 9.80665, rel=1e-9)
+    assert pga.values[0] == pytest.approx(0.25 * 9.80665, rel=1e-9)
+    arias = intensity(table, bench, FragilityOptions(measure="Arias"))
+    assert arias.values[0] == pytest.approx(0.25 * arias.values[1], rel=1e-12)
+    assert intensity(table, bench, FragilityOptions()).measure == "PGV"
+
+
+def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
+    begin = STUDY.index("records:")
+    text = (
+        STUDY[:begin]
+        + 'records: [{source: "pulse:sine?amplitude=1g", period: [0.5, 1.0]}]\nscale: [0.2, 0.4]\n'
+    )
+    design = lay_out(study_of(text))
+    rows = [
+        Stored("overturned_rocking" if p.scale > 0.3 else "survived", None, {"scale": p.scale})
+        for p in design
+    ]
+    report = spectrum_report(tabulate(design, rows), Bench(design.plan), SpectrumOptions())
+    panel, facts = report.panels[0], design.facts[0]
+    p = facts.frequency_parameter
+    assert panel.frequency_ratio[:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
+    # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
+    assert panel.amplitude_ratio[:2] == pytest.approx([0.2 / 0.10, 0.4 / 0.10], rel=1e-9)
+    assert panel.boundary[:, 1] == pytest.approx([4.0, 4.0], rel=1e-9)
+
+
+def test_a_spectrum_of_earthquakes_is_refused() -> None:
+    with pytest.raises(CaseError, match="needs pulses"):
+        pulse_period("fema_p695:farfield/1/a")

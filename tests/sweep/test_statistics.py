@@ -1,0 +1,265 @@
+"""Tables and fits against data whose answer is known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from rpscli.case.study_reports import (
+    DemandOptions,
+    IdaOptions,
+    LinesOptions,
+    OverturningOptions,
+    RotationOptions,
+    StoreyShearOptions,
+)
+from rpscli.errors import CaseError
+from rpscli.sweep.bilinear import bilinear_fit
+from rpscli.sweep.design import Design, lay_out
+from rpscli.sweep.results import SCALARS
+from rpscli.sweep.statistics_demand import demand_report
+from rpscli.sweep.statistics_ida import ida_report
+from rpscli.sweep.statistics_lines import lines_report
+from rpscli.sweep.statistics_overturning import overturning_table
+from rpscli.sweep.statistics_rotation import rotation_report
+from rpscli.sweep.statistics_storeys import storey_shear_report
+from rpscli.sweep.store import Stored
+from rpscli.sweep.table import Table, groups, tabulate
+from sweep.small_studies import STUDY, Make
+
+Answer = Callable[[int], Stored]
+
+RHO, ALPHA = "podium.bearing.curvature_ratio", "podium.bearing.slenderness"
+
+
+def stored(outcome: str = "survived", **results: object) -> Stored:
+    """A made-up result."""
+    whole: dict[str, object] = dict.fromkeys(SCALARS["timehistory"], 0.0)
+    shears = results.pop("storey_shears", [3.0, 2.0, 1.0])
+    return Stored(outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears})
+
+
+def table_of(make: Make, answer: Answer, *changes: tuple[str, str]) -> Table:
+    """The study of 2 slendernesses x 3 curvatures x 3 records x 2 scales with made-up results."""
+    design = lay_out(make(STUDY, *changes))
+    return tabulate(design, (answer(number) for number in range(len(design))))
+
+
+def place(design: Design, number: int) -> dict[str, object]:
+    point = design[number]
+    assert point.record is not None
+    named = dict(zip(design.plan.keys, point.values, strict=True))
+    return {**named, "record": int(point.record.source[-1]), "scale": point.scale}
+
+
+@settings(max_examples=30)
+@given(
+    start=st.floats(0.5, 2.0),
+    slope=st.floats(2.0, 40.0),
+    knee=st.floats(0.25, 0.75),
+    after=st.floats(-0.5, 1.0),
+    count=st.integers(30, 200),
+)
+def test_the_bilinear_fit_recovers_a_made_curve(
+    start: float, slope: float, knee: float, after: float, count: int
+) -> None:
+    x = np.random.default_rng(1).uniform(0.0, 1.0, count)
+    y = start + slope * np.minimum(x, knee) + after * np.maximum(x - knee, 0.0)
+    fit = bilinear_fit(x, y)
+    assert fit is not None
+    assert fit.break_x == pytest.approx(knee, abs=1e-7)
+    assert fit.break_y == pytest.approx(start + slope * knee, rel=1e-7)
+    assert fit.slope == pytest.approx(slope, rel=1e-7)
+    assert fit.slope_after == pytest.approx(after, abs=1e-6)
+    assert fit(np.array([0.0]))[0] == pytest.approx(start, rel=1e-7)
+
+
+def test_no_other_break_fits_noisy_data_better() -> None:
+    random = np.random.default_rng(3)
+    x = random.uniform(0.0, 1.0, 80)
+    y = 1.2 + 5.0 * np.minimum(x, 0.3) + 0.2 * random.normal(size=80)
+    fit = bilinear_fit(x, y)
+    assert fit is not None
+    best = float(np.sum((y - fit(x)) ** 2))
+    for knee in np.linspace(np.sort(x)[3], np.sort(x)[-4], 300):
+        columns = np.column_stack([x**0, np.minimum(x, knee), np.maximum(x - knee, 0.0)])
+        squares = np.sum((y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]) ** 2)
+        assert squares >= best * (1.0 - 1e-12)
+
+
+def test_too_few_points_have_no_bilinear_fit() -> None:
+    assert bilinear_fit(np.arange(7.0), np.arange(7.0)) is None
+    assert bilinear_fit(np.repeat([1.0, 2.0, 3.0], 10), np.zeros(30)) is None
+
+
+def test_groups_cover_the_study_once_in_its_order(study_of: Make) -> None:
+    design = lay_out(study_of())
+    by_scale = groups(design, ["scale", RHO])
+    assert [group.values for group in by_scale] == [
+        (scale, rho) for scale in (0.5, 1.0) for rho in ("critical", 0.5, 0)
+    ]
+    joined = np.sort(np.concatenate([group.points for group in by_scale]))
+    assert joined.tolist() == list(range(36))
+    assert all(
+        place(design, n)["scale"] == group.values[0] for group in by_scale for n in group.points
+    )
+    pair = groups(design, [ALPHA, "podium.bearing.wedge_slenderness"])
+    assert [group.values for group in pair] == [(0.10, 0.20), (0.15, 0.30)]
+
+
+def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -> None:
+    design = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        at = place(design, number)
+        if at["record"] == 3 and at["scale"] == 1.0:
+            return Stored("failed", "why", {})
+        return stored("overturned_rolling" if at[RHO] == 0 and at["scale"] == 1.0 else "survived")
+
+    table = overturning_table(table_of(study_of, answer), OverturningOptions())
+    assert table.rows == ((0.10,), (0.15,))
+    assert table.columns == (("critical",), (0.5,), (0,))
+    for row in table.cells:
+        assert [cell.fraction for cell in row if cell] == [0.0, 0.0, 2 / 5]
+        assert [cell.failed for cell in row if cell] == [1, 1, 1]
+    turned = OverturningOptions(rows=(RHO,), columns=("scale",))
+    by_scale = overturning_table(table_of(study_of, answer), turned)
+    assert [cell.fraction for cell in by_scale.cells[2] if cell] == [0.0, 1.0]
+
+
+def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
+    def answer(number: int) -> Stored:
+        return stored(
+            "overturned_rocking" if number == 35 else "survived", max_rotation=float(number)
+        )
+
+    table = table_of(study_of, answer)
+    report = rotation_report(table, RotationOptions())
+    assert (report.key, report.reference, report.failed) == (RHO, 0, 0)
+    (panel,) = report.panels
+    assert [comparison.value for comparison in panel.comparisons] == ["critical", 0.5]
+    mine, alpha = panel.comparisons[1], math.atan(0.10)
+    assert mine.rotation[0] == pytest.approx(6 / alpha, rel=1e-12)
+    assert mine.reference[0] == pytest.approx(12 / alpha, rel=1e-12)
+    assert np.all(mine.reference_points - mine.points == 6)
+    assert math.isinf(mine.reference[-1])
+    other = rotation_report(table, RotationOptions(reference=0.5, panels=(ALPHA,)))
+    assert (other.reference, len(other.panels)) == (0.5, 2)
+
+
+def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
+    outcomes = ("survived", "at_rest", "overturned_rolling", "survived")
+
+    def answer(number: int) -> Stored:
+        x = (number % 18) / 18.0 + number / 1000.0
+        return stored(
+            outcomes[number % 4], rotation_ratio=x, base_shear_ratio=1.0 + min(4.0 * x, 2.0)
+        )
+
+    report = demand_report(table_of(study_of, answer), DemandOptions(panels=(), series=(ALPHA,)))
+    (panel,) = report.panels
+    assert (panel.counted, panel.at_rest, panel.overturned, panel.failed) == (18, 9, 9, 0)
+    assert panel.fit is not None
+    assert panel.fit.break_x == pytest.approx(0.5, abs=1e-9)
+    assert sum(len(series.points) for series in panel.series) == 18
+
+
+def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
+    design = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        falls = place(design, number)["record"] == 3
+        shears = [900.0] * 3 if falls else [1.0 * number, 2.0, 1.0]
+        return stored("overturned_rocking" if falls else "survived", storey_shears=shears)
+
+    table = table_of(study_of, answer)
+    fixed = {
+        (system, request): np.array([10.0, 6.0, 3.0])
+        for system in range(6)
+        for request in design.records
+        if request
+    }
+    report = storey_shear_report(table, fixed, StoreyShearOptions())
+    first = report.profiles[0]
+    static = first.static_base_shear
+    assert static == pytest.approx(600e3 * 9.80665 * 0.10, rel=1e-12)
+    assert (first.counted, first.overturned) == (4, 2)
+    assert first.mean * static == pytest.approx([(0 + 1 + 2 + 3) / 4, 2.0, 1.0], rel=1e-12)
+    assert first.largest * static == pytest.approx([3.0, 2.0, 1.0], rel=1e-12)
+    assert first.fixed_largest * static == pytest.approx([10.0, 6.0, 3.0], rel=1e-12)
+
+
+def test_buildings_of_different_height_have_no_common_profile(study_of: Make) -> None:
+    storeys = (
+        "  - podium.bearing.curv",
+        "  - superstructure.storeys: [2, 3]\n  - podium.bearing.curv",
+    )
+    table = table_of(study_of, lambda _: stored(storey_shears=[1.0]), storeys)
+    with pytest.raises(CaseError, match=r"\[2, 3\] storeys"):
+        storey_shear_report(table, {}, StoreyShearOptions(panels=(RHO,)))
+
+
+def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> None:
+    design = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        at = place(design, number)
+        record = int(str(at["record"]))
+        falls = at["scale"] == 1.0 and record > 1
+        return stored("overturned_rolling" if falls else "survived", rotation_ratio=0.1 * record)
+
+    report = ida_report(table_of(study_of, answer), IdaOptions())
+    panel = report.panels[0]
+    assert panel.levels.tolist() == [0.5, 1.0]
+    assert panel.fractiles[:, 0].tolist() == pytest.approx([0.1, 0.2, 0.3])
+    assert panel.fractiles[:, 1].tolist() == [pytest.approx(0.1), math.inf, math.inf]
+    assert panel.overturned == (0, 2)
+
+
+def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
+    design = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        at = place(design, number)
+        falls = at["record"] == 2
+        return stored(
+            "overturned_rolling" if falls else "survived",
+            max_rotation=1e3 if falls else float(str(at["scale"])),
+        )
+
+    table = table_of(study_of, answer)
+    rows = [answer(number) for number in range(36)]
+    options = LinesOptions(x="scale", y=("max_rotation",), panels=(ALPHA,))
+    report = lines_report(table, rows, options)
+    assert report.series_keys == (RHO,)
+    assert [len(panel.lines) for panel in report.panels] == [3, 3]
+    assert report.panels[0].lines[0].x == (0.5, 1.0)
+    assert report.panels[0].lines[0].y == (0.5, 1.0)
+
+
+def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: Make) -> None:
+    begin = STUDY.index("records:")
+    design = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
+    rows = [
+        Stored("done", None, {"curve": {"force": [2.0, 1.0 * n], "displacement": [0.0, 1.0]}})
+        for n in range(6)
+    ]
+    table = tabulate(design, rows)
+    options = LinesOptions(x="curve.displacement", y=("curve.force",), panels=(ALPHA,))
+    first, _ = lines_report(table, rows, options).panels
+    assert [line.y for line in first.lines] == [(2.0, 0.0), (2.0, 1.0), (2.0, 2.0)]
+    assert first.lines[0].x == (0.0, 1.0)
+
+
+def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> None:
+    design = lay_out(study_of())
+    table = tabulate(design, [stored() if n else None for n in range(36)])
+    assert table.missing == 1
+    shares: NDArray[np.bool_] = table.failed
+    assert shares.tolist() == [True] + [False] * 35

