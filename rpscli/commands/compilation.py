@@ -11,4 +11,4 @@ def announce_compilation(terminal: Terminal) -> None:
     from rpscli.physics.jit import is_compiled  # noqa: PLC0415
 
     if not is_compiled(integrate):
-        terminal.note("compiling the kernels, once for this version: about 20 s")
+        terminal.note("compiling the kernels, once for this version: up to a minute")

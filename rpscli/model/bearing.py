@@ -127,7 +127,8 @@ class Bearing:
     def critical_rotation(self) -> float:
         """theta_cr: where the weight stops restoring; the smallest positive root of B [rad].
 
-        The paper's Eq. 1 is its first-order form, see `critical_rotation_of_paper`.
+        The paper's Eq. 1 has the same branches, but changes over at its first-order rho_cr: see
+        `critical_rotation_of_paper`.
         """
         return geometry.critical_rotation(self.rolling, self.rocking, self.beta)
 
@@ -138,7 +139,7 @@ class Bearing:
 
     @property
     def critical_rotation_of_paper(self) -> float:
-        """theta_cr by Eq. 1 of the paper [rad], which jumps by about 2 % at its rho_cr."""
+        """theta_cr by Eq. 1 of the paper [rad]; its branches jump by about 2 % at its rho_cr."""
         if self.curvature_ratio <= self.critical_curvature_ratio_of_paper:
             return math.atan2(self.slenderness, 1.0 - 2.0 * self.curvature_ratio)
         wedge = math.tan(self.alpha_wedge)

@@ -1,6 +1,7 @@
 """Compiled kernels on plain floats and arrays; no strings, no exceptions, no files.
 
-`geometry` holds the contact geometry, `uplifted` the equation of motion, `contact` the exact
-solution while every column stands on its flat ends, `events` and `impact` what happens between
-them, `driver` the loop that strings them together.
+`geometry` and `tilt` hold the formulae of the rocking storey, `acceleration` the equations of
+motion and `runge_kutta` a step of them; `contact` and `standing` the exact solution while every
+column stands on its flat ends; `events`, `inspection`, `flight` and `switch` find what happens in
+between and do it; `driver` strings them together, for several histories side by side.
 """

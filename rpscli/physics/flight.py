@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, offset, slope, value
+from rpscli.physics.events import NO_PASSAGE, first_descent, offset
 from rpscli.physics.inspection import tilt_path
 from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
@@ -20,8 +20,6 @@ from rpscli.physics.layout import (
     AT_SAMPLE,
     BASE,
     COUNTS,
-    CRITICAL_PASSAGE,
-    CRITICAL_TIME,
     DAMPED,
     DAMPED_POWER,
     EVENT,
@@ -53,8 +51,6 @@ from rpscli.physics.layout import (
     OVERTURNED_ROCKING,
     OVERTURNED_ROLLING,
     OVERTURNING,
-    PEAK,
-    PEAK_TIME,
     POSITION,
     ROCKING,
     ROLLING,
@@ -65,11 +61,11 @@ from rpscli.physics.layout import (
     STALLED,
     STEP,
     STEPS,
-    THETA_CR,
     TIME,
     VELOCITY,
 )
 from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
+from rpscli.physics.peak import watch_peak
 from rpscli.physics.progress import next_interval, store_sample
 from rpscli.physics.runge_kutta import energy_over_step
 from rpscli.physics.standing import stand, to_modes
@@ -112,53 +108,6 @@ def plan_step(b: Floats, shape: Shape, l: int) -> None:
     set_step(b, shape, l, max(left, 0.0) / steps)
     b[AT_SAMPLE * L + l] = 1.0 if steps == 1 else 0.0
     b[LOCATING * L + l] = 0.0
-
-
-@part
-def crest(path: Quintic) -> tuple[float, float]:
-    """Fraction of the step and height of the tilt's maximum, where x' falls through zero.
-
-    Bisection of the slope: it never leaves the step, and is rarely needed.
-    """
-    low, high = 0.0, 1.0
-    for _ in range(50):
-        t = 0.5 * (low + high)
-        if slope(path, t) > 0.0:
-            low = t
-        else:
-            high = t
-    return low, value(path, low)
-
-
-@part
-def watch_peak(lanes: Lanes, shape: Shape, l: int) -> None:
-    """Raise the largest tilt by that of the step just taken, turning points included."""
-    n, L = len(shape.floors), len(shape.stride)
-    b = lanes.buffer
-    height, fraction = b[(SCALARS + AHEAD * (n + 1)) * L + l], 1.0
-    before = b[(SCALARS + VELOCITY * (n + 1)) * L + l]
-    after = b[(SCALARS + AHEAD_RATE * (n + 1)) * L + l]
-    if before > 0.0 and after < 0.0:
-        fraction, height = crest(tilt_path(b, n, L, l))
-    if height > b[PEAK * L + l]:
-        b[PEAK * L + l] = height
-        b[PEAK_TIME * L + l] = now(lanes, L, l) + fraction * b[STEP * L + l]
-        if height > b[THETA_CR * L + l] and b[CRITICAL_TIME * L + l] < 0.0:
-            note_critical_passage(lanes, shape, l)
-
-
-@part
-def note_critical_passage(lanes: Lanes, shape: Shape, l: int) -> None:
-    """Note when theta_cr was passed for the first time, within the step just taken."""
-    n, L = len(shape.floors), len(shape.stride)
-    b = lanes.buffer
-    level, h = b[THETA_CR * L + l], b[STEP * L + l]
-    path = tilt_path(b, n, L, l)
-    t = min(first_descent(offset(path, -1.0, level), lanes.piece), 1.0)
-    time, side = now(lanes, L, l) + t * h, b[SIDE * L + l]
-    rate = side * slope(path, t) / h if h > 0.0 else 0.0
-    b[CRITICAL_TIME * L + l] = time
-    note(lanes, l, time, CRITICAL_PASSAGE, side * level, rate, rate, 0.0)
 
 
 @kernel

@@ -23,7 +23,7 @@ with  C' = B  and  B' = c - C, so one sine and one cosine give everything else (
     u_b / 2R = u0 + c x - q sin x - p cos x        (odd in theta)
     v_b / 2R = v0 + p sin x - q cos x              (even in theta)
 
-Every function takes floats or arrays, and is compiled by `rpscli.physics.uplifted` for the
+Every function takes floats or arrays, and is compiled by `rpscli.physics.tilt` for the
 kernels; this module itself needs numpy only.
 """
 

@@ -52,15 +52,15 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
             x = np.array([0.0, fit.break_x, max(highest, fit.break_x)])
             axes.plot(x, fit(x), color=style.BLACK, lw=1.6, label="bilinear fit")
             text = (
-                rf"$(\theta/\theta_{{cr}})_{{sat}}$ = {fit.break_x:.3f}"
-                f"\n$(V_b/V_{{st}})_{{sat}}$ = {fit.break_y:.2f}\n$k_s$ = {fit.slope_after:.2f}"
+                f"saturation at {fit.break_x:.3f}, {fit.break_y:.2f}"
+                f"\nslope kₛ {fit.slope_after:.2f} beyond"
             )
             axes.text(
                 0.96, 0.05, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7.0,
                 bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
             )  # fmt: skip
         axes.set_xlim(0.0, 1.04 * highest or 1.0)
-        axes.set_ylim(bottom=0.0)
+        axes.set_ylim(bottom=0.0, auto=True)  # a later panel may reach higher
 
     return panel_figure(
         by_values(report.panel_keys, report.panels),

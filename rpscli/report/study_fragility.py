@@ -77,7 +77,7 @@ def fragility_figure(report: FragilityReport, title: str) -> bytes:
                 marker=marker(place), ms=3.2, alpha=0.8,
             )  # fmt: skip
         axes.set_ylim(-0.02, 1.02)
-        axes.set_xlim(left=0.0)
+        axes.set_xlim(left=0.0, auto=True)
 
     notes = [f"bands: {report.confidence:.0%}"]
     if any(c.fit.method == "penalised" for c in report.curves):

@@ -12,20 +12,20 @@ from rpscli.case.schema import CaseFile
 from rpscli.report.csv_text import Column
 
 SYMBOLS = {
-    "superstructure.storeys": "$n$",
-    "superstructure.period": "$T_1$",
-    "superstructure.damping.ratio": r"$\xi$",
-    "podium.bearing.semi_diagonal": "$R$",
-    "podium.bearing.slenderness": r"$\tan\alpha$",
-    "podium.bearing.wedge_slenderness": r"$\tan\alpha'$",
-    "podium.bearing.curvature_ratio": r"$\rho$",
-    "podium.bearing.inertia_ratio": r"$\bar{I}_o$",
-    "podium.cap_beam_mass_ratio": r"$\gamma$",
-    "podium.superstructure_mass_ratio": r"$\eta$",
+    "superstructure.storeys": "n",
+    "superstructure.period": "T₁",
+    "superstructure.damping.ratio": "ξ",
+    "podium.bearing.semi_diagonal": "R",
+    "podium.bearing.slenderness": "tan α",
+    "podium.bearing.wedge_slenderness": "tan α′",
+    "podium.bearing.curvature_ratio": "ρ",
+    "podium.cap_beam_mass_ratio": "γ",
+    "podium.superstructure_mass_ratio": "η",
 }
-"""The paper's letters; other keys go by their last word."""
+"""The paper's letters; other keys go by their last word. Plain text: matplotlib takes ten times as
+long over formulae, and there is a title on every panel."""
 
-CURVATURES = {"critical": r"$\rho_{cr}$", 0: "flat ends"}
+CURVATURES = {"critical": "critical ρ", 0: "flat ends"}
 
 Values = Sequence[object]
 
@@ -34,7 +34,7 @@ def symbol(key: str) -> str:
     """A key's letter or its last word.
 
     >>> symbol("superstructure.storeys"), symbol("podium.impact.law")
-    ('$n$', 'law')
+    ('n', 'law')
     """
     return SYMBOLS.get(key, key.rpartition(".")[2])
 
@@ -43,7 +43,7 @@ def label(key: str, value: object) -> str:
     """A key with its value.
 
     >>> label("superstructure.storeys", 3), label("podium.bearing.curvature_ratio", 0)
-    ('$n$ = 3', 'flat ends')
+    ('n = 3', 'flat ends')
     """
     if key.endswith("curvature_ratio") and not isinstance(value, list | dict | bool):
         known = CURVATURES.get(value) if isinstance(value, str | int | float) else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -22,6 +21,8 @@ COLOURS = (
     style.BLACK, style.GREY,
 )  # fmt: skip
 MARKERS = "osD^vP*X"
+MOST_TICKS = 5
+"""On each axis of a panel: ticks take most of the time of drawing."""
 LETTERS_AN_INCH = 16.0
 """Of the legend's font."""
 LINE = 0.17
@@ -93,6 +94,7 @@ def panel_figure(
             if place >= len(shown):
                 axes.set_axis_off()
                 continue
+            axes.locator_params(nbins=MOST_TICKS)
             draw(axes, shown[place])
             axes.set_title(names[place])
             if place + columns >= len(shown):
@@ -115,7 +117,7 @@ def _legend_lines(figure: Figure, grid: Any) -> int:
             found.setdefault(name, handle)
     if not found:
         return 0
-    widest = max(len(_visible(name)) for name in found)
+    widest = max(len(name) for name in found)
     room = figure.get_figwidth() * LETTERS_AN_INCH
     columns = max(1, min(len(found), 5, int(room / (widest + 7))))
     figure.legend(found.values(), found.keys(), loc="lower center", ncols=columns)
@@ -149,15 +151,10 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_axes: bool) 
 
 def _wrapped(names: Sequence[str], columns: int) -> list[str]:
     """Titles on two lines where panels are narrow: the last key below the others."""
-    widest = max((len(_visible(name)) for name in names), default=0)
+    widest = max((len(name) for name in names), default=0)
     if widest * columns <= style.WIDTH * LETTERS_AN_INCH * 0.7:
         return list(names)
     return ["\n".join(name.rsplit(", ", 1)) for name in names]
-
-
-def _visible(name: str) -> str:
-    """Roughly the letters that a text with formulae shows."""
-    return re.sub(r"\\[a-z]+", "x", name).translate(str.maketrans("", "", "$_{}\\"))
 
 
 def left_out(failed: int) -> str:

@@ -48,8 +48,8 @@ def spectrum_figure(report: SpectrumReport, title: str) -> bytes:
             panel.boundary[:, 0], panel.boundary[:, 1], color=style.BLACK, lw=1.2,
             label="least that overturns",
         )  # fmt: skip
-        axes.set_xlim(left=0.0)
-        axes.set_ylim(bottom=0.0)
+        axes.set_xlim(left=0.0, auto=True)
+        axes.set_ylim(bottom=0.0, auto=True)  # a later panel may reach higher
 
     return panel_figure(
         by_values(report.panel_keys, report.panels),

@@ -11,8 +11,9 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import layout, switch
 from rpscli.physics.contact import SHAPES
-from rpscli.physics.driver import begin, refresh
+from rpscli.physics.driver import refresh
 from rpscli.physics.energy import uplifted_energy
+from rpscli.physics.loading import begin
 from rpscli.physics.parameters import Lanes, Points
 from rpscli.physics.table import podium_of
 

@@ -49,7 +49,8 @@ def test_one_step_is_the_matrix_exponential(omega: float, xi: float, h: float) -
     load = 1.0 / omega**2
     trend = load * (h + (1.0 + 2.0 * xi) / omega)
     size = np.array([[1.0, h, load, trend], [omega**2 * h, 1.0, h, load]])
-    assert np.all(np.abs(got - exponential(omega, xi, h)) <= 1e-14 * size)
+    # scipy's own exponential of a matrix of norm w^2 h <= 250 squares that many times over
+    assert np.all(np.abs(got - exponential(omega, xi, h)) <= 1e-13 * size)
 
 
 @given(st.floats(0.1, 50.0), st.floats(0.0, 3.0), st.floats(1e-3, 1.0), st.floats(0.01, 0.99))

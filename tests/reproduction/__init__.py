@@ -1,0 +1,1 @@
+"""What the paper's figures and tables say, on data computed from the files of its reproduction."""

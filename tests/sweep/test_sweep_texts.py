@@ -1,0 +1,96 @@
+"""Short texts: progress, times, labels."""
+
+from __future__ import annotations
+
+import doctest
+from importlib import import_module
+
+import pytest
+
+from rpscli.commands import sweep_progress
+from rpscli.commands.sweep_progress import progress_line, progress_report
+from rpscli.commands.terminal import Terminal
+from rpscli.report.study_labels import labels, quoted, unit
+from rpscli.sweep.runner import Progress
+
+
+def progress(computed: int, failed: int = 0, seconds: float = 10.0) -> Progress:
+    return Progress(total=100, kept=20, computed=computed, failed=failed, seconds=seconds)
+
+
+def test_a_line_has_rate_and_time_left() -> None:
+    assert progress_line(progress(40)) == "60 of 100 points, 4 points/s, 10 s left"
+    assert progress_line(progress(40, 2)).startswith("60 of 100 points, 2 failed, 4 ")
+    assert progress_line(progress(0)) == "20 of 100 points, 0 points/s"
+
+
+def test_plain_lines_become_rarer(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_report(Terminal(), 20, 100) as report:
+        for second in range(1, 61):
+            report(progress(second, seconds=float(second)))
+    lines = capsys.readouterr().err.splitlines()
+    assert 4 <= len(lines) <= 9
+    with progress_report(Terminal(quiet=True), 20, 100) as report:
+        report(progress(60))
+    assert capsys.readouterr().err == ""
+
+
+def test_a_terminal_gets_a_bar(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sweep_progress.sys.stderr, "isatty", lambda: True)  # type: ignore[attr-defined]
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "100")
+    with progress_report(Terminal(), 20, 100) as report:
+        report(progress(40, 1))
+    text = capsys.readouterr().err
+    assert "60/100" in text
+    assert "10 s left, 1 failed" in text
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "text"),
+    [
+        ("superstructure.storeys", 3, "n = 3"),
+        ("podium.bearing.curvature_ratio", 0, "flat ends"),
+        ("podium.bearing.curvature_ratio", 0.25, "ρ = 0.25"),
+        ("podium.impact", {"law": "rigid"}, 'impact = {"law": "rigid"}'),
+        ("record", "a.at2", "record = a.at2"),
+    ],
+)
+def test_labels_use_the_letters_of_the_paper(key: str, value: object, text: str) -> None:
+    assert labels([key], [value]) == text
+
+
+def test_units_come_from_the_case_format() -> None:
+    assert unit("superstructure.storey_mass") == "kg"
+    assert unit("superstructure.stiffness.0") == "N/m"
+    assert unit("podium.bearing.slenderness") == "-"
+    assert unit("record") == "-"
+
+
+def test_cells_with_commas_are_quoted() -> None:
+    assert quoted('a, "b"') == '"a, ""b"""'
+    assert quoted([1, 2]) == '"[1, 2]"'
+    assert quoted(1.5) == 1.5
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        "rpscli.case.study_fields",
+        "rpscli.case.study_sources",
+        "rpscli.commands.sweep_progress",
+        "rpscli.report.study_labels",
+        "rpscli.report.study_lines",
+        "rpscli.sweep.bilinear",
+        "rpscli.sweep.described",
+        "rpscli.sweep.points_csv",
+        "rpscli.sweep.results",
+        "rpscli.sweep.statistics_spectrum",
+    ],
+)
+def test_examples_in_docstrings_hold(module: str) -> None:
+    found = doctest.testmod(import_module(module))
+    assert found.attempted > 0
+    assert found.failed == 0
