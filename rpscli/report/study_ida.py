@@ -23,6 +23,7 @@ DEMANDS = {
     "base_shear_ratio": ("-", "$V_b/V_{st}$ [-]"),
     "drift_ratio": ("-", "storey drift ratio [-]"),
 }
+MOST_CURVES = 200
 LINES = ((style.BLUE, ":"), (style.BLUE, "-"), (style.BLUE, "--"))
 
 
@@ -58,7 +59,8 @@ def ida_figure(report: IdaReport, title: str) -> bytes:
 
     def draw(axes: Axes, panel: IdaPanel) -> None:
         levels = np.concatenate([[0.0], panel.levels])
-        for curve in panel.curves:
+        # Evenly through all of them: more would only blacken the panel.
+        for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
             axes.plot(*_run_out(curve, levels, edge), color=style.GREY, lw=0.5, alpha=0.5)
         for fractile, (colour, line), share in zip(panel.fractiles, LINES, FRACTILES, strict=True):
             axes.plot(

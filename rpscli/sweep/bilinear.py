@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +12,8 @@ Array = NDArray[np.float64]
 FEWEST = 4
 """Points with different abscissae that each piece needs."""
 
-COARSE_SPLITS = 200
-"""Splits that are tried before the search narrows."""
+FINALISTS = 8
+"""Breaks that are compared once more without the rounding of long sums."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +42,7 @@ def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
     For every split of the sorted points two independent lines are fitted; if they cross between
     the neighbours of the split that is the best curve with its break there. Otherwise the best
     break of the interval is one of its ends, where the fit is linear. The least sum of squares of
-    all counts (D. J. Hudson, J. Am. Stat. Assoc. 61, 1966); among very many points every so many
-    splits are tried first.
+    all counts (D. J. Hudson, J. Am. Stat. Assoc. 61, 1966).
 
     Examples
     --------
@@ -58,64 +56,83 @@ def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
     ends = np.unique(x)
     if len(ends) < 2 * FEWEST:
         return None
-    best: Found | None = None
-    first, last = FEWEST - 1, len(ends) - FEWEST
-    step = max(1, (last - first) // COARSE_SPLITS)
-    splits = range(first, last, step)
-    while True:
-        for split in splits:
-            for knee in _candidates(x, y, ends[split], ends[split + 1]):
-                found = Found(split, knee, *_fixed_break(x, y, knee))
-                if best is None or found.squares < best.squares:
-                    best = found
-        assert best is not None, "there is a split between any two groups of points"
-        if step == 1:
-            return best.curve(len(x))
-        splits = range(max(first, best.split - step), min(last, best.split + step))
-        step = 1
+    left, right = ends[FEWEST - 1 : -FEWEST], ends[FEWEST : len(ends) - FEWEST + 1]
+    sums = _Sums(x, y)
+    crossing, squares = _crossings(sums, left, right)
+    knees = np.concatenate([crossing, left, right])
+    squares = np.concatenate([squares, _squares_at(sums, left), _squares_at(sums, right)])
+    finalists = knees[np.argsort(squares, kind="stable")[:FINALISTS]]
+    curves = [_curve(x, y, knee) for knee in finalists.tolist()]
+    return min(curves, key=lambda curve: curve.residual)
 
 
-class Found(NamedTuple):
-    """The best curve with a given break."""
+class _Sums:
+    """Sums over all points up to an abscissa, about the mean of all."""
 
-    split: int
-    knee: float
-    coefficients: Array
-    squares: float
+    def __init__(self, x: Array, y: Array) -> None:
+        self.x = x
+        self.middle = float(x.mean())
+        centred, level = x - self.middle, y - y.mean()
+        columns = (np.ones_like(x), centred, level, centred**2, centred * level, level**2)
+        self.total = np.array([[column.sum()] for column in columns])
+        self._running = np.vstack([np.cumsum(column) for column in columns])
 
-    def curve(self, points: int) -> Bilinear:
-        """The curve, fitted to so many points."""
-        start, slope, after = self.coefficients.tolist()
-        return Bilinear(
-            start=start,
-            slope=slope,
-            break_x=float(self.knee),
-            break_y=float(start + slope * self.knee),
-            slope_after=after,
-            residual=float(np.sqrt(self.squares / max(points - 4, 1))),
-        )
+    def up_to(self, abscissae: Array) -> Array:
+        """n, sums of x, y, x^2, x y, y^2 over the points up to each abscissa, (6, splits)."""
+        return np.asarray(self._running[:, np.searchsorted(self.x, abscissae, side="right") - 1])
 
 
-def _candidates(x: Array, y: Array, left: float, right: float) -> list[float]:
-    """Where two free lines cross between two neighbours, or else the neighbours."""
-    before = x <= left
-    (a, b), (c, d) = (_line(x[side], y[side]) for side in (before, ~before))
-    if b != d:
-        crossing = (c - a) / (b - d)
-        if left <= crossing <= right:
-            return [crossing]
-    return [left, right]
+def _crossings(sums: _Sums, left: Array, right: Array) -> tuple[Array, Array]:
+    """Where two free lines cross, and their sum of squares; infinite if not between neighbours."""
+    before = sums.up_to(left)
+    a, b, s = _lines(before)
+    c, d, t = _lines(sums.total - before)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = sums.middle + (c - a) / (b - d)
+    inside = (left <= crossing) & (crossing <= right)
+    return np.where(inside, crossing, left), np.where(inside, s + t, np.inf)
 
 
-def _line(x: Array, y: Array) -> tuple[float, float]:
-    middle = float(x.mean())
-    spread = x - middle
-    slope = float(spread @ (y - y.mean()) / (spread @ spread))
-    return float(y.mean()) - slope * middle, slope
+def _lines(sums: Array) -> tuple[Array, Array, Array]:
+    """Intercept, slope and sum of squares of the best lines."""
+    n, x, y, xx, xy, yy = sums
+    spread, joint = xx - x * x / n, xy - x * y / n
+    slope = joint / spread
+    return (y - slope * x) / n, slope, yy - y * y / n - slope * joint
 
 
-def _fixed_break(x: Array, y: Array, knee: float) -> tuple[Array, float]:
-    """Coefficients and sum of squares with the break at a given place."""
+def _squares_at(sums: _Sums, knees: Array) -> Array:
+    """Sum of squares of the best curves with their breaks at given places.
+
+    The curve is a + b min(x, k) + c max(x - k, 0): the normal equations of its coefficients.
+    """
+    k = knees - sums.middle
+    n, x, y, xx, xy, _ = sums.up_to(knees)
+    m, u, v, uu, uv, _ = sums.total - sums.up_to(knees)
+    low, beyond = x + m * k, u - m * k
+    matrix = np.empty((len(k), 3, 3))
+    matrix[:, 0, 0] = n + m
+    matrix[:, 0, 1] = matrix[:, 1, 0] = low
+    matrix[:, 0, 2] = matrix[:, 2, 0] = beyond
+    matrix[:, 1, 1] = xx + m * k * k
+    matrix[:, 1, 2] = matrix[:, 2, 1] = k * beyond
+    matrix[:, 2, 2] = uu - 2.0 * k * u + m * k * k
+    load = np.stack([y + v, xy + k * v, uv - k * v], axis=1)
+    found = np.linalg.solve(matrix, load[:, :, None])[:, :, 0]
+    return np.asarray(sums.total[5] - np.sum(found * load, axis=1))
+
+
+def _curve(x: Array, y: Array, knee: float) -> Bilinear:
+    """The best curve with its break at a given place."""
     columns = np.column_stack([np.ones_like(x), np.minimum(x, knee), np.maximum(x - knee, 0.0)])
     coefficients = np.linalg.lstsq(columns, y, rcond=None)[0]
-    return coefficients, float(np.sum((y - columns @ coefficients) ** 2))
+    squares = float(np.sum((y - columns @ coefficients) ** 2))
+    start, slope, after = coefficients.tolist()
+    return Bilinear(
+        start=start,
+        slope=slope,
+        break_x=knee,
+        break_y=start + slope * knee,
+        slope_after=after,
+        residual=float(np.sqrt(squares / max(len(x) - 4, 1))),
+    )

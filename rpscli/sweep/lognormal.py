@@ -16,6 +16,9 @@ from rpscli.sweep.table import Array, Indices
 Method = Literal["maximum likelihood", "penalised", "none"]
 Band = tuple[float, float]
 
+LARGEST_ARRAY = 1_000_000
+"""Resamples times points that are fitted at once: a dozen arrays of this size are held."""
+
 NOTHING: Band = (math.nan, math.nan)
 
 
@@ -129,12 +132,20 @@ def _bands(
     names, place = np.unique(cluster, return_inverse=True)
     even = np.full(len(names), 1.0 / len(names))
     drawn = generator.multinomial(len(names), even, size=options.resamples).astype(float)
-    weights = weight * drawn[:, place]
-    fits = probit_fit(x, y, weights, separated(x, y, weights), CLOSE_ENOUGH_RESAMPLED)
+    rows = max(1, LARGEST_ARRAY // len(x))
+    parts = [
+        _fits(x, y, weight * drawn[first : first + rows, place])
+        for first in range(0, len(drawn), rows)
+    ]
+    fits = Probit(*(np.concatenate(values) for values in zip(*parts, strict=True)))
     tails = (50.0 * (1.0 - options.confidence), 50.0 * (1.0 + options.confidence))
     median, beta = _moments(fits)
     low, high = np.percentile(_probability(fits, grid), tails, axis=0)
     return _percentiles(median, tails), _percentiles(beta, tails), (low, high)
+
+
+def _fits(x: Array, y: NDArray[np.bool_], weights: Array) -> Probit:
+    return probit_fit(x, y, weights, separated(x, y, weights), CLOSE_ENOUGH_RESAMPLED)
 
 
 def _percentiles(values: Array, tails: tuple[float, float]) -> Band:

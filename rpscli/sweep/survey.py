@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path as Folder
 from typing import NamedTuple
@@ -12,6 +13,7 @@ from rpscli.case.overrides import Override
 from rpscli.case.study import Study
 from rpscli.case.study_axes import Values
 from rpscli.errors import CaseError
+from rpscli.model.superstructure import Superstructure
 from rpscli.sweep.combinations import Combinations
 from rpscli.sweep.perturbation import Change
 from rpscli.sweep.points import Plan, RecordRequest
@@ -24,7 +26,8 @@ MOST_FAULTY = 8
 class Facts(NamedTuple):
     """What the layout of points and statistics must know of a system, SI units.
 
-    `period` is T1 on a fixed base, `frequency_parameter` that of the rigid frame, p_hat.
+    `period` is T1 on a fixed base, `frequency_parameter` that of the rigid frame, p_hat;
+    `building` is a digest of the superstructure, empty without one.
     """
 
     digest: bytes
@@ -34,6 +37,7 @@ class Facts(NamedTuple):
     uplift_acceleration: float
     frequency_parameter: float
     static_base_shear: float
+    building: bytes
     record: RecordRequest | None
     scale: float
 
@@ -83,9 +87,17 @@ def _facts(case: Case, known: dict[RecordRequest, RecordRequest]) -> Facts:
         uplift_acceleration=structure.uplift_acceleration,
         frequency_parameter=structure.rigid_frequency_parameter,
         static_base_shear=structure.static_base_shear,
+        building=b"" if building is None else _digest(building),
         record=request,
         scale=1.0 if case.record is None else case.record.scale,
     )
+
+
+def _digest(building: Superstructure) -> bytes:
+    digest = hashlib.sha256(repr(building.damping).encode())
+    for array in (building.masses, building.stiffnesses):
+        digest.update(array.tobytes())
+    return digest.digest()
 
 
 def _placed(

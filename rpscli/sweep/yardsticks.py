@@ -17,7 +17,6 @@ import numpy as np
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.sweep.batch import Bench
 from rpscli.sweep.design import Design
@@ -46,32 +45,28 @@ def yardsticks(design: Design, bench: Bench, store: Store, jobs: int) -> Yardsti
     keys: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, Run] = {}
     for system, facts in enumerate(design.facts):
-        structure = design.system(system).structure
-        building = structure.superstructure
-        if building is None:
+        if not facts.building:
             continue
-        identity = _digest(building, design.plan.solver)
         for request in dict.fromkeys(request or facts.record for request in design.records):
             assert request is not None, "points of histories have a record"
+            key = _key(design, bench, facts.building, request)
             try:
-                motion = bench.shelf.motion(request).horizontal
+                if key not in known and key not in runs:
+                    motion = bench.shelf.motion(request).horizontal
+                    runs[key] = Run(key, design.system(system).structure, motion)
             except RecordError:
                 continue
-            key = hashlib.sha256(identity + bench.shelf.digest(request)).digest()
             keys[system, request] = key
-            if key not in known:
-                runs[key] = Run(key, structure, motion)
     new = _computed(runs.values(), jobs)
     store.add_yardsticks({key: shears.tolist() for key, shears in new.items()})
     known |= new
     return {place: known[key] for place, key in keys.items()}
 
 
-def _digest(building: Superstructure, solver: str) -> bytes:
-    digest = hashlib.sha256(solver.encode())
-    for array in (building.masses, building.stiffnesses):
-        digest.update(array.tobytes())
-    digest.update(repr(building.damping).encode())
+def _key(design: Design, bench: Bench, building: bytes, request: RecordRequest) -> bytes:
+    digest = hashlib.sha256(design.plan.solver.encode())
+    digest.update(building)
+    digest.update(bench.shelf.digest(request))
     return digest.digest()
 
 
