@@ -1,7 +1,7 @@
 """Milliseconds of one history: the tests' scipy integrator, one lane, and eight lanes of a core.
 
-Run from the root of the repository: ``PYTHONPATH=tests python -m benchmarks.histories``. All is measured
-in one run on one core, so that the ratios mean something; the accuracy stands beside the speed.
+Run from the root of the repository: ``PYTHONPATH=tests python -m benchmarks.histories``. All is
+measured in one run on one core, so that the ratios mean something; accuracy stands beside speed.
 """
 
 from __future__ import annotations
