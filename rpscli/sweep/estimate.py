@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 from rpscli.sweep.batch import Bench, run_batch
 from rpscli.sweep.design import Design
+from rpscli.sweep.schedule import batches
 
-PROBES = 5
+PROBES = 96
 LONGEST_PROBING = 3.0
-"""Time after which no further point is tried [s]."""
+"""Time after which no further batch is tried [s]."""
 
 
 class Estimate(NamedTuple):
@@ -21,15 +22,18 @@ class Estimate(NamedTuple):
 
 
 def estimate(design: Design, bench: Bench, jobs: int) -> Estimate:
-    """Compute points spread over the study, and take the rest to be like them."""
+    """Compute points spread over the study, in batches, and take the rest to be like them."""
     count = len(design)
-    numbers = sorted({count * (2 * i + 1) // (2 * PROBES) for i in range(PROBES)})
-    run_batch(bench, [design[numbers[0]]])  # reads the record, loads the kernels
-    began, tried = time.perf_counter(), 0
-    for number in numbers:
-        run_batch(bench, [design[number]])
-        tried += 1
+    tried = min(PROBES, count)
+    numbers = sorted({count * (2 * i + 1) // (2 * tried) for i in range(tried)})
+    probes = list(batches(design, numbers, jobs=1))
+    for batch in probes:
+        run_batch(bench, batch[:1])  # reads records, loads kernels
+    began, points = time.perf_counter(), 0
+    for batch in probes:
+        run_batch(bench, batch)
+        points += len(batch)
         if time.perf_counter() - began > LONGEST_PROBING:
             break
-    mean = (time.perf_counter() - began) / tried
+    mean = (time.perf_counter() - began) / points
     return Estimate(mean, mean * count / min(jobs, count))
