@@ -14,6 +14,7 @@ from paper_structures import (
     waves,
 )
 
+from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import RayleighDamping
@@ -78,3 +79,13 @@ def test_the_yardstick_goes_on_through_the_free_vibration() -> None:
     assert len(swaying) == len(result.trace.time) == record.npts + 25
     assert np.argmax(swaying) >= record.npts
     assert result.fixed_base.drifts[0] == pytest.approx(np.max(swaying), rel=1e-14)
+
+
+def test_a_frame_has_no_yardstick() -> None:
+    record = ground([0.0, 1.0, 0.0], 0.02)
+    assert (
+        time_history(podium(0), record, TimeHistorySettings(free_vibration=0.1)).fixed_base is None
+    )
+    assert time_history(podium(1), record, with_fixed_base=False).fixed_base is None
+    with pytest.raises(ValueError, match="without superstructure"):
+        fixed_base_response(podium(0), record, 2)

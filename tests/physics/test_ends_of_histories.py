@@ -10,6 +10,7 @@ from paper_structures import FLAT, ground, needs_compiled_kernels, podium, still
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.model.impact import ImpactLaw
 
 DT = 0.01
 QUIET = TimeHistorySettings(free_vibration=0.0)
@@ -100,6 +101,21 @@ def test_without_a_recontact_tolerance_impacts_never_end(storeys: int) -> None:
     assert result.impacts == 501
     assert result.failure is not None
     assert "analysis.recontact_tolerance" in result.failure
+
+
+def test_impacts_without_time_between_them_end_a_history() -> None:
+    """Excursions shrink until their time, and then their speed, is less than any number."""
+    settings = TimeHistorySettings(
+        free_vibration=1.0, initial_rotation=1e-4, recontact_tolerance=0.0
+    )
+    structure = podium(0, 0.15, FLAT, law=ImpactLaw("value", 0.1))
+    result = time_history(structure, stillness(0.05), settings)
+    assert result.outcome == "failed"
+    assert result.failure is not None
+    assert "without time passing" in result.failure
+    assert "raise analysis.recontact_tolerance" in result.failure
+    # 1e-324 is the least number; a hundred events more without any time
+    assert 300 < result.impacts < 330 + 101
 
 
 def test_a_limit_that_is_reached_while_still_rolling() -> None:
