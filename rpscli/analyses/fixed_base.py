@@ -42,6 +42,7 @@ def fixed_base_response(
     ValueError
         If there is no building.
     """
+    from rpscli.physics.contact import SHAPES  # noqa: PLC0415
     from rpscli.physics.fixed_base import integrate_fixed_base  # noqa: PLC0415
 
     building = structure.superstructure
@@ -50,9 +51,13 @@ def fixed_base_response(
     n = building.storeys
     samples = np.empty((intervals + 1, 2 * n))
     systems = stacked_systems([(structure, TimeHistorySettings())])
-    shears, accelerations = integrate_fixed_base(
-        systems, record.acceleration, record.dt, intervals, samples
+    from rpscli.physics.workspace import empty_block  # noqa: PLC0415
+
+    tops, modes = np.zeros((2, n)), np.zeros((SHAPES + 2 * n, n))
+    integrate_fixed_base(
+        systems, record.acceleration, record.dt, samples, tops, modes, empty_block(n)
     )
+    shears, accelerations = tops
     return FixedBaseResponse(
         storey_shears=shears,
         floor_accelerations=accelerations,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rpscli.physics.geometry import Phase
 from rpscli.physics.jit import kernel, merged
+from rpscli.physics.lanes import first_lane, lane_count
 from rpscli.physics.layout import (
     ACROSS,
     ACROSS_SLOPE,
@@ -21,31 +22,33 @@ from rpscli.physics.layout import (
     BUILDING,
     CAP_BEAM_MASS,
     COLUMNS_MASS,
-    DAMPED_POWER,
     DAMPING,
     DIAMETER,
     DRAG,
     DRIVE,
     FLOORS_MASS,
     FORCE,
+    GIVEN,
     GROUND,
     GROUND_UPWARDS,
     HEIGHT,
     INERTIA,
-    INPUT_POWER,
     INVERSE_MASS,
     LEVER,
     LIFT_START,
     MASS,
     MOMENTUM,
     PATH_START,
+    PER_INERTIA,
     PUSH,
+    RESTORING,
     SCALARS,
     SHEAR,
     SIDE,
     STANDARD_GRAVITY,
     STEP,
     STIFFNESS,
+    TAKEN,
     TIME,
     UPWARDS,
     UPWARDS_SLOPE,
@@ -56,20 +59,12 @@ from rpscli.physics.tilt import (
     cap_beam_displacement,
     lever_arm,
     path_height,
+    restoring,
     tilt_acceleration,
     tilt_inertia,
     tilt_inertia_slope,
 )
 from rpscli.physics.trigonometry import sine_cosine
-
-
-@merged
-def first_lane(shape: Shape, lane: int) -> int:
-    """Where the lanes begin: at `lane` if it moves alone, else at 0.
-
-    A start that the compiler knows is what it needs to see that no index is negative.
-    """
-    return lane if len(shape.alone) > 0 else 0
 
 
 @kernel
@@ -85,7 +80,7 @@ def phase_in(b: Floats, L: int, l: int) -> Phase:
 
 
 @kernel
-def accelerate(b: Floats, shape: Shape, lane: int, stage: int, fraction: float) -> None:
+def accelerate(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
     """Accelerations of tilt and floors at a stage of a step.
 
     Parameters
@@ -95,8 +90,8 @@ def accelerate(b: Floats, shape: Shape, lane: int, stage: int, fraction: float) 
         BASE to GROUND_UPWARDS.
     shape, lane
         All lanes, or only the lane `lane` if `shape.alone`.
-    stage, fraction
-        Which stage of the step it is, and where in the step it stands.
+    fraction
+        Where in the step the stage stands.
 
     Notes
     -----
@@ -105,8 +100,7 @@ def accelerate(b: Floats, shape: Shape, lane: int, stage: int, fraction: float) 
     """
     n, L = len(shape.floors), len(shape.stride)
     first = first_lane(shape, lane)
-    last = first + len(shape.lanes)
-    du = (SCALARS + AHEAD_RATE * (n + 1)) * L
+    last = first + lane_count(shape)
     ddu = (SCALARS + AHEAD_ACCELERATION * (n + 1)) * L
     move_base(b, shape, lane, fraction)
     stretch_storeys(b, shape, lane)
@@ -114,39 +108,44 @@ def accelerate(b: Floats, shape: Shape, lane: int, stage: int, fraction: float) 
     if len(shape.dense) > 0:
         drag_floors(b, shape, lane)
     for l in range(first, last):
-        phase = phase_in(b, L, l)
-        B, C, rate = b[LEVER * L + l], b[HEIGHT * L + l], b[du + l]
-        beam, building = b[BEAM * L + l], b[BUILDING * L + l]
-        A = tilt_inertia(b[INERTIA * L + l], beam, building, phase, B, C)
-        D = tilt_inertia_slope(beam, building, phase, B, C)
         action = b[GROUND * L + l] * b[PUSH * L + l] - b[BASE_SHEAR * L + l] * b[SHEAR * L + l]
-        weight = b[GROUND_UPWARDS * L + l] * b[WEIGHT * L + l]
-        b[ddu + l] = tilt_acceleration(A, D, B, C, rate, weight, b[SIDE * L + l] * action)
+        b[ddu + l] = tilt_acceleration(
+            b[PER_INERTIA * L + l],
+            b[RESTORING * L + l],
+            b[HEIGHT * L + l],
+            b[SIDE * L + l] * action,
+        )
     if len(shape.audit) > 0:
-        note_powers(b, shape, lane, stage)
+        note_powers(b, shape, lane)
 
 
 @merged
 def move_base(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
-    """Where the cap beam is and how the ground shakes at the stage."""
+    """Where the cap beam is, how the ground shakes, and what follows for the tilt from these."""
     n, L = len(shape.floors), len(shape.stride)
     u, du = (SCALARS + AHEAD * (n + 1)) * L, (SCALARS + AHEAD_RATE * (n + 1)) * L
     first = first_lane(shape, lane)
-    for l in range(first, first + len(shape.lanes)):
+    for l in range(first, first + lane_count(shape)):
         x = b[u + l]
         sin_x, cos_x = sine_cosine(x)
         phase = phase_in(b, L, l)
-        C = path_height(phase, cos_x, sin_x)
+        B, C, rate = lever_arm(phase, cos_x, sin_x), path_height(phase, cos_x, sin_x), b[du + l]
         across = b[SIDE * L + l] * b[DIAMETER * L + l]
-        base_rate = across * C * b[du + l]
+        base_rate = across * C * rate
         time = b[TIME * L + l] + fraction * b[STEP * L + l]
         ground = b[ACROSS * L + l] + b[ACROSS_SLOPE * L + l] * time
-        b[LEVER * L + l] = lever_arm(phase, cos_x, sin_x)
+        upwards = b[UPWARDS * L + l] + b[UPWARDS_SLOPE * L + l] * time
+        beam, building = b[BEAM * L + l], b[BUILDING * L + l]
+        A = tilt_inertia(b[INERTIA * L + l], beam, building, phase, B, C)
+        D = tilt_inertia_slope(beam, building, phase, B, C)
+        b[PER_INERTIA * L + l] = 1.0 / A
+        b[RESTORING * L + l] = restoring(D, B, rate, upwards * b[WEIGHT * L + l])
+        b[LEVER * L + l] = B
         b[HEIGHT * L + l] = C
         b[BASE * L + l] = across * cap_beam_displacement(phase, x, cos_x, sin_x)
         b[BASE_RATE * L + l] = base_rate
         b[GROUND * L + l] = ground
-        b[GROUND_UPWARDS * L + l] = b[UPWARDS * L + l] + b[UPWARDS_SLOPE * L + l] * time
+        b[GROUND_UPWARDS * L + l] = upwards
         b[DRIVE * L + l] = b[DRAG * L + l] * base_rate - ground
         b[MOMENTUM * L + l] = -b[FLOORS_MASS * L + l] * base_rate
 
@@ -160,7 +159,7 @@ def stretch_storeys(b: Floats, shape: Shape, lane: int) -> None:
     """
     n, L = len(shape.floors), len(shape.stride)
     first = first_lane(shape, lane)
-    last = first + len(shape.lanes)
+    last = first + lane_count(shape)
     u, du = (SCALARS + AHEAD * (n + 1)) * L, (SCALARS + AHEAD_RATE * (n + 1)) * L
     force = (SCALARS + FORCE * (n + 1)) * L
     k, c = (SCALARS + STIFFNESS * (n + 1)) * L, (SCALARS + DAMPING * (n + 1)) * L
@@ -182,7 +181,7 @@ def move_floors(b: Floats, shape: Shape, lane: int) -> None:
     """Accelerations of the floors, and the base shear V = 1^T (K v + C v')."""
     n, L = len(shape.floors), len(shape.stride)
     first = first_lane(shape, lane)
-    last = first + len(shape.lanes)
+    last = first + lane_count(shape)
     du = (SCALARS + AHEAD_RATE * (n + 1)) * L
     ddu = (SCALARS + AHEAD_ACCELERATION * (n + 1)) * L
     force = (SCALARS + FORCE * (n + 1)) * L
@@ -206,7 +205,7 @@ def drag_floors(b: Floats, shape: Shape, lane: int) -> None:
     """The same for a damping matrix that is not a0 M + a1 K: what it adds."""
     n, L = len(shape.floors), len(shape.stride)
     first = first_lane(shape, lane)
-    last = first + len(shape.lanes)
+    last = first + lane_count(shape)
     du = (SCALARS + AHEAD_RATE * (n + 1)) * L
     ddu = (SCALARS + AHEAD_ACCELERATION * (n + 1)) * L
     matrix = SCALARS + BLOCKS * (n + 1)
@@ -221,13 +220,13 @@ def drag_floors(b: Floats, shape: Shape, lane: int) -> None:
 
 
 @merged
-def note_powers(b: Floats, shape: Shape, lane: int, stage: int) -> None:
+def note_powers(b: Floats, shape: Shape, lane: int) -> None:
     """Energy flows at the stage [W]: what the ground puts in, and what dampers take (Theory 8)."""
     n, L = len(shape.floors), len(shape.stride)
     first = first_lane(shape, lane)
-    last = first + len(shape.lanes)
+    last = first + lane_count(shape)
     du = (SCALARS + AHEAD_RATE * (n + 1)) * L
-    taken = (DAMPED_POWER + stage) * L
+    taken = TAKEN * L
     for l in range(first, last):
         base_rate = b[BASE_RATE * L + l]
         lifted = 0.5 * b[COLUMNS_MASS * L + l] + b[CAP_BEAM_MASS * L + l] + b[FLOORS_MASS * L + l]
@@ -235,7 +234,7 @@ def note_powers(b: Floats, shape: Shape, lane: int, stage: int) -> None:
         lifting = b[DIAMETER * L + l] * b[LEVER * L + l] * b[du + l]
         upwards = b[GROUND_UPWARDS * L + l] - b[STANDARD_GRAVITY * L + l]
         given = b[GROUND * L + l] * momentum + upwards * lifted * lifting
-        b[(INPUT_POWER + stage) * L + l] = -given
+        b[GIVEN * L + l] = -given
         b[taken + l] = 0.0
     for i in range(n):
         c, m = (SCALARS + DAMPING * (n + 1) + i) * L, (SCALARS + MASS * (n + 1) + i) * L

@@ -9,17 +9,21 @@ interval, so its modes advance without error. The storey uplifts to the side s w
 leaves zero downwards (Theory, section 3): exactly where s theta'' of the uplifted equation would
 become positive.
 
-All that a lane needs stands in its modal rows z (rows, n), see `Q` to `SHAPES`.
+Exact steps may be as many as one likes before one looks at them, so they are taken in blocks: the
+modes are followed through a block one after the other, then everything that is wanted of its
+instants is computed for all of them at once, in vector instructions. Entry k of each row of a block
+belongs to the state after k steps. What a lane needs besides stands in its modal rows z (rows, n),
+see `Q` to `SHAPES`.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from rpscli.physics.events import NO_PASSAGE, first_descent, lower_hull, quintic
+from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, lower_hull, quintic
 from rpscli.physics.jit import kernel, part
 from rpscli.physics.oscillator import transition
-from rpscli.physics.parameters import Floats, Systems
+from rpscli.physics.parameters import Block, Floats, Systems
 
 (
     Q,  # modal displacements
@@ -31,17 +35,43 @@ from rpscli.physics.parameters import Floats, Systems
     PARTICIPATION,
     SQUARE,  # w^2
     DRAG,  # 2 xi w
-    PULL,  # w^2 q + 2 xi w q': what the modes pull with, over their masses
-    SHEARS,  # elastic storey shears and floor pulls, scratch
-    PULLS,
     WHOLE,  # 8 rows: `oscillator.transition` over a contact step
-) = range(13)
+) = range(10)
 PART = WHOLE + 8  # 8 rows: over a part of one
 SHAPES = PART + 8  # n rows: mode shapes; then n rows: storey shears of each mode
 
+COLUMNS = 32
+"""Instants of a block, its start included."""
+
+(
+    AT,  # acceleration of the ground, and its slope over the step that begins
+    SLOPE,
+    RISE,  # g + a_v, and its slope
+    RISE_SLOPE,
+    PUSH,  # base shear of the modes, and two derivatives but for what the ground's slope adds
+    PUSH_SLOPE,
+    PUSH_BEND,
+    ALARM,  # 1 if the storey might uplift in the step that begins
+    SEEN,  # 1 at samples of the record that come before any uplift
+    GIVEN,  # energy put in and damped during the step that begins
+    TAKEN,
+    SHEAR,  # scratch of one floor
+    PULL,
+    FRICTION_TOPS,  # extremes since full contact began, column by column
+    FRICTION_BOTTOMS,
+    NORMAL_TOPS,
+    NORMAL_BOTTOMS,
+    ROWS,  # how many they are
+) = range(18)
+
+# Rows of a mode: displacement, velocity, and pull w^2 q + 2 xi w q' over its mass; of a floor:
+# largest storey shear and absolute acceleration since full contact began.
+MODAL_Q, MODAL_DQ, MODAL_PULL = range(3)
+TOP_SHEAR, TOP_ACCELERATION = range(2)
+
 
 class Stance(NamedTuple):
-    """What the margin against uplift is made of, and how the ground moves in the interval.
+    """What the margin against uplift is made of.
 
     `own` is 1 + 2 gamma, `share` 2 gamma eta/M_tot [1/kg], `lift` tan(alpha) times the whole,
     `creep` sum Gamma^2 2 xi w.
@@ -51,18 +81,6 @@ class Stance(NamedTuple):
     share: float
     lift: float
     creep: float
-    across: float
-    across_slope: float
-    upwards: float
-    upwards_slope: float
-
-
-class Push(NamedTuple):
-    """Base shear of the modes and its two derivatives, but for what the ground's slope adds."""
-
-    shear: float
-    slope: float
-    bend: float
 
 
 @kernel
@@ -94,152 +112,198 @@ def fill_transition(z: Floats, h: float, row: int) -> None:
 
 
 @kernel
-def advance_modes(z: Floats, across: float, slope: float, row: int) -> None:
-    """Exact modal states one step later, to Q_END and DQ_END; the map stands at `row`.
+def march(block: Block, z: Floats, row: int) -> None:
+    """Follow every mode through a block, from Q and DQ; the map of a step stands at `row`.
 
-    `across` is the ground acceleration at the start of the step, `slope` its rate.
+    Reads the ground's motion (rows AT and SLOPE) and writes the modes' rows and the push. Few rows
+    meet in each loop over instants: so the compiler finds it worth checking that they do not
+    overlap, and makes vector instructions.
     """
+    c = block.rows
+    for k in range(COLUMNS):
+        c[PUSH * COLUMNS + k] = 0.0
+        c[PUSH_SLOPE * COLUMNS + k] = 0.0
+        c[PUSH_BEND * COLUMNS + k] = 0.0
+    follow(block, z, row)
     for r in range(z.shape[1]):
-        q, dq = z[Q, r], z[DQ, r]
-        still = z[row + 2, r] * across + z[row + 3, r] * slope
-        moving = z[row + 6, r] * across + z[row + 7, r] * slope
-        z[Q_END, r] = z[row, r] * q + z[row + 1, r] * dq + still
-        z[DQ_END, r] = z[row + 4, r] * q + z[row + 5, r] * dq + moving
+        qs, dqs = block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ]
+        pulls = block.modes[r, MODAL_PULL]
+        part, square, drag = z[PARTICIPATION, r], z[SQUARE, r], z[DRAG, r]
+        for k in range(COLUMNS):
+            pulls[k] = square * qs[k] + drag * dqs[k]
+        for k in range(COLUMNS):
+            c[PUSH * COLUMNS + k] += part * pulls[k]
+        for k in range(COLUMNS):
+            ddq = -part * c[AT * COLUMNS + k] - pulls[k]
+            rise = square * dqs[k] + drag * ddq
+            c[PUSH_SLOPE * COLUMNS + k] += part * rise
+            c[PUSH_BEND * COLUMNS + k] += part * (square * ddq - drag * rise)
 
 
 @kernel
-def push_of(z: Floats, row: int, across: float) -> Push:
-    """Base shear of the modal states in two rows from `row`, a_g = `across`; writes PULL."""
-    V, dV, ddV = 0.0, 0.0, 0.0
+def follow(block: Block, z: Floats, row: int) -> None:
+    """States of all modes at all instants: each is the map of the one before.
+
+    Mode after mode within an instant, so that none waits for its own last step.
+    """
+    c, modes, n = block.rows, block.modes, z.shape[1]
+    for r in range(n):
+        z[Q_END, r], z[DQ_END, r] = z[Q, r], z[DQ, r]
+    for k in range(COLUMNS):
+        at, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
+        for r in range(n):
+            q, dq = z[Q_END, r], z[DQ_END, r]
+            modes[r, MODAL_Q, k], modes[r, MODAL_DQ, k] = q, dq
+            still = z[row + 2, r] * at + z[row + 3, r] * slope
+            moving = z[row + 6, r] * at + z[row + 7, r] * slope
+            z[Q_END, r] = z[row, r] * q + (z[row + 1, r] * dq + still)
+            z[DQ_END, r] = z[row + 4, r] * q + (z[row + 5, r] * dq + moving)
+
+
+@kernel
+def keep(block: Block, z: Floats, k: int) -> None:
+    """Make the state after k steps of the block the present one."""
     for r in range(z.shape[1]):
-        part, square, drag = z[PARTICIPATION, r], z[SQUARE, r], z[DRAG, r]
-        q, dq = z[row, r], z[row + 1, r]
-        pull = square * q + drag * dq
-        ddq = -part * across - pull
-        rise = square * dq + drag * ddq
-        z[PULL, r] = pull
-        V += part * pull
-        dV += part * rise
-        ddV += part * (square * ddq - drag * rise)
-    return Push(V, dV, ddV)
+        z[Q, r], z[DQ, r] = block.modes[r, MODAL_Q, k], block.modes[r, MODAL_DQ, k]
 
 
 @part
-def keep_end(z: Floats) -> None:
-    """Make the end of the step the present state."""
-    for r in range(z.shape[1]):
-        z[Q, r], z[DQ, r] = z[Q_END, r], z[DQ_END, r]
-
-
-@part
-def contact_energies(z: Floats, across: float, slope: float, h: float) -> tuple[float, float]:
-    """Energy put in by the ground and damped during an exact step [J].
+def energies(block: Block, z: Floats, h: float) -> None:
+    """Energy put in by the ground and damped during each step of length h [J].
 
     The input -int a_g 1^T M u' dt is exact: integrated by parts it needs int q dt, which the
-    equation of motion gives. The damped energy is a trapezoid corrected with end slopes, of order
-    4, independent of the solution's own balance so that the audit can show something.
+    equation of motion gives. The damped energy, with the square of the velocity, is that of the
+    quintic with the values, slopes and curvatures of both ends: of order 6, and independent of the
+    solution's own balance so that the audit can show something.
     """
-    a0, a1 = across, across + slope * h
-    given, damped = 0.0, 0.0
+    c = block.rows
+    for k in range(COLUMNS):
+        c[GIVEN * COLUMNS + k], c[TAKEN * COLUMNS + k] = 0.0, 0.0
     for r in range(z.shape[1]):
+        qs, dqs = block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ]
         part, square, drag = z[PARTICIPATION, r], z[SQUARE, r], z[DRAG, r]
-        q0, v0, q1, v1 = z[Q, r], z[DQ, r], z[Q_END, r], z[DQ_END, r]
-        area = (-part * 0.5 * (a0 + a1) * h - (v1 - v0) - drag * (q1 - q0)) / square
-        given -= part * (a1 * q1 - a0 * q0 - slope * area)
-        g0 = -part * a0 - drag * v0 - square * q0
-        g1 = -part * a1 - drag * v1 - square * q1
-        damped += drag * (0.5 * h * (v0 * v0 + v1 * v1) + h * h / 6.0 * (v0 * g0 - v1 * g1))
-    return given, damped
+        for k in range(COLUMNS - 1):
+            a0, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
+            a1 = a0 + slope * h
+            q0, q1, v0, v1 = qs[k], qs[k + 1], dqs[k], dqs[k + 1]
+            area = (-part * 0.5 * (a0 + a1) * h - (v1 - v0) - drag * (q1 - q0)) / square
+            g0 = -part * a0 - drag * v0 - square * q0
+            g1 = -part * a1 - drag * v1 - square * q1
+            c[GIVEN * COLUMNS + k] -= part * (a1 * q1 - a0 * q0 - slope * area)
+            j0 = -part * slope - drag * g0 - square * v0
+            j1 = -part * slope - drag * g1 - square * v1
+            ends = 0.5 * (v0 * v0 + v1 * v1) + h / 5.0 * (v0 * g0 - v1 * g1)
+            bends = h * h / 60.0 * (g0 * g0 + v0 * j0 + (g1 * g1 + v1 * j1))
+            c[TAKEN * COLUMNS + k] += drag * h * (ends + bends)
 
 
 @kernel
+def push_path(c: Floats, stance: Stance, h: float, k: int) -> Quintic:
+    """What pushes the storey over, q(t) of this module, during the step after k others."""
+    slope = c[SLOPE * COLUMNS + k]
+    start = c[AT * COLUMNS + k]
+    bend = -stance.share * stance.creep * slope
+    return quintic(
+        h,
+        stance.share * c[PUSH * COLUMNS + k] - stance.own * start,
+        stance.share * c[PUSH_SLOPE * COLUMNS + k] - stance.own * slope,
+        stance.share * c[PUSH_BEND * COLUMNS + k] + bend,
+        stance.share * c[PUSH * COLUMNS + k + 1] - stance.own * (start + slope * h),
+        stance.share * c[PUSH_SLOPE * COLUMNS + k + 1] - stance.own * slope,
+        stance.share * c[PUSH_BEND * COLUMNS + k + 1] + bend,
+    )
+
+
+@kernel
+def margin_path(path: Quintic, limit: float, climb: float, side: float) -> Quintic:
+    """The margin against uplift to a side: the limit is linear, its coefficients rise evenly."""
+    return (
+        limit - side * path[0],
+        limit + 0.2 * climb - side * path[1],
+        limit + 0.4 * climb - side * path[2],
+        limit + 0.6 * climb - side * path[3],
+        limit + 0.8 * climb - side * path[4],
+        limit + climb - side * path[5],
+    )
+
+
+@part
+def raise_alarms(c: Floats, stance: Stance, h: float, least: float) -> None:
+    """Write ALARM: 0 for steps in which the margin surely stays positive to both sides.
+
+    `least` is the share of the limit that has to be left for that.
+    """
+    for k in range(COLUMNS):
+        path = push_path(c, stance, h, k)
+        limit = stance.lift * c[RISE * COLUMNS + k]
+        climb = stance.lift * (c[RISE_SLOPE * COLUMNS + k] * h)
+        one = margin_path(path, limit, climb, 1.0)
+        other = margin_path(path, limit, climb, -1.0)
+        margin = min(lower_hull(one), one[0], lower_hull(other), other[0])
+        c[ALARM * COLUMNS + k] = 0.0 if margin >= least * limit else 1.0
+
+
+@kernel
+def first_uplift(c: Floats, stance: Stance, h: float, k: int, piece: Floats) -> tuple[float, float]:
+    """Fraction of the step after k others at which the storey uplifts, and the side (0: none).
+
+    `piece` (6,) is scratch.
+    """
+    path = push_path(c, stance, h, k)
+    limit = stance.lift * c[RISE * COLUMNS + k]
+    climb = stance.lift * (c[RISE_SLOPE * COLUMNS + k] * h)
+    first, side = NO_PASSAGE, 0.0
+    for sign in (1.0, -1.0):
+        t = first_descent(margin_path(path, limit, climb, sign), piece)
+        if t < first:
+            first, side = t, sign
+    return first, side
+
+
+@part
 def margin_after(
-    z: Floats, stance: Stance, time: float, h: float, side: float
+    c: Floats, z: Floats, stance: Stance, h: float, k: int, side: float
 ) -> tuple[float, float]:
-    """Margin f against uplift to `side` and its slope, a time h after `time`, exactly."""
+    """Margin f against uplift to `side` and its slope, a time h into the step after k, exactly.
+
+    The state at the start of that step stands in Q and DQ.
+    """
     fill_transition(z, h, PART)
-    advance_modes(z, stance.across + stance.across_slope * time, stance.across_slope, PART)
-    across = stance.across + stance.across_slope * (time + h)
-    push = push_of(z, Q_END, across)
-    q = stance.share * push.shear - stance.own * across
-    dq = stance.share * push.slope - stance.own * stance.across_slope
-    limit = stance.lift * (stance.upwards + stance.upwards_slope * (time + h))
-    return limit - side * q, stance.lift * stance.upwards_slope - side * dq
+    at, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
+    then = at + slope * h
+    V, dV = 0.0, 0.0
+    for r in range(z.shape[1]):
+        q, dq = z[Q, r], z[DQ, r]
+        q_end = z[PART, r] * q + z[PART + 1, r] * dq
+        q_end += z[PART + 2, r] * at + z[PART + 3, r] * slope
+        dq_end = z[PART + 4, r] * q + z[PART + 5, r] * dq
+        dq_end += z[PART + 6, r] * at + z[PART + 7, r] * slope
+        pull = z[SQUARE, r] * q_end + z[DRAG, r] * dq_end
+        ddq_end = -z[PARTICIPATION, r] * then - pull
+        V += z[PARTICIPATION, r] * pull
+        dV += z[PARTICIPATION, r] * (z[SQUARE, r] * dq_end + z[DRAG, r] * ddq_end)
+    push = stance.share * V - stance.own * then
+    slope_of_push = stance.share * dV - stance.own * slope
+    limit = stance.lift * (c[RISE * COLUMNS + k] + c[RISE_SLOPE * COLUMNS + k] * h)
+    return limit - side * push, stance.lift * c[RISE_SLOPE * COLUMNS + k] - side * slope_of_push
 
 
 @part
 def locate_uplift(
-    z: Floats, stance: Stance, time: float, h: float, guess: float, side: float
+    c: Floats, z: Floats, stance: Stance, h: float, k: int, guess: float, side: float
 ) -> float:
-    """Time after `time`, near guess in [0, h], at which the margin is zero to rounding.
+    """Time into the step after k others, near guess in [0, h], where the margin is zero.
 
-    Newton's method on the exact margin; leaves the modal state there in Q_END. A margin that only
-    grazes zero has no steep root; the interpolant's own root then stands.
+    Newton's method on the exact margin. A margin that only grazes zero has no steep root; the
+    interpolant's own root then stands.
     """
     t = guess
     for _ in range(6):
-        f, slope = margin_after(z, stance, time, t, side)
+        f, slope = margin_after(c, z, stance, t, k, side)
         if slope >= 0.0:
             break
         change = -f / slope
         if not 0.0 <= t + change <= h or abs(change) < 1e-15 * h:
             break
         t += change
-    margin_after(z, stance, time, t, side)
     return t
-
-
-@part
-def step_contact(
-    z: Floats, stance: Stance, time: float, h: float, row: int, before: Push, piece: Floats
-) -> tuple[float, float, Push]:
-    """Advance the modes by h, or to the uplift if that comes first, to Q_END and DQ_END.
-
-    Parameters
-    ----------
-    row
-        Where the exact map over h stands.
-    before
-        The push at `time`.
-    piece
-        (6,) scratch.
-
-    Returns
-    -------
-    Time advanced [s], the side of uplift (0 if none), and the push at the end of the step.
-    """
-    slope = stance.across_slope
-    start = stance.across + slope * time
-    end = start + slope * h
-    advance_modes(z, start, slope, row)
-    after = push_of(z, Q_END, end)
-    climb = stance.lift * stance.upwards_slope
-    limit = stance.lift * (stance.upwards + stance.upwards_slope * time)
-    bend = -stance.share * stance.creep * slope
-    path = quintic(
-        h,
-        stance.share * before.shear - stance.own * start,
-        stance.share * before.slope - stance.own * slope,
-        stance.share * before.bend + bend,
-        stance.share * after.shear - stance.own * end,
-        stance.share * after.slope - stance.own * slope,
-        stance.share * after.bend + bend,
-    )
-    first, side = NO_PASSAGE, 0.0
-    for sign in (1.0, -1.0):
-        # The limit is linear: its coefficients rise evenly.
-        margin = (
-            limit - sign * path[0],
-            limit + 0.2 * h * climb - sign * path[1],
-            limit + 0.4 * h * climb - sign * path[2],
-            limit + 0.6 * h * climb - sign * path[3],
-            limit + 0.8 * h * climb - sign * path[4],
-            limit + h * climb - sign * path[5],
-        )
-        if min(lower_hull(margin), margin[0]) < 0.0:
-            t = first_descent(margin, piece)
-            if t < first:
-                first, side = t, sign
-    if side == 0.0:
-        return h, side, after
-    return locate_uplift(z, stance, time, h, first * h, side), side, after

@@ -9,21 +9,19 @@ a history does not depend on its neighbours.
 
 from __future__ import annotations
 
-import numpy as np
-
 from rpscli.physics.acceleration import accelerate
-from rpscli.physics.contact import SHAPES
 from rpscli.physics.energy import building_energy, uplifted_energy
-from rpscli.physics.flight import attend, go_on, plan_step, set_step, settle
-from rpscli.physics.inspection import observe, search_events, take_over
+from rpscli.physics.flight import attend, book_energy, plan_step, set_step, settle
+from rpscli.physics.inspection import observe, raise_contacts, search_events, take_over
 from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
     ACCELERATION,
+    ACROSS,
     AHEAD,
     AHEAD_ACCELERATION,
     AHEAD_RATE,
     AT_REST,
-    BLOCKS,
+    ATTEND,
     COUNTS,
     CREATED,
     CREATING,
@@ -36,6 +34,10 @@ from rpscli.physics.layout import (
     FRICTION_BOTTOM,
     FRICTION_TOP,
     FULL_CONTACT,
+    GIVEN,
+    GIVEN_FIRST,
+    GROUND,
+    GROUND_UPWARDS,
     INPUT,
     INTERVAL,
     LOST,
@@ -76,9 +78,12 @@ from rpscli.physics.layout import (
     STALE,
     STOREY_SHEAR,
     SURVIVED,
+    TAKEN,
+    TAKEN_FIRST,
     UPLIFT,
+    UPWARDS,
     VELOCITY,
-    WHOLE_NUMBERS,
+    WATCH,
 )
 from rpscli.physics.loading import begin, lean
 from rpscli.physics.parameters import (
@@ -91,14 +96,13 @@ from rpscli.physics.parameters import (
 )
 from rpscli.physics.peak import watch_peak
 from rpscli.physics.progress import store_sample
-from rpscli.physics.runge_kutta import EVALUATIONS as EVALUATIONS_OF_A_STEP
 from rpscli.physics.runge_kutta import step
-from rpscli.physics.standing import observe_contact, stand, to_floors
+from rpscli.physics.standing import stand, to_floors
 from rpscli.physics.switch import now
 from rpscli.physics.table import podium_of
+from rpscli.physics.workspace import empty_lanes
 
 
-@kernel
 def integrate(
     systems: Systems, motions: Motions, points: Points, shape: Shape, results: Results
 ) -> None:
@@ -111,39 +115,31 @@ def integrate(
     shape
         Sizes: n must be that of the systems, the lanes at least one.
     """
-    n, L = len(shape.floors), len(shape.stride)
-    rows = SCALARS + BLOCKS * (n + 1) + (n * n if len(shape.dense) > 0 else 0)
-    lanes = Lanes(
-        np.zeros(rows * L),
-        np.zeros((L, WHOLE_NUMBERS), np.int64),
-        np.zeros((L, systems.podium.shape[1])),
-        np.zeros((L, SHAPES + 2 * n, n)),
-        np.zeros(6),
-        motions.acceleration,
-        results.samples,
-        results.log,
-    )
+    integrate_lanes(systems, points, motions, shape, results, empty_lanes(motions, shape, results))
+
+
+@kernel
+def integrate_lanes(
+    systems: Systems,
+    points: Points,
+    motions: Motions,
+    shape: Shape,
+    results: Results,
+    lanes: Lanes,
+) -> None:
+    """The same, in lanes that are made already."""
+    L = len(shape.stride)
     b, whole = lanes.buffer, lanes.integers
     for l in range(L):
         whole[l, POINT] = NO_POINT
     waiting, active, started = 0, L, False
     while active > 0:
         if started:
-            step(b, shape, (n + 1) * L)
-            search_events(b, shape)
-            for l in range(L):
-                if b[QUIET * L + l] > 0.0:
-                    watch_peak(lanes, shape, l)
-            observe(b, shape)
-            take_over(b, shape)
+            advance(lanes, shape)
         for l in range(L):
-            flies = False
-            if started:
-                if whole[l, POINT] == NO_POINT:
-                    continue
-                whole[l, EVALUATIONS] += EVALUATIONS_OF_A_STEP
-                quiet = b[QUIET * L + l] > 0.0
-                flies = go_on(lanes, shape, l) if quiet else attend(lanes, shape, l)
+            if started and (whole[l, POINT] == NO_POINT or b[ATTEND * L + l] == 0.0):
+                continue
+            flies = started and attend(lanes, shape, l)
             while not flies or b[STALE * L + l] != FRESH:
                 if flies:
                     refresh(lanes, shape, l)
@@ -158,6 +154,24 @@ def integrate(
 
 
 @part
+def advance(lanes: Lanes, shape: Shape) -> None:
+    """Take a step in all lanes, and what needs no decision: most steps hold no event."""
+    L = len(shape.stride)
+    b = lanes.buffer
+    step(b, shape, (len(shape.floors) + 1) * L)
+    search_events(b, shape)
+    for l in range(L):
+        if b[WATCH * L + l] > 0.0:
+            watch_peak(lanes, shape, l)
+    observe(b, shape)
+    take_over(b, shape)
+    if len(shape.audit) > 0:
+        for l in range(L):
+            if b[QUIET * L + l] > 0.0:
+                book_energy(b, shape, l)
+
+
+@part
 def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
     """Accelerations of one lane at its present state and time."""
     n, L = len(shape.floors), len(shape.stride)
@@ -167,11 +181,12 @@ def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
         velocity = b[(SCALARS + VELOCITY * (n + 1) + c) * L + l]
         b[(SCALARS + AHEAD * (n + 1) + c) * L + l] = position
         b[(SCALARS + AHEAD_RATE * (n + 1) + c) * L + l] = velocity
-    accelerate(b, alone(shape), l, 0, 0.0)
+    accelerate(b, alone(shape), l, 0.0)
     for c in range(n + 1):
         acceleration = b[(SCALARS + AHEAD_ACCELERATION * (n + 1) + c) * L + l]
         b[(SCALARS + ACCELERATION * (n + 1) + c) * L + l] = acceleration
-    lanes.integers[l, EVALUATIONS] += 1
+    b[EVALUATIONS * L + l] += 1.0
+    b[GIVEN_FIRST * L + l], b[TAKEN_FIRST * L + l] = b[GIVEN * L + l], b[TAKEN * L + l]
 
 
 @kernel
@@ -207,7 +222,8 @@ def engage(
             plan_step(b, shape, l)
             return waiting
         store_sample(lanes, shape, l)
-        observe_contact(lanes, L, l)
+        b[GROUND * L + l], b[GROUND_UPWARDS * L + l] = b[ACROSS * L + l], b[UPWARDS * L + l]
+        raise_contacts(b, L, l, 1.0, 0.0, 0.0, 0.0)
         if stand(lanes, shape, l):
             plan_step(b, shape, l)
             return waiting
@@ -255,7 +271,7 @@ def finish(lanes: Lanes, shape: Shape, l: int, results: Results) -> None:
         numbers[OUT_FLOORS + n + i] = b[(SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l]
     integers[OUT_OUTCOME], integers[OUT_MOTION] = whole[l, OUTCOME], whole[l, MOTION]
     integers[OUT_INTERVALS] = whole[l, INTERVAL]
-    integers[OUT_EVALUATIONS] = whole[l, EVALUATIONS]
+    integers[OUT_EVALUATIONS] = int(b[EVALUATIONS * L + l])
     integers[OUT_CREATING] = whole[l, CREATING]
     for i in range(EVENT_KINDS):
         integers[OUT_COUNTS + i] = whole[l, COUNTS + i]

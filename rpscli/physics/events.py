@@ -146,7 +146,7 @@ def descent_in(piece: NDArray[np.float64]) -> float:
         better = t - f / fall if fall < 0.0 else -1.0
         if not low <= better <= high:
             better = 0.5 * (low + high)
-        if abs(better - t) < 1e-16:
+        if abs(better - t) <= 1e-15 * t:
             break
         t = better
     return t

@@ -11,33 +11,34 @@ import math
 
 from rpscli.physics.events import NO_PASSAGE, first_descent, offset
 from rpscli.physics.inspection import tilt_path
-from rpscli.physics.jit import kernel, part
+from rpscli.physics.jit import kernel, merged, part
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
     AHEAD_ACCELERATION,
     AHEAD_RATE,
-    AT_SAMPLE,
     BASE,
     COUNTS,
     DAMPED,
-    DAMPED_POWER,
     EVENT,
     EVENT_KINDS,
     FAILED_NOT_FINITE,
     FAILED_STEP_TOO_SMALL,
     FAILED_TOO_MANY_EVENTS,
     FLIGHT_STEP,
+    FLIGHT_STEPS,
     FRESH,
+    GIVEN,
+    GIVEN_FIRST,
+    GIVEN_MEAN,
     HIGH,
     IMPACT,
     INPUT,
-    INPUT_POWER,
     INTERVAL,
     INTERVAL_LENGTH,
     LANDED,
-    LAST,
     LEANING,
+    LEFT,
     LEVEL,
     LIFTED_OFF,
     LOCATING,
@@ -52,6 +53,7 @@ from rpscli.physics.layout import (
     OVERTURNED_ROLLING,
     OVERTURNING,
     POSITION,
+    QUIET,
     ROCKING,
     ROLLING,
     ROLLING_TO_ROCKING,
@@ -61,13 +63,15 @@ from rpscli.physics.layout import (
     STALLED,
     STEP,
     STEPS,
+    TAKEN,
+    TAKEN_FIRST,
+    TAKEN_MEAN,
     TIME,
     VELOCITY,
 )
 from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
 from rpscli.physics.peak import watch_peak
-from rpscli.physics.progress import next_interval, store_sample
-from rpscli.physics.runge_kutta import energy_over_step
+from rpscli.physics.progress import enter_interval, store_sample
 from rpscli.physics.standing import stand, to_modes
 from rpscli.physics.switch import (
     comes_to_rest,
@@ -87,7 +91,7 @@ STALL = 100
 """So many events in a row without time passing: the step cannot be made small enough."""
 
 
-@kernel
+@merged
 def set_step(b: Floats, shape: Shape, l: int, h: float) -> None:
     """Set the length of the next step of a lane [s]."""
     n, L = len(shape.floors), len(shape.stride)
@@ -98,7 +102,7 @@ def set_step(b: Floats, shape: Shape, l: int, h: float) -> None:
 
 @kernel
 def plan_step(b: Floats, shape: Shape, l: int) -> None:
-    """Length of the next step: even parts of what is left of the interval.
+    """Length of the next steps: even parts of what is left of the interval.
 
     Nothing may be left after an event on the very sample; a step of length 0 then leads over.
     """
@@ -106,22 +110,18 @@ def plan_step(b: Floats, shape: Shape, l: int) -> None:
     left = b[INTERVAL_LENGTH * L + l] - b[TIME * L + l]
     steps = max(math.ceil(left / b[FLIGHT_STEP * L + l] - 1e-9), 1)
     set_step(b, shape, l, max(left, 0.0) / steps)
-    b[AT_SAMPLE * L + l] = 1.0 if steps == 1 else 0.0
+    b[LEFT * L + l] = steps
     b[LOCATING * L + l] = 0.0
 
 
 @kernel
-def pass_time(lanes: Lanes, shape: Shape, l: int) -> None:
-    """Book the step that was taken over."""
+def book_energy(b: Floats, shape: Shape, l: int) -> None:
+    """Book the energy of the step that was taken over, if it is audited."""
     L = len(shape.stride)
-    b = lanes.buffer
-    b[TIME * L + l] += b[STEP * L + l]
     if len(shape.audit) > 0:
-        given, damped = energy_over_step(b, L, l)
-        b[INPUT * L + l] += given
-        b[DAMPED * L + l] += damped
-        b[INPUT_POWER * L + l] = b[(INPUT_POWER + LAST) * L + l]
-        b[DAMPED_POWER * L + l] = b[(DAMPED_POWER + LAST) * L + l]
+        b[INPUT * L + l] += b[STEP * L + l] * b[GIVEN_MEAN * L + l]
+        b[DAMPED * L + l] += b[STEP * L + l] * b[TAKEN_MEAN * L + l]
+        b[GIVEN_FIRST * L + l], b[TAKEN_FIRST * L + l] = b[GIVEN * L + l], b[TAKEN * L + l]
 
 
 @part
@@ -187,8 +187,10 @@ def arrive(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> None:
         for c in range(n + 1):
             end = b[(SCALARS + ahead * (n + 1) + c) * L + l]
             b[(SCALARS + state * (n + 1) + c) * L + l] = end
-    whole[l, STALLED] = whole[l, STALLED] + 1 if b[STEP * L + l] == 0.0 else 0
-    pass_time(lanes, shape, l)
+    before = b[TIME * L + l]
+    b[TIME * L + l] += b[STEP * L + l]
+    whole[l, STALLED] = whole[l, STALLED] + 1 if b[TIME * L + l] == before else 0
+    book_energy(b, shape, l)
     kind = whole[l, EVENT]
     if kind == IMPACT:
         land(lanes, n, L, l, podium)
@@ -221,24 +223,29 @@ def too_many(lanes: Lanes, l: int, podium: Podium) -> bool:
 
 @part
 def go_on(lanes: Lanes, shape: Shape, l: int) -> bool:
-    """Book a quiet step and plan the next; False if the history of the lane is over."""
+    """Enter the record's next interval; False if the history of the lane is over."""
     L = len(shape.stride)
     b, whole = lanes.buffer, lanes.integers
-    pass_time(lanes, shape, l)
-    if b[AT_SAMPLE * L + l] > 0.0:
-        if next_interval(lanes, shape, l):
-            return False
-        if whole[l, INTERVAL] + 1 == whole[l, NPTS]:
-            b[STALE * L + l] = MOVED_ON  # the ground acceleration may jump to zero
-    plan_step(b, shape, l)
+    over = enter_interval(lanes, shape, l, whole[l, INTERVAL] + 1)
+    if lanes.samples.shape[0] > 0:
+        store_sample(lanes, shape, l)
+    if over:
+        return False
+    if whole[l, INTERVAL] + 1 == whole[l, NPTS]:
+        b[STALE * L + l] = MOVED_ON  # the ground acceleration may jump to zero
+    b[LEFT * L + l] = b[FLIGHT_STEPS * L + l]
+    if b[STEP * L + l] != b[FLIGHT_STEP * L + l]:
+        set_step(b, shape, l, b[FLIGHT_STEP * L + l])
     return True
 
 
 @part
 def attend(lanes: Lanes, shape: Shape, l: int) -> bool:
-    """Deal with a step that holds an event; False if the history of the lane is over."""
+    """Deal with a step that ends at a sample or holds an event; False if the history is over."""
     L = len(shape.stride)
     b, whole = lanes.buffer, lanes.integers
+    if b[QUIET * L + l] > 0.0:
+        return go_on(lanes, shape, l)
     podium = podium_of(lanes.podium, l)
     if b[LOCATING * L + l] == 0.0:
         if not aim(lanes, shape, l, podium):

@@ -9,19 +9,22 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.events import Quintic, lower_hull, quintic, upper_hull
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, merged
+from rpscli.physics.lanes import lane_count
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
     AHEAD_ACCELERATION,
     AHEAD_RATE,
     ARC,
-    AT_SAMPLE,
+    ATTEND,
     BASE,
     BASE_SHEAR,
     CAP_BEAM_MASS,
     COLUMNS_MASS,
+    CRITICAL_TIME,
     DIAMETER,
+    EVALUATIONS,
     FLOOR_ACCELERATION,
     FLOORS_MASS,
     FRICTION_BOTTOM,
@@ -30,22 +33,31 @@ from rpscli.physics.layout import (
     GROUND_UPWARDS,
     HEIGHT,
     HIGH,
+    LEFT,
     LEVER,
     LOCATING,
     LOW,
     NORMAL_BOTTOM,
     NORMAL_TOP,
+    PEAK,
+    PEAK_TIME,
     POSITION,
     QUIET,
     SCALARS,
+    SEEN,
     SIDE,
     STANDARD_GRAVITY,
+    START,
     STEP,
     STIFFNESS,
     STOREY_SHEAR,
+    THETA_CR,
+    TIME,
     VELOCITY,
+    WATCH,
 )
 from rpscli.physics.parameters import Floats, Shape
+from rpscli.physics.runge_kutta import EVALUATIONS as EVALUATIONS_OF_A_STEP
 
 
 @kernel
@@ -64,18 +76,28 @@ def tilt_path(b: Floats, n: int, L: int, l: int) -> Quintic:
 
 @kernel
 def search_events(b: Floats, shape: Shape) -> None:
-    """Write QUIET: 1 where the tilt surely stays in the range of its phase, and is finite."""
+    """Look for events in the step just taken.
+
+    Writes QUIET: 1 where the tilt surely stays in the range of its phase, and is finite; SEEN: 1
+    where a quiet step ends at a sample of the record; and WATCH: 1 where a quiet step may hold the
+    largest tilt so far inside, or passes theta_cr for the first time.
+    """
     n, L = len(shape.floors), len(shape.stride)
-    for l in range(len(shape.lanes)):
+    velocity, after = (SCALARS + VELOCITY * (n + 1)) * L, (SCALARS + AHEAD_RATE * (n + 1)) * L
+    for l in range(lane_count(shape)):
         path = tilt_path(b, n, L, l)
         lowest, highest = min(lower_hull(path), path[0]), max(upper_hull(path), path[0])
-        inside = lowest >= b[LOW * L + l] and highest <= b[HIGH * L + l]
-        cleared = b[LOCATING * L + l] < 0.0 and math.isfinite(path[5])
-        cruising = b[LOCATING * L + l] == 0.0
-        b[QUIET * L + l] = 1.0 if cleared or (cruising and inside) else 0.0
+        inside = (lowest >= b[LOW * L + l]) & (highest <= b[HIGH * L + l])
+        cleared = (b[LOCATING * L + l] < 0.0) & (abs(path[5]) < math.inf)
+        quiet = cleared | ((b[LOCATING * L + l] == 0.0) & inside)
+        turning = (b[velocity + l] > 0.0) & (b[after + l] < 0.0) & (highest > b[PEAK * L + l])
+        passing = (path[5] > b[THETA_CR * L + l]) & (b[CRITICAL_TIME * L + l] < 0.0)
+        b[QUIET * L + l] = 1.0 if quiet else 0.0
+        b[SEEN * L + l] = 1.0 if quiet & (b[LEFT * L + l] == 1.0) else 0.0
+        b[WATCH * L + l] = 1.0 if quiet & (turning | passing) else 0.0
 
 
-@kernel
+@merged
 def contact_forces(
     cap_beam: float,
     floors: float,
@@ -110,7 +132,7 @@ def contact_forces(
     return shear_top, shear_bottom, normal_top, normal_bottom
 
 
-@kernel
+@merged
 def friction(shear: float, normal: float) -> float:
     """|F|/N; infinite once the contact is lost."""
     return abs(shear) / normal if normal > 0.0 else math.inf
@@ -118,80 +140,118 @@ def friction(shear: float, normal: float) -> float:
 
 @kernel
 def observe(b: Floats, shape: Shape) -> None:
-    """Raise the demands of lanes whose quiet step ends at a sample of the record."""
+    """Raise the demands of lanes whose quiet step ends at a sample of the record.
+
+    The largest tilt is that of every step; `peak` sees to those that hold it inside.
+    """
     n, L = len(shape.floors), len(shape.stride)
     rows = (n + 1) * L
     block = SCALARS * L
     for i in range(n):
         here = block + AHEAD * rows + (i + 1) * L
         below = here - L if i > 0 else BASE * L
+        k, shears = block + STIFFNESS * rows + i * L, block + STOREY_SHEAR * rows + i * L
+        for l in range(lane_count(shape)):
+            shear = b[SEEN * L + l] * abs(b[k + l] * (b[here + l] - b[below + l]))
+            b[shears + l] = max(b[shears + l], shear)
         acceleration = block + AHEAD_ACCELERATION * rows + (i + 1) * L
-        k = block + STIFFNESS * rows + i * L
-        shears = block + STOREY_SHEAR * rows + i * L
-        accelerations = block + FLOOR_ACCELERATION * rows + i * L
-        for l in range(len(shape.lanes)):
-            seen = b[QUIET * L + l] * b[AT_SAMPLE * L + l] > 0.0
-            shear = abs(b[k + l] * (b[here + l] - b[below + l]))
-            absolute = abs(b[acceleration + l] + b[GROUND * L + l])
-            b[shears + l] = shear if seen and shear > b[shears + l] else b[shears + l]
-            higher = seen and absolute > b[accelerations + l]
-            b[accelerations + l] = absolute if higher else b[accelerations + l]
+        tops = block + FLOOR_ACCELERATION * rows + i * L
+        for l in range(lane_count(shape)):
+            absolute = b[SEEN * L + l] * abs(b[acceleration + l] + b[GROUND * L + l])
+            b[tops + l] = max(b[tops + l], absolute)
     velocity = block + AHEAD_RATE * rows
     tilting = block + AHEAD_ACCELERATION * rows
-    for l in range(len(shape.lanes)):
-        look = b[QUIET * L + l] * b[AT_SAMPLE * L + l]
+    for l in range(lane_count(shape)):
         rate, acceleration = b[velocity + l], b[tilting + l]
         B, C, c = b[LEVER * L + l], b[HEIGHT * L + l], b[ARC * L + l]
         across = b[SIDE * L + l] * b[DIAMETER * L + l] * (C * acceleration + B * (rate * rate))
         upwards = b[DIAMETER * L + l] * (B * acceleration + (c - C) * (rate * rate))
-        raise_contacts(b, L, l, look, across, upwards, b[BASE_SHEAR * L + l])
+        raise_contacts(b, L, l, b[SEEN * L + l], across, upwards, b[BASE_SHEAR * L + l])
+    tilt = block + AHEAD * rows
+    for l in range(lane_count(shape)):
+        higher = (b[QUIET * L + l] > b[WATCH * L + l]) & (b[tilt + l] > b[PEAK * L + l])
+        time = b[START * L + l] + (b[TIME * L + l] + b[STEP * L + l])
+        b[PEAK * L + l] = b[tilt + l] if higher else b[PEAK * L + l]
+        b[PEAK_TIME * L + l] = time if higher else b[PEAK_TIME * L + l]
 
 
-@kernel
+@merged
+def contact_measures(
+    cap_beam: float,
+    floors: float,
+    columns: float,
+    across: float,
+    upwards: float,
+    V: float,
+    ground: float,
+    ground_upwards: float,
+    gravity: float,
+) -> tuple[float, float, float, float]:
+    """Friction demands |F|/N and normal forces over the weight on them, upper and lower ends.
+
+    Parameters as in `contact_forces`, and the standard gravity g. Where no mass stands on the
+    columns their upper ends demand nothing: friction 0, normal force infinite.
+    """
+    upper, lower = cap_beam + floors, cap_beam + floors + columns
+    shear_top, shear_bottom, normal_top, normal_bottom = contact_forces(
+        cap_beam, floors, columns, across, upwards, V, ground, ground_upwards
+    )
+    top = friction(shear_top, normal_top) if upper > 0.0 else 0.0
+    light_top = normal_top / (upper * gravity) if upper > 0.0 else math.inf
+    return top, friction(shear_bottom, normal_bottom), light_top, normal_bottom / (lower * gravity)
+
+
+@merged
 def raise_contacts(
     b: Floats, L: int, l: int, look: float, across: float, upwards: float, V: float
 ) -> None:
     """Raise friction demands and lower least normal forces of a lane, where look > 0."""
     seen = look > 0.0
-    cap_beam, floors = b[CAP_BEAM_MASS * L + l], b[FLOORS_MASS * L + l]
-    columns, g = b[COLUMNS_MASS * L + l], b[STANDARD_GRAVITY * L + l]
-    upper, lower = cap_beam + floors, cap_beam + floors + columns
-    shear_top, shear_bottom, normal_top, normal_bottom = contact_forces(
-        cap_beam,
-        floors,
-        columns,
+    top, bottom, light_top, light_bottom = contact_measures(
+        b[CAP_BEAM_MASS * L + l],
+        b[FLOORS_MASS * L + l],
+        b[COLUMNS_MASS * L + l],
         across,
         upwards,
         V,
         b[GROUND * L + l],
         b[GROUND_UPWARDS * L + l],
+        b[STANDARD_GRAVITY * L + l],
     )
-    loaded = seen and upper > 0.0
-    top, bottom = friction(shear_top, normal_top), friction(shear_bottom, normal_bottom)
-    light_top = normal_top / (upper * g) if upper > 0.0 else math.inf
-    light_bottom = normal_bottom / (lower * g)
+    # What is not looked at counts as nothing; without branches, so that lanes go together.
     row = FRICTION_TOP * L + l
-    b[row] = top if loaded and top > b[row] else b[row]
+    b[row] = max(b[row], top if seen else 0.0)
     row = FRICTION_BOTTOM * L + l
-    b[row] = bottom if seen and bottom > b[row] else b[row]
+    b[row] = max(b[row], bottom if seen else 0.0)
     row = NORMAL_TOP * L + l
-    b[row] = light_top if loaded and light_top < b[row] else b[row]
+    b[row] = min(b[row], light_top if seen else math.inf)
     row = NORMAL_BOTTOM * L + l
-    b[row] = light_bottom if seen and light_bottom < b[row] else b[row]
+    b[row] = min(b[row], light_bottom if seen else math.inf)
 
 
 @kernel
 def take_over(b: Floats, shape: Shape) -> None:
     """Make the end of a quiet step the state of its lane."""
+    L = len(shape.stride)
+    keep_end(b, shape, POSITION, AHEAD)
+    keep_end(b, shape, VELOCITY, AHEAD_RATE)
+    keep_end(b, shape, ACCELERATION, AHEAD_ACCELERATION)
+    for l in range(lane_count(shape)):
+        quiet = b[QUIET * L + l] > 0.0
+        b[TIME * L + l] += b[STEP * L + l] if quiet else 0.0
+        left = b[LEFT * L + l] - (1.0 if quiet else 0.0)
+        b[LEFT * L + l] = left
+        b[ATTEND * L + l] = 0.0 if quiet & (left > 0.0) else 1.0
+        b[LOCATING * L + l] = 0.0 if quiet else b[LOCATING * L + l]
+        b[EVALUATIONS * L + l] += EVALUATIONS_OF_A_STEP
+
+
+@merged
+def keep_end(b: Floats, shape: Shape, state: int, ahead: int) -> None:
+    """Copy a block of the step's end to one of its start."""
     n, L = len(shape.floors), len(shape.stride)
-    rows = (n + 1) * L
-    for state, ahead in (
-        (POSITION, AHEAD),
-        (VELOCITY, AHEAD_RATE),
-        (ACCELERATION, AHEAD_ACCELERATION),
-    ):
-        start, end = SCALARS * L + state * rows, SCALARS * L + ahead * rows
-        for c in range(0, rows, L):
-            for l in range(len(shape.lanes)):
-                i = c + l
-                b[start + i] = b[end + i] if b[QUIET * L + l] > 0.0 else b[start + i]
+    start, end = (SCALARS + state * (n + 1)) * L, (SCALARS + ahead * (n + 1)) * L
+    for c in range(n + 1):
+        for l in range(lane_count(shape)):
+            old, new = b[start + c * L + l], b[end + c * L + l]
+            b[start + c * L + l] = new if b[QUIET * L + l] > 0.0 else old

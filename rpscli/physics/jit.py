@@ -19,8 +19,15 @@ import numba
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-CONTRACTION = {"contract"}
-"""The only liberty that the compiler has: a product and a sum may be rounded once."""
+OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    # The only liberty that the compiler has: a product and a sum may be rounded once.
+    "fastmath": {"contract"},
+    # No counting of references to arrays, atomic and thus slow: callers keep all arrays alive, and
+    # no kernel makes one.
+    "_nrt": False,
+}
 
 
 @cache
@@ -74,9 +81,7 @@ def part(function: Function) -> Function:
     Every function that is compiled by itself is optimised again inside each function above it;
     what has a single caller need not be.
     """
-    compiled: Any = numba.njit(
-        function, nogil=True, error_model="numpy", fastmath=CONTRACTION, inline="always"
-    )
+    compiled: Any = numba.njit(function, inline="always", **OPTIONS)
     return cast("Function", compiled)
 
 
@@ -89,10 +94,8 @@ def _compiled(function: Function, *, merged_into_callers: bool) -> Function:
         compiled: Any = numba.njit(
             function,
             cache=folder is not None,
-            nogil=True,
-            error_model="numpy",
-            fastmath=CONTRACTION,
             forceinline=merged_into_callers,
+            **OPTIONS,
         )
     finally:
         config.CACHE_DIR = before

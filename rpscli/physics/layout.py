@@ -38,28 +38,36 @@ from __future__ import annotations
     ACROSS_SLOPE,
     UPWARDS,
     UPWARDS_SLOPE,
-    # Time since the start of the interval, and steps.
+    # Time of the interval's start, time since then, and steps.
+    START,
     TIME,
     STEP,
+    LEFT,  # steps left in the interval
     INTERVAL_LENGTH,
     FLIGHT_STEP,
+    FLIGHT_STEPS,  # steps in a whole interval
     CONTACT_STEP,
+    CONTACT_STEPS,
     # Written by each evaluation of the accelerations.
     BASE,
     BASE_RATE,
     LEVER,
     HEIGHT,
+    PER_INERTIA,
+    RESTORING,
     BASE_SHEAR,
     MOMENTUM,
     DRIVE,  # what accelerates every floor alike: -a_g + a0 u_b'
     GROUND,
     GROUND_UPWARDS,
     # State of the step.
-    AT_SAMPLE,  # 1 if it ends at a sample of the record
     LOCATING,  # 0 cruising, > 0 re-steps done towards an event, -1 false alarm cleared
     LEVEL,  # tilt of the event that is being located
     LONGEST,  # length of the step in which the event was seen
     QUIET,  # 1 if the step holds no event
+    SEEN,  # 1 if a quiet step ends at a sample of the record
+    WATCH,  # 1 if it may hold the largest tilt inside, or pass theta_cr for the first time
+    ATTEND,  # 1 if the step ends at a sample or holds an event
     STALE,  # accelerations must be computed anew; if so, why: see `FRESH`
     # Running totals and extremes; times that never came are negative.
     INPUT,
@@ -73,14 +81,16 @@ from __future__ import annotations
     FRICTION_BOTTOM,
     NORMAL_TOP,
     NORMAL_BOTTOM,
-    # Energy flows at the seven stages of a step.
-    INPUT_POWER,
-) = range(58)
-DAMPED_POWER = INPUT_POWER + 7
-SCALARS = DAMPED_POWER + 7
-
-LAST = 6
-"""The stage at the end of a step, which is the first of the next."""
+    EVALUATIONS,
+    # Energy flows: at the present stage, at the start of the step, and their mean over the step.
+    GIVEN,
+    TAKEN,
+    GIVEN_FIRST,
+    TAKEN_FIRST,
+    GIVEN_MEAN,
+    TAKEN_MEAN,
+    SCALARS,  # how many they are
+) = range(73)
 
 (
     STIFFNESS,
@@ -112,11 +122,10 @@ BLOCKS = ACCELERATION + 5
     MOTION,
     OUTCOME,
     EVENT,  # kind of the event that is being located
-    EVALUATIONS,
     STALLED,
     CREATING,  # impacts that created energy
     COUNTS,  # 7 counts of events follow
-) = range(14)
+) = range(13)
 
 # Why the accelerations of a lane are stale.
 FRESH = 0.0

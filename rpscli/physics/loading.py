@@ -13,11 +13,13 @@ from rpscli.physics.layout import (
     CAP_BEAM_MASS,
     COLUMNS_MASS,
     CONTACT_STEP,
+    CONTACT_STEPS,
     CRITICAL_TIME,
     DAMPING,
     DIAMETER,
     DRAG,
     FLIGHT_STEP,
+    FLIGHT_STEPS,
     FLOORS_MASS,
     FULL_CONTACT,
     INERTIA,
@@ -88,8 +90,10 @@ def begin(
     load_podium(b, L, l, podium)
     load_floors(b, shape, l, podium.a1, systems, s)
     b[SCALE * L + l], b[INTERVAL_LENGTH * L + l] = points.scale[point], dt
-    b[FLIGHT_STEP * L + l] = dt / max(math.ceil(dt * podium.flight_rate), 1)
-    b[CONTACT_STEP * L + l] = dt / max(math.ceil(dt * podium.contact_rate), 1)
+    steps = max(math.ceil(dt * podium.flight_rate), 1)
+    b[FLIGHT_STEP * L + l], b[FLIGHT_STEPS * L + l] = dt / steps, steps
+    steps = max(math.ceil(dt * podium.contact_rate), 1)
+    b[CONTACT_STEP * L + l], b[CONTACT_STEPS * L + l] = dt / steps, steps
     load_modes(systems, s, lanes.modes[l], b[CONTACT_STEP * L + l])
     shake(lanes, L, l)
 

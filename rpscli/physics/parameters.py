@@ -49,6 +49,10 @@ class Podium(NamedTuple):
     until_rest: float
 
 
+PODIUM_NUMBERS = 34
+"""How many they are when the phases are spread out."""
+
+
 def podium_numbers(podium: Podium) -> list[float]:
     """The row of numbers of a podium: its fields in order, phases spread out."""
     numbers: list[float] = []
@@ -143,18 +147,31 @@ class Shape(NamedTuple):
     dense: Size
 
 
+class Block(NamedTuple):
+    """What is known of the instants of a block of steps in full contact, see `contact`.
+
+    `rows` is flat: entry ``row * COLUMNS + k``. `modes` (n, 3, COLUMNS) and `tops`
+    (n, 2, COLUMNS) hold the rows of modes and floors.
+    """
+
+    rows: Floats
+    modes: Floats
+    tops: Floats
+
+
 class Lanes(NamedTuple):
     """Everything that a history needs while it runs, lane by lane: see `layout` and `contact`.
 
-    `podium` (L, 34) are the numbers of `Podium`, `modes` (L, 14 + 2 n, n) the modal rows of full
-    contact, `piece` (6,) is scratch; the acceleration of the ground, the samples and the log are
-    those of `Motions` and `Results`.
+    `podium` (L, 34) are the numbers of `Podium`, `modes` (L, 26 + 2 n, n) the modal rows of full
+    contact; its `block` and `piece` (6,) are scratch; the acceleration of the ground, the samples
+    and the log are those of `Motions` and `Results`.
     """
 
     buffer: Floats
     integers: Integers
     podium: Floats
     modes: Floats
+    block: Block
     piece: Floats
     acceleration: Floats
     samples: Floats

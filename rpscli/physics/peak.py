@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rpscli.physics.events import Quintic, first_descent, offset, slope, value
+from rpscli.physics.events import Quintic, first_descent, offset, slope, upper_hull, value
 from rpscli.physics.inspection import tilt_path
 from rpscli.physics.jit import part
 from rpscli.physics.layout import (
@@ -14,8 +14,10 @@ from rpscli.physics.layout import (
     PEAK_TIME,
     SCALARS,
     SIDE,
+    START,
     STEP,
     THETA_CR,
+    TIME,
     VELOCITY,
 )
 from rpscli.physics.parameters import Lanes, Shape
@@ -46,11 +48,12 @@ def watch_peak(lanes: Lanes, shape: Shape, l: int) -> None:
     height, fraction = b[(SCALARS + AHEAD * (n + 1)) * L + l], 1.0
     before = b[(SCALARS + VELOCITY * (n + 1)) * L + l]
     after = b[(SCALARS + AHEAD_RATE * (n + 1)) * L + l]
-    if before > 0.0 and after < 0.0:
-        fraction, height = crest(tilt_path(b, n, L, l))
+    path = tilt_path(b, n, L, l)
+    if before > 0.0 and after < 0.0 and upper_hull(path) > b[PEAK * L + l]:
+        fraction, height = crest(path)
     if height > b[PEAK * L + l]:
         b[PEAK * L + l] = height
-        b[PEAK_TIME * L + l] = now(lanes, L, l) + fraction * b[STEP * L + l]
+        b[PEAK_TIME * L + l] = b[START * L + l] + (b[TIME * L + l] + fraction * b[STEP * L + l])
         if height > b[THETA_CR * L + l] and b[CRITICAL_TIME * L + l] < 0.0:
             note_critical_passage(lanes, shape, l)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, merged
 from rpscli.physics.layout import (
     ACCELERATION,
     DAMPED,
@@ -55,15 +55,12 @@ def store_sample(lanes: Lanes, shape: Shape, l: int) -> None:
         row[ROW_FLOORS + n + i] = b[(du + i + 1) * L + l]
 
 
-@kernel
-def next_interval(lanes: Lanes, shape: Shape, l: int) -> bool:
-    """Begin the next interval of the record; True if the history ends instead."""
-    L = len(shape.stride)
+@merged
+def enter_interval(lanes: Lanes, shape: Shape, l: int, interval: int) -> bool:
+    """Begin an interval of the record; True if the history ends instead."""
     whole = lanes.integers
-    whole[l, INTERVAL] += 1
-    shake(lanes, L, l)
-    if lanes.samples.shape[0] > 0:
-        store_sample(lanes, shape, l)
+    whole[l, INTERVAL] = interval
+    shake(lanes, len(shape.stride), l)
     if whole[l, INTERVAL] >= whole[l, INTERVALS]:
         return True
     free = whole[l, INTERVAL] + 1 - whole[l, NPTS]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.contact import DQ, DRAG, OMEGA, PARTICIPATION, SHAPES, Q
-from rpscli.physics.jit import part
+from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
     FLOOR_ACCELERATION,
     FULL_CONTACT,
@@ -17,7 +17,7 @@ from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
 from rpscli.physics.table import podium_of
 
 
-@part
+@kernel
 def is_over(lanes: Lanes, shape: Shape, l: int) -> bool:
     """Whether no later moment of the free vibration can bring a new maximum.
 

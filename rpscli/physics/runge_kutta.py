@@ -10,19 +10,22 @@ lane has its own step length, phase and side.
 from __future__ import annotations
 
 from rpscli.physics.acceleration import accelerate
-from rpscli.physics.jit import kernel
+from rpscli.physics.jit import kernel, merged
+from rpscli.physics.lanes import lane_count
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
     AHEAD_ACCELERATION,
     AHEAD_RATE,
-    DAMPED_POWER,
-    INPUT_POWER,
-    LAST,
+    GIVEN,
+    GIVEN_FIRST,
+    GIVEN_MEAN,
     POSITION,
     SCALARS,
-    STEP,
     STEPS,
+    TAKEN,
+    TAKEN_FIRST,
+    TAKEN_MEAN,
     VELOCITY,
 )
 from rpscli.physics.parameters import Floats, Shape
@@ -39,7 +42,8 @@ def step(b: Floats, shape: Shape, size: int) -> None:
     them all; the block STEPS repeats the step length for each coordinate to that end.
 
     Reads the state (blocks POSITION, VELOCITY, ACCELERATION); leaves it, and writes the end of the
-    step to the blocks AHEAD, AHEAD_RATE and AHEAD_ACCELERATION. `size` is (n + 1) L, told apart
+    step to the blocks AHEAD, AHEAD_RATE and AHEAD_ACCELERATION; where energy is audited, its mean
+    flows over the step to GIVEN_MEAN and TAKEN_MEAN. `size` is (n + 1) L, told apart
     from the shape so that the loops stay loops, quick to compile.
     """
     n, L = len(shape.floors), len(shape.stride)
@@ -54,19 +58,22 @@ def step(b: Floats, shape: Shape, size: int) -> None:
         h = b[step + i] * (1 / 5)
         b[x + i] = b[x1 + i] + h * b[v1 + i]
         b[dx + i] = b[v1 + i] + h * b[a1 + i]
-    accelerate(b, shape, 0, 1, 1 / 5)
+    accelerate(b, shape, 0, 1 / 5)
+    start_powers(b, shape, 35 / 384)
     for i in range(size):
         h, v, a = b[step + i], b[dx + i], b[ddx + i]
         b[v2 + i], b[a2 + i] = v, a
         b[x + i] = b[x1 + i] + h * ((3 / 40) * b[v1 + i] + (9 / 40) * v)
         b[dx + i] = b[v1 + i] + h * ((3 / 40) * b[a1 + i] + (9 / 40) * a)
-    accelerate(b, shape, 0, 2, 3 / 10)
+    accelerate(b, shape, 0, 3 / 10)
+    weigh_powers(b, shape, 500 / 1113)
     for i in range(size):
         h, v, a = b[step + i], b[dx + i], b[ddx + i]
         b[v3 + i], b[a3 + i] = v, a
         b[x + i] = b[x1 + i] + h * ((44 / 45) * b[v1 + i] - (56 / 15) * b[v2 + i] + (32 / 9) * v)
         b[dx + i] = b[v1 + i] + h * ((44 / 45) * b[a1 + i] - (56 / 15) * b[a2 + i] + (32 / 9) * a)
-    accelerate(b, shape, 0, 3, 4 / 5)
+    accelerate(b, shape, 0, 4 / 5)
+    weigh_powers(b, shape, 125 / 192)
     for i in range(size):
         h, v, a = b[step + i], b[dx + i], b[ddx + i]
         b[v4 + i], b[a4 + i] = v, a
@@ -82,7 +89,8 @@ def step(b: Floats, shape: Shape, size: int) -> None:
             + (64448 / 6561) * b[a3 + i]
             - (212 / 729) * a
         )
-    accelerate(b, shape, 0, 4, 8 / 9)
+    accelerate(b, shape, 0, 8 / 9)
+    weigh_powers(b, shape, -2187 / 6784)
     for i in range(size):
         h, v, a = b[step + i], b[dx + i], b[ddx + i]
         b[v5 + i], b[a5 + i] = v, a
@@ -100,7 +108,8 @@ def step(b: Floats, shape: Shape, size: int) -> None:
             + (49 / 176) * b[a4 + i]
             - (5103 / 18656) * a
         )
-    accelerate(b, shape, 0, 5, 1.0)
+    accelerate(b, shape, 0, 1.0)
+    weigh_powers(b, shape, 11 / 84)
     for i in range(size):
         h, v, a = b[step + i], b[dx + i], b[ddx + i]
         b[x + i] = b[x1 + i] + h * (
@@ -117,21 +126,24 @@ def step(b: Floats, shape: Shape, size: int) -> None:
             - (2187 / 6784) * b[a5 + i]
             + (11 / 84) * a
         )
-    accelerate(b, shape, 0, LAST, 1.0)
+    accelerate(b, shape, 0, 1.0)
 
 
-@kernel
-def energy_over_step(b: Floats, L: int, l: int) -> tuple[float, float]:
-    """Energy put in and damped during the step of a lane [J], by the same quadrature."""
-    given, damped = 0.0, 0.0
-    for stage, weight in (
-        (0, 35 / 384),
-        (2, 500 / 1113),
-        (3, 125 / 192),
-        (4, -2187 / 6784),
-        (5, 11 / 84),
-    ):
-        given += weight * b[(INPUT_POWER + stage) * L + l]
-        damped += weight * b[(DAMPED_POWER + stage) * L + l]
-    h = b[STEP * L + l]
-    return h * given, h * damped
+@merged
+def start_powers(b: Floats, shape: Shape, weight: float) -> None:
+    """Begin the mean of the energy flows over a step with those at its start."""
+    L = len(shape.stride)
+    if len(shape.audit) > 0:
+        for l in range(lane_count(shape)):
+            b[GIVEN_MEAN * L + l] = weight * b[GIVEN_FIRST * L + l]
+            b[TAKEN_MEAN * L + l] = weight * b[TAKEN_FIRST * L + l]
+
+
+@merged
+def weigh_powers(b: Floats, shape: Shape, weight: float) -> None:
+    """Add the energy flows of the present stage: the same quadrature as that of the motion."""
+    L = len(shape.stride)
+    if len(shape.audit) > 0:
+        for l in range(lane_count(shape)):
+            b[GIVEN_MEAN * L + l] += weight * b[GIVEN * L + l]
+            b[TAKEN_MEAN * L + l] += weight * b[TAKEN * L + l]

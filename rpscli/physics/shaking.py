@@ -1,8 +1,11 @@
-"""Ground acceleration of a lane in its present interval of the record."""
+"""Ground acceleration of a lane: linear between the samples of the record, zero after the last."""
 
 from __future__ import annotations
 
-from rpscli.physics.jit import part
+from typing import NamedTuple
+
+from rpscli.physics.contact import AT, COLUMNS, RISE, RISE_SLOPE, SLOPE
+from rpscli.physics.jit import merged, part
 from rpscli.physics.layout import (
     ACROSS,
     ACROSS_SLOPE,
@@ -12,6 +15,7 @@ from rpscli.physics.layout import (
     RECORD,
     SCALE,
     STANDARD_GRAVITY,
+    START,
     TIME,
     UPWARDS,
     UPWARDS_SLOPE,
@@ -20,26 +24,65 @@ from rpscli.physics.layout import (
 from rpscli.physics.parameters import Floats, Lanes
 
 
-@part
-def shake(lanes: Lanes, L: int, l: int) -> None:
-    """Set the acceleration of the interval that begins: linear, and zero after the record."""
-    b, whole = lanes.buffer, lanes.integers
-    i, scale = whole[l, INTERVAL], b[SCALE * L + l]
+class Shaking(NamedTuple):
+    """a_g and g + a_v at the start of an interval [m/s2], and their slopes over it [m/s3]."""
+
+    across: float
+    across_slope: float
+    upwards: float
+    upwards_slope: float
+
+
+@merged
+def shaking_in(lanes: Lanes, L: int, l: int, interval: int) -> Shaking:
+    """How the ground moves in an interval of the lane's record."""
+    b, whole, record = lanes.buffer, lanes.integers, lanes.acceleration
+    gravity, scale = b[STANDARD_GRAVITY * L + l], b[SCALE * L + l]
+    if interval + 1 >= whole[l, NPTS]:
+        return Shaking(0.0, 0.0, gravity, 0.0)
     per_time = 1.0 / b[INTERVAL_LENGTH * L + l]
-    b[TIME * L + l] = 0.0
-    b[ACROSS * L + l], b[ACROSS_SLOPE * L + l] = 0.0, 0.0
-    b[UPWARDS * L + l], b[UPWARDS_SLOPE * L + l] = b[STANDARD_GRAVITY * L + l], 0.0
-    if i + 1 >= whole[l, NPTS]:
-        return
-    start, end = between(lanes.acceleration, whole[l, RECORD] + i, scale)
-    b[ACROSS * L + l], b[ACROSS_SLOPE * L + l] = start, (end - start) * per_time
-    if whole[l, VERTICAL] >= 0:
-        start, end = between(lanes.acceleration, whole[l, VERTICAL] + i, scale)
-        b[UPWARDS * L + l] += start
-        b[UPWARDS_SLOPE * L + l] = (end - start) * per_time
+    i = whole[l, RECORD] + interval
+    across, end = scale * record[i], scale * record[i + 1]
+    slope = (end - across) * per_time
+    if whole[l, VERTICAL] < 0:
+        return Shaking(across, slope, gravity, 0.0)
+    i = whole[l, VERTICAL] + interval
+    upwards, end = scale * record[i], scale * record[i + 1]
+    return Shaking(across, slope, gravity + upwards, (end - upwards) * per_time)
+
+
+@merged
+def shake(lanes: Lanes, L: int, l: int) -> None:
+    """Set the acceleration of the interval that begins."""
+    b = lanes.buffer
+    interval = lanes.integers[l, INTERVAL]
+    shaking = shaking_in(lanes, L, l, interval)
+    b[START * L + l], b[TIME * L + l] = interval * b[INTERVAL_LENGTH * L + l], 0.0
+    b[ACROSS * L + l], b[ACROSS_SLOPE * L + l] = shaking.across, shaking.across_slope
+    b[UPWARDS * L + l], b[UPWARDS_SLOPE * L + l] = shaking.upwards, shaking.upwards_slope
 
 
 @part
-def between(acceleration: Floats, i: int, scale: float) -> tuple[float, float]:
-    """Scaled accelerations at the ends of an interval [m/s2]."""
-    return scale * acceleration[i], scale * acceleration[i + 1]
+def shake_block(lanes: Lanes, L: int, l: int, c: Floats, h: float, each: int, steps: int) -> None:
+    """Write the ground's motion at the instants of a block of steps of length h.
+
+    `each` steps lead to the next sample, and from one to the next. The last instant belongs to the
+    step before it: the ground acceleration may jump there.
+    """
+    b = lanes.buffer
+    interval, time = lanes.integers[l, INTERVAL], b[TIME * L + l]
+    shaking = shaking_in(lanes, L, l, interval)
+    to_sample = each
+    for k in range(COLUMNS):
+        if to_sample == 0:
+            interval, time, to_sample = interval + 1, 0.0, each
+            shaking = shaking_in(lanes, L, l, interval)
+        c[AT * COLUMNS + k] = shaking.across + shaking.across_slope * time
+        c[SLOPE * COLUMNS + k] = shaking.across_slope
+        c[RISE * COLUMNS + k] = shaking.upwards + shaking.upwards_slope * time
+        c[RISE_SLOPE * COLUMNS + k] = shaking.upwards_slope
+        time += h
+        to_sample -= 1
+    for row, slope in ((AT, SLOPE), (RISE, RISE_SLOPE)):
+        before = c[row * COLUMNS + steps - 1]
+        c[row * COLUMNS + steps] = before + c[slope * COLUMNS + steps - 1] * h

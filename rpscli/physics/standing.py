@@ -3,90 +3,74 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from rpscli.physics.contact import (
+    ALARM,
+    AT,
+    COLUMNS,
     DQ,
     DRAG,
+    GIVEN,
     PART,
     PARTICIPATION,
-    PULL,
-    PULLS,
+    PUSH_BEND,
     SHAPES,
-    SHEARS,
+    SLOPE,
+    TAKEN,
     WHOLE,
     Q,
     Stance,
-    contact_energies,
+    energies,
     fill_transition,
-    keep_end,
-    push_of,
-    step_contact,
+    first_uplift,
+    keep,
+    locate_uplift,
+    march,
+    raise_alarms,
 )
-from rpscli.physics.inspection import raise_contacts
 from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
-    ACROSS,
-    ACROSS_SLOPE,
     CONTACT_STEP,
+    CONTACT_STEPS,
     DAMPED,
     FAILED_NOT_FINITE,
-    FLOOR_ACCELERATION,
-    GROUND,
-    GROUND_UPWARDS,
     INPUT,
     INTERVAL,
     INTERVAL_LENGTH,
+    INTERVALS,
     MASS,
     NPTS,
     OUTCOME,
     POSITION,
     SCALARS,
-    STOREY_SHEAR,
     TIME,
-    UPWARDS,
-    UPWARDS_SLOPE,
     VELOCITY,
 )
-from rpscli.physics.parameters import Floats, Lanes, Shape
-from rpscli.physics.progress import next_interval
+from rpscli.physics.parameters import Lanes, Shape
+from rpscli.physics.progress import REST_EVERY, enter_interval, store_sample
+from rpscli.physics.shaking import shake_block
+from rpscli.physics.standing_demands import (
+    forget,
+    hand_over,
+    mark_samples,
+    observe_contacts,
+    observe_floors,
+)
 from rpscli.physics.switch import lift_off
 from rpscli.physics.table import podium_of
 
 
 @part
-def stance_of(lanes: Lanes, L: int, l: int) -> Stance:
-    """Margin and ground motion of the present interval."""
-    b, z = lanes.buffer, lanes.modes[l]
-    podium = podium_of(lanes.podium, l)
+def stance_of(lanes: Lanes, l: int) -> Stance:
+    """What the lane's margin against uplift is made of."""
+    z, podium = lanes.modes[l], podium_of(lanes.podium, l)
     own, carried = 1.0 + 2.0 * podium.gamma, 2.0 * podium.gamma * podium.eta
     creep = 0.0
     for r in range(z.shape[1]):
         creep += z[PARTICIPATION, r] * z[PARTICIPATION, r] * z[DRAG, r]
-    return Stance(
-        own,
-        carried / podium.floors_mass if z.shape[1] > 0 else 0.0,
-        math.tan(podium.alpha) * (own + carried),
-        creep,
-        b[ACROSS * L + l],
-        b[ACROSS_SLOPE * L + l],
-        b[UPWARDS * L + l],
-        b[UPWARDS_SLOPE * L + l],
-    )
-
-
-@part
-def moved_on(stance: Stance, b: Floats, L: int, l: int) -> Stance:
-    """The same margin under the ground motion of the interval that has begun."""
-    return Stance(
-        stance.own,
-        stance.share,
-        stance.lift,
-        stance.creep,
-        b[ACROSS * L + l],
-        b[ACROSS_SLOPE * L + l],
-        b[UPWARDS * L + l],
-        b[UPWARDS_SLOPE * L + l],
-    )
+    share = carried / podium.floors_mass if z.shape[1] > 0 else 0.0
+    return Stance(own, share, math.tan(podium.alpha) * (own + carried), creep)
 
 
 @part
@@ -117,66 +101,129 @@ def to_floors(lanes: Lanes, L: int, l: int) -> None:
             b[(du + i + 1) * L + l] += z[SHAPES + r, i] * z[DQ, r]
 
 
-@kernel
-def observe_contact(lanes: Lanes, L: int, l: int) -> None:
-    """Raise the demands of a lane in full contact; the modes' PULL is that of the moment."""
-    b, z = lanes.buffer, lanes.modes[l]
-    n = z.shape[1]
-    for i in range(n):
-        z[SHEARS, i], z[PULLS, i] = 0.0, 0.0
-    V = 0.0
-    for r in range(n):
-        q, pull = z[Q, r], z[PULL, r]
-        V += z[PARTICIPATION, r] * pull
-        for i in range(n):
-            z[SHEARS, i] += z[SHAPES + n + r, i] * q
-            z[PULLS, i] += z[SHAPES + r, i] * pull
-    for i in range(n):
-        row = (SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l
-        b[row] = max(b[row], abs(z[SHEARS, i]))
-        row = (SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l
-        b[row] = max(b[row], abs(z[PULLS, i]))
-    time = b[TIME * L + l]
-    b[GROUND * L + l] = b[ACROSS * L + l] + b[ACROSS_SLOPE * L + l] * time
-    b[GROUND_UPWARDS * L + l] = b[UPWARDS * L + l] + b[UPWARDS_SLOPE * L + l] * time
-    raise_contacts(b, L, l, 1.0, 0.0, 0.0, V)
+class Plan(NamedTuple):
+    """Steps to take at once: how many, of which length [s]; `each` of them lead to a sample.
+
+    `row` is where their map stands in the modal rows.
+    """
+
+    steps: int
+    h: float
+    each: int
+    row: int
+
+
+FINE = 4
+"""A step in which the margin comes near zero is taken again in so many: their interpolating quintic
+is 4^6 times as good."""
+
+NEAR = 1e-3
+"""What is near, over the limit: some forty times the largest error of the quintic of a step."""
+
+
+@part
+def plan_block(lanes: Lanes, L: int, l: int, finer: int) -> Plan:
+    """The next steps of a lane: even parts of the intervals, or of what is left of one.
+
+    A finer look, with steps divided by `finer`, goes no farther than the next sample.
+
+    They end where the ground acceleration may jump, the history ends, or is looked at to see
+    whether anything can still happen.
+    """
+    b, whole = lanes.buffer, lanes.integers
+    time, step = b[TIME * L + l], b[CONTACT_STEP * L + l]
+    if finer > 1 or time > 0.0:
+        left = max(b[INTERVAL_LENGTH * L + l] - time, 0.0)
+        each = int(max(math.ceil(finer * left / step - 1e-9), 1))
+        fill_transition(lanes.modes[l], left / each, PART)
+        return Plan(min(each, COLUMNS - 1), left / each, each, PART)
+    each, i = int(b[CONTACT_STEPS * L + l]), whole[l, INTERVAL]
+    free = i + 1 - whole[l, NPTS]
+    ahead = min(whole[l, INTERVALS] - i, REST_EVERY - free % REST_EVERY) if free >= 0 else -free
+    most = max((COLUMNS - 1) // each, 1)
+    return Plan(min(each * min(ahead, most), COLUMNS - 1), step, each, WHOLE)
+
+
+@part
+def take_steps(lanes: Lanes, shape: Shape, l: int, plan: Plan, taken: int) -> bool:
+    """Make the state after some steps of the block that of the lane; True if its history ends."""
+    L = len(shape.stride)
+    b, whole, z = lanes.buffer, lanes.integers, lanes.modes[l]
+    block, c = lanes.block, lanes.block.rows
+    first, time = whole[l, INTERVAL], b[TIME * L + l]
+    passed = taken // plan.each
+    if len(shape.audit) > 0:
+        energies(block, z, plan.h)
+    for k in range(1, taken + 1):
+        if len(shape.audit) > 0:
+            b[INPUT * L + l] += c[GIVEN * COLUMNS + k - 1]
+            b[DAMPED * L + l] += c[TAKEN * COLUMNS + k - 1]
+        if lanes.samples.shape[0] > 0 and k % plan.each == 0:
+            keep(block, z, k)
+            to_floors(lanes, L, l)
+            whole[l, INTERVAL] = first + k // plan.each
+            store_sample(lanes, shape, l)
+    keep(block, z, taken)
+    if first + passed >= whole[l, NPTS]:
+        hand_over(block, b, L, l)  # the end of the free vibration depends on the demands so far
+    if passed == 0:
+        b[TIME * L + l] = time + taken * plan.h
+        return False
+    over = enter_interval(lanes, shape, l, first + passed)
+    b[TIME * L + l] = (taken - passed * plan.each) * plan.h
+    return over
+
+
+@part
+def uplift(lanes: Lanes, shape: Shape, l: int, at: int, h: float, side: float) -> None:
+    """Leave full contact a time h into the step after `at` others of the block."""
+    L = len(shape.stride)
+    b, z, block, c = lanes.buffer, lanes.modes[l], lanes.block, lanes.block.rows
+    c[AT * COLUMNS], c[SLOPE * COLUMNS] = c[AT * COLUMNS + at], c[SLOPE * COLUMNS + at]
+    fill_transition(z, h, PART)
+    march(block, z, PART)
+    if len(shape.audit) > 0:
+        energies(block, z, h)
+        b[INPUT * L + l] += c[GIVEN * COLUMNS]
+        b[DAMPED * L + l] += c[TAKEN * COLUMNS]
+    keep(block, z, 1)
+    b[TIME * L + l] += h
+    to_floors(lanes, L, l)
+    lift_off(lanes, L, l, side)
 
 
 @kernel
 def stand(lanes: Lanes, shape: Shape, l: int) -> bool:
     """Follow a lane in full contact; True if it uplifts, False if its history is over."""
     L = len(shape.stride)
-    b, z = lanes.buffer, lanes.modes[l]
-    dt, step = b[INTERVAL_LENGTH * L + l], b[CONTACT_STEP * L + l]
-    stance, time = stance_of(lanes, L, l), b[TIME * L + l]
-    push = push_of(z, Q, stance.across + stance.across_slope * time)
-    while True:
-        while dt - time > 1e-13 * dt:
-            h, row = min(step, dt - time), WHOLE
-            if abs(h - step) > 1e-12 * dt:
-                row = PART
-                fill_transition(z, h, row)
-            advanced, side, push = step_contact(z, stance, time, h, row, push, lanes.piece)
-            if len(shape.audit) > 0:
-                across = stance.across + stance.across_slope * time
-                given, damped = contact_energies(z, across, stance.across_slope, advanced)
-                b[INPUT * L + l] += given
-                b[DAMPED * L + l] += damped
-            if not math.isfinite(push.bend + stance.across_slope):
-                lanes.integers[l, OUTCOME] = FAILED_NOT_FINITE
-                return False
-            keep_end(z)
-            time += advanced
-            b[TIME * L + l] = time
-            if side != 0.0:
-                to_floors(lanes, L, l)
-                lift_off(lanes, L, l, side)
-                return True
-        observe_contact(lanes, L, l)
-        if lanes.samples.shape[0] > 0:
-            to_floors(lanes, L, l)
-        if next_interval(lanes, shape, l):
+    z, block, c = lanes.modes[l], lanes.block, lanes.block.rows
+    stance = stance_of(lanes, l)
+    forget(block)
+    side, over, fine = 0.0, False, False
+    while side == 0.0 and not over:
+        plan = plan_block(lanes, L, l, FINE if fine else 1)
+        shake_block(lanes, L, l, c, plan.h, plan.each, plan.steps)
+        march(block, z, plan.row)
+        raise_alarms(c, stance, plan.h, 0.0 if fine else NEAR)
+        taken, fraction, alarm = 0, 0.0, False
+        while taken < plan.steps and not alarm:
+            alarm = c[ALARM * COLUMNS + taken] > 0.0
+            if alarm and fine:
+                fraction, side = first_uplift(c, stance, plan.h, taken, lanes.piece)
+                alarm = side != 0.0
+            if not alarm:
+                taken += 1
+        mark_samples(c, plan.each, taken, plan.each)
+        observe_floors(block, z)
+        observe_contacts(c, lanes.buffer, L, l)
+        if not math.isfinite(c[PUSH_BEND * COLUMNS + taken]):
+            lanes.integers[l, OUTCOME] = FAILED_NOT_FINITE
             return False
-        stance, time = moved_on(stance, b, L, l), 0.0
-        if lanes.integers[l, INTERVAL] + 1 == lanes.integers[l, NPTS]:
-            push = push_of(z, Q, stance.across)  # the ground acceleration may jump to zero
+        fine = alarm
+        over = take_steps(lanes, shape, l, plan, taken)
+        if side != 0.0:
+            guess = fraction * plan.h
+            h = locate_uplift(c, z, stance, plan.h, taken, guess, side)
+            uplift(lanes, shape, l, taken, h, side)
+    hand_over(block, lanes.buffer, L, l)
+    return not over

@@ -18,8 +18,6 @@ from rpscli.physics.layout import (
     FULL_CONTACT,
     HIGH,
     IMPACT,
-    INTERVAL,
-    INTERVAL_LENGTH,
     LANDED,
     LIFT_START,
     LIFTED_OFF,
@@ -37,6 +35,7 @@ from rpscli.physics.layout import (
     SCALARS,
     SIDE,
     STALE,
+    START,
     TIME,
     UPLIFT,
     VELOCITY,
@@ -49,7 +48,7 @@ from rpscli.physics.table import podium_of
 def now(lanes: Lanes, L: int, l: int) -> float:
     """Time since the start of the record [s]."""
     b = lanes.buffer
-    return float(lanes.integers[l, INTERVAL] * b[INTERVAL_LENGTH * L + l] + b[TIME * L + l])
+    return float(b[START * L + l] + b[TIME * L + l])
 
 
 @kernel

@@ -39,12 +39,19 @@ def tilt_inertia_slope(beam: float, building: float, phase: Phase, B: float, C: 
 
 
 @kernel
-def tilt_acceleration(
-    A: float, D: float, B: float, C: float, rate: float, weight: float, action: float
-) -> float:
-    """x'' of A x'' = -B (g/R)(1 + 2 gamma + 2 gamma eta) - C s action - D x'^2.
+def restoring(D: float, B: float, rate: float, weight: float) -> float:
+    """What turns the tilt back whatever the ground and the building do [rad/s2].
 
-    `weight` is the factor of B, under g + a_v where the ground moves vertically; `action` is
-    s (a_g/R (1 + 2 gamma) - 2 V/(N m_c R)); all [rad/s2] (paper, Eq. 2).
+    `weight` is (g/R)(1 + 2 gamma + 2 gamma eta), with g + a_v where the ground moves vertically.
     """
-    return -(B * weight + C * action + D * (rate * rate)) / A
+    return B * weight + D * (rate * rate)
+
+
+@kernel
+def tilt_acceleration(per_inertia: float, restoring: float, C: float, action: float) -> float:
+    """x'' of A x'' = -B (g/R)(1 + 2 gamma + 2 gamma eta) - D x'^2 - C s action (paper, Eq. 2).
+
+    `action` is s (a_g/R (1 + 2 gamma) - 2 V/(N m_c R)), the only term that waits for the base
+    shear V; `per_inertia` is 1/A. All but that in [rad/s2].
+    """
+    return -(restoring + C * action) * per_inertia

@@ -4,32 +4,31 @@ from __future__ import annotations
 
 from rpscli.physics.jit import kernel
 
+S1, S2, S3, S4, S5 = -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800
+S6, S7, S8, S9 = 1 / 6227020800, -1 / 1307674368e3, 1 / 355687428096e3, -1 / 121645100408832e3
+C1, C2, C3, C4, C5 = -1 / 2, 1 / 24, -1 / 720, 1 / 40320, -1 / 3628800
+C6, C7, C8, C9 = 1 / 479001600, -1 / 87178291200, 1 / 20922789888e3, -1 / 6402373705728e3
+C10 = 1 / 243290200817664e4
+
 
 @kernel
 def sine_cosine(x: float) -> tuple[float, float]:
     """The sine and cosine of x by their power series [x in rad].
 
-    Twenty terms leave less than 3e-16 for |x| <= pi/2, which no standing column exceeds; the error
-    grows to 1e-9 at pi, where a structure has long been counted as overturned.
+    Twenty-one terms leave less than 5e-16 for |x| <= pi/2, which no standing column exceeds; the
+    error grows to 1e-9 at pi, where a structure has long been counted as overturned.
+
+    The terms are added in pairs, and pairs of pairs (G. Estrin, 1960): what follows waits for a
+    chain of five operations instead of ten.
     """
     z = x * x
-    sine = 1.0 - z / 342.0
-    sine = 1.0 - z * (1.0 / 272.0) * sine
-    sine = 1.0 - z * (1.0 / 210.0) * sine
-    sine = 1.0 - z * (1.0 / 156.0) * sine
-    sine = 1.0 - z * (1.0 / 110.0) * sine
-    sine = 1.0 - z * (1.0 / 72.0) * sine
-    sine = 1.0 - z * (1.0 / 42.0) * sine
-    sine = 1.0 - z * (1.0 / 20.0) * sine
-    sine = 1.0 - z * (1.0 / 6.0) * sine
-    cosine = 1.0 - z / 380.0
-    cosine = 1.0 - z * (1.0 / 306.0) * cosine
-    cosine = 1.0 - z * (1.0 / 240.0) * cosine
-    cosine = 1.0 - z * (1.0 / 182.0) * cosine
-    cosine = 1.0 - z * (1.0 / 132.0) * cosine
-    cosine = 1.0 - z * (1.0 / 90.0) * cosine
-    cosine = 1.0 - z * (1.0 / 56.0) * cosine
-    cosine = 1.0 - z * (1.0 / 30.0) * cosine
-    cosine = 1.0 - z * (1.0 / 12.0) * cosine
-    cosine = 1.0 - z * 0.5 * cosine
+    z2 = z * z
+    z4 = z2 * z2
+    z8 = z4 * z4
+    low = (1.0 + S1 * z) + (S2 + S3 * z) * z2
+    high = (S4 + S5 * z) + (S6 + S7 * z) * z2
+    sine = (low + high * z4) + (S8 + S9 * z) * z8
+    low = (1.0 + C1 * z) + (C2 + C3 * z) * z2
+    high = (C4 + C5 * z) + (C6 + C7 * z) * z2
+    cosine = (low + high * z4) + ((C8 + C9 * z) + C10 * z2) * z8
     return x * sine, cosine

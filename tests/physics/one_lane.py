@@ -6,16 +6,16 @@ import numpy as np
 from paper_structures import Array, stillness
 
 from rpscli.analyses.history import empty_results, shape_of_one
-from rpscli.analyses.kernel_input import has_dense_damping, joined_motions, stacked_systems
+from rpscli.analyses.kernel_input import joined_motions, stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import layout, switch
-from rpscli.physics.contact import SHAPES
 from rpscli.physics.driver import refresh
 from rpscli.physics.energy import uplifted_energy
 from rpscli.physics.loading import begin
-from rpscli.physics.parameters import Lanes, Points
+from rpscli.physics.parameters import Points
 from rpscli.physics.table import podium_of
+from rpscli.physics.workspace import empty_lanes
 
 LEAST_DT = 0.01
 
@@ -40,18 +40,7 @@ class OneLane:
         first = np.zeros(1, dtype=np.int64)
         points = Points(first, first, first - 1, np.ones(1))
         nothing = empty_results(1, n)
-        rows = layout.SCALARS + layout.BLOCKS * (n + 1)
-        rows += n * n if has_dense_damping(structure) else 0
-        self.lanes = Lanes(
-            np.zeros(rows),
-            np.zeros((1, layout.WHOLE_NUMBERS), dtype=np.int64),
-            np.zeros((1, systems.podium.shape[1])),
-            np.zeros((1, SHAPES + 2 * n, n)),
-            np.zeros(6),
-            motions.acceleration,
-            nothing.samples,
-            nothing.log,
-        )
+        self.lanes = empty_lanes(motions, self.shape, nothing)
         self.buffer = self.lanes.buffer
         begin(self.lanes, self.shape, 0, 0, systems, motions, points)
         self.podium = podium_of(self.lanes.podium, 0)

@@ -23,7 +23,7 @@ from rpscli.records.ground_motion import GroundMotion
 
 pytestmark = needs_compiled_kernels
 
-ACCURACIES = (1.0, 2.0, 4.0)
+ACCURACIES = (1.25, 2.5, 5.0)
 REFERENCE = 48.0
 
 

@@ -143,7 +143,7 @@ def test_energy_changes_by_what_the_ground_gives_and_the_dampers_take(state: Sta
     """dE/dt = -a_g [...] - a_v [...] - v'^T C v' (Theory, section 8): the flows that are noted."""
     lane, h = state.in_a_lane(), 1e-3
     moving = lane.accelerations(state.horizontal, state.vertical)
-    flow = lane.buffer[layout.INPUT_POWER] - lane.buffer[layout.DAMPED_POWER]
+    flow = lane.buffer[layout.GIVEN] - lane.buffer[layout.TAKEN]
     energies = {}
     for i in range(-3, 4):
         lane.position[:] = state.position + i * h * state.velocity

@@ -12,8 +12,8 @@ from paper_structures import COMPILED
 
 from rpscli.physics.trigonometry import sine_cosine
 
-ROUNDING = 2.3e-16
-"""Two units of the last place below 1."""
+ROUNDING = 3.4e-16
+"""Three units of the last place below 1."""
 
 LEFT_OUT = (0.5 * math.pi) ** 21 / math.factorial(21)
 """First term of the sine that is left out, where it is largest: 2.6e-16."""

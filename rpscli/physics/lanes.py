@@ -1,0 +1,24 @@
+"""Which lanes a loop goes over, told so that the compiler can turn it into vector instructions.
+
+It does so where it sees that no index is negative (Python counts those from the end) and none
+overflows. A start that it knows and a bound on the number of lanes are enough for that.
+"""
+
+from __future__ import annotations
+
+from rpscli.physics.jit import merged
+from rpscli.physics.parameters import Shape
+
+MOST_LANES = 64
+
+
+@merged
+def first_lane(shape: Shape, lane: int) -> int:
+    """Where the lanes begin: at `lane` if it moves alone, else at 0."""
+    return lane if len(shape.alone) > 0 else 0
+
+
+@merged
+def lane_count(shape: Shape) -> int:
+    """Lanes that move together, at most `MOST_LANES`."""
+    return min(len(shape.lanes), MOST_LANES)

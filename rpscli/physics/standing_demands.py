@@ -1,0 +1,121 @@
+"""What a building in full contact demands, at all instants of a block at once."""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.contact import (
+    AT,
+    COLUMNS,
+    FRICTION_BOTTOMS,
+    FRICTION_TOPS,
+    MODAL_PULL,
+    MODAL_Q,
+    NORMAL_BOTTOMS,
+    NORMAL_TOPS,
+    PULL,
+    PUSH,
+    RISE,
+    SEEN,
+    SHAPES,
+    SHEAR,
+    TOP_ACCELERATION,
+    TOP_SHEAR,
+)
+from rpscli.physics.inspection import contact_measures
+from rpscli.physics.jit import kernel, part
+from rpscli.physics.layout import (
+    CAP_BEAM_MASS,
+    COLUMNS_MASS,
+    FLOOR_ACCELERATION,
+    FLOORS_MASS,
+    FRICTION_BOTTOM,
+    FRICTION_TOP,
+    NORMAL_BOTTOM,
+    NORMAL_TOP,
+    SCALARS,
+    STANDARD_GRAVITY,
+    STOREY_SHEAR,
+)
+from rpscli.physics.parameters import Block, Floats
+
+
+@kernel
+def forget(block: Block) -> None:
+    """Begin a time in full contact: nothing was demanded yet."""
+    c = block.rows
+    for k in range(COLUMNS):
+        c[FRICTION_TOPS * COLUMNS + k], c[FRICTION_BOTTOMS * COLUMNS + k] = 0.0, 0.0
+        c[NORMAL_TOPS * COLUMNS + k], c[NORMAL_BOTTOMS * COLUMNS + k] = math.inf, math.inf
+    for i in range(block.tops.shape[0]):
+        for k in range(COLUMNS):
+            block.tops[i, TOP_SHEAR, k], block.tops[i, TOP_ACCELERATION, k] = 0.0, 0.0
+
+
+@kernel
+def mark_samples(c: Floats, first: int, last: int, each: int) -> None:
+    """Write SEEN: 1 at the instants first, first + each, ... up to last."""
+    for k in range(COLUMNS):
+        c[SEEN * COLUMNS + k] = 0.0
+    for k in range(first, last + 1, each):
+        c[SEEN * COLUMNS + k] = 1.0
+
+
+@kernel
+def observe_floors(block: Block, z: Floats) -> None:
+    """Raise the largest storey shears and absolute floor accelerations, column by column."""
+    c, n = block.rows, z.shape[1]
+    for i in range(n):
+        for k in range(COLUMNS):
+            c[SHEAR * COLUMNS + k], c[PULL * COLUMNS + k] = 0.0, 0.0
+        for r in range(n):
+            qs, pulls = block.modes[r, MODAL_Q], block.modes[r, MODAL_PULL]
+            shape, shear = z[SHAPES + r, i], z[SHAPES + n + r, i]
+            for k in range(COLUMNS):
+                c[SHEAR * COLUMNS + k] += shear * qs[k]
+                c[PULL * COLUMNS + k] += shape * pulls[k]
+        shears, accelerations = block.tops[i, TOP_SHEAR], block.tops[i, TOP_ACCELERATION]
+        for k in range(COLUMNS):
+            shear = c[SEEN * COLUMNS + k] * abs(c[SHEAR * COLUMNS + k])
+            shears[k] = max(shears[k], shear)
+        for k in range(COLUMNS):
+            pull = c[SEEN * COLUMNS + k] * abs(c[PULL * COLUMNS + k])
+            accelerations[k] = max(accelerations[k], pull)
+
+
+@part
+def observe_contacts(c: Floats, b: Floats, L: int, l: int) -> None:
+    """Raise friction demands and lower least normal forces, column by column."""
+    cap_beam, floors = b[CAP_BEAM_MASS * L + l], b[FLOORS_MASS * L + l]
+    columns, gravity = b[COLUMNS_MASS * L + l], b[STANDARD_GRAVITY * L + l]
+    for k in range(COLUMNS):
+        seen, V = c[SEEN * COLUMNS + k] > 0.0, c[PUSH * COLUMNS + k]
+        across, upwards = c[AT * COLUMNS + k], c[RISE * COLUMNS + k]
+        top, bottom, light_top, light_bottom = contact_measures(
+            cap_beam, floors, columns, 0.0, 0.0, V, across, upwards, gravity
+        )
+        row = FRICTION_TOPS * COLUMNS + k
+        c[row] = top if seen and top > c[row] else c[row]
+        row = FRICTION_BOTTOMS * COLUMNS + k
+        c[row] = bottom if seen and bottom > c[row] else c[row]
+        row = NORMAL_TOPS * COLUMNS + k
+        c[row] = light_top if seen and light_top < c[row] else c[row]
+        row = NORMAL_BOTTOMS * COLUMNS + k
+        c[row] = light_bottom if seen and light_bottom < c[row] else c[row]
+
+
+@part
+def hand_over(block: Block, b: Floats, L: int, l: int) -> None:
+    """End a time in full contact: raise the demands of the lane by its own."""
+    c, n = block.rows, block.tops.shape[0]
+    for k in range(COLUMNS):
+        for row, tops in ((FRICTION_TOP, FRICTION_TOPS), (FRICTION_BOTTOM, FRICTION_BOTTOMS)):
+            b[row * L + l] = max(b[row * L + l], c[tops * COLUMNS + k])
+        for row, tops in ((NORMAL_TOP, NORMAL_TOPS), (NORMAL_BOTTOM, NORMAL_BOTTOMS)):
+            b[row * L + l] = min(b[row * L + l], c[tops * COLUMNS + k])
+    for i in range(n):
+        shear = (SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l
+        acceleration = (SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l
+        for k in range(COLUMNS):
+            b[shear] = max(b[shear], block.tops[i, TOP_SHEAR, k])
+            b[acceleration] = max(b[acceleration], block.tops[i, TOP_ACCELERATION, k])

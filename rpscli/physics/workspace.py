@@ -1,0 +1,35 @@
+"""Room for the lanes: the only memory that the kernels write to besides the results."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rpscli.physics.contact import COLUMNS, ROWS, SHAPES
+from rpscli.physics.layout import BLOCKS, SCALARS, WHOLE_NUMBERS
+from rpscli.physics.parameters import PODIUM_NUMBERS, Block, Lanes, Motions, Results, Shape
+
+
+def empty_lanes(motions: Motions, shape: Shape, results: Results) -> Lanes:
+    """Lanes with nothing to do."""
+    n, L = len(shape.floors), len(shape.stride)
+    rows = SCALARS + BLOCKS * (n + 1) + (n * n if len(shape.dense) > 0 else 0)
+    return Lanes(
+        buffer=np.zeros(rows * L),
+        integers=np.zeros((L, WHOLE_NUMBERS), np.int64),
+        podium=np.zeros((L, PODIUM_NUMBERS)),
+        modes=np.zeros((L, SHAPES + 2 * n, n)),
+        block=empty_block(n),
+        piece=np.zeros(6),
+        acceleration=motions.acceleration,
+        samples=results.samples,
+        log=results.log,
+    )
+
+
+def empty_block(storeys: int) -> Block:
+    """A block in full contact."""
+    return Block(
+        rows=np.zeros(ROWS * COLUMNS),
+        modes=np.zeros((storeys, 3, COLUMNS)),
+        tops=np.zeros((storeys, 2, COLUMNS)),
+    )
