@@ -11,17 +11,13 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.failure import failure_text
 from rpscli.analyses.history import History, empty_results, history_of, shape_of_one
-from rpscli.analyses.kernel_input import (
-    aligned,
-    has_dense_damping,
-    joined_motions,
-    stacked_systems,
-)
+from rpscli.analyses.kernel_input import aligned, has_dense_damping
+from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
 from rpscli.analyses.outcome import Outcome, outcome_of
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import layout
-from rpscli.physics.parameters import Points, Shape
+from rpscli.physics.parameters import Shape
 from rpscli.records.ground_motion import GroundMotion
 
 Item = TypeVar("Item")
@@ -117,16 +113,27 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
         record, vertical = aligned(r.record, r.vertical)
         system = systems.place((id(r.structure), r.settings), (r.structure, r.settings))
         along = motions.place((id(r.record), id(r.vertical)), record)
-        above = -1
+        above = None
         if vertical is not None:
             above = motions.place((id(r.vertical), id(r.record), "up"), vertical)
-        rows.append((system, along, above))
-    system, motion, upwards = np.array(rows, dtype=np.int64).T.copy()
-    points = Points(system, motion, upwards, np.array([r.scale for r in requests]))
+        rows.append((system, along, above, r.scale))
+    acceleration, starts = joined(motions.items)
+    given = points(
+        [
+            point(
+                system,
+                motions.items[along],
+                starts[along],
+                None if above is None else starts[above],
+                scale,
+            )
+            for system, along, above, scale in rows
+        ]
+    )
     results = empty_results(len(requests), requests[0].structure.storeys)
     many = len(requests) >= worth_lanes
     shape = (shape_of_many if many else shape_of_one)(requests[0].structure)
-    integrate(stacked_systems(systems.items), joined_motions(motions.items), points, shape, results)
+    integrate(stacked_systems(systems.items), acceleration, given, shape, results)
     return [history_of(*row) for row in zip(results.numbers, results.integers, strict=True)]
 
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernel_input import stacked_systems
-from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.kernel_tables import modal_rows
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
@@ -42,7 +41,6 @@ def fixed_base_response(
     ValueError
         If there is no building.
     """
-    from rpscli.physics.contact import SHAPES  # noqa: PLC0415
     from rpscli.physics.fixed_base import integrate_fixed_base  # noqa: PLC0415
 
     building = structure.superstructure
@@ -50,12 +48,11 @@ def fixed_base_response(
         raise ValueError("a structure without superstructure has no fixed-base response")
     n = building.storeys
     samples = np.empty((intervals + 1, 2 * n))
-    systems = stacked_systems([(structure, TimeHistorySettings())])
     from rpscli.physics.workspace import empty_block  # noqa: PLC0415
 
-    tops, modes = np.zeros((2, n)), np.zeros((SHAPES + 2 * n, n))
+    tops = np.zeros((2, n))
     integrate_fixed_base(
-        systems, record.acceleration, record.dt, samples, tops, modes, empty_block(n)
+        record.acceleration, record.dt, samples, tops, modal_rows(structure), empty_block(n)
     )
     shears, accelerations = tops
     return FixedBaseResponse(

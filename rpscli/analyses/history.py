@@ -7,16 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernel_input import (
-    aligned,
-    has_dense_damping,
-    joined_motions,
-    stacked_systems,
-)
+from rpscli.analyses.kernel_input import aligned, has_dense_damping
+from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import layout
-from rpscli.physics.parameters import Points, Results, Shape
+from rpscli.physics.parameters import Results, Shape
 from rpscli.records.ground_motion import GroundMotion
 
 FIRST_LOG = 4096
@@ -70,7 +66,7 @@ def history_of(numbers: NDArray[np.float64], integers: NDArray[np.int64]) -> His
         floor_accelerations=numbers[layout.OUT_FLOORS + n :],
         friction=numbers[layout.OUT_FRICTION_TOP : layout.OUT_FRICTION_BOTTOM + 1],
         least_normal=numbers[layout.OUT_NORMAL_TOP : layout.OUT_NORMAL_BOTTOM + 1],
-        energies=numbers[layout.OUT_INPUT : layout.OUT_STORED + 1],
+        energies=numbers[[layout.OUT_INPUT, layout.OUT_DAMPED, layout.OUT_LOST, layout.OUT_STORED]],
         energy_created=float(numbers[layout.OUT_CREATED]),
         creating_impacts=int(integers[layout.OUT_CREATING]),
         counts=integers[layout.OUT_COUNTS :],
@@ -119,16 +115,16 @@ def sampled_history(
 
     along, upwards = aligned(record, vertical)
     systems = stacked_systems([(structure, settings)])
-    motions = joined_motions([along] if upwards is None else [along, upwards])
-    one = np.zeros(1, dtype=np.int64)
-    points = Points(one, one, one - 1 if upwards is None else one + 1, np.ones(1))
+    acceleration, starts = joined([along] if upwards is None else [along, upwards])
+    above = None if upwards is None else starts[1]
+    given = points([point(0, along, 0, above, 1.0)])
     free = settings.free_vibration
     longest = LONGEST_FREE_VIBRATION if free is None else free
     rows = along.npts + int(np.ceil(longest / record.dt)) + 1
     events = FIRST_LOG
     while True:
         results = empty_results(1, structure.storeys, samples=rows, events=events)
-        integrate(systems, motions, points, shape_of_one(structure), results)
+        integrate(systems, acceleration, given, shape_of_one(structure), results)
         history = history_of(results.numbers[0], results.integers[0])
         if (seen := int(history.counts.sum())) <= events:
             break

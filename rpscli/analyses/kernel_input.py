@@ -1,9 +1,8 @@
-"""Structures, records and settings as the kernels want them."""
+"""Structures and settings as the kernels want them: parameters and lengths of steps."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.model.damping import RayleighDamping
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.parameters import Motions, Podium, Systems, podium_numbers
+from rpscli.physics.parameters import Podium
 from rpscli.records.ground_motion import GroundMotion
 
 FLIGHT_ANGLE = 0.27
@@ -117,47 +116,6 @@ def has_dense_damping(structure: PodiumStructure) -> bool:
     """Whether the damping matrix is not a0 M + a1 K."""
     building = structure.superstructure
     return building is not None and not isinstance(building.damping, RayleighDamping)
-
-
-def stacked_systems(
-    systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]],
-) -> Systems:
-    """Structures with the same number of floors and kind of damping, stacked."""
-    table = [podium_numbers(podium_parameters(*system)) for system in systems]
-    buildings = [structure.superstructure for structure, _ in systems]
-    n = systems[0][0].storeys
-    present = [b for b in buildings if b is not None]
-    if not present:
-        none, square = np.empty((len(systems), 0)), np.empty((len(systems), 0, 0))
-        return Systems(np.array(table), none, none, none, square, none, none, none, square, square)
-    shapes = np.array([b.shapes.T for b in present])
-    drifts = np.diff(shapes, axis=2, prepend=0.0)
-    stiffness = np.array([b.stiffnesses for b in present])
-    mass = np.array([b.masses for b in present])
-    dense = has_dense_damping(systems[0][0])
-    return Systems(
-        podium=np.array(table),
-        mass=mass,
-        inverse_mass=1.0 / mass,
-        stiffness=stiffness,
-        damping=np.array([b.damping_matrix for b in present]) if dense else np.empty((0, n, n)),
-        omega=np.array([b.frequencies for b in present]),
-        xi=np.array([b.damping_ratios for b in present]),
-        participation=np.array([b.participation for b in present]),
-        shapes=np.ascontiguousarray(shapes),
-        shear_shapes=np.ascontiguousarray(drifts * stiffness[:, None, :]),
-    )
-
-
-def joined_motions(records: Sequence[GroundMotion]) -> Motions:
-    """Records end to end."""
-    npts = np.array([r.npts for r in records], dtype=np.int64)
-    return Motions(
-        acceleration=np.concatenate([r.acceleration for r in records]),
-        start=np.concatenate([[0], np.cumsum(npts)[:-1]]).astype(np.int64),
-        npts=npts,
-        dt=np.array([r.dt for r in records]),
-    )
 
 
 def aligned(

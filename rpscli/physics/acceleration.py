@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rpscli.physics.geometry import Phase
 from rpscli.physics.jit import kernel, merged
-from rpscli.physics.lanes import first_lane, lane_count
+from rpscli.physics.lanes import first_lane, floor_count, lane_count
 from rpscli.physics.layout import (
     ACROSS,
     ACROSS_SLOPE,
@@ -98,7 +98,7 @@ def accelerate(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
     M u'' = -M 1 a_g - K v - C v', v = u - 1 u_b (Theory, section 2). Each storey pulls on the
     floor above and below it: K is never formed.
     """
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     first = first_lane(shape, lane)
     last = first + lane_count(shape)
     ddu = (SCALARS + AHEAD_ACCELERATION * (n + 1)) * L
@@ -122,7 +122,7 @@ def accelerate(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
 @merged
 def move_base(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
     """Where the cap beam is, how the ground shakes, and what follows for the tilt from these."""
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     u, du = (SCALARS + AHEAD * (n + 1)) * L, (SCALARS + AHEAD_RATE * (n + 1)) * L
     first = first_lane(shape, lane)
     for l in range(first, first + lane_count(shape)):
@@ -157,7 +157,7 @@ def stretch_storeys(b: Floats, shape: Shape, lane: int) -> None:
     The floors' loop touches rows of floors only: all its rows move together, so the compiler sees
     that none overlaps another.
     """
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     first = first_lane(shape, lane)
     last = first + lane_count(shape)
     u, du = (SCALARS + AHEAD * (n + 1)) * L, (SCALARS + AHEAD_RATE * (n + 1)) * L
@@ -179,7 +179,7 @@ def stretch_storeys(b: Floats, shape: Shape, lane: int) -> None:
 @merged
 def move_floors(b: Floats, shape: Shape, lane: int) -> None:
     """Accelerations of the floors, and the base shear V = 1^T (K v + C v')."""
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     first = first_lane(shape, lane)
     last = first + lane_count(shape)
     du = (SCALARS + AHEAD_RATE * (n + 1)) * L
@@ -203,7 +203,7 @@ def move_floors(b: Floats, shape: Shape, lane: int) -> None:
 @merged
 def drag_floors(b: Floats, shape: Shape, lane: int) -> None:
     """The same for a damping matrix that is not a0 M + a1 K: what it adds."""
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     first = first_lane(shape, lane)
     last = first + lane_count(shape)
     du = (SCALARS + AHEAD_RATE * (n + 1)) * L
@@ -222,7 +222,7 @@ def drag_floors(b: Floats, shape: Shape, lane: int) -> None:
 @merged
 def note_powers(b: Floats, shape: Shape, lane: int) -> None:
     """Energy flows at the stage [W]: what the ground puts in, and what dampers take (Theory 8)."""
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     first = first_lane(shape, lane)
     last = first + lane_count(shape)
     du = (SCALARS + AHEAD_RATE * (n + 1)) * L

@@ -13,61 +13,43 @@ Exact steps may be as many as one likes before one looks at them, so they are ta
 modes are followed through a block one after the other, then everything that is wanted of its
 instants is computed for all of them at once, in vector instructions. Entry k of each row of a block
 belongs to the state after k steps. What a lane needs besides stands in its modal rows z (rows, n),
-see `Q` to `SHAPES`.
+see `contact_layout`.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+from rpscli.physics.contact_layout import (
+    ALARM,
+    AT,
+    COLUMNS,
+    DQ,
+    DQ_END,
+    DRAG,
+    GIVEN,
+    MODAL_DQ,
+    MODAL_PULL,
+    MODAL_Q,
+    OMEGA,
+    PART,
+    PARTICIPATION,
+    PUSH,
+    PUSH_BEND,
+    PUSH_SLOPE,
+    Q_END,
+    RISE,
+    RISE_SLOPE,
+    SLOPE,
+    SQUARE,
+    TAKEN,
+    XI,
+    Q,
+)
 from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, lower_hull, quintic
 from rpscli.physics.jit import kernel, part
 from rpscli.physics.oscillator import transition
-from rpscli.physics.parameters import Block, Floats, Systems
-
-(
-    Q,  # modal displacements
-    DQ,  # modal velocities
-    Q_END,
-    DQ_END,
-    OMEGA,
-    XI,
-    PARTICIPATION,
-    SQUARE,  # w^2
-    DRAG,  # 2 xi w
-    WHOLE,  # 8 rows: `oscillator.transition` over a contact step
-) = range(10)
-PART = WHOLE + 8  # 8 rows: over a part of one
-SHAPES = PART + 8  # n rows: mode shapes; then n rows: storey shears of each mode
-
-COLUMNS = 32
-"""Instants of a block, its start included."""
-
-(
-    AT,  # acceleration of the ground, and its slope over the step that begins
-    SLOPE,
-    RISE,  # g + a_v, and its slope
-    RISE_SLOPE,
-    PUSH,  # base shear of the modes, and two derivatives but for what the ground's slope adds
-    PUSH_SLOPE,
-    PUSH_BEND,
-    ALARM,  # 1 if the storey might uplift in the step that begins
-    SEEN,  # 1 at samples of the record that come before any uplift
-    GIVEN,  # energy put in and damped during the step that begins
-    TAKEN,
-    SHEAR,  # scratch of one floor
-    PULL,
-    FRICTION_TOPS,  # extremes since full contact began, column by column
-    FRICTION_BOTTOMS,
-    NORMAL_TOPS,
-    NORMAL_BOTTOMS,
-    ROWS,  # how many they are
-) = range(18)
-
-# Rows of a mode: displacement, velocity, and pull w^2 q + 2 xi w q' over its mass; of a floor:
-# largest storey shear and absolute acceleration since full contact began.
-MODAL_Q, MODAL_DQ, MODAL_PULL = range(3)
-TOP_SHEAR, TOP_ACCELERATION = range(2)
+from rpscli.physics.parameters import Block, Floats
 
 
 class Stance(NamedTuple):
@@ -81,24 +63,6 @@ class Stance(NamedTuple):
     share: float
     lift: float
     creep: float
-
-
-@kernel
-def load_modes(systems: Systems, s: int, z: Floats, h: float) -> None:
-    """Fill the modal rows of a lane at rest; h is its contact step."""
-    n = z.shape[1]
-    for row in range(z.shape[0]):
-        for i in range(n):
-            z[row, i] = 0.0
-    for r in range(n):
-        w, xi = systems.omega[s, r], systems.xi[s, r]
-        z[OMEGA, r], z[XI, r] = w, xi
-        z[PARTICIPATION, r] = systems.participation[s, r]
-        z[SQUARE, r], z[DRAG, r] = w * w, 2.0 * xi * w
-        for i in range(n):
-            z[SHAPES + r, i] = systems.shapes[s, r, i]
-            z[SHAPES + n + r, i] = systems.shear_shapes[s, r, i]
-    fill_transition(z, h, WHOLE)
 
 
 @kernel

@@ -23,52 +23,32 @@ from rpscli.physics.layout import (
     AT_REST,
     ATTEND,
     COUNTS,
-    CREATED,
     CREATING,
-    CRITICAL_TIME,
-    DAMPED,
     EVALUATIONS,
     EVENT_KINDS,
     FLOOR_ACCELERATION,
     FRESH,
-    FRICTION_BOTTOM,
-    FRICTION_TOP,
     FULL_CONTACT,
     GIVEN,
     GIVEN_FIRST,
     GROUND,
     GROUND_UPWARDS,
-    INPUT,
     INTERVAL,
-    LOST,
     MOTION,
     NO_POINT,
-    NORMAL_BOTTOM,
-    NORMAL_TOP,
     OUT_COUNTS,
-    OUT_CREATED,
     OUT_CREATING,
-    OUT_CRITICAL_TIME,
-    OUT_DAMPED,
     OUT_EVALUATIONS,
     OUT_FLOORS,
-    OUT_FRICTION_BOTTOM,
-    OUT_FRICTION_TOP,
-    OUT_INPUT,
     OUT_INTERVALS,
-    OUT_LOST,
     OUT_MOTION,
-    OUT_NORMAL_BOTTOM,
-    OUT_NORMAL_TOP,
     OUT_OUTCOME,
     OUT_PEAK,
-    OUT_PEAK_TIME,
     OUT_ROTATION,
     OUT_STORED,
     OUT_TIME,
     OUTCOME,
     PEAK,
-    PEAK_TIME,
     POINT,
     POSITION,
     QUIET,
@@ -87,8 +67,8 @@ from rpscli.physics.layout import (
 )
 from rpscli.physics.loading import begin, lean
 from rpscli.physics.parameters import (
+    Floats,
     Lanes,
-    Motions,
     Points,
     Results,
     Shape,
@@ -104,28 +84,23 @@ from rpscli.physics.workspace import empty_lanes
 
 
 def integrate(
-    systems: Systems, motions: Motions, points: Points, shape: Shape, results: Results
+    systems: Systems, acceleration: Floats, points: Points, shape: Shape, results: Results
 ) -> None:
     """Follow every history of `points` from rest; writes `results`.
 
     Parameters
     ----------
-    systems, motions, points
-        What to run.
+    systems, acceleration, points
+        What to run: structures, records of the ground end to end, and which of them meet.
     shape
         Sizes: n must be that of the systems, the lanes at least one.
     """
-    integrate_lanes(systems, points, motions, shape, results, empty_lanes(motions, shape, results))
+    integrate_lanes(systems, points, shape, results, empty_lanes(acceleration, shape, results))
 
 
 @kernel
 def integrate_lanes(
-    systems: Systems,
-    points: Points,
-    motions: Motions,
-    shape: Shape,
-    results: Results,
-    lanes: Lanes,
+    systems: Systems, points: Points, shape: Shape, results: Results, lanes: Lanes
 ) -> None:
     """The same, in lanes that are made already."""
     L = len(shape.stride)
@@ -147,7 +122,7 @@ def integrate_lanes(
                     continue
                 if whole[l, POINT] != NO_POINT:
                     finish(lanes, shape, l, results)
-                waiting = engage(lanes, shape, l, waiting, systems, motions, points, results)
+                waiting = engage(lanes, shape, l, waiting, systems, points, results)
                 flies = True
             active -= whole[l, POINT] == NO_POINT
         started = True
@@ -202,7 +177,6 @@ def engage(
     l: int,
     waiting: int,
     systems: Systems,
-    motions: Motions,
     points: Points,
     results: Results,
 ) -> int:
@@ -213,8 +187,8 @@ def engage(
     """
     L = len(shape.stride)
     b = lanes.buffer
-    while waiting < points.system.shape[0]:
-        begin(lanes, shape, l, waiting, systems, motions, points)
+    while waiting < points.integers.shape[0]:
+        begin(lanes, shape, l, waiting, systems, points)
         waiting += 1
         rotation = podium_of(lanes.podium, l).initial_rotation
         if rotation != 0.0:
@@ -251,20 +225,8 @@ def finish(lanes: Lanes, shape: Shape, l: int, results: Results) -> None:
     numbers, integers = results.numbers[whole[l, POINT]], results.integers[whole[l, POINT]]
     numbers[OUT_TIME] = now(lanes, L, l)
     numbers[OUT_ROTATION] = b[SIDE * L + l] * b[(SCALARS + POSITION * (n + 1)) * L + l]
-    for column, row in (
-        (OUT_PEAK, PEAK),
-        (OUT_PEAK_TIME, PEAK_TIME),
-        (OUT_CRITICAL_TIME, CRITICAL_TIME),
-        (OUT_FRICTION_TOP, FRICTION_TOP),
-        (OUT_FRICTION_BOTTOM, FRICTION_BOTTOM),
-        (OUT_NORMAL_TOP, NORMAL_TOP),
-        (OUT_NORMAL_BOTTOM, NORMAL_BOTTOM),
-        (OUT_INPUT, INPUT),
-        (OUT_DAMPED, DAMPED),
-        (OUT_LOST, LOST),
-        (OUT_CREATED, CREATED),
-    ):
-        numbers[column] = b[row * L + l]
+    for i in range(OUT_FLOORS - OUT_PEAK):
+        numbers[OUT_PEAK + i] = b[(PEAK + i) * L + l]
     numbers[OUT_STORED] = stored
     for i in range(n):
         numbers[OUT_FLOORS + i] = b[(SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l]

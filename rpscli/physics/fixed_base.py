@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rpscli.physics.contact import (
+from rpscli.physics.contact import fill_transition, keep, march
+from rpscli.physics.contact_layout import (
     AT,
     COLUMNS,
     MODAL_DQ,
@@ -12,18 +13,14 @@ from rpscli.physics.contact import (
     TOP_ACCELERATION,
     TOP_SHEAR,
     WHOLE,
-    keep,
-    load_modes,
-    march,
 )
 from rpscli.physics.jit import kernel
-from rpscli.physics.parameters import Block, Floats, Systems
+from rpscli.physics.parameters import Block, Floats
 from rpscli.physics.standing_demands import forget, mark_samples, observe_floors
 
 
 @kernel
 def integrate_fixed_base(
-    systems: Systems,
     acceleration: Floats,
     dt: float,
     samples: Floats,
@@ -31,7 +28,7 @@ def integrate_fixed_base(
     z: Floats,
     block: Block,
 ) -> None:
-    """Follow the building of the first system.
+    """Follow a building from rest.
 
     Parameters
     ----------
@@ -45,10 +42,10 @@ def integrate_fixed_base(
         (2, n): written with the largest storey shears k_i d_i [N] and absolute floor
         accelerations [m/s2].
     z, block
-        Scratch: (26 + 2 n, n) modal rows and a block, see `contact`.
+        Its modal rows (26 + 2 n, n), and room for a block: see `contact_layout`.
     """
     n, instants = samples.shape[1] // 2, samples.shape[0]
-    load_modes(systems, 0, z, dt)
+    fill_transition(z, dt, WHOLE)
     forget(block)
     c = block.rows
     steps = COLUMNS - 1

@@ -10,7 +10,7 @@ import math
 
 from rpscli.physics.events import Quintic, lower_hull, quintic, upper_hull
 from rpscli.physics.jit import kernel, merged
-from rpscli.physics.lanes import lane_count
+from rpscli.physics.lanes import floor_count, lane_count
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
@@ -82,7 +82,7 @@ def search_events(b: Floats, shape: Shape) -> None:
     where a quiet step ends at a sample of the record; and WATCH: 1 where a quiet step may hold the
     largest tilt so far inside, or passes theta_cr for the first time.
     """
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     velocity, after = (SCALARS + VELOCITY * (n + 1)) * L, (SCALARS + AHEAD_RATE * (n + 1)) * L
     for l in range(lane_count(shape)):
         path = tilt_path(b, n, L, l)
@@ -144,7 +144,7 @@ def observe(b: Floats, shape: Shape) -> None:
 
     The largest tilt is that of every step; `peak` sees to those that hold it inside.
     """
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     rows = (n + 1) * L
     block = SCALARS * L
     for i in range(n):
@@ -249,7 +249,7 @@ def take_over(b: Floats, shape: Shape) -> None:
 @merged
 def keep_end(b: Floats, shape: Shape, state: int, ahead: int) -> None:
     """Copy a block of the step's end to one of its start."""
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     start, end = (SCALARS + state * (n + 1)) * L, (SCALARS + ahead * (n + 1)) * L
     for c in range(n + 1):
         for l in range(lane_count(shape)):

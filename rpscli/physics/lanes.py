@@ -10,6 +10,7 @@ from rpscli.physics.jit import merged
 from rpscli.physics.parameters import Shape
 
 MOST_LANES = 64
+MOST_FLOORS = 10_000
 
 
 @merged
@@ -22,3 +23,9 @@ def first_lane(shape: Shape, lane: int) -> int:
 def lane_count(shape: Shape) -> int:
     """Lanes that move together, at most `MOST_LANES`."""
     return min(len(shape.lanes), MOST_LANES)
+
+
+@merged
+def floor_count(shape: Shape) -> int:
+    """Floors, at most `MOST_FLOORS`."""
+    return max(min(len(shape.floors), MOST_FLOORS), 0)

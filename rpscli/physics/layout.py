@@ -69,11 +69,7 @@ from __future__ import annotations
     WATCH,  # 1 if it may hold the largest tilt inside, or pass theta_cr for the first time
     ATTEND,  # 1 if the step ends at a sample or holds an event
     STALE,  # accelerations must be computed anew; if so, why: see `FRESH`
-    # Running totals and extremes; times that never came are negative.
-    INPUT,
-    DAMPED,
-    LOST,
-    CREATED,
+    # Running totals and extremes, in the order of the results; times that never came are negative.
     PEAK,
     PEAK_TIME,
     CRITICAL_TIME,
@@ -81,6 +77,10 @@ from __future__ import annotations
     FRICTION_BOTTOM,
     NORMAL_TOP,
     NORMAL_BOTTOM,
+    INPUT,
+    DAMPED,
+    LOST,
+    CREATED,
     EVALUATIONS,
     # Energy flows: at the present stage, at the start of the step, and their mean over the step.
     GIVEN,
@@ -113,7 +113,6 @@ BLOCKS = ACCELERATION + 5
 # Whole numbers of a lane.
 (
     POINT,
-    SYSTEM,
     RECORD,  # offset of the record in the store of all records
     NPTS,
     VERTICAL,  # offset of the vertical record, or -1
@@ -125,7 +124,7 @@ BLOCKS = ACCELERATION + 5
     STALLED,
     CREATING,  # impacts that created energy
     COUNTS,  # 7 counts of events follow
-) = range(13)
+) = range(12)
 
 # Why the accelerations of a lane are stale.
 FRESH = 0.0
@@ -172,6 +171,7 @@ LOG_COLUMNS = 6
 (
     OUT_TIME,
     OUT_ROTATION,
+    OUT_STORED,
     OUT_PEAK,
     OUT_PEAK_TIME,
     OUT_CRITICAL_TIME,
@@ -182,7 +182,6 @@ LOG_COLUMNS = 6
     OUT_INPUT,
     OUT_DAMPED,
     OUT_LOST,
-    OUT_STORED,
     OUT_CREATED,
     OUT_FLOORS,
 ) = range(15)

@@ -62,42 +62,35 @@ def podium_numbers(podium: Podium) -> list[float]:
 
 
 class Systems(NamedTuple):
-    """Structures of the same number of floors n, stacked along the first axis.
+    """Structures of the same number of floors n and kind of damping, stacked along the first axis.
 
-    `podium` holds a row of `podium_numbers` each. Damping is C = a0 M + a1 K, or the full
-    matrices where `damping` is not empty. The modes are those of the fixed base, mass-normalised,
-    one a row; `shear_shapes` are the storey shears k_i (phi_i - phi_{i-1}) of each, and
-    `participation` is Gamma_r = phi_r^T M 1.
+    podium
+        (S, 34): a row of `podium_numbers` each.
+    column
+        (S, rows): what stands in the buffer of a lane before a history, see `layout`.
+    modes
+        (S, 26 + 2 n, n): what stands in its modal rows, see `contact_layout`.
     """
 
     podium: Floats
-    mass: Floats
-    inverse_mass: Floats
-    stiffness: Floats
-    damping: Floats
-    omega: Floats
-    xi: Floats
-    participation: Floats
-    shapes: Floats
-    shear_shapes: Floats
+    column: Floats
+    modes: Floats
 
 
-class Motions(NamedTuple):
-    """Accelerations of the ground, end to end; linear between samples, 0 after the last."""
-
-    acceleration: Floats
-    start: Integers
-    npts: Integers
-    dt: Floats
+(
+    SYSTEM,  # number of the structure
+    RECORD,  # offset of the record in the store of all records
+    NPTS,
+    VERTICAL,  # offset of the vertical record, or -1
+) = range(4)
+SCALE, DT = range(2)
 
 
 class Points(NamedTuple):
-    """The histories to run: which system, which motion at which scale; vertical -1 for none."""
+    """The histories to run: `integers` (P, 4), columns SYSTEM to VERTICAL; `numbers` (P, 2)."""
 
-    system: Integers
-    motion: Integers
-    vertical: Integers
-    scale: Floats
+    integers: Integers
+    numbers: Floats
 
 
 class Results(NamedTuple):
@@ -163,8 +156,8 @@ class Lanes(NamedTuple):
     """Everything that a history needs while it runs, lane by lane: see `layout` and `contact`.
 
     `podium` (L, 34) are the numbers of `Podium`, `modes` (L, 26 + 2 n, n) the modal rows of full
-    contact; its `block` and `piece` (6,) are scratch; the acceleration of the ground, the samples
-    and the log are those of `Motions` and `Results`.
+    contact; its `block` and `piece` (6,) are scratch; `acceleration` holds all records end to end,
+    linear between samples; the samples and the log are those of `Results`.
     """
 
     buffer: Floats

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.contact import DQ, DRAG, OMEGA, PARTICIPATION, SHAPES, Q
+from rpscli.physics.contact_layout import (
+    DQ,
+    DRAG,
+    OMEGA,
+    PARTICIPATION,
+    SHAPES,
+    Q,
+)
 from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (
     FLOOR_ACCELERATION,

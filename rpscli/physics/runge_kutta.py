@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from rpscli.physics.acceleration import accelerate
 from rpscli.physics.jit import kernel, merged
-from rpscli.physics.lanes import lane_count
+from rpscli.physics.lanes import floor_count, lane_count
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
@@ -46,7 +46,7 @@ def step(b: Floats, shape: Shape, size: int) -> None:
     flows over the step to GIVEN_MEAN and TAKEN_MEAN. `size` is (n + 1) L, told apart
     from the shape so that the loops stay loops, quick to compile.
     """
-    n, L = len(shape.floors), len(shape.stride)
+    n, L = floor_count(shape), len(shape.stride)
     start, block = SCALARS * L, (n + 1) * L
     step = start + STEPS * block
     x, dx = start + AHEAD * block, start + AHEAD_RATE * block

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from rpscli.physics.contact import AT, COLUMNS, RISE, RISE_SLOPE, SLOPE
+from rpscli.physics.contact_layout import (
+    AT,
+    COLUMNS,
+    RISE,
+    RISE_SLOPE,
+    SLOPE,
+)
 from rpscli.physics.jit import merged, part
 from rpscli.physics.layout import (
     ACROSS,

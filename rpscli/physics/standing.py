@@ -6,6 +6,16 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics.contact import (
+    Stance,
+    energies,
+    fill_transition,
+    first_uplift,
+    keep,
+    locate_uplift,
+    march,
+    raise_alarms,
+)
+from rpscli.physics.contact_layout import (
     ALARM,
     AT,
     COLUMNS,
@@ -20,14 +30,6 @@ from rpscli.physics.contact import (
     TAKEN,
     WHOLE,
     Q,
-    Stance,
-    energies,
-    fill_transition,
-    first_uplift,
-    keep,
-    locate_uplift,
-    march,
-    raise_alarms,
 )
 from rpscli.physics.jit import kernel, part
 from rpscli.physics.layout import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.contact import (
+from rpscli.physics.contact_layout import (
     AT,
     COLUMNS,
     FRICTION_BOTTOMS,

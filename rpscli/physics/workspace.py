@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from rpscli.physics.contact import COLUMNS, ROWS, SHAPES
+from rpscli.physics.contact_layout import (
+    COLUMNS,
+    ROWS,
+    SHAPES,
+)
 from rpscli.physics.layout import BLOCKS, SCALARS, WHOLE_NUMBERS
-from rpscli.physics.parameters import PODIUM_NUMBERS, Block, Lanes, Motions, Results, Shape
+from rpscli.physics.parameters import PODIUM_NUMBERS, Block, Floats, Lanes, Results, Shape
 
 
-def empty_lanes(motions: Motions, shape: Shape, results: Results) -> Lanes:
+def empty_lanes(acceleration: Floats, shape: Shape, results: Results) -> Lanes:
     """Lanes with nothing to do."""
     n, L = len(shape.floors), len(shape.stride)
     rows = SCALARS + BLOCKS * (n + 1) + (n * n if len(shape.dense) > 0 else 0)
@@ -20,7 +24,7 @@ def empty_lanes(motions: Motions, shape: Shape, results: Results) -> Lanes:
         modes=np.zeros((L, SHAPES + 2 * n, n)),
         block=empty_block(n),
         piece=np.zeros(6),
-        acceleration=motions.acceleration,
+        acceleration=acceleration,
         samples=results.samples,
         log=results.log,
     )

@@ -1,4 +1,4 @@
-"""Milliseconds of one history: the tests' scipy integrator, one lane, and eight lanes of a core.
+"""One history of 40 s at 200 Hz: what others would run, and we.
 
 Run from the root of the repository: ``PYTHONPATH=tests python -m benchmarks.histories``. All is
 measured in one run on one core, so that the ratios mean something; accuracy stands beside speed.
@@ -6,87 +6,158 @@ measured in one run on one core, so that the ratios mean something; accuracy sta
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+from collections.abc import Sequence
 
 import numpy as np
-from oracles.reference_systems import podium
-from oracles.second_integrator import simulate
-from rich.console import Console
-from rich.table import Table
 
-from rpscli.analyses.demand import Request, demands
+from benchmarks.agreement import agreeing, share
+from benchmarks.contestants import Contest, run, taylor, taylor_lanes
+from benchmarks.measure import seconds
+from benchmarks.peers.heyoka_history import HeyokaRocking
+from benchmarks.peers.installed import installed
+from benchmarks.peers.opensees_building import OpenSeesBuilding
+from benchmarks.peers.rocking import PeerHistory, rocking_of
+from benchmarks.peers.scipy_history import ScipyRocking, compiled_rates, python_rates
+from benchmarks.structures import STEP, motions, structure
+from benchmarks.tables import figure, say, show
+from rpscli.analyses.demand import Demand, Request, demands
+from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.model.bearing import Bearing
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.physics import layout
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
 
 RECORDS = 64
+FEW = 8
+"""Records for scipy, which takes seconds each."""
+ALONE = 1_000_000_000
+"""Histories from which on lanes would be worth while: never."""
 SETTINGS = TimeHistorySettings(free_vibration=0.0)
+TIGHT = TimeHistorySettings(free_vibration=0.0, accuracy=8.0)
+COLUMNS = (
+    "storeys",
+    "program",
+    "over rps, one",
+    "over rps, lanes",
+    "ms/history",
+    "max theta to 1e-4",
+    "impacts",
+)
 
 
-def structure(storeys: int) -> PodiumStructure:
-    """The paper's building on bearings of zero stiffness."""
-    masses = np.full(storeys, 2e5)
-    stiffnesses = profile_stiffnesses(masses, storeys / 10, "sine")
-    building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
-    return PodiumStructure(Bearing(1.5, 0.15, 0.30, 0.5), 2e4, 2e5, building)
+def many(
+    building: PodiumStructure, records: Sequence[GroundMotion], settings: TimeHistorySettings
+) -> list[Demand]:
+    """All records in lanes of one core."""
+    return demands([Request(building, r, settings) for r in records], worth_lanes=1)
 
 
-def motions() -> list[GroundMotion]:
-    """Synthetic records of 40 s at 200 Hz, about a hundred impacts each."""
-    source = "synthetic:?pga=0.5g&duration=40&dt=0.005&seed={}"
-    return [load_record(source.format(seed)) for seed in range(1, RECORDS + 1)]
+def rps_alone(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
+    """One history in the kernel of single histories, without its samples."""
+    found = demands([Request(building, record, SETTINGS)], worth_lanes=ALONE)[0]
+    return PeerHistory(found.max_rotation, found.impacts)
 
 
-def seconds(work: Callable[[], object], repeats: int = 3) -> float:
-    """Least time of some repeats [s]; the first call, which may compile, does not count."""
-    work()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times)
+def rps_sampled(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
+    """One history with all of its samples and its log of events."""
+    history = sampled_history(building, record, None, SETTINGS).history
+    return PeerHistory(history.max_rotation, int(history.counts[layout.IMPACT]))
+
+
+def rps_lanes(building: PodiumStructure, records: Sequence[GroundMotion]) -> Contest:
+    """Eight at once: only the time of all is known."""
+    found = many(building, records, SETTINGS)
+    spent = seconds(lambda: many(building, records, SETTINGS), repeats=5) / len(records)
+    return Contest(
+        f"rps, {len(records)} in 8 lanes",
+        [spent] * len(records),
+        [d.max_rotation for d in found],
+        [d.impacts for d in found],
+    )
+
+
+def peers(
+    building: PodiumStructure, records: Sequence[GroundMotion], *, heyoka: bool
+) -> list[Contest]:
+    """Those that can follow the whole history."""
+    podium = rocking_of(building)
+    contests = []
+    for name, rates, repeats in (
+        ("scipy RK45", python_rates, 1),
+        ("scipy RK45, compiled rates", compiled_rates, 1),
+    ):
+        scipy = ScipyRocking(podium, STEP, rates(podium))
+        contests.append(
+            run(name, lambda r, s=scipy: s.history(r.acceleration), records[:FEW], repeats)  # type: ignore[misc]
+        )
+    if heyoka:
+        contests += [*taylor(podium, records), *taylor_lanes(podium, records)]
+    return contests
+
+
+def linear_row(
+    building: PodiumStructure, records: Sequence[GroundMotion], alone: Contest, lanes: float
+) -> list[str]:
+    """OpenSees, whose building stands on a fixed base and is not to be compared in accuracy."""
+    opensees = OpenSeesBuilding(rocking_of(building))
+    times = [
+        seconds(lambda r=r: opensees.base_shear(r.acceleration, r.dt, look=False))  # type: ignore[misc]
+        for r in records[:FEW]
+    ]
+    record = records[0]
+    shear = opensees.base_shear(record.acceleration, record.dt, look=True)
+    exact = fixed_base_response(building, record, record.npts - 1).base_shear
+    linear = Contest("OpenSees, linear, no bearings", times)
+    faster = linear.times_faster(alone)
+    accuracy = f"(shear {shear / exact - 1.0:+.1e})"
+    return row(building, linear, faster, faster * lanes, accuracy, "")
+
+
+def row(
+    building: PodiumStructure, c: Contest, alone: float, lanes: float, close: str, impacts: str
+) -> list[str]:
+    """One line of the table."""
+    numbers = map(figure, (alone, lanes, c.milliseconds))
+    return [str(building.storeys), c.name, *numbers, close, impacts]
+
+
+def rows(
+    storeys: int, records: Sequence[GroundMotion], *, heyoka: bool, opensees: bool
+) -> list[list[str]]:
+    """All lines for one building."""
+    building = structure(storeys)
+    limit = TIGHT.overturning_limit * building.critical_rotation
+    exact = [d.max_rotation for d in many(building, records, TIGHT)]
+    alone = run("rps, one history", lambda r: rps_alone(building, r), records)
+    sampled = run("rps, one with all samples", lambda r: rps_sampled(building, r), records)
+    lanes = rps_lanes(building, records)
+    gain = float(np.sum(alone.times) / np.sum(lanes.times))
+    lines = []
+    for c in (*peers(building, records, heyoka=heyoka), sampled, alone, lanes):
+        faster = c.times_faster(alone)
+        close = share(*agreeing(c.rotations, exact, limit))
+        lines.append(row(building, c, faster, faster * gain, close, f"{np.mean(c.impacts):.0f}"))
+    if opensees:
+        lines.insert(-3, linear_row(building, records, alone, gain))
+    if heyoka:
+        tight = HeyokaRocking(rocking_of(building), STEP, tol=1e-12)
+        other = [tight.history(r.acceleration).max_rotation for r in records]
+        agrees = share(*agreeing(other, exact, limit))
+        say(f"{storeys} storeys: heyoka at tol 1e-12 agrees with the reference in {agrees}")
+    return lines
 
 
 def main() -> None:
     """Measure, and print one table."""
-    records = motions()
-    table = Table("storeys", "program", "ms/history", "ratio", "max|theta| below 1e-4")
-    for storeys in (3, 9):
-        building = structure(storeys)
-        requests = [Request(building, record, SETTINGS) for record in records]
-        tight = TimeHistorySettings(free_vibration=0.0, accuracy=8.0)
-        exact = [d.max_rotation for d in demands([Request(building, r, tight) for r in records])]
-
-        def one(building: PodiumStructure = building) -> None:
-            for record in records[:8]:
-                sampled_history(building, record, None, SETTINGS)
-
-        def lanes(requests: list[Request] = requests) -> None:
-            demands(requests, worth_lanes=1)
-
-        found = [d.max_rotation for d in demands(requests, worth_lanes=1)]
-        close = np.mean([abs(a / b - 1.0) < 1e-4 for a, b in zip(found, exact, strict=True)])
-        system = podium(storeys, 0.15, 0.5)
-        start = time.perf_counter()
-        simulate(system, records[0].acceleration, 0.005, free_vibration=0.0, rtol=1e-6)
-        scipy_time = time.perf_counter() - start
-        single, many = seconds(one) / 8, seconds(lanes) / len(records)
-        rows = (
-            ("scipy DOP853, Python", scipy_time, ""),
-            ("rps, one history with samples", single, f"{close:.0%}"),
-            (f"rps, 8 lanes, {RECORDS} histories", many, f"{close:.0%}"),
-        )
-        for name, spent, share in rows:
-            ratio = f"{scipy_time / spent:.0f}"
-            table.add_row(str(storeys), name, f"{1e3 * spent:.2f}", ratio, share)
-    Console().print(table)
+    records = motions(RECORDS)
+    heyoka, opensees = installed("heyoka"), installed("openseespy")
+    lines = [line for n in (3, 9) for line in rows(n, records, heyoka=heyoka, opensees=opensees)]
+    show(
+        "One history of 40 s at 200 Hz on one core; ratios: times that rps is faster",
+        COLUMNS,
+        lines,
+    )
 
 
 if __name__ == "__main__":

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
 from paper_structures import Array, stillness
 
 from rpscli.analyses.history import empty_results, shape_of_one
-from rpscli.analyses.kernel_input import joined_motions, stacked_systems
+from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import layout, switch
 from rpscli.physics.driver import refresh
 from rpscli.physics.energy import uplifted_energy
 from rpscli.physics.loading import begin
-from rpscli.physics.parameters import Points
 from rpscli.physics.table import podium_of
 from rpscli.physics.workspace import empty_lanes
 
@@ -36,13 +34,11 @@ class OneLane:
         n = self.storeys = structure.storeys
         self.shape = shape_of_one(structure)
         systems = stacked_systems([(structure, settings or TimeHistorySettings())])
-        motions = joined_motions([stillness(LEAST_DT)])
-        first = np.zeros(1, dtype=np.int64)
-        points = Points(first, first, first - 1, np.ones(1))
-        nothing = empty_results(1, n)
-        self.lanes = empty_lanes(motions, self.shape, nothing)
+        still = stillness(LEAST_DT)
+        given = points([point(0, still, 0, None, 1.0)])
+        self.lanes = empty_lanes(joined([still])[0], self.shape, empty_results(1, n))
         self.buffer = self.lanes.buffer
-        begin(self.lanes, self.shape, 0, 0, systems, motions, points)
+        begin(self.lanes, self.shape, 0, 0, systems, given)
         self.podium = podium_of(self.lanes.podium, 0)
         self.buffer[layout.SIDE] = side
         switch.enter_phase(self.lanes, 1, 0, self.podium, motion)

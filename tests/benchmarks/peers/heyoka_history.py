@@ -1,0 +1,209 @@
+"""One history by heyoka's Taylor integrator, uplifted; full contact is `standing`.
+
+The ground acceleration is linear between samples, so the integrator stops at each of them and gets
+two new parameters; constants of the phase are parameters too, and one compiled integrator serves
+both phases and both sides. theta = 0 and theta = beta are its terminal events.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from benchmarks.measure import seconds
+from benchmarks.peers.landing import Landing
+from benchmarks.peers.rocking import Floats, PeerHistory, Phase, Rocking
+from benchmarks.peers.standing import fixed_base_of, stand
+
+ACROSS, SLOPE, P, Q, CURVE, SHIFT, SQUARE, LEVEL = range(8)  # parameters
+IMPACT, ARC_END = -1, -2
+"""What a step returns where it ended at a terminal event: -1 less the event's number."""
+ASIDE = 1e-14
+"""Where a flight begins: of a root at the start and one behind it, heyoka sees only the first."""
+GOOD = (-4294967297, -4294967299)
+"""What it returns else: the step of its own choice, or cut at the sample."""
+
+
+def equations(podium: Rocking) -> list[tuple[Any, Any]]:
+    """The mirrored equations of motion as heyoka's expressions, as in `rocking.rates`."""
+    import heyoka as hy  # noqa: PLC0415
+
+    n = len(podium.masses)
+    R, gamma, eta = podium.R, podium.gamma, podium.eta
+    names = ["x", *(f"u{i}" for i in range(n)), "w", *(f"v{i}" for i in range(n))]
+    y = hy.make_vars(*names)
+    x, u, w, v = y[0], y[1 : n + 1], y[n + 1], y[n + 2 :]
+    across = hy.par[ACROSS] + hy.par[SLOPE] * hy.time
+    p, q, c = hy.par[P], hy.par[Q], hy.par[CURVE]
+    cosine, sine = hy.cos(x), hy.sin(x)
+    B = p * cosine + q * sine
+    rise = p * sine - q * cosine
+    C = c + rise
+    S = hy.par[SQUARE] + 2.0 * c * C
+    beam = 2.0 * R * (hy.par[SHIFT] + c * x - q * sine - p * cosine)
+    beam_rate = 2.0 * R * C * w
+    below, rates_below = [beam, *u[:-1]], [beam_rate, *v[:-1]]
+    shears = [
+        podium.stiffnesses[i] * (u[i] - below[i])
+        + podium.stiffnesses[i] * podium.a1 * (v[i] - rates_below[i])
+        for i in range(n)
+    ]
+    drags = [podium.a0 * (v[i] - beam_rate) for i in range(n)]
+    V = hy.sum([shears[0], *(podium.masses[i] * drags[i] for i in range(n))])
+    A = podium.Io - 1.0 + (1.0 + 4.0 * gamma) * S + 4.0 * gamma * eta * B * B
+    D = B * ((1.0 + 4.0 * gamma) * c - 4.0 * gamma * eta * rise)
+    weight = podium.gravity / R * (1.0 + 2.0 * gamma + 2.0 * gamma * eta) * B
+    push = (1.0 + 2.0 * gamma) / R * across - 2.0 / (podium.columns_mass * R) * V
+    pulls = [shears[i] - shears[i + 1] if i + 1 < n else shears[i] for i in range(n)]
+    bends = [-(1.0 / podium.masses[i]) * pulls[i] - drags[i] - across for i in range(n)]
+    speeds = [w, *v]
+    return list(zip(y, [*speeds, -(weight + C * push + D * w * w) / A, *bends], strict=True))
+
+
+class HeyokaRocking:
+    """A compiled integrator for one podium."""
+
+    def __init__(self, podium: Rocking, dt: float, tol: float = 1e-4) -> None:
+        import heyoka as hy  # noqa: PLC0415
+
+        self.podium, self.landing = podium, Landing(podium)
+        self.dt, self.base = dt, fixed_base_of(podium, dt)
+        x = hy.make_vars("x")
+        self.integrator = hy.taylor_adaptive(
+            equations(podium),
+            np.zeros(2 * len(podium.masses) + 2),
+            pars=np.zeros(8),
+            tol=tol,
+            t_events=[
+                # heyoka's own cooldown grows with the tolerance and hides the next impact
+                hy.t_event(x, direction=hy.event_direction.negative, cooldown=0.0),
+                hy.t_event(x - hy.par[LEVEL], cooldown=0.0),
+            ],
+        )
+        self.integrator.pars[LEVEL] = podium.level
+        self.clocked = False
+        """Whether to add up the seconds inside the integrator's steps."""
+        self.inside = 0.0
+        self.steps = 0
+        self._peak, self._impacts = 0.0, 0
+        self._slopes: list[float] = []
+        self._intercepts: list[float] = []
+
+    def history(self, record: Floats) -> PeerHistory:
+        """One history from rest to the end of the record; infinite rotation if it overturns."""
+        podium, n, dt = self.podium, len(self.podium.masses), self.dt
+        slopes = np.diff(record) / dt
+        self._slopes = slopes.tolist()
+        self._intercepts = (record[:-1] - slopes * np.arange(len(slopes)) * dt).tolist()
+        self._peak, self._impacts, self.inside, self.steps = 0.0, 0, 0.0, 0
+        y, z = self.integrator.state, np.zeros(2 * n)
+        interval, after = 0, 0.0
+        while interval < len(slopes):
+            interval, after, side = stand(z, record, interval, after, self.base)
+            if side == 0.0:
+                break
+            y[0], y[n + 1] = ASIDE, 0.0
+            y[1 : n + 1], y[n + 2 :] = side * z[:n], side * z[n:]
+            interval, after, side = self._fly(interval, after, side)
+            z[:n] = side * y[1 : n + 1]
+            z[n:] = side * (y[n + 2 :] - 2.0 * podium.R * np.cos(podium.alpha) * y[n + 1])
+        return PeerHistory(self._peak, self._impacts)
+
+    def _fly(self, interval: int, after: float, side: float) -> tuple[int, float, float]:
+        """From an uplift to re-contact: interval, time into it, and side of the state."""
+        ta, podium, dt = self.integrator, self.podium, self.dt
+        n = len(podium.masses)
+        step = self._step if self.clocked else ta.step
+        land = self.landing.land
+        y, pars, slopes, intercepts = ta.state, ta.pars, self._slopes, self._intercepts
+        value = y.item  # Python's own floats: numpy's would double the time of this loop
+        self._enter(podium.rolling)
+        ta.time = interval * dt + after
+        ta.reset_cooldowns()
+        peak, steps, left, before, w = self._peak, 0, dt - after, 0.0, 0.0
+        for i in range(interval, len(slopes)):
+            across, slope = side * intercepts[i], side * slopes[i]
+            pars[ACROSS], pars[SLOPE] = across, slope
+            while left > 0.0:
+                outcome, h = step(left)
+                steps += 1
+                left -= h
+                x, w = value(0), value(n + 1)
+                if x > peak:  # noqa: PLR1730 -- max takes longer than the step's bookkeeping
+                    peak = x
+                if w <= 0.0 < before and x + h * before > peak:
+                    peak = max(peak, self._turning_point(h))
+                before = w
+                if left == 0.0:
+                    break  # at the sample: to ask what ended the step takes as long as the step
+                code = int(outcome)
+                if code == IMPACT:
+                    self._impacts += 1
+                    stays = land(y, across + slope * ta.time)
+                    side, across, slope, before = -side, -across, -slope, value(n + 1)
+                    if stays:
+                        self._peak, self.steps = float(peak), self.steps + steps
+                        return i, dt - left, side
+                    y[0], pars[ACROSS], pars[SLOPE] = ASIDE, across, slope
+                elif code == ARC_END:
+                    self._enter(podium.rocking if w > 0.0 else podium.rolling)
+                    y[0] = podium.level + (ASIDE if w > 0.0 else -ASIDE)
+                else:
+                    refuse_failure(code)
+            left = dt
+            if y[0] > podium.limit:
+                peak = np.inf
+                break
+        self._peak, self.steps = float(peak), self.steps + steps
+        return len(slopes), 0.0, side
+
+    def _enter(self, phase: Phase) -> None:
+        pars, (p, q, c, u0) = self.integrator.pars, phase
+        pars[P], pars[Q], pars[CURVE], pars[SHIFT] = p, q, c, u0
+        pars[SQUARE] = p * p + q * q - c * c
+
+    def _turning_point(self, h: float) -> float:
+        """The tilt where its rate is zero within the last step, by its dense output."""
+        ta, n = self.integrator, len(self.podium.masses)
+        low, high = ta.time - h, ta.time
+        for _ in range(30):
+            middle = 0.5 * (low + high)
+            if ta.update_d_output(middle)[n + 1] > 0.0:
+                low = middle
+            else:
+                high = middle
+        return float(ta.update_d_output(low)[0])
+
+    def _step(self, limit: float) -> tuple[int, float]:
+        start = time.perf_counter()
+        answer: tuple[int, float] = self.integrator.step(limit)
+        self.inside += time.perf_counter() - start
+        return answer
+
+
+def refuse_failure(code: int) -> None:
+    """Stop if a step did not end well."""
+    if code not in GOOD:
+        raise RuntimeError(f"heyoka stopped with {code}")
+
+
+def empty_step_seconds() -> float:
+    """What one call of `step` costs if there is next to nothing to integrate."""
+    import heyoka as hy  # noqa: PLC0415
+
+    x = hy.make_vars("x")
+    return seconds_a_call(hy.taylor_adaptive([(x, 0.0 * x)], [0.0], tol=1e-4).step, 1e-3)
+
+
+def seconds_a_call(step: Callable[[Any], object], limit: object) -> float:
+    """The least mean of a thousand calls, of many rounds: what is subtracted must not be noise."""
+    calls = 1000
+
+    def many() -> None:
+        for _ in range(calls):
+            step(limit)
+
+    return seconds(many, repeats=500) / calls
