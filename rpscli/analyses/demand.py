@@ -9,6 +9,7 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.compilation import SINGLE, compiled, lanes_of
 from rpscli.analyses.failure import failure_text
 from rpscli.analyses.history import History, empty_results, history_of, shape_of_one
 from rpscli.analyses.kernel_input import aligned, has_dense_damping
@@ -131,9 +132,14 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
         ]
     )
     results = empty_results(len(requests), requests[0].structure.storeys)
-    many = len(requests) >= worth_lanes
-    shape = (shape_of_many if many else shape_of_one)(requests[0].structure)
-    integrate(stacked_systems(systems.items), acceleration, given, shape, results)
+    structure = requests[0].structure
+    if len(requests) >= worth_lanes:
+        shape = shape_of_many(structure)
+        name = lanes_of(structure, dense=has_dense_damping(structure))
+    else:
+        shape, name = shape_of_one(structure), SINGLE
+    with compiled(name):
+        integrate(stacked_systems(systems.items), acceleration, given, shape, results)
     return [history_of(*row) for row in zip(results.numbers, results.integers, strict=True)]
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.compilation import SINGLE, compiled
 from rpscli.analyses.kernel_input import aligned, has_dense_damping
 from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
@@ -124,7 +125,8 @@ def sampled_history(
     events = FIRST_LOG
     while True:
         results = empty_results(1, structure.storeys, samples=rows, events=events)
-        integrate(systems, acceleration, given, shape_of_one(structure), results)
+        with compiled(SINGLE):
+            integrate(systems, acceleration, given, shape_of_one(structure), results)
         history = history_of(results.numbers[0], results.integers[0])
         if (seen := int(history.counts.sum())) <= events:
             break

@@ -6,9 +6,11 @@ from rpscli.commands.terminal import Terminal
 
 
 def announce_compilation(terminal: Terminal) -> None:
-    """Say that the kernels have to be compiled, if they have."""
-    from rpscli.physics.driver import integrate  # noqa: PLC0415 -- numba is slow
-    from rpscli.physics.jit import is_compiled  # noqa: PLC0415
+    """Say so whenever a kernel has to be compiled from now on."""
+    from rpscli.analyses.compilation import announce_to  # noqa: PLC0415 -- numpy is slow
 
-    if not is_compiled(integrate):
-        terminal.note("compiling the kernels, once for this version: up to a minute")
+    announce_to(
+        lambda name: terminal.note(
+            f"compiling the kernel for {name}, once for this version: about half a minute"
+        )
+    )

@@ -54,15 +54,12 @@ def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -
 
 def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
     """Time of the whole study [s], and where the number comes from."""
-    from rpscli.physics.jit import is_compiled  # noqa: PLC0415 -- numba is slow
+    from rpscli.analyses.compilation import SINGLE, is_ready  # noqa: PLC0415 -- numpy is slow
     from rpscli.sweep.estimate import estimate  # noqa: PLC0415
 
-    if given.design.plan.analysis == "timehistory":
-        from rpscli.physics.driver import integrate  # noqa: PLC0415
-
-        if not is_compiled(integrate):
-            seconds = GUESSED_POINT_SECONDS * len(given.design) / jobs
-            return seconds, "a guess, since the kernels are not compiled yet"
+    if given.design.plan.analysis == "timehistory" and not is_ready(SINGLE):
+        seconds = GUESSED_POINT_SECONDS * len(given.design) / jobs
+        return seconds, "a guess, since the kernels are not compiled yet"
     return estimate(given.design, given.bench, jobs).seconds, "trying some of the points"
 
 

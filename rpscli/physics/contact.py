@@ -131,7 +131,7 @@ def keep(block: Block, z: Floats, k: int) -> None:
         z[Q, r], z[DQ, r] = block.modes[r, MODAL_Q, k], block.modes[r, MODAL_DQ, k]
 
 
-@part
+@kernel
 def energies(block: Block, z: Floats, h: float) -> None:
     """Energy put in by the ground and damped during each step of length h [J].
 
@@ -224,7 +224,7 @@ def first_uplift(c: Floats, stance: Stance, h: float, k: int, piece: Floats) -> 
     return first, side
 
 
-@part
+@kernel
 def margin_after(
     c: Floats, z: Floats, stance: Stance, h: float, k: int, side: float
 ) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import tempfile
 from collections.abc import Callable
 from functools import cache
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba import types
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -99,13 +101,36 @@ def _compiled(function: Function, *, merged_into_callers: bool) -> Function:
         )
     finally:
         config.CACHE_DIR = before
-    return cast("Function", compiled)
+    return cast("Function", _one_code_for_all_constants(compiled))
 
 
-def is_compiled(function: Callable[..., Any]) -> bool:
-    """Whether a kernel's machine code is in memory or on disk: calling it then starts at once."""
-    if getattr(function, "signatures", True):
-        return True
+def _one_code_for_all_constants(compiled: Any) -> Any:
+    """Have a kernel compiled once for all integers: numba would for each constant anew."""
+    template = compiled.get_call_template
+    plain: Any = types.unliteral
+
+    def of_types(args: Any, kws: Any) -> Any:
+        return template([plain(a) for a in args], {k: plain(v) for k, v in kws.items()})
+
+    compiled.get_call_template = of_types
+    return compiled
+
+
+_compiled_here: set[str] = set()
+
+
+def is_compiled(name: str) -> bool:
+    """Whether `remember_compiled` was told so by any process that uses the same cache folder."""
     folder = cache_folder()
-    name = getattr(function, "__name__", "")
-    return folder is not None and any(folder.rglob(f"*.{name}-*.nbc"))
+    return name in _compiled_here or (folder is not None and (folder / _mark(name)).exists())
+
+
+def remember_compiled(name: str) -> None:
+    """Note that the machine code of a kernel is in memory and, if there is a cache, on disk."""
+    _compiled_here.add(name)
+    if (folder := cache_folder()) is not None:
+        (folder / _mark(name)).touch()
+
+
+def _mark(name: str) -> str:
+    return re.sub(r"\W+", "-", name) + ".compiled"

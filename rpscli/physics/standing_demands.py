@@ -104,7 +104,7 @@ def observe_contacts(c: Floats, b: Floats, L: int, l: int) -> None:
         c[row] = light_bottom if seen and light_bottom < c[row] else c[row]
 
 
-@part
+@kernel
 def hand_over(block: Block, b: Floats, L: int, l: int) -> None:
     """End a time in full contact: raise the demands of the lane by its own."""
     c, n = block.rows, block.tops.shape[0]

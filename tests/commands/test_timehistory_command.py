@@ -237,5 +237,8 @@ def test_an_animation(rps_json: InvokeJson) -> None:
 def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
     monkeypatch.setattr("rpscli.physics.jit.is_compiled", lambda _: False)
-    assert "compiling the kernels" in rps("timehistory", "small.yaml").stderr
+    monkeypatch.setattr("rpscli.analyses.compilation._announced", set())
+    heard = rps("timehistory", "small.yaml").stderr
+    assert heard.count("compiling the kernel for histories one by one") == 1
+    monkeypatch.setattr("rpscli.analyses.compilation._announced", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
