@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from numba import types
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -101,19 +100,7 @@ def _compiled(function: Function, *, merged_into_callers: bool) -> Function:
         )
     finally:
         config.CACHE_DIR = before
-    return cast("Function", _one_code_for_all_constants(compiled))
-
-
-def _one_code_for_all_constants(compiled: Any) -> Any:
-    """Have a kernel compiled once for all integers: numba would for each constant anew."""
-    template = compiled.get_call_template
-    plain: Any = types.unliteral
-
-    def of_types(args: Any, kws: Any) -> Any:
-        return template([plain(a) for a in args], {k: plain(v) for k, v in kws.items()})
-
-    compiled.get_call_template = of_types
-    return compiled
+    return cast("Function", compiled)
 
 
 _compiled_here: set[str] = set()

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from paper_structures import needs_compiled_kernels
 
 from rpscli.physics import jit
 from rpscli.physics.jit import cache_folder, is_compiled, kernel, remember_compiled
@@ -70,10 +69,6 @@ def test_the_folder_is_named_after_the_sources(
     assert before != after
 
 
-def times(x: float, count: int) -> float:
-    return x * count
-
-
 def twice(x: float) -> float:
     return 2.0 * x
 
@@ -88,19 +83,3 @@ def test_what_was_compiled_is_remembered(fresh_folder: pytest.MonkeyPatch, tmp_p
     fresh_folder.setattr(jit, "_compiled_here", set())
     assert is_compiled("three, of them")
     assert not is_compiled("three")
-
-
-@needs_compiled_kernels
-def test_one_machine_code_serves_all_constants(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """numba would compile a kernel again for each integer that is written in a call of it."""
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
-    power = kernel(times)
-
-    @kernel
-    def both() -> float:
-        return power(2.0, 3) + power(2.0, 5)
-
-    assert both() == 16.0
-    assert len(power.signatures) == 1  # type: ignore[attr-defined]
