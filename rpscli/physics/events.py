@@ -81,6 +81,8 @@ def value(b: Quintic, t: float) -> float:
 @kernel
 def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
     """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE`; `piece` (6,) is scratch."""
+    if min(lower_hull(b), b[0]) >= 0.0:
+        return NO_PASSAGE
     level, index = 0, 0
     while True:
         width = 0.5**level
@@ -106,6 +108,8 @@ def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -
     """Coefficients over [start, end], by de Casteljau's scheme from either end; writes `piece`."""
     for i in range(6):
         piece[i] = b[i]
+    if start == 0.0 and end == 1.0:
+        return
     for j in range(1, 6):
         for i in range(5, j - 1, -1):
             piece[i] = (1.0 - end) * piece[i - 1] + end * piece[i]
@@ -135,7 +139,8 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
 def descent_in(piece: NDArray[np.float64]) -> float:
     """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
-    low, high, t = 0.0, 1.0, 0.5
+    low, high = 0.0, 1.0
+    t = b[0] / (b[0] - b[5]) if b[0] > 0.0 > b[5] else 0.5  # where the chord crosses
     for _ in range(100):
         f = value(b, t)
         if f >= 0.0:
