@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+import gc
+import os
+
 from rpscli.cli import program
+
+OBJECTS_BETWEEN_COLLECTIONS = 100_000
+"""Importing numba and matplotlib makes half a million objects that all stay: looking through them
+for garbage as often as Python does by default takes a tenth of a command's time."""
 
 
 def main() -> None:
     """Run the command line."""
+    gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
+    # Matrices of a hundred storeys are small: threads of the linear algebra would only wait for
+    # work, which costs as much as work, and studies use all cores by threads of their own.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     program(prog_name="rps")
 
 

@@ -1,4 +1,4 @@
-"""Numbers written with a unit, turned into SI. pint is imported when the first one occurs."""
+"""Numbers written with a unit, turned into SI. pint is imported for unusual units and mistakes."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from rpscli.case.common_units import common_factor
 from rpscli.case.faults import listed, nearest
 
 if TYPE_CHECKING:
@@ -58,8 +59,11 @@ def si_value(text: str, unit: str) -> float:
 
 
 def _factor(written: str, unit: str) -> float:
+    is_unit_text = UNIT_TEXT.match(written) is not None
+    if is_unit_text and (factor := common_factor(written, unit)) is not None:
+        return factor
     kind, units = KINDS[unit]
-    found = _parsed(written) if UNIT_TEXT.match(written) else None
+    found = _parsed(written) if is_unit_text else None
     if found is None:
         guess = nearest(written, units)
         hint = f"did you mean {guess}?" if guess else f"use {listed(units)}"
@@ -71,7 +75,7 @@ def _factor(written: str, unit: str) -> float:
 
 @cache
 def _registry() -> pint.UnitRegistry[Any]:
-    import pint  # noqa: PLC0415 -- half a second that only a case with units pays
+    import pint  # noqa: PLC0415 -- half a second, for unusual units only
 
     return pint.UnitRegistry()
 
@@ -84,7 +88,8 @@ def _parsed(written: str) -> Any:
     text = EXPONENT.sub(r"**\1", written.replace("·", "*").replace("µ", "u"))
     try:
         return _registry().Quantity(1.0, _registry().parse_units(text))
-    except pint.PintError:
+    except (pint.PintError, KeyError):
+        # The latter is pint's answer to a unit to the power of zero, such as g0.
         return None
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 from rpscli.errors import RecordError
 from rpscli.records import pulses, sets, synthetic
 from rpscli.records.acceleration_units import canonical_unit, unit_factor
-from rpscli.records.formats import is_record, read_record
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.query import closest, nearest, parse_query
 
@@ -68,6 +67,8 @@ def load_record(
     if path.is_dir():
         raise RecordError(f"{path}: a folder; name one of its files")
     _require_file(path, source)
+    from rpscli.records.formats import read_record  # noqa: PLC0415 -- sets and pulses are no files
+
     return read_record(
         path,
         source,
@@ -106,6 +107,8 @@ def _expand(source: str, folder: Path | None) -> list[str]:
         return sets.expand_set(rest, source)
     if scheme:
         return [source]
+    from rpscli.records.formats import is_record  # noqa: PLC0415 -- see above
+
     place, options = _split_options(source)
     suffix = f"?{options}" if options else ""
     path = _located(place, folder)

@@ -83,7 +83,7 @@ def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | f
     steps = np.diff(times)
     if not steps.min() > 0.0:
         raise ValueError(f"the times do not increase after sample {int(np.argmin(steps)) + 1}")
-    typical = float(np.median(steps))
+    typical = _median(steps)
     rounding = np.minimum(0.5 * np.asarray(resolution), _COARSEST * typical)
     for summed in _SUMMED:
         step = _shortest_step(times, rounding + summed * typical)
@@ -94,6 +94,12 @@ def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | f
     raise ValueError(
         f"the step after sample {first + 1} is {steps[first]:.6g} s, most others {typical:.6g} s"
     )
+
+
+def _median(values: NDArray[np.float64]) -> float:
+    # What numpy's function gives, without the masked arrays that it imports.
+    ordered = np.sort(values)
+    return 0.5 * float(ordered[(values.size - 1) // 2] + ordered[values.size // 2])
 
 
 def _shortest_step(times: NDArray[np.float64], allowance: NDArray[np.float64]) -> float | None:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rpscli.analyses.modal import ModalResult, UpliftedModes
-from rpscli.analyses.pushover import PushoverResult
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.report.json_text import SCHEMA_VERSION
-from rpscli.report.storeys import StoreyDemands, fixed_base_demands, isolated_demands
 from rpscli.report.versions import program_version
+
+if TYPE_CHECKING:
+    from rpscli.analyses.modal import ModalResult, UpliftedModes
+    from rpscli.analyses.pushover import PushoverResult
+    from rpscli.analyses.results import TimeHistoryResult
+    from rpscli.report.storeys import StoreyDemands
 
 Document = dict[str, Any]
 
@@ -74,6 +76,9 @@ def pushover_document(result: PushoverResult) -> Document:
 
 def timehistory_document(result: TimeHistoryResult) -> Document:
     """Scalar results, demands of each storey, energies [J], and what to be warned of."""
+    # Every command begins a document, few need numpy for it.
+    from rpscli.report.storeys import fixed_base_demands, isolated_demands  # noqa: PLC0415
+
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
     return {
         "record": {

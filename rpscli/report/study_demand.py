@@ -59,8 +59,10 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
                 0.96, 0.05, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7.0,
                 bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
             )  # fmt: skip
+
+    def limits(axes: Axes) -> None:
         axes.set_xlim(0.0, 1.04 * highest or 1.0)
-        axes.set_ylim(bottom=0.0, auto=True)  # a later panel may reach higher
+        axes.set_ylim(bottom=0.0)
 
     return panel_figure(
         by_values(report.panel_keys, report.panels),
@@ -69,5 +71,6 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
         title=title,
         x_label=r"$|\theta_{max}|/\theta_{cr}$ [-]",
         y_label="$V_b/V_{st}$ [-]",
+        limits=limits,
         note=left_out(sum(panel.failed for panel in report.panels)),
     )

@@ -67,8 +67,6 @@ def ida_figure(report: IdaReport, title: str) -> bytes:
                 *_run_out(fractile, levels, edge), color=colour, ls=line, lw=1.8,
                 label=f"{share:.0%} fractile",
             )  # fmt: skip
-        axes.set_xlim(0.0, 0.97 * edge)
-        axes.set_ylim(0.0, top)
 
     name, unit = _level(report)
     return panel_figure(
@@ -78,6 +76,7 @@ def ida_figure(report: IdaReport, title: str) -> bytes:
         title=title,
         x_label=DEMANDS[report.demand][1],
         y_label=f"{name} [{unit}]",
+        limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
         note=left_out(sum(p.failed for p in report.panels)),
     )
 

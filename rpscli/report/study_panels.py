@@ -70,6 +70,7 @@ def panel_figure(
     x_label: str,
     y_label: str,
     share_axes: bool = True,
+    limits: Callable[[Axes], object] | None = None,
     note: str = "",
 ) -> bytes:
     """A figure with one panel for each group.
@@ -78,6 +79,8 @@ def panel_figure(
     ----------
     draw
         Fills the axes of a panel.
+    limits
+        Sets the limits that shared axes have in common; each panel would set them for all others.
     note
         A remark after the title: what was left out.
     """
@@ -96,12 +99,15 @@ def panel_figure(
                 continue
             axes.locator_params(nbins=MOST_TICKS)
             draw(axes, shown[place])
-            axes.set_title(names[place])
+            # Without a height matplotlib would look for ticks under the title, at great length.
+            axes.set_title(names[place], y=1.0)
             if place + columns >= len(shown):
                 axes.set_xlabel(x_label)
                 axes.tick_params(labelbottom=True)
             if place % columns == 0:
                 axes.set_ylabel(y_label)
+        if limits is not None:
+            limits(grid.flat[0])
         _arrange(figure, grid, _legend_lines(figure, grid), share_axes=share_axes)
 
     width = style.WIDTH if columns > 1 else 0.72 * style.WIDTH

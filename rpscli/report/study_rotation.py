@@ -58,8 +58,6 @@ def rotation_figure(report: RotationReport, title: str) -> bytes:
                 mfc="none", mew=0.7, clip_on=False, zorder=3,
             )  # fmt: skip
         axes.plot([0.0, min(x_top, y_top)], [0.0, min(x_top, y_top)], "k--", lw=0.8)
-        axes.set_xlim(0.0, x_top)
-        axes.set_ylim(0.0, y_top)
 
     return panel_figure(
         by_values(report.panel_keys, report.panels),
@@ -68,6 +66,7 @@ def rotation_figure(report: RotationReport, title: str) -> bytes:
         title=title,
         x_label=rf"$|\theta_{{max}}|/\alpha$, {label(report.key, report.reference)}",
         y_label=r"$|\theta_{max}|/\alpha$, the others",
+        limits=lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),
         note="; ".join(filter(None, ["open markers: overturned", left_out(report.failed)])),
     )
 

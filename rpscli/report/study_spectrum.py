@@ -48,8 +48,10 @@ def spectrum_figure(report: SpectrumReport, title: str) -> bytes:
             panel.boundary[:, 0], panel.boundary[:, 1], color=style.BLACK, lw=1.2,
             label="least that overturns",
         )  # fmt: skip
-        axes.set_xlim(left=0.0, auto=True)
-        axes.set_ylim(bottom=0.0, auto=True)  # a later panel may reach higher
+
+    def limits(axes: Axes) -> None:
+        axes.set_xlim(left=0.0)
+        axes.set_ylim(bottom=0.0)
 
     return panel_figure(
         by_values(report.panel_keys, report.panels),
@@ -58,5 +60,6 @@ def spectrum_figure(report: SpectrumReport, title: str) -> bytes:
         title=title,
         x_label=r"$\omega/p$ [-]",
         y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
+        limits=limits,
         note=left_out(sum(p.failed for p in report.panels)),
     )

@@ -24,6 +24,8 @@ ROLLING_SHADE = "#DCEBF7"
 ROCKING_SHADE = "#FBE3D0"
 
 DPI = 150
+COMPRESSION = 3
+"""Of PNG files: a tenth larger than at the usual 6, in two thirds of the time."""
 LETTERS_PER_INCH = 15.0
 """Of the heading's font."""
 
@@ -76,8 +78,12 @@ def png(
         figure = Figure(figsize=(width, height), dpi=DPI, layout=layout)
         draw(figure)
         buffer = io.BytesIO()
-        # Without the program's name the same data give the same file.
-        figure.savefig(buffer, format="png", metadata={"Software": None})
+        figure.savefig(
+            buffer,
+            format="png",
+            metadata={"Software": None},  # the same data give the same file
+            pil_kwargs={"compress_level": COMPRESSION},
+        )
     return buffer.getvalue()
 
 

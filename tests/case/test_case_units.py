@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rpscli.case.case import parse_case
-from rpscli.case.units import si_value
+from rpscli.case.common_units import COMMON_UNITS
+from rpscli.case.units import KINDS, _parsed, si_value
 
 # A factor of a unit is exact but for the rounding of one product.
 ROUNDING = 1e-14
@@ -63,6 +64,8 @@ def test_a_tonne_is_a_thousand_kilogrammes(mass: float) -> None:
         ("3 m**9999999999", "m", ["m"]),
         ("3 ((m", "m", ["unknown unit"]),
         ("3 2 m", "m", ["must be a length"]),
+        ("1 g0", "m/s2", ["unknown unit 'g0'", "use m/s2"]),
+        ("9.81 m/^s2", "m/s2", ["unknown unit"]),
     ],
 )
 def test_refusals_name_the_dimension(text: str, unit: str, parts: list[str]) -> None:
@@ -94,10 +97,34 @@ def test_units_make_the_same_case(building: str) -> None:
     assert plain.document == parse_case(building, name="c.yaml").document
 
 
-def test_pint_is_imported_only_for_a_unit(building: str) -> None:
+@pytest.mark.parametrize(
+    ("written", "unit"),
+    [(written, unit) for unit, factors in COMMON_UNITS.items() for written in factors],
+)
+def test_common_units_have_the_factors_of_pint(written: str, unit: str) -> None:
+    expected = float(_parsed(written).to(_parsed(unit).units).magnitude)
+    assert COMMON_UNITS[unit][written] == pytest.approx(expected, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("unit", KINDS)
+def test_units_that_messages_propose_are_common(unit: str) -> None:
+    assert set(KINDS[unit][1]) <= set(COMMON_UNITS[unit])
+
+
+@pytest.mark.parametrize(("mass", "code"), [("200 t", 0), ("200 kN", 1), ("14 slug", 1)])
+def test_pint_is_imported_only_for_unusual_units(mass: str, code: int) -> None:
+    program = (
+        "import sys; from rpscli.case.units import si_value\n"
+        f"try: si_value({mass!r}, 'kg')\n"
+        "except ValueError: pass\n"
+        "sys.exit('pint' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == code
+
+
+def test_an_ordinary_case_needs_no_pint(building: str) -> None:
     program = (
         "import sys; from rpscli.case.case import parse_case;"
-        f"parse_case({building.replace('200 t', '2.0e5')!r}, name='c.yaml');"
-        "sys.exit('pint' in sys.modules)"
+        f"parse_case({building!r}, name='c.yaml'); sys.exit('pint' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
