@@ -23,9 +23,10 @@ def announce_to(listener: Listener) -> None:
     _listeners[:] = [listener]
 
 
-def lanes_of(structure: PodiumStructure, *, dense: bool) -> str:
+def lanes_of(structure: PodiumStructure, lanes: int, *, dense: bool) -> str:
     """Name of the kernel that follows many histories of such structures side by side."""
-    return f"studies of {structure.storeys} storeys" + (", any damping" if dense else "")
+    damping = ", any damping" if dense else ""
+    return f"{structure.storeys} storeys in {lanes} lanes{damping}"
 
 
 def is_ready(name: str) -> bool:

@@ -62,7 +62,9 @@ WORTH_LANES = 160
 Fewer run in the kernel of single histories, which gives the same bits."""
 
 
-def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> list[Demand]:
+def demands(
+    requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES, lanes: int = LANES
+) -> list[Demand]:
     """Largest demands of many histories.
 
     Parameters
@@ -72,6 +74,9 @@ def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> l
         the same number of storeys run together, in lanes of one core if there are many.
     worth_lanes
         How many are many: for studies that come in batches, 1 once the whole study is large.
+    lanes
+        How many histories a core then follows at once. With 1 each runs by itself, in the kernel
+        of its number of storeys: twice as fast as in the one that serves all.
 
     Returns
     -------
@@ -87,7 +92,7 @@ def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> l
         structure = request.structure
         groups.setdefault((structure.storeys, has_dense_damping(structure)), []).append(i)
     for members in groups.values():
-        histories = _run([requests[i] for i in members], worth_lanes)
+        histories = _run([requests[i] for i in members], worth_lanes, lanes)
         answers.update(zip(members, map(demand_of, histories), strict=True))
     return [answers[i] for i in range(len(requests))]
 
@@ -104,7 +109,7 @@ def demand(
     return demands([Request(structure, record, chosen, vertical=vertical)])[0]
 
 
-def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
+def _run(requests: Sequence[Request], worth_lanes: int, lanes: int) -> list[History]:
     from rpscli.physics.driver import integrate  # noqa: PLC0415
 
     systems = _Shelf[tuple[PodiumStructure, TimeHistorySettings]]()
@@ -134,8 +139,8 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
     results = empty_results(len(requests), requests[0].structure.storeys)
     structure = requests[0].structure
     if len(requests) >= worth_lanes:
-        shape = shape_of_many(structure)
-        name = lanes_of(structure, dense=has_dense_damping(structure))
+        shape = shape_of_many(structure, lanes)
+        name = lanes_of(structure, lanes, dense=has_dense_damping(structure))
     else:
         shape, name = shape_of_one(structure), SINGLE
     with compiled(name):
@@ -158,11 +163,13 @@ class _Shelf(Generic[Item]):
         return self._places[key]
 
 
-def shape_of_many(structure: PodiumStructure) -> Shape:
+def shape_of_many(structure: PodiumStructure, lanes: int) -> Shape:
     """Lanes side by side, for a number of floors that the compiler knows."""
     dense = (0,) if has_dense_damping(structure) else ()
     floors = (0,) * structure.storeys
-    return Shape(floors, (0,) * LANES, np.zeros(LANES, np.int8), (), (), dense)
+    if lanes == 1:
+        return Shape(floors, (0,), (0,), (0,), (), dense)
+    return Shape(floors, (0,) * lanes, np.zeros(lanes, np.int8), (), (), dense)
 
 
 def demand_of(history: History) -> Demand:

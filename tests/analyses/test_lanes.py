@@ -92,9 +92,12 @@ def bits(found: Demand) -> list[object]:
     return [v.tobytes() if isinstance(v, np.ndarray) else v for v in astuple(found)]
 
 
-def all_bits(requests: Sequence[Request], worth_lanes: int) -> list[list[object]]:
+def all_bits(
+    requests: Sequence[Request], worth_lanes: int, lanes: int = LANES
+) -> list[list[object]]:
     with np.errstate(all="ignore"):
-        return [bits(found) for found in demands(requests, worth_lanes=worth_lanes)]
+        found = demands(requests, worth_lanes=worth_lanes, lanes=lanes)
+        return [bits(demand) for demand in found]
 
 
 def companies(requests: Sequence[Request]) -> Iterator[list[int]]:
@@ -122,6 +125,13 @@ def test_lanes_give_the_bits_of_single_histories() -> None:
     check(ensemble([(3, False)], 60))
 
 
+@needs_compiled_kernels
+@pytest.mark.long
+def test_a_kernel_of_one_lane_gives_the_same_bits() -> None:
+    requests = ensemble([(3, False)], 60)
+    assert all_bits(requests, SIDE_BY_SIDE, 1) == all_bits(requests, ALONE)
+
+
 EVERY_KERNEL = [(0, False), *((n, modal) for n in (1, 2, 3) for modal in (False, True))]
 
 
@@ -140,6 +150,7 @@ def test_lanes_do_what_single_histories_do() -> None:
         for i, r in enumerate(ensemble(EVERY_KERNEL, 3))
     ]
     check(requests)
+    assert all_bits(requests, SIDE_BY_SIDE, 1) == all_bits(requests, ALONE)
     assert any(found.impacts for found in demands(requests))
 
 
