@@ -76,7 +76,8 @@ def demands(
         How many are many: for studies that come in batches, 1 once the whole study is large.
     lanes
         How many histories a core then follows at once. With 1 each runs by itself, in the kernel
-        of its number of storeys: twice as fast as in the one that serves all.
+        of its number of storeys: twice as fast as in the one that serves all, with the same
+        results to rounding (1e-12; near a chaotic impact that may grow).
 
     Returns
     -------

@@ -127,9 +127,16 @@ def test_lanes_give_the_bits_of_single_histories() -> None:
 
 @needs_compiled_kernels
 @pytest.mark.long
-def test_a_kernel_of_one_lane_gives_the_same_bits() -> None:
+def test_a_kernel_of_one_lane_agrees_to_rounding() -> None:
+    """Its loops are unrolled, so other products and sums are contracted: 6e-15 and 2e-12 here."""
     requests = ensemble([(3, False)], 60)
-    assert all_bits(requests, SIDE_BY_SIDE, 1) == all_bits(requests, ALONE)
+    with np.errstate(all="ignore"):
+        found = demands(requests, worth_lanes=SIDE_BY_SIDE, lanes=1)
+        expected = demands(requests, worth_lanes=ALONE)
+    for one, other in zip(found, expected, strict=True):
+        assert (one.outcome, one.impacts) == (other.outcome, other.impacts)
+        assert one.max_rotation == pytest.approx(other.max_rotation, rel=1e-12)
+        assert one.storey_shears == pytest.approx(other.storey_shears, rel=1e-10)
 
 
 EVERY_KERNEL = [(0, False), *((n, modal) for n in (1, 2, 3) for modal in (False, True))]
