@@ -13,12 +13,12 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.physics.parameters import Podium
 from rpscli.records.ground_motion import GroundMotion
 
-FLIGHT_ANGLE = 0.27
+FLIGHT_ANGLE = 0.6
 """Largest Runge-Kutta step times the highest uplifted frequency [rad], at accuracy 1."""
 
 FLIGHT_DECAY = 1.0
-"""Largest step times the fastest decay rate, where that asks for more: Runge-Kutta steps of order 5
-are unstable beyond 3.3. Only strongly overdamped modes come near."""
+"""Largest step times the fastest decay rate, where that asks for more: Runge-Kutta steps are
+unstable beyond about 4. Only strongly overdamped modes come near."""
 
 CONTACT_ANGLE = 1.0
 """The same for the exact steps in full contact, where it guards the search of uplift: the quintic

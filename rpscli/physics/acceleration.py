@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from rpscli.physics.geometry import Phase
-from rpscli.physics.jit import kernel, merged
 from rpscli.physics.lanes import first_lane, floor_count, lane_count
 from rpscli.physics.layout import (
     ACROSS,
@@ -55,6 +54,7 @@ from rpscli.physics.layout import (
     WEIGHT,
 )
 from rpscli.physics.parameters import Floats, Shape
+from rpscli.physics.part import part, routine
 from rpscli.physics.tilt import (
     cap_beam_displacement,
     lever_arm,
@@ -67,7 +67,7 @@ from rpscli.physics.tilt import (
 from rpscli.physics.trigonometry import sine_cosine
 
 
-@kernel
+@part
 def phase_in(b: Floats, L: int, l: int) -> Phase:
     """Constants of the phase of motion of a lane."""
     return Phase(
@@ -79,7 +79,7 @@ def phase_in(b: Floats, L: int, l: int) -> Phase:
     )
 
 
-@kernel
+@routine
 def accelerate(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
     """Accelerations of tilt and floors at a stage of a step.
 
@@ -119,7 +119,7 @@ def accelerate(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
         note_powers(b, shape, lane)
 
 
-@merged
+@part
 def move_base(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
     """Where the cap beam is, how the ground shakes, and what follows for the tilt from these."""
     n, L = floor_count(shape), len(shape.stride)
@@ -150,7 +150,7 @@ def move_base(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
         b[MOMENTUM * L + l] = -b[FLOORS_MASS * L + l] * base_rate
 
 
-@merged
+@part
 def stretch_storeys(b: Floats, shape: Shape, lane: int) -> None:
     """Spring and damper force of each storey; none above the roof.
 
@@ -176,7 +176,7 @@ def stretch_storeys(b: Floats, shape: Shape, lane: int) -> None:
             b[f + l] = b[k + i * L + l] * drift + b[c + i * L + l] * rate
 
 
-@merged
+@part
 def move_floors(b: Floats, shape: Shape, lane: int) -> None:
     """Accelerations of the floors, and the base shear V = 1^T (K v + C v')."""
     n, L = floor_count(shape), len(shape.stride)
@@ -200,7 +200,7 @@ def move_floors(b: Floats, shape: Shape, lane: int) -> None:
         b[BASE_SHEAR * L + l] = b[force + l] + b[DRAG * L + l] * b[MOMENTUM * L + l]
 
 
-@merged
+@part
 def drag_floors(b: Floats, shape: Shape, lane: int) -> None:
     """The same for a damping matrix that is not a0 M + a1 K: what it adds."""
     n, L = floor_count(shape), len(shape.stride)
@@ -219,7 +219,7 @@ def drag_floors(b: Floats, shape: Shape, lane: int) -> None:
                 b[BASE_SHEAR * L + l] += drag
 
 
-@merged
+@part
 def note_powers(b: Floats, shape: Shape, lane: int) -> None:
     """Energy flows at the stage [W]: what the ground puts in, and what dampers take (Theory 8)."""
     n, L = floor_count(shape), len(shape.stride)

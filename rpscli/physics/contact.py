@@ -47,9 +47,9 @@ from rpscli.physics.contact_layout import (
     Q,
 )
 from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, lower_hull, quintic
-from rpscli.physics.jit import kernel, part
 from rpscli.physics.oscillator import transition
 from rpscli.physics.parameters import Block, Floats
+from rpscli.physics.part import part, routine
 
 
 class Stance(NamedTuple):
@@ -65,7 +65,7 @@ class Stance(NamedTuple):
     creep: float
 
 
-@kernel
+@routine
 def fill_transition(z: Floats, h: float, row: int) -> None:
     """The exact map of every mode over h, under the ground's acceleration; 8 rows from `row`."""
     for r in range(z.shape[1]):
@@ -75,7 +75,7 @@ def fill_transition(z: Floats, h: float, row: int) -> None:
         z[row + 4, r], z[row + 5, r], z[row + 6, r], z[row + 7, r] = e, f, load * g, load * i
 
 
-@kernel
+@routine
 def march(block: Block, z: Floats, row: int) -> None:
     """Follow every mode through a block, from Q and DQ; the map of a step stands at `row`.
 
@@ -104,7 +104,7 @@ def march(block: Block, z: Floats, row: int) -> None:
             c[PUSH_BEND * COLUMNS + k] += part * (square * ddq - drag * rise)
 
 
-@kernel
+@part
 def follow(block: Block, z: Floats, row: int) -> None:
     """States of all modes at all instants: each is the map of the one before.
 
@@ -124,14 +124,14 @@ def follow(block: Block, z: Floats, row: int) -> None:
             z[DQ_END, r] = z[row + 4, r] * q + (z[row + 5, r] * dq + moving)
 
 
-@kernel
+@part
 def keep(block: Block, z: Floats, k: int) -> None:
     """Make the state after k steps of the block the present one."""
     for r in range(z.shape[1]):
         z[Q, r], z[DQ, r] = block.modes[r, MODAL_Q, k], block.modes[r, MODAL_DQ, k]
 
 
-@kernel
+@routine
 def energies(block: Block, z: Floats, h: float) -> None:
     """Energy put in by the ground and damped during each step of length h [J].
 
@@ -161,7 +161,7 @@ def energies(block: Block, z: Floats, h: float) -> None:
             c[TAKEN * COLUMNS + k] += drag * h * (ends + bends)
 
 
-@kernel
+@part
 def push_path(c: Floats, stance: Stance, h: float, k: int) -> Quintic:
     """What pushes the storey over, q(t) of this module, during the step after k others."""
     slope = c[SLOPE * COLUMNS + k]
@@ -178,7 +178,7 @@ def push_path(c: Floats, stance: Stance, h: float, k: int) -> Quintic:
     )
 
 
-@kernel
+@part
 def margin_path(path: Quintic, limit: float, climb: float, side: float) -> Quintic:
     """The margin against uplift to a side: the limit is linear, its coefficients rise evenly."""
     return (
@@ -207,7 +207,7 @@ def raise_alarms(c: Floats, stance: Stance, h: float, least: float) -> None:
         c[ALARM * COLUMNS + k] = 0.0 if margin >= least * limit else 1.0
 
 
-@kernel
+@routine
 def first_uplift(c: Floats, stance: Stance, h: float, k: int, piece: Floats) -> tuple[float, float]:
     """Fraction of the step after k others at which the storey uplifts, and the side (0: none).
 
@@ -224,7 +224,7 @@ def first_uplift(c: Floats, stance: Stance, h: float, k: int, piece: Floats) -> 
     return first, side
 
 
-@kernel
+@part
 def margin_after(
     c: Floats, z: Floats, stance: Stance, h: float, k: int, side: float
 ) -> tuple[float, float]:

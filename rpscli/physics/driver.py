@@ -13,7 +13,8 @@ from rpscli.physics.acceleration import accelerate
 from rpscli.physics.energy import building_energy, uplifted_energy
 from rpscli.physics.flight import attend, book_energy, plan_step, set_step, settle
 from rpscli.physics.inspection import observe, raise_contacts, search_events, take_over
-from rpscli.physics.jit import kernel, part
+from rpscli.physics.jit import kernel
+from rpscli.physics.lane import Lane, lane_of
 from rpscli.physics.layout import (
     ACCELERATION,
     ACROSS,
@@ -53,7 +54,6 @@ from rpscli.physics.layout import (
     POSITION,
     QUIET,
     RUNNING,
-    SCALARS,
     SIDE,
     STALE,
     STOREY_SHEAR,
@@ -74,12 +74,13 @@ from rpscli.physics.parameters import (
     Shape,
     Systems,
 )
+from rpscli.physics.part import part, routine
 from rpscli.physics.peak import watch_peak
+from rpscli.physics.podium_layout import INITIAL_ROTATION
 from rpscli.physics.progress import store_sample
 from rpscli.physics.runge_kutta import step
 from rpscli.physics.standing import stand, to_floors
 from rpscli.physics.switch import now
-from rpscli.physics.table import podium_of
 from rpscli.physics.workspace import empty_lanes
 
 
@@ -104,7 +105,7 @@ def integrate_lanes(
 ) -> None:
     """The same, in lanes that are made already."""
     L = len(shape.stride)
-    b, whole = lanes.buffer, lanes.integers
+    s, whole = lanes.numbers, lanes.integers
     for l in range(L):
         whole[l, POINT] = NO_POINT
     waiting, active, started = 0, L, False
@@ -112,16 +113,16 @@ def integrate_lanes(
         if started:
             advance(lanes, shape)
         for l in range(L):
-            if started and (whole[l, POINT] == NO_POINT or b[ATTEND * L + l] == 0.0):
+            if started and (whole[l, POINT] == NO_POINT or s[l, ATTEND] == 0.0):
                 continue
-            flies = started and attend(lanes, shape, l)
-            while not flies or b[STALE * L + l] != FRESH:
+            flies = started and attend(lane_of(lanes, l), shape)
+            while not flies or s[l, STALE] != FRESH:
                 if flies:
                     refresh(lanes, shape, l)
-                    flies = settle(lanes, shape, l)
+                    flies = settle(lane_of(lanes, l), shape)
                     continue
                 if whole[l, POINT] != NO_POINT:
-                    finish(lanes, shape, l, results)
+                    finish(lane_of(lanes, l), results)
                 waiting = engage(lanes, shape, l, waiting, systems, points, results)
                 flies = True
             active -= whole[l, POINT] == NO_POINT
@@ -132,39 +133,35 @@ def integrate_lanes(
 def advance(lanes: Lanes, shape: Shape) -> None:
     """Take a step in all lanes, and what needs no decision: most steps hold no event."""
     L = len(shape.stride)
-    b = lanes.buffer
+    b, s = lanes.buffer, lanes.numbers
     step(b, shape, (len(shape.floors) + 1) * L)
     search_events(b, shape)
     for l in range(L):
-        if b[WATCH * L + l] > 0.0:
-            watch_peak(lanes, shape, l)
+        if s[l, WATCH] > 0.0:
+            watch_peak(lane_of(lanes, l))
     observe(b, shape)
     take_over(b, shape)
     if len(shape.audit) > 0:
         for l in range(L):
-            if b[QUIET * L + l] > 0.0:
-                book_energy(b, shape, l)
+            if s[l, QUIET] > 0.0:
+                book_energy(s[l], shape)
 
 
 @part
 def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
     """Accelerations of one lane at its present state and time."""
-    n, L = len(shape.floors), len(shape.stride)
-    b = lanes.buffer
-    for c in range(n + 1):
-        position = b[(SCALARS + POSITION * (n + 1) + c) * L + l]
-        velocity = b[(SCALARS + VELOCITY * (n + 1) + c) * L + l]
-        b[(SCALARS + AHEAD * (n + 1) + c) * L + l] = position
-        b[(SCALARS + AHEAD_RATE * (n + 1) + c) * L + l] = velocity
-    accelerate(b, alone(shape), l, 0.0)
-    for c in range(n + 1):
-        acceleration = b[(SCALARS + AHEAD_ACCELERATION * (n + 1) + c) * L + l]
-        b[(SCALARS + ACCELERATION * (n + 1) + c) * L + l] = acceleration
-    b[EVALUATIONS * L + l] += 1.0
-    b[GIVEN_FIRST * L + l], b[TAKEN_FIRST * L + l] = b[GIVEN * L + l], b[TAKEN * L + l]
+    lane = lane_of(lanes, l)
+    s, x = lane.numbers, lane.blocks
+    for c in range(x.shape[1]):
+        x[AHEAD, c], x[AHEAD_RATE, c] = x[POSITION, c], x[VELOCITY, c]
+    accelerate(lanes.buffer, alone(shape), l, 0.0)
+    for c in range(x.shape[1]):
+        x[ACCELERATION, c] = x[AHEAD_ACCELERATION, c]
+    s[EVALUATIONS] += 1.0
+    s[GIVEN_FIRST], s[TAKEN_FIRST] = s[GIVEN], s[TAKEN]
 
 
-@kernel
+@part
 def alone(shape: Shape) -> Shape:
     """The same sizes for one lane of many."""
     return Shape(shape.floors, shape.stride, (0,), (0,), shape.audit, shape.dense)
@@ -186,54 +183,53 @@ def engage(
     there is none left is marked by NO_POINT and makes empty steps.
     """
     L = len(shape.stride)
-    b = lanes.buffer
+    lane = lane_of(lanes, l)
+    s, x = lane.numbers, lane.blocks
     while waiting < points.integers.shape[0]:
-        begin(lanes, shape, l, waiting, systems, points)
+        begin(lanes, L, l, waiting, systems, points)
         waiting += 1
-        rotation = podium_of(lanes.podium, l).initial_rotation
+        rotation = lane.podium[INITIAL_ROTATION]
         if rotation != 0.0:
-            lean(lanes, shape, l, rotation)
-            plan_step(b, shape, l)
+            lean(lane, rotation)
+            plan_step(s, x)
             return waiting
-        store_sample(lanes, shape, l)
-        b[GROUND * L + l], b[GROUND_UPWARDS * L + l] = b[ACROSS * L + l], b[UPWARDS * L + l]
-        raise_contacts(b, L, l, 1.0, 0.0, 0.0, 0.0)
-        if stand(lanes, shape, l):
-            plan_step(b, shape, l)
+        store_sample(lane)
+        s[GROUND], s[GROUND_UPWARDS] = s[ACROSS], s[UPWARDS]
+        raise_contacts(lanes.buffer, L, l, 1.0, 0.0, 0.0, 0.0)
+        if stand(lane, shape):
+            plan_step(s, x)
             return waiting
-        finish(lanes, shape, l, results)
-    lanes.integers[l, POINT] = NO_POINT
-    b[STALE * L + l] = FRESH
-    set_step(b, shape, l, 0.0)
+        finish(lane, results)
+    lane.whole[POINT] = NO_POINT
+    s[STALE] = FRESH
+    set_step(s, x, 0.0)
     return waiting
 
 
-@part
-def finish(lanes: Lanes, shape: Shape, l: int, results: Results) -> None:
+@routine
+def finish(lane: Lane, results: Results) -> None:
     """Write what the history leaves behind."""
-    n, L = len(shape.floors), len(shape.stride)
-    b, whole = lanes.buffer, lanes.integers
-    if whole[l, MOTION] == FULL_CONTACT:
-        to_floors(lanes, L, l)
-        stored = building_energy(b, n, L, l, 0.0)
+    s, x, whole = lane.numbers, lane.blocks, lane.whole
+    n = x.shape[1] - 1
+    numbers, integers = results.numbers[whole[POINT]], results.integers[whole[POINT]]
+    if whole[MOTION] == FULL_CONTACT:
+        to_floors(lane)
+        numbers[OUT_STORED] = building_energy(x, 0.0)
     else:
-        stored = uplifted_energy(b, n, L, l)
-    if whole[l, OUTCOME] == RUNNING:
-        released = podium_of(lanes.podium, l).initial_rotation != 0.0
-        moved = released or whole[l, COUNTS + UPLIFT] > 0
-        whole[l, OUTCOME] = SURVIVED if moved else AT_REST
-    numbers, integers = results.numbers[whole[l, POINT]], results.integers[whole[l, POINT]]
-    numbers[OUT_TIME] = now(lanes, L, l)
-    numbers[OUT_ROTATION] = b[SIDE * L + l] * b[(SCALARS + POSITION * (n + 1)) * L + l]
+        numbers[OUT_STORED] = uplifted_energy(lane)
+    if whole[OUTCOME] == RUNNING:
+        moved = lane.podium[INITIAL_ROTATION] != 0.0 or whole[COUNTS + UPLIFT] > 0
+        whole[OUTCOME] = SURVIVED if moved else AT_REST
+    numbers[OUT_TIME] = now(lane)
+    numbers[OUT_ROTATION] = s[SIDE] * x[POSITION, 0]
     for i in range(OUT_FLOORS - OUT_PEAK):
-        numbers[OUT_PEAK + i] = b[(PEAK + i) * L + l]
-    numbers[OUT_STORED] = stored
+        numbers[OUT_PEAK + i] = s[PEAK + i]
     for i in range(n):
-        numbers[OUT_FLOORS + i] = b[(SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l]
-        numbers[OUT_FLOORS + n + i] = b[(SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l]
-    integers[OUT_OUTCOME], integers[OUT_MOTION] = whole[l, OUTCOME], whole[l, MOTION]
-    integers[OUT_INTERVALS] = whole[l, INTERVAL]
-    integers[OUT_EVALUATIONS] = int(b[EVALUATIONS * L + l])
-    integers[OUT_CREATING] = whole[l, CREATING]
+        numbers[OUT_FLOORS + i] = x[STOREY_SHEAR, i]
+        numbers[OUT_FLOORS + n + i] = x[FLOOR_ACCELERATION, i]
+    integers[OUT_OUTCOME], integers[OUT_MOTION] = whole[OUTCOME], whole[MOTION]
+    integers[OUT_INTERVALS] = whole[INTERVAL]
+    integers[OUT_EVALUATIONS] = int(s[EVALUATIONS])
+    integers[OUT_CREATING] = whole[CREATING]
     for i in range(EVENT_KINDS):
-        integers[OUT_COUNTS + i] = whole[l, COUNTS + i]
+        integers[OUT_COUNTS + i] = whole[COUNTS + i]

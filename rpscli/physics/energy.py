@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from rpscli.physics.acceleration import phase_in
-from rpscli.physics.jit import kernel
+from rpscli.physics.geometry import Phase
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
+    ARC,
+    ARM_COS,
+    ARM_SIN,
     BEAM,
     BUILDING,
     CAP_BEAM_MASS,
@@ -12,15 +15,17 @@ from rpscli.physics.layout import (
     DIAMETER,
     FLOORS_MASS,
     INERTIA,
+    LIFT_START,
     MASS,
+    PATH_START,
     POSITION,
-    SCALARS,
     SIDE,
     STANDARD_GRAVITY,
     STIFFNESS,
     VELOCITY,
 )
 from rpscli.physics.parameters import Floats
+from rpscli.physics.part import part, routine
 from rpscli.physics.tilt import (
     cap_beam_displacement,
     cap_beam_lift,
@@ -31,33 +36,31 @@ from rpscli.physics.tilt import (
 from rpscli.physics.trigonometry import sine_cosine
 
 
-@kernel
-def building_energy(b: Floats, n: int, L: int, l: int, base: float) -> float:
-    """Kinetic and strain energy of the floors [J], the cap beam standing at u_b = base."""
+@part
+def building_energy(x: Floats, base: float) -> float:
+    """Kinetic and strain energy of the floors [J], the cap beam standing at u_b = base.
+
+    `x` are the blocks of the lane.
+    """
     energy, below = 0.0, base
-    for i in range(n):
-        u = b[(SCALARS + POSITION * (n + 1) + i + 1) * L + l]
-        du = b[(SCALARS + VELOCITY * (n + 1) + i + 1) * L + l]
-        m = b[(SCALARS + MASS * (n + 1) + i) * L + l]
-        k = b[(SCALARS + STIFFNESS * (n + 1) + i) * L + l]
-        energy += 0.5 * (m * (du * du) + k * ((u - below) * (u - below)))
+    for i in range(x.shape[1] - 1):
+        u, du = x[POSITION, i + 1], x[VELOCITY, i + 1]
+        energy += 0.5 * (x[MASS, i] * (du * du) + x[STIFFNESS, i] * ((u - below) * (u - below)))
         below = u
     return energy
 
 
-@kernel
-def uplifted_energy(b: Floats, n: int, L: int, l: int) -> float:
+@routine
+def uplifted_energy(lane: Lane) -> float:
     """Kinetic, strain and potential energy of the uplifted structure [J]."""
-    x = b[(SCALARS + POSITION * (n + 1)) * L + l]
-    rate = b[(SCALARS + VELOCITY * (n + 1)) * L + l]
-    sin_x, cos_x = sine_cosine(x)
-    phase = phase_in(b, L, l)
-    B, C = lever_arm(phase, cos_x, sin_x), path_height(phase, cos_x, sin_x)
-    diameter, columns = b[DIAMETER * L + l], b[COLUMNS_MASS * L + l]
-    beam, building = b[BEAM * L + l], b[BUILDING * L + l]
-    A = tilt_inertia(b[INERTIA * L + l], beam, building, phase, B, C)
-    mass = 0.5 * columns + b[CAP_BEAM_MASS * L + l] + b[FLOORS_MASS * L + l]
-    lifted = mass * b[STANDARD_GRAVITY * L + l] * diameter * cap_beam_lift(phase, cos_x, sin_x)
+    s, tilt, rate = lane.numbers, lane.blocks[POSITION, 0], lane.blocks[VELOCITY, 0]
+    sine, cosine = sine_cosine(tilt)
+    phase = Phase(s[ARM_COS], s[ARM_SIN], s[ARC], s[PATH_START], s[LIFT_START])
+    B, C = lever_arm(phase, cosine, sine), path_height(phase, cosine, sine)
+    A = tilt_inertia(s[INERTIA], s[BEAM], s[BUILDING], phase, B, C)
+    diameter, columns = s[DIAMETER], s[COLUMNS_MASS]
+    mass = 0.5 * columns + s[CAP_BEAM_MASS] + s[FLOORS_MASS]
+    lifted = mass * s[STANDARD_GRAVITY] * diameter * cap_beam_lift(phase, cosine, sine)
     tilting = 0.125 * columns * (diameter * diameter) * A * (rate * rate)
-    base = b[SIDE * L + l] * diameter * cap_beam_displacement(phase, x, cos_x, sin_x)
-    return float(tilting + lifted) + building_energy(b, n, L, l, base)
+    base = s[SIDE] * diameter * cap_beam_displacement(phase, tilt, cosine, sine)
+    return float(tilting + lifted) + building_energy(lane.blocks, base)

@@ -21,7 +21,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.jit import kernel
+from rpscli.physics.part import part, routine
 
 Quintic: TypeAlias = tuple[float, float, float, float, float, float]
 
@@ -32,7 +32,7 @@ DEEPEST_HALVING = 40
 """Pieces of 2^-40 of a step are below rounding: a contact of two roots there is one."""
 
 
-@kernel
+@part
 def quintic(
     h: float, f0: float, df0: float, ddf0: float, f1: float, df1: float, ddf1: float
 ) -> Quintic:
@@ -42,19 +42,19 @@ def quintic(
     return (f0, f0 + d0, f0 + 2.0 * d0 + c0, f1 - 2.0 * d1 + c1, f1 - d1, f1)
 
 
-@kernel
+@part
 def lower_hull(b: Quintic) -> float:
     """No value of the quintic after its start is below this."""
     return min(b[1], b[2], b[3], b[4], b[5])
 
 
-@kernel
+@part
 def upper_hull(b: Quintic) -> float:
     """No value of the quintic after its start is above this."""
     return max(b[1], b[2], b[3], b[4], b[5])
 
 
-@kernel
+@part
 def offset(b: Quintic, sign: float, level: float) -> Quintic:
     """Coefficients of sign (f - level)."""
     return (
@@ -67,7 +67,7 @@ def offset(b: Quintic, sign: float, level: float) -> Quintic:
     )
 
 
-@kernel
+@part
 def value(b: Quintic, t: float) -> float:
     """f at t."""
     r = 1.0 - t
@@ -78,7 +78,7 @@ def value(b: Quintic, t: float) -> float:
     )
 
 
-@kernel
+@routine
 def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
     """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE`; `piece` (6,) is scratch."""
     if min(lower_hull(b), b[0]) >= 0.0:
@@ -103,7 +103,7 @@ def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
             level, index = level + 1, 2 * index
 
 
-@kernel
+@part
 def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -> None:
     """Coefficients over [start, end], by de Casteljau's scheme from either end; writes `piece`."""
     for i in range(6):
@@ -119,7 +119,7 @@ def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -
             piece[i] = (1.0 - t) * piece[i] + t * piece[i + 1]
 
 
-@kernel
+@part
 def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
     """Number of sign changes, zeros left out, and the sign of the first coefficient not zero."""
     changes, first, last = 0, 0, 0
@@ -135,7 +135,7 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
     return changes, first
 
 
-@kernel
+@part
 def descent_in(piece: NDArray[np.float64]) -> float:
     """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
@@ -157,7 +157,7 @@ def descent_in(piece: NDArray[np.float64]) -> float:
     return t
 
 
-@kernel
+@part
 def slope(b: Quintic, t: float) -> float:
     """df/dt at t."""
     r = 1.0 - t

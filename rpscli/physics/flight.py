@@ -10,8 +10,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.events import NO_PASSAGE, first_descent, offset
-from rpscli.physics.inspection import tilt_path
-from rpscli.physics.jit import kernel, merged, part
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
     ACCELERATION,
     AHEAD,
@@ -44,7 +43,6 @@ from rpscli.physics.layout import (
     LOCATING,
     LONGEST,
     LOW,
-    MOTION,
     MOVED_ON,
     NOTHING,
     NPTS,
@@ -57,7 +55,6 @@ from rpscli.physics.layout import (
     ROCKING,
     ROLLING,
     ROLLING_TO_ROCKING,
-    SCALARS,
     SIDE,
     STALE,
     STALLED,
@@ -66,11 +63,14 @@ from rpscli.physics.layout import (
     TAKEN,
     TAKEN_FIRST,
     TAKEN_MEAN,
+    THETA_CR,
     TIME,
     VELOCITY,
 )
-from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
-from rpscli.physics.peak import watch_peak
+from rpscli.physics.parameters import Floats, Shape
+from rpscli.physics.part import part
+from rpscli.physics.peak import tilt_of, watch_peak
+from rpscli.physics.podium_layout import BETA, MAX_EVENTS
 from rpscli.physics.progress import enter_interval, store_sample
 from rpscli.physics.standing import stand, to_modes
 from rpscli.physics.switch import (
@@ -82,7 +82,6 @@ from rpscli.physics.switch import (
     note,
     now,
 )
-from rpscli.physics.table import podium_of
 
 RESTEPS = 4
 """At most so many re-steps locate an event; two suffice but for grazing."""
@@ -91,191 +90,169 @@ STALL = 100
 """So many events in a row without time passing: the step cannot be made small enough."""
 
 
-@merged
-def set_step(b: Floats, shape: Shape, l: int, h: float) -> None:
-    """Set the length of the next step of a lane [s]."""
-    n, L = len(shape.floors), len(shape.stride)
-    b[STEP * L + l] = h
-    for c in range(n + 1):
-        b[(SCALARS + STEPS * (n + 1) + c) * L + l] = h
+@part
+def set_step(s: Floats, x: Floats, h: float) -> None:
+    """Set the length of a lane's next step [s], in its numbers and blocks."""
+    s[STEP] = h
+    for c in range(x.shape[1]):
+        x[STEPS, c] = h
 
 
-@kernel
-def plan_step(b: Floats, shape: Shape, l: int) -> None:
+@part
+def plan_step(s: Floats, x: Floats) -> None:
     """Length of the next steps: even parts of what is left of the interval.
 
     Nothing may be left after an event on the very sample; a step of length 0 then leads over.
     """
-    L = len(shape.stride)
-    left = b[INTERVAL_LENGTH * L + l] - b[TIME * L + l]
-    steps = max(math.ceil(left / b[FLIGHT_STEP * L + l] - 1e-9), 1)
-    set_step(b, shape, l, max(left, 0.0) / steps)
-    b[LEFT * L + l] = steps
-    b[LOCATING * L + l] = 0.0
-
-
-@kernel
-def book_energy(b: Floats, shape: Shape, l: int) -> None:
-    """Book the energy of the step that was taken over, if it is audited."""
-    L = len(shape.stride)
-    if len(shape.audit) > 0:
-        b[INPUT * L + l] += b[STEP * L + l] * b[GIVEN_MEAN * L + l]
-        b[DAMPED * L + l] += b[STEP * L + l] * b[TAKEN_MEAN * L + l]
-        b[GIVEN_FIRST * L + l], b[TAKEN_FIRST * L + l] = b[GIVEN * L + l], b[TAKEN * L + l]
+    left = s[INTERVAL_LENGTH] - s[TIME]
+    steps = max(math.ceil(left / s[FLIGHT_STEP] - 1e-9), 1)
+    set_step(s, x, max(left, 0.0) / steps)
+    s[LEFT], s[LOCATING] = steps, 0.0
 
 
 @part
-def aim(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> bool:
+def book_energy(s: Floats, shape: Shape) -> None:
+    """Book the energy of the step that was taken over, if it is audited."""
+    if len(shape.audit) > 0:
+        s[INPUT] += s[STEP] * s[GIVEN_MEAN]
+        s[DAMPED] += s[STEP] * s[TAKEN_MEAN]
+        s[GIVEN_FIRST], s[TAKEN_FIRST] = s[GIVEN], s[TAKEN]
+
+
+@part
+def aim(lane: Lane) -> bool:
     """Find the first event within the step just taken, and plan the re-step that leads there.
 
     False if the step is not finite. If the quintic turns out to stay in range, the alarm was
     false: the same step is taken once more and then passes.
     """
-    n, L = len(shape.floors), len(shape.stride)
-    b, whole = lanes.buffer, lanes.integers
-    path = tilt_path(b, n, L, l)
+    s, x = lane.numbers, lane.blocks
+    path = tilt_of(s, x)
     if not math.isfinite(path[1] + path[3] + path[5]):
         return False
     first, level, kind = NO_PASSAGE, 0.0, NOTHING
-    low, high = b[LOW * L + l], b[HIGH * L + l]
-    t = first_descent(offset(path, 1.0, low), lanes.piece)
+    t = first_descent(offset(path, 1.0, s[LOW]), lane.piece)
     if t < first:
-        first, level, kind = t, low, event_below(podium, whole[l, MOTION])
-    t = first_descent(offset(path, -1.0, high), lanes.piece)
+        first, level, kind = t, s[LOW], event_below(lane)
+    t = first_descent(offset(path, -1.0, s[HIGH]), lane.piece)
     if t < first:
-        first, level, kind = t, high, event_above(podium, whole[l, MOTION])
+        first, level, kind = t, s[HIGH], event_above(lane)
     if kind == NOTHING:
-        b[LOCATING * L + l] = -1.0
+        s[LOCATING] = -1.0
         return True
-    whole[l, EVENT] = kind
-    b[LEVEL * L + l], b[LONGEST * L + l] = level, b[STEP * L + l]
-    set_step(b, shape, l, first * b[STEP * L + l])
-    b[LOCATING * L + l] = 1.0
+    lane.whole[EVENT] = kind
+    s[LEVEL], s[LONGEST], s[LOCATING] = level, s[STEP], 1.0
+    set_step(s, x, first * s[STEP])
     return True
 
 
 @part
-def correct(b: Floats, shape: Shape, l: int) -> bool:
+def correct(s: Floats, x: Floats) -> bool:
     """Whether the re-step ends on the event; if not, correct its length."""
-    n, L = len(shape.floors), len(shape.stride)
-    miss = b[(SCALARS + AHEAD * (n + 1)) * L + l] - b[LEVEL * L + l]
-    rate = b[(SCALARS + AHEAD_RATE * (n + 1)) * L + l]
+    miss, rate, longest = x[AHEAD, 0] - s[LEVEL], x[AHEAD_RATE, 0], s[LONGEST]
     change = -miss / rate if rate != 0.0 else math.inf
-    longest = b[LONGEST * L + l]
-    length = b[STEP * L + l] + change
+    length = s[STEP] + change
     if abs(miss) < 1e-15 or abs(change) < 1e-15 * longest or not 0.0 <= length <= longest:
         return True
-    if b[LOCATING * L + l] >= RESTEPS:
+    if s[LOCATING] >= RESTEPS:
         return True
-    set_step(b, shape, l, length)
-    b[LOCATING * L + l] += 1.0
+    set_step(s, x, length)
+    s[LOCATING] += 1.0
     return False
 
 
 @part
-def arrive(lanes: Lanes, shape: Shape, l: int, podium: Podium) -> None:
+def arrive(lane: Lane, shape: Shape) -> None:
     """Take over the step that ends on an event, and switch."""
-    n, L = len(shape.floors), len(shape.stride)
-    b, whole = lanes.buffer, lanes.integers
-    b[(SCALARS + AHEAD * (n + 1)) * L + l] = b[LEVEL * L + l]
-    watch_peak(lanes, shape, l)
-    for state, ahead in (
-        (POSITION, AHEAD),
-        (VELOCITY, AHEAD_RATE),
-        (ACCELERATION, AHEAD_ACCELERATION),
-    ):
-        for c in range(n + 1):
-            end = b[(SCALARS + ahead * (n + 1) + c) * L + l]
-            b[(SCALARS + state * (n + 1) + c) * L + l] = end
-    before = b[TIME * L + l]
-    b[TIME * L + l] += b[STEP * L + l]
-    whole[l, STALLED] = whole[l, STALLED] + 1 if b[TIME * L + l] == before else 0
-    book_energy(b, shape, l)
-    kind = whole[l, EVENT]
+    s, x, whole = lane.numbers, lane.blocks, lane.whole
+    x[AHEAD, 0] = s[LEVEL]
+    watch_peak(lane)
+    for c in range(x.shape[1]):
+        x[POSITION, c], x[VELOCITY, c] = x[AHEAD, c], x[AHEAD_RATE, c]
+        x[ACCELERATION, c] = x[AHEAD_ACCELERATION, c]
+    before = s[TIME]
+    s[TIME] += s[STEP]
+    whole[STALLED] = whole[STALLED] + 1 if s[TIME] == before else 0
+    book_energy(s, shape)
+    kind = whole[EVENT]
     if kind == IMPACT:
-        land(lanes, n, L, l, podium)
+        land(lane)
         return
-    rotation = b[SIDE * L + l] * b[(SCALARS + POSITION * (n + 1)) * L + l]
-    rate = b[SIDE * L + l] * b[(SCALARS + VELOCITY * (n + 1)) * L + l]
-    note(lanes, l, now(lanes, L, l), kind, rotation, rate, rate, 0.0)
+    rotation, rate = s[SIDE] * x[POSITION, 0], s[SIDE] * x[VELOCITY, 0]
+    note(lane, now(lane), kind, rotation, rate, rate, 0.0)
     if kind == OVERTURNING:
-        rolls = podium.theta_cr < podium.beta
-        whole[l, OUTCOME] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
+        rolls = s[THETA_CR] < lane.podium[BETA]
+        whole[OUTCOME] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
         return
-    enter_phase(lanes, L, l, podium, ROCKING if kind == ROLLING_TO_ROCKING else ROLLING)
-    b[STALE * L + l] = MOVED_ON
+    enter_phase(lane, ROCKING if kind == ROLLING_TO_ROCKING else ROLLING)
+    s[STALE] = MOVED_ON
 
 
 @part
-def too_many(lanes: Lanes, l: int, podium: Podium) -> bool:
+def too_many(lane: Lane) -> bool:
     """Whether events pile up; sets the outcome."""
-    whole, events = lanes.integers, 0
+    whole, events = lane.whole, 0
     for i in range(EVENT_KINDS):
-        events += whole[l, COUNTS + i]
-    if events > podium.max_events:
-        whole[l, OUTCOME] = FAILED_TOO_MANY_EVENTS
+        events += whole[COUNTS + i]
+    if events > lane.podium[MAX_EVENTS]:
+        whole[OUTCOME] = FAILED_TOO_MANY_EVENTS
         return True
-    if whole[l, STALLED] > STALL:
-        whole[l, OUTCOME] = FAILED_STEP_TOO_SMALL
+    if whole[STALLED] > STALL:
+        whole[OUTCOME] = FAILED_STEP_TOO_SMALL
         return True
     return False
 
 
 @part
-def go_on(lanes: Lanes, shape: Shape, l: int) -> bool:
+def go_on(lane: Lane) -> bool:
     """Enter the record's next interval; False if the history of the lane is over."""
-    L = len(shape.stride)
-    b, whole = lanes.buffer, lanes.integers
-    over = enter_interval(lanes, shape, l, whole[l, INTERVAL] + 1)
-    if lanes.samples.shape[0] > 0:
-        store_sample(lanes, shape, l)
+    s, whole = lane.numbers, lane.whole
+    over = enter_interval(lane, whole[INTERVAL] + 1)
+    if lane.samples.shape[0] > 0:
+        store_sample(lane)
     if over:
         return False
-    if whole[l, INTERVAL] + 1 == whole[l, NPTS]:
-        b[STALE * L + l] = MOVED_ON  # the ground acceleration may jump to zero
-    b[LEFT * L + l] = b[FLIGHT_STEPS * L + l]
-    if b[STEP * L + l] != b[FLIGHT_STEP * L + l]:
-        set_step(b, shape, l, b[FLIGHT_STEP * L + l])
+    if whole[INTERVAL] + 1 == whole[NPTS]:
+        s[STALE] = MOVED_ON  # the ground acceleration may jump to zero
+    s[LEFT] = s[FLIGHT_STEPS]
+    if s[STEP] != s[FLIGHT_STEP]:
+        set_step(s, lane.blocks, s[FLIGHT_STEP])
     return True
 
 
 @part
-def attend(lanes: Lanes, shape: Shape, l: int) -> bool:
+def attend(lane: Lane, shape: Shape) -> bool:
     """Deal with a step that ends at a sample or holds an event; False if the history is over."""
-    L = len(shape.stride)
-    b, whole = lanes.buffer, lanes.integers
-    if b[QUIET * L + l] > 0.0:
-        return go_on(lanes, shape, l)
-    podium = podium_of(lanes.podium, l)
-    if b[LOCATING * L + l] == 0.0:
-        if not aim(lanes, shape, l, podium):
-            whole[l, OUTCOME] = FAILED_NOT_FINITE
-        return bool(whole[l, OUTCOME] < 0)
-    if correct(b, shape, l):
-        arrive(lanes, shape, l, podium)
-        plan_step(b, shape, l)
-    return not (whole[l, OUTCOME] >= 0 or too_many(lanes, l, podium))
+    s, whole = lane.numbers, lane.whole
+    if s[QUIET] > 0.0:
+        return go_on(lane)
+    if s[LOCATING] == 0.0:
+        if not aim(lane):
+            whole[OUTCOME] = FAILED_NOT_FINITE
+        return bool(whole[OUTCOME] < 0)
+    if correct(s, lane.blocks):
+        arrive(lane, shape)
+        plan_step(s, lane.blocks)
+    return not (whole[OUTCOME] >= 0 or too_many(lane))
 
 
 @part
-def settle(lanes: Lanes, shape: Shape, l: int) -> bool:
+def settle(lane: Lane, shape: Shape) -> bool:
     """After accelerations were computed anew; False if the history of the lane is over."""
-    n, L = len(shape.floors), len(shape.stride)
-    b = lanes.buffer
-    why = b[STALE * L + l]
-    b[STALE * L + l] = FRESH
+    s, x = lane.numbers, lane.blocks
+    why = s[STALE]
+    s[STALE] = FRESH
     if why == LIFTED_OFF:
         # At the threshold theta'' is zero but for rounding, and about to grow.
-        row = (SCALARS + ACCELERATION * (n + 1)) * L + l
-        b[row] = max(b[row], 0.0)
+        x[ACCELERATION, 0] = max(x[ACCELERATION, 0], 0.0)
     elif why == LEANING:
-        for i in range(n):
-            b[(SCALARS + POSITION * (n + 1) + i + 1) * L + l] = b[BASE * L + l]
-        store_sample(lanes, shape, l)
-        b[STALE * L + l] = MOVED_ON
-    elif why == LANDED and comes_to_rest(lanes, n, L, l):
-        to_modes(lanes, L, l)
-        if not stand(lanes, shape, l):
+        for c in range(1, x.shape[1]):
+            x[POSITION, c] = s[BASE]
+        store_sample(lane)
+        s[STALE] = MOVED_ON
+    elif why == LANDED and comes_to_rest(lane):
+        to_modes(lane)
+        if not stand(lane, shape):
             return False
-        plan_step(b, shape, l)
+        plan_step(s, x)
     return True

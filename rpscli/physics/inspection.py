@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.events import Quintic, lower_hull, quintic, upper_hull
-from rpscli.physics.jit import kernel, merged
 from rpscli.physics.lanes import floor_count, lane_count
 from rpscli.physics.layout import (
     ACCELERATION,
@@ -57,10 +56,11 @@ from rpscli.physics.layout import (
     WATCH,
 )
 from rpscli.physics.parameters import Floats, Shape
+from rpscli.physics.part import part, routine
 from rpscli.physics.runge_kutta import EVALUATIONS as EVALUATIONS_OF_A_STEP
 
 
-@kernel
+@part
 def tilt_path(b: Floats, n: int, L: int, l: int) -> Quintic:
     """The tilt of a lane over the step just taken."""
     return quintic(
@@ -74,7 +74,7 @@ def tilt_path(b: Floats, n: int, L: int, l: int) -> Quintic:
     )
 
 
-@kernel
+@routine
 def search_events(b: Floats, shape: Shape) -> None:
     """Look for events in the step just taken.
 
@@ -97,7 +97,7 @@ def search_events(b: Floats, shape: Shape) -> None:
         b[WATCH * L + l] = 1.0 if quiet & (turning | passing) else 0.0
 
 
-@merged
+@part
 def contact_forces(
     cap_beam: float,
     floors: float,
@@ -132,13 +132,13 @@ def contact_forces(
     return shear_top, shear_bottom, normal_top, normal_bottom
 
 
-@merged
+@part
 def friction(shear: float, normal: float) -> float:
     """|F|/N; infinite once the contact is lost."""
     return abs(shear) / normal if normal > 0.0 else math.inf
 
 
-@kernel
+@routine
 def observe(b: Floats, shape: Shape) -> None:
     """Raise the demands of lanes whose quiet step ends at a sample of the record.
 
@@ -175,7 +175,7 @@ def observe(b: Floats, shape: Shape) -> None:
         b[PEAK_TIME * L + l] = time if higher else b[PEAK_TIME * L + l]
 
 
-@merged
+@part
 def contact_measures(
     cap_beam: float,
     floors: float,
@@ -201,7 +201,7 @@ def contact_measures(
     return top, friction(shear_bottom, normal_bottom), light_top, normal_bottom / (lower * gravity)
 
 
-@merged
+@part
 def raise_contacts(
     b: Floats, L: int, l: int, look: float, across: float, upwards: float, V: float
 ) -> None:
@@ -229,7 +229,7 @@ def raise_contacts(
     b[row] = min(b[row], light_bottom if seen else math.inf)
 
 
-@kernel
+@routine
 def take_over(b: Floats, shape: Shape) -> None:
     """Make the end of a quiet step the state of its lane."""
     L = len(shape.stride)
@@ -246,7 +246,7 @@ def take_over(b: Floats, shape: Shape) -> None:
         b[EVALUATIONS * L + l] += EVALUATIONS_OF_A_STEP
 
 
-@merged
+@part
 def keep_end(b: Floats, shape: Shape, state: int, ahead: int) -> None:
     """Copy a block of the step's end to one of its start."""
     n, L = floor_count(shape), len(shape.stride)

@@ -12,7 +12,7 @@ import os
 import re
 import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -63,44 +63,28 @@ def _is_writable(folder: Path) -> bool:
 
 
 def kernel(function: Function) -> Function:
-    """Compile at the first call, without the GIL, and keep the machine code on disk."""
-    return _compiled(function, merged_into_callers=False)
-
-
-def merged(function: Function) -> Function:
-    """The same for a part of a kernel that is merged into each caller.
-
-    What a caller passes as a constant is then one in the part too: that is how the loops over
-    lanes know that their rows do not overlap.
-    """
-    return _compiled(function, merged_into_callers=True)
-
-
-def part(function: Function) -> Function:
-    """A step of a longer kernel, written apart for the reader and put back before compilation.
-
-    Every function that is compiled by itself is optimised again inside each function above it;
-    what has a single caller need not be.
-    """
-    compiled: Any = numba.njit(function, inline="always", **OPTIONS)
-    return cast("Function", compiled)
-
-
-def _compiled(function: Function, *, merged_into_callers: bool) -> Function:
-    folder = cache_folder()
-    config: Any = numba.config
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(folder or "")
+    """Compile at the first call from Python, without the GIL; keep the machine code on disk."""
+    folder, config = cache_folder(), cast("Any", numba.config)
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
     try:
-        compiled: Any = numba.njit(
-            function,
-            cache=folder is not None,
-            forceinline=merged_into_callers,
-            **OPTIONS,
-        )
+        compiled: Any = numba.njit(function, cache=folder is not None, **OPTIONS)
     finally:
         config.CACHE_DIR = before
-    return cast("Function", compiled)
+
+    @wraps(function)
+    def call(*arguments: Any) -> Any:
+        return compiled(*arguments)
+
+    roomy: Any = call
+    roomy.__code__ = roomy.__code__.replace(co_stacksize=ROOM)
+    return cast("Function", call)
+
+
+ROOM = 2**17
+"""Entries of the Python stack below a kernel. Python keeps the frames of calls in pieces of 16 kB,
+and gives a piece back to the system as soon as it is empty: a compiler that happens to work at the
+end of one asks for the next a million times, a quarter of its time. One large frame below it makes
+room for all."""
 
 
 _compiled_here: set[str] = set()

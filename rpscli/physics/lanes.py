@@ -6,26 +6,26 @@ overflows. A start that it knows and a bound on the number of lanes are enough f
 
 from __future__ import annotations
 
-from rpscli.physics.jit import merged
 from rpscli.physics.parameters import Shape
+from rpscli.physics.part import part
 
 MOST_LANES = 64
 MOST_FLOORS = 10_000
 
 
-@merged
+@part
 def first_lane(shape: Shape, lane: int) -> int:
-    """Where the lanes begin: at `lane` if it moves alone, else at 0."""
-    return lane if len(shape.alone) > 0 else 0
+    """Where the lanes begin: at `lane` if it is one of many that moves alone, else at 0."""
+    return max(lane, 0) if len(shape.alone) > 0 and len(shape.stride) > 1 else 0
 
 
-@merged
+@part
 def lane_count(shape: Shape) -> int:
     """Lanes that move together, at most `MOST_LANES`."""
     return min(len(shape.lanes), MOST_LANES)
 
 
-@merged
+@part
 def floor_count(shape: Shape) -> int:
     """Floors, at most `MOST_FLOORS`."""
     return max(min(len(shape.floors), MOST_FLOORS), 0)

@@ -105,10 +105,10 @@ from __future__ import annotations
     AHEAD_RATE,  # of its end
     AHEAD_ACCELERATION,
     POSITION,  # the state at the start of the step
-    VELOCITY,  # 5 blocks, one a stage; the first is the state's
+    VELOCITY,  # 6 blocks, one a stage that is needed again; the first is the state's
 ) = range(13)
-ACCELERATION = VELOCITY + 5
-BLOCKS = ACCELERATION + 5
+ACCELERATION = VELOCITY + 6
+BLOCKS = ACCELERATION + 6
 
 # Whole numbers of a lane.
 (

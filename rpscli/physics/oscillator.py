@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.jit import kernel
+from rpscli.physics.part import part
 
 
-@kernel
+@part
 def decay(omega: float, xi: float, h: float) -> tuple[float, float]:
     """c(h) and s(h) [1, s]; under-, over- and critically damped."""
     rate = xi * omega
@@ -35,7 +35,7 @@ def decay(omega: float, xi: float, h: float) -> tuple[float, float]:
     return 0.5 * (slow + fast), 0.5 * (slow - fast) / wd
 
 
-@kernel
+@part
 def transition(
     omega: float, xi: float, h: float
 ) -> tuple[float, float, float, float, float, float, float, float]:

@@ -49,12 +49,8 @@ class Podium(NamedTuple):
     until_rest: float
 
 
-PODIUM_NUMBERS = 34
-"""How many they are when the phases are spread out."""
-
-
 def podium_numbers(podium: Podium) -> list[float]:
-    """The row of numbers of a podium: its fields in order, phases spread out."""
+    """The row of numbers of a podium, see `podium_layout`: its fields, phases spread out."""
     numbers: list[float] = []
     for value in podium:
         numbers.extend(value if isinstance(value, Phase) else [float(value)])
@@ -153,14 +149,17 @@ class Block(NamedTuple):
 
 
 class Lanes(NamedTuple):
-    """Everything that a history needs while it runs, lane by lane: see `layout` and `contact`.
+    """Everything that histories need while they run, lane by lane: see `layout` and `contact`.
 
-    `podium` (L, 34) are the numbers of `Podium`, `modes` (L, 26 + 2 n, n) the modal rows of full
-    contact; its `block` and `piece` (6,) are scratch; `acceleration` holds all records end to end,
-    linear between samples; the samples and the log are those of `Results`.
+    `numbers` (L, rows) and `blocks` (L, blocks, n + 1) are views of the flat `buffer`. `podium`
+    (L, 34) are the numbers of `Podium`, `modes` (L, 26 + 2 n, n) the modal rows of full contact;
+    its `block` and `piece` (6,) are scratch; `acceleration` holds all records end to end, linear
+    between samples; the samples and the log are those of `Results`.
     """
 
     buffer: Floats
+    numbers: Floats
+    blocks: Floats
     integers: Integers
     podium: Floats
     modes: Floats

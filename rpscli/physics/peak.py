@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from rpscli.physics.events import Quintic, first_descent, offset, slope, upper_hull, value
-from rpscli.physics.inspection import tilt_path
-from rpscli.physics.jit import part
+from rpscli.physics.events import (
+    Quintic,
+    first_descent,
+    offset,
+    quintic,
+    slope,
+    upper_hull,
+    value,
+)
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
+    ACCELERATION,
     AHEAD,
+    AHEAD_ACCELERATION,
     AHEAD_RATE,
     CRITICAL_PASSAGE,
     CRITICAL_TIME,
     PEAK,
     PEAK_TIME,
-    SCALARS,
+    POSITION,
     SIDE,
     START,
     STEP,
@@ -20,7 +29,8 @@ from rpscli.physics.layout import (
     TIME,
     VELOCITY,
 )
-from rpscli.physics.parameters import Lanes, Shape
+from rpscli.physics.parameters import Floats
+from rpscli.physics.part import part, routine
 from rpscli.physics.switch import note, now
 
 
@@ -41,32 +51,40 @@ def crest(path: Quintic) -> tuple[float, float]:
 
 
 @part
-def watch_peak(lanes: Lanes, shape: Shape, l: int) -> None:
+def tilt_of(s: Floats, x: Floats) -> Quintic:
+    """The tilt of a lane over the step just taken, from its numbers and blocks."""
+    return quintic(
+        s[STEP],
+        x[POSITION, 0],
+        x[VELOCITY, 0],
+        x[ACCELERATION, 0],
+        x[AHEAD, 0],
+        x[AHEAD_RATE, 0],
+        x[AHEAD_ACCELERATION, 0],
+    )
+
+
+@routine
+def watch_peak(lane: Lane) -> None:
     """Raise the largest tilt by that of the step just taken, turning points included."""
-    n, L = len(shape.floors), len(shape.stride)
-    b = lanes.buffer
-    height, fraction = b[(SCALARS + AHEAD * (n + 1)) * L + l], 1.0
-    before = b[(SCALARS + VELOCITY * (n + 1)) * L + l]
-    after = b[(SCALARS + AHEAD_RATE * (n + 1)) * L + l]
-    path = tilt_path(b, n, L, l)
-    if before > 0.0 and after < 0.0 and upper_hull(path) > b[PEAK * L + l]:
+    s, x = lane.numbers, lane.blocks
+    height, fraction = x[AHEAD, 0], 1.0
+    path = tilt_of(s, x)
+    if x[VELOCITY, 0] > 0.0 and x[AHEAD_RATE, 0] < 0.0 and upper_hull(path) > s[PEAK]:
         fraction, height = crest(path)
-    if height > b[PEAK * L + l]:
-        b[PEAK * L + l] = height
-        b[PEAK_TIME * L + l] = b[START * L + l] + (b[TIME * L + l] + fraction * b[STEP * L + l])
-        if height > b[THETA_CR * L + l] and b[CRITICAL_TIME * L + l] < 0.0:
-            note_critical_passage(lanes, shape, l)
+    if height > s[PEAK]:
+        s[PEAK] = height
+        s[PEAK_TIME] = s[START] + (s[TIME] + fraction * s[STEP])
+        if height > s[THETA_CR] and s[CRITICAL_TIME] < 0.0:
+            note_critical_passage(lane, path)
 
 
 @part
-def note_critical_passage(lanes: Lanes, shape: Shape, l: int) -> None:
+def note_critical_passage(lane: Lane, path: Quintic) -> None:
     """Note when theta_cr was passed for the first time, within the step just taken."""
-    n, L = len(shape.floors), len(shape.stride)
-    b = lanes.buffer
-    level, h = b[THETA_CR * L + l], b[STEP * L + l]
-    path = tilt_path(b, n, L, l)
-    t = min(first_descent(offset(path, -1.0, level), lanes.piece), 1.0)
-    time, side = now(lanes, L, l) + t * h, b[SIDE * L + l]
+    s = lane.numbers
+    level, h, side = s[THETA_CR], s[STEP], s[SIDE]
+    t = min(first_descent(offset(path, -1.0, level), lane.piece), 1.0)
     rate = side * slope(path, t) / h if h > 0.0 else 0.0
-    b[CRITICAL_TIME * L + l] = time
-    note(lanes, l, time, CRITICAL_PASSAGE, side * level, rate, rate, 0.0)
+    s[CRITICAL_TIME] = now(lane) + t * h
+    note(lane, s[CRITICAL_TIME], CRITICAL_PASSAGE, side * level, rate, rate, 0.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rpscli.physics.jit import kernel, merged
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
     ACCELERATION,
     DAMPED,
@@ -22,11 +22,10 @@ from rpscli.physics.layout import (
     ROW_PHASE,
     ROW_RATE,
     ROW_ROTATION,
-    SCALARS,
     SIDE,
     VELOCITY,
 )
-from rpscli.physics.parameters import Lanes, Shape
+from rpscli.physics.part import part, routine
 from rpscli.physics.rest import is_over
 from rpscli.physics.shaking import shake
 
@@ -34,34 +33,30 @@ REST_EVERY = 8
 """After the record, so many samples pass between looks at whether anything can still happen."""
 
 
-@kernel
-def store_sample(lanes: Lanes, shape: Shape, l: int) -> None:
+@routine
+def store_sample(lane: Lane) -> None:
     """Keep the state at the start of the present interval, if there is room."""
-    n, L = len(shape.floors), len(shape.stride)
-    b, whole = lanes.buffer, lanes.integers
-    if whole[l, INTERVAL] >= lanes.samples.shape[0]:
+    s, x, whole = lane.numbers, lane.blocks, lane.whole
+    if whole[INTERVAL] >= lane.samples.shape[0]:
         return
-    row = lanes.samples[whole[l, INTERVAL]]
-    u, du = SCALARS + POSITION * (n + 1), SCALARS + VELOCITY * (n + 1)
-    side, stands = b[SIDE * L + l], whole[l, MOTION] == FULL_CONTACT
-    turning = b[(SCALARS + ACCELERATION * (n + 1)) * L + l]
-    row[ROW_ROTATION], row[ROW_RATE] = side * b[u * L + l], side * b[du * L + l]
-    row[ROW_ACCELERATION] = 0.0 if stands else side * turning
-    row[ROW_PHASE] = whole[l, MOTION]
-    row[ROW_INPUT], row[ROW_DAMPED] = b[INPUT * L + l], b[DAMPED * L + l]
-    row[ROW_LOST] = b[LOST * L + l]
+    row, n, side = lane.samples[whole[INTERVAL]], x.shape[1] - 1, s[SIDE]
+    row[ROW_ROTATION], row[ROW_RATE] = side * x[POSITION, 0], side * x[VELOCITY, 0]
+    stands = whole[MOTION] == FULL_CONTACT
+    row[ROW_ACCELERATION] = 0.0 if stands else side * x[ACCELERATION, 0]
+    row[ROW_PHASE] = whole[MOTION]
+    row[ROW_INPUT], row[ROW_DAMPED], row[ROW_LOST] = s[INPUT], s[DAMPED], s[LOST]
     for i in range(n):
-        row[ROW_FLOORS + i] = b[(u + i + 1) * L + l]
-        row[ROW_FLOORS + n + i] = b[(du + i + 1) * L + l]
+        row[ROW_FLOORS + i] = x[POSITION, i + 1]
+        row[ROW_FLOORS + n + i] = x[VELOCITY, i + 1]
 
 
-@merged
-def enter_interval(lanes: Lanes, shape: Shape, l: int, interval: int) -> bool:
+@part
+def enter_interval(lane: Lane, interval: int) -> bool:
     """Begin an interval of the record; True if the history ends instead."""
-    whole = lanes.integers
-    whole[l, INTERVAL] = interval
-    shake(lanes, len(shape.stride), l)
-    if whole[l, INTERVAL] >= whole[l, INTERVALS]:
+    whole = lane.whole
+    whole[INTERVAL] = interval
+    shake(lane)
+    if interval >= whole[INTERVALS]:
         return True
-    free = whole[l, INTERVAL] + 1 - whole[l, NPTS]
-    return free > 0 and free % REST_EVERY == 0 and is_over(lanes, shape, l)
+    free = interval + 1 - whole[NPTS]
+    return free > 0 and free % REST_EVERY == 0 and is_over(lane)

@@ -12,30 +12,24 @@ from rpscli.physics.contact_layout import (
     SHAPES,
     Q,
 )
-from rpscli.physics.jit import kernel, part
-from rpscli.physics.layout import (
-    FLOOR_ACCELERATION,
-    FULL_CONTACT,
-    MOTION,
-    SCALARS,
-    STOREY_SHEAR,
-)
-from rpscli.physics.parameters import Floats, Lanes, Podium, Shape
-from rpscli.physics.table import podium_of
+from rpscli.physics.lane import Lane
+from rpscli.physics.layout import FLOOR_ACCELERATION, FULL_CONTACT, MOTION, STOREY_SHEAR
+from rpscli.physics.parameters import Floats
+from rpscli.physics.part import part, routine
+from rpscli.physics.podium_layout import ALPHA, ETA, FLOORS_MASS, GAMMA, GRAVITY, UNTIL_REST
 
 
-@kernel
-def is_over(lanes: Lanes, shape: Shape, l: int) -> bool:
+@routine
+def is_over(lane: Lane) -> bool:
     """Whether no later moment of the free vibration can bring a new maximum.
 
     Never while uplifted: impacts excite the building until the storey is down. In full contact
     each mode decays from its present energy, which bounds every demand and the push that could
     uplift the storey again.
     """
-    podium = podium_of(lanes.podium, l)
-    if podium.until_rest == 0.0 or lanes.integers[l, MOTION] != FULL_CONTACT:
+    if lane.podium[UNTIL_REST] == 0.0 or lane.whole[MOTION] != FULL_CONTACT:
         return False
-    return stays_down(lanes, l, podium) and demands_stand(lanes, len(shape.stride), l)
+    return stays_down(lane) and demands_stand(lane)
 
 
 @part
@@ -46,22 +40,22 @@ def modal_speed(z: Floats, r: int) -> float:
 
 
 @part
-def stays_down(lanes: Lanes, l: int, podium: Podium) -> bool:
+def stays_down(lane: Lane) -> bool:
     """Whether the freely vibrating building can never again push hard enough to uplift."""
-    z = lanes.modes[l]
-    own, carried = 1.0 + 2.0 * podium.gamma, 2.0 * podium.gamma * podium.eta
+    z, p = lane.modes, lane.podium
+    own, carried = 1.0 + 2.0 * p[GAMMA], 2.0 * p[GAMMA] * p[ETA]
     largest = 0.0
     for r in range(z.shape[1]):
         pull = z[OMEGA, r] + z[DRAG, r]
         largest += abs(z[PARTICIPATION, r]) * pull * modal_speed(z, r)
-    limit = podium.gravity * math.tan(podium.alpha) * (own + carried)
-    return z.shape[1] == 0 or carried / podium.floors_mass * largest < limit
+    limit = p[GRAVITY] * math.tan(p[ALPHA]) * (own + carried)
+    return z.shape[1] == 0 or bool(carried / p[FLOORS_MASS] * largest < limit)
 
 
 @part
-def demands_stand(lanes: Lanes, L: int, l: int) -> bool:
+def demands_stand(lane: Lane) -> bool:
     """Whether free vibration in full contact can raise no storey shear and no acceleration."""
-    b, z = lanes.buffer, lanes.modes[l]
+    x, z = lane.blocks, lane.modes
     n = z.shape[1]
     for i in range(n):
         shear, acceleration = 0.0, 0.0
@@ -69,9 +63,6 @@ def demands_stand(lanes: Lanes, L: int, l: int) -> bool:
             speed = modal_speed(z, r)
             shear += abs(z[SHAPES + n + r, i]) * speed / z[OMEGA, r]
             acceleration += abs(z[SHAPES + r, i]) * (z[OMEGA, r] + z[DRAG, r]) * speed
-        if (
-            shear > b[(SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l]
-            or acceleration > b[(SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l]
-        ):
+        if shear > x[STOREY_SHEAR, i] or acceleration > x[FLOOR_ACCELERATION, i]:
             return False
     return True

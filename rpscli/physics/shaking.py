@@ -11,7 +11,7 @@ from rpscli.physics.contact_layout import (
     RISE_SLOPE,
     SLOPE,
 )
-from rpscli.physics.jit import merged, part
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
     ACROSS,
     ACROSS_SLOPE,
@@ -27,7 +27,8 @@ from rpscli.physics.layout import (
     UPWARDS_SLOPE,
     VERTICAL,
 )
-from rpscli.physics.parameters import Floats, Lanes
+from rpscli.physics.parameters import Floats
+from rpscli.physics.part import part
 
 
 class Shaking(NamedTuple):
@@ -39,50 +40,48 @@ class Shaking(NamedTuple):
     upwards_slope: float
 
 
-@merged
-def shaking_in(lanes: Lanes, L: int, l: int, interval: int) -> Shaking:
+@part
+def shaking_in(lane: Lane, interval: int) -> Shaking:
     """How the ground moves in an interval of the lane's record."""
-    b, whole, record = lanes.buffer, lanes.integers, lanes.acceleration
-    gravity, scale = b[STANDARD_GRAVITY * L + l], b[SCALE * L + l]
-    if interval + 1 >= whole[l, NPTS]:
+    s, whole, record = lane.numbers, lane.whole, lane.acceleration
+    gravity, scale = s[STANDARD_GRAVITY], s[SCALE]
+    if interval + 1 >= whole[NPTS]:
         return Shaking(0.0, 0.0, gravity, 0.0)
-    per_time = 1.0 / b[INTERVAL_LENGTH * L + l]
-    i = whole[l, RECORD] + interval
+    per_time = 1.0 / s[INTERVAL_LENGTH]
+    i = whole[RECORD] + interval
     across, end = scale * record[i], scale * record[i + 1]
     slope = (end - across) * per_time
-    if whole[l, VERTICAL] < 0:
+    if whole[VERTICAL] < 0:
         return Shaking(across, slope, gravity, 0.0)
-    i = whole[l, VERTICAL] + interval
+    i = whole[VERTICAL] + interval
     upwards, end = scale * record[i], scale * record[i + 1]
     return Shaking(across, slope, gravity + upwards, (end - upwards) * per_time)
 
 
-@merged
-def shake(lanes: Lanes, L: int, l: int) -> None:
+@part
+def shake(lane: Lane) -> None:
     """Set the acceleration of the interval that begins."""
-    b = lanes.buffer
-    interval = lanes.integers[l, INTERVAL]
-    shaking = shaking_in(lanes, L, l, interval)
-    b[START * L + l], b[TIME * L + l] = interval * b[INTERVAL_LENGTH * L + l], 0.0
-    b[ACROSS * L + l], b[ACROSS_SLOPE * L + l] = shaking.across, shaking.across_slope
-    b[UPWARDS * L + l], b[UPWARDS_SLOPE * L + l] = shaking.upwards, shaking.upwards_slope
+    s, interval = lane.numbers, lane.whole[INTERVAL]
+    shaking = shaking_in(lane, interval)
+    s[START], s[TIME] = interval * s[INTERVAL_LENGTH], 0.0
+    s[ACROSS], s[ACROSS_SLOPE] = shaking.across, shaking.across_slope
+    s[UPWARDS], s[UPWARDS_SLOPE] = shaking.upwards, shaking.upwards_slope
 
 
 @part
-def shake_block(lanes: Lanes, L: int, l: int, c: Floats, h: float, each: int, steps: int) -> None:
+def shake_block(lane: Lane, c: Floats, h: float, each: int, steps: int) -> None:
     """Write the ground's motion at the instants of a block of steps of length h.
 
     `each` steps lead to the next sample, and from one to the next. The last instant belongs to the
     step before it: the ground acceleration may jump there.
     """
-    b = lanes.buffer
-    interval, time = lanes.integers[l, INTERVAL], b[TIME * L + l]
-    shaking = shaking_in(lanes, L, l, interval)
+    interval, time = lane.whole[INTERVAL], lane.numbers[TIME]
+    shaking = shaking_in(lane, interval)
     to_sample = each
     for k in range(COLUMNS):
         if to_sample == 0:
             interval, time, to_sample = interval + 1, 0.0, each
-            shaking = shaking_in(lanes, L, l, interval)
+            shaking = shaking_in(lane, interval)
         c[AT * COLUMNS + k] = shaking.across + shaking.across_slope * time
         c[SLOPE * COLUMNS + k] = shaking.across_slope
         c[RISE * COLUMNS + k] = shaking.upwards + shaking.upwards_slope * time

@@ -31,7 +31,7 @@ from rpscli.physics.contact_layout import (
     WHOLE,
     Q,
 )
-from rpscli.physics.jit import kernel, part
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
     CONTACT_STEP,
     CONTACT_STEPS,
@@ -45,11 +45,12 @@ from rpscli.physics.layout import (
     NPTS,
     OUTCOME,
     POSITION,
-    SCALARS,
     TIME,
     VELOCITY,
 )
-from rpscli.physics.parameters import Lanes, Shape
+from rpscli.physics.parameters import Shape
+from rpscli.physics.part import part, routine
+from rpscli.physics.podium_layout import ALPHA, ETA, FLOORS_MASS, GAMMA
 from rpscli.physics.progress import REST_EVERY, enter_interval, store_sample
 from rpscli.physics.shaking import shake_block
 from rpscli.physics.standing_demands import (
@@ -60,47 +61,45 @@ from rpscli.physics.standing_demands import (
     observe_floors,
 )
 from rpscli.physics.switch import lift_off
-from rpscli.physics.table import podium_of
 
 
 @part
-def stance_of(lanes: Lanes, l: int) -> Stance:
+def stance_of(lane: Lane) -> Stance:
     """What the lane's margin against uplift is made of."""
-    z, podium = lanes.modes[l], podium_of(lanes.podium, l)
-    own, carried = 1.0 + 2.0 * podium.gamma, 2.0 * podium.gamma * podium.eta
+    z, p = lane.modes, lane.podium
+    own, carried = 1.0 + 2.0 * p[GAMMA], 2.0 * p[GAMMA] * p[ETA]
     creep = 0.0
     for r in range(z.shape[1]):
         creep += z[PARTICIPATION, r] * z[PARTICIPATION, r] * z[DRAG, r]
-    share = carried / podium.floors_mass if z.shape[1] > 0 else 0.0
-    return Stance(own, share, math.tan(podium.alpha) * (own + carried), creep)
+    share = carried / p[FLOORS_MASS] if z.shape[1] > 0 else 0.0
+    return Stance(own, share, math.tan(p[ALPHA]) * (own + carried), creep)
 
 
 @part
-def to_modes(lanes: Lanes, L: int, l: int) -> None:
+def to_modes(lane: Lane) -> None:
     """Modal state of the floors: Phi^T M u."""
-    b, z = lanes.buffer, lanes.modes[l]
+    x, z = lane.blocks, lane.modes
     n = z.shape[1]
     for r in range(n):
         q, dq = 0.0, 0.0
         for i in range(n):
-            weight = z[SHAPES + r, i] * b[(SCALARS + MASS * (n + 1) + i) * L + l]
-            q += weight * b[(SCALARS + POSITION * (n + 1) + i + 1) * L + l]
-            dq += weight * b[(SCALARS + VELOCITY * (n + 1) + i + 1) * L + l]
+            weight = z[SHAPES + r, i] * x[MASS, i]
+            q += weight * x[POSITION, i + 1]
+            dq += weight * x[VELOCITY, i + 1]
         z[Q, r], z[DQ, r] = q, dq
 
 
-@kernel
-def to_floors(lanes: Lanes, L: int, l: int) -> None:
+@routine
+def to_floors(lane: Lane) -> None:
     """Floors of the modal state: Phi q; the storey does not tilt."""
-    b, z = lanes.buffer, lanes.modes[l]
+    x, z = lane.blocks, lane.modes
     n = z.shape[1]
-    u, du = SCALARS + POSITION * (n + 1), SCALARS + VELOCITY * (n + 1)
     for c in range(n + 1):
-        b[(u + c) * L + l], b[(du + c) * L + l] = 0.0, 0.0
+        x[POSITION, c], x[VELOCITY, c] = 0.0, 0.0
     for r in range(n):
         for i in range(n):
-            b[(u + i + 1) * L + l] += z[SHAPES + r, i] * z[Q, r]
-            b[(du + i + 1) * L + l] += z[SHAPES + r, i] * z[DQ, r]
+            x[POSITION, i + 1] += z[SHAPES + r, i] * z[Q, r]
+            x[VELOCITY, i + 1] += z[SHAPES + r, i] * z[DQ, r]
 
 
 class Plan(NamedTuple):
@@ -124,7 +123,7 @@ NEAR = 1e-3
 
 
 @part
-def plan_block(lanes: Lanes, L: int, l: int, finer: int) -> Plan:
+def plan_block(lane: Lane, finer: int) -> Plan:
     """The next steps of a lane: even parts of the intervals, or of what is left of one.
 
     A finer look, with steps divided by `finer`, goes no farther than the next sample.
@@ -132,100 +131,97 @@ def plan_block(lanes: Lanes, L: int, l: int, finer: int) -> Plan:
     They end where the ground acceleration may jump, the history ends, or is looked at to see
     whether anything can still happen.
     """
-    b, whole = lanes.buffer, lanes.integers
-    time, step = b[TIME * L + l], b[CONTACT_STEP * L + l]
+    s, whole = lane.numbers, lane.whole
+    time, step = s[TIME], s[CONTACT_STEP]
     if finer > 1 or time > 0.0:
-        left = max(b[INTERVAL_LENGTH * L + l] - time, 0.0)
+        left = max(s[INTERVAL_LENGTH] - time, 0.0)
         each = int(max(math.ceil(finer * left / step - 1e-9), 1))
-        fill_transition(lanes.modes[l], left / each, PART)
+        fill_transition(lane.modes, left / each, PART)
         return Plan(min(each, COLUMNS - 1), left / each, each, PART)
-    each, i = int(b[CONTACT_STEPS * L + l]), whole[l, INTERVAL]
-    free = i + 1 - whole[l, NPTS]
-    ahead = min(whole[l, INTERVALS] - i, REST_EVERY - free % REST_EVERY) if free >= 0 else -free
+    each, i = int(s[CONTACT_STEPS]), whole[INTERVAL]
+    free = i + 1 - whole[NPTS]
+    ahead = min(whole[INTERVALS] - i, REST_EVERY - free % REST_EVERY) if free >= 0 else -free
     most = max((COLUMNS - 1) // each, 1)
     return Plan(min(each * min(ahead, most), COLUMNS - 1), step, each, WHOLE)
 
 
 @part
-def take_steps(lanes: Lanes, shape: Shape, l: int, plan: Plan, taken: int) -> bool:
+def take_steps(lane: Lane, shape: Shape, plan: Plan, taken: int) -> bool:
     """Make the state after some steps of the block that of the lane; True if its history ends."""
-    L = len(shape.stride)
-    b, whole, z = lanes.buffer, lanes.integers, lanes.modes[l]
-    block, c = lanes.block, lanes.block.rows
-    first, time = whole[l, INTERVAL], b[TIME * L + l]
+    s, whole, z = lane.numbers, lane.whole, lane.modes
+    block, c = lane.block, lane.block.rows
+    first, time = whole[INTERVAL], s[TIME]
     passed = taken // plan.each
     if len(shape.audit) > 0:
         energies(block, z, plan.h)
     for k in range(1, taken + 1):
         if len(shape.audit) > 0:
-            b[INPUT * L + l] += c[GIVEN * COLUMNS + k - 1]
-            b[DAMPED * L + l] += c[TAKEN * COLUMNS + k - 1]
-        if lanes.samples.shape[0] > 0 and k % plan.each == 0:
+            s[INPUT] += c[GIVEN * COLUMNS + k - 1]
+            s[DAMPED] += c[TAKEN * COLUMNS + k - 1]
+        if lane.samples.shape[0] > 0 and k % plan.each == 0:
             keep(block, z, k)
-            to_floors(lanes, L, l)
-            whole[l, INTERVAL] = first + k // plan.each
-            store_sample(lanes, shape, l)
+            to_floors(lane)
+            whole[INTERVAL] = first + k // plan.each
+            store_sample(lane)
     keep(block, z, taken)
-    if first + passed >= whole[l, NPTS]:
-        hand_over(block, b, L, l)  # the end of the free vibration depends on the demands so far
+    if first + passed >= whole[NPTS]:
+        hand_over(lane)  # the end of the free vibration depends on the demands so far
     if passed == 0:
-        b[TIME * L + l] = time + taken * plan.h
+        s[TIME] = time + taken * plan.h
         return False
-    over = enter_interval(lanes, shape, l, first + passed)
-    b[TIME * L + l] = (taken - passed * plan.each) * plan.h
+    over = enter_interval(lane, first + passed)
+    s[TIME] = (taken - passed * plan.each) * plan.h
     return over
 
 
 @part
-def uplift(lanes: Lanes, shape: Shape, l: int, at: int, h: float, side: float) -> None:
+def uplift(lane: Lane, shape: Shape, at: int, h: float, side: float) -> None:
     """Leave full contact a time h into the step after `at` others of the block."""
-    L = len(shape.stride)
-    b, z, block, c = lanes.buffer, lanes.modes[l], lanes.block, lanes.block.rows
+    s, z, block, c = lane.numbers, lane.modes, lane.block, lane.block.rows
     c[AT * COLUMNS], c[SLOPE * COLUMNS] = c[AT * COLUMNS + at], c[SLOPE * COLUMNS + at]
     fill_transition(z, h, PART)
     march(block, z, PART)
     if len(shape.audit) > 0:
         energies(block, z, h)
-        b[INPUT * L + l] += c[GIVEN * COLUMNS]
-        b[DAMPED * L + l] += c[TAKEN * COLUMNS]
+        s[INPUT] += c[GIVEN * COLUMNS]
+        s[DAMPED] += c[TAKEN * COLUMNS]
     keep(block, z, 1)
-    b[TIME * L + l] += h
-    to_floors(lanes, L, l)
-    lift_off(lanes, L, l, side)
+    s[TIME] += h
+    to_floors(lane)
+    lift_off(lane, side)
 
 
-@kernel
-def stand(lanes: Lanes, shape: Shape, l: int) -> bool:
+@routine
+def stand(lane: Lane, shape: Shape) -> bool:
     """Follow a lane in full contact; True if it uplifts, False if its history is over."""
-    L = len(shape.stride)
-    z, block, c = lanes.modes[l], lanes.block, lanes.block.rows
-    stance = stance_of(lanes, l)
+    z, block, c = lane.modes, lane.block, lane.block.rows
+    stance = stance_of(lane)
     forget(block)
     side, over, fine = 0.0, False, False
     while side == 0.0 and not over:
-        plan = plan_block(lanes, L, l, FINE if fine else 1)
-        shake_block(lanes, L, l, c, plan.h, plan.each, plan.steps)
+        plan = plan_block(lane, FINE if fine else 1)
+        shake_block(lane, c, plan.h, plan.each, plan.steps)
         march(block, z, plan.row)
         raise_alarms(c, stance, plan.h, 0.0 if fine else NEAR)
         taken, fraction, alarm = 0, 0.0, False
         while taken < plan.steps and not alarm:
             alarm = c[ALARM * COLUMNS + taken] > 0.0
             if alarm and fine:
-                fraction, side = first_uplift(c, stance, plan.h, taken, lanes.piece)
+                fraction, side = first_uplift(c, stance, plan.h, taken, lane.piece)
                 alarm = side != 0.0
             if not alarm:
                 taken += 1
         mark_samples(c, plan.each, taken, plan.each)
         observe_floors(block, z)
-        observe_contacts(c, lanes.buffer, L, l)
+        observe_contacts(c, lane.numbers)
         if not math.isfinite(c[PUSH_BEND * COLUMNS + taken]):
-            lanes.integers[l, OUTCOME] = FAILED_NOT_FINITE
+            lane.whole[OUTCOME] = FAILED_NOT_FINITE
             return False
         fine = alarm
-        over = take_steps(lanes, shape, l, plan, taken)
+        over = take_steps(lane, shape, plan, taken)
         if side != 0.0:
             guess = fraction * plan.h
             h = locate_uplift(c, z, stance, plan.h, taken, guess, side)
-            uplift(lanes, shape, l, taken, h, side)
-    hand_over(block, lanes.buffer, L, l)
+            uplift(lane, shape, taken, h, side)
+    hand_over(lane)
     return not over

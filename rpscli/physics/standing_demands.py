@@ -23,7 +23,7 @@ from rpscli.physics.contact_layout import (
     TOP_SHEAR,
 )
 from rpscli.physics.inspection import contact_measures
-from rpscli.physics.jit import kernel, part
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
     CAP_BEAM_MASS,
     COLUMNS_MASS,
@@ -33,14 +33,14 @@ from rpscli.physics.layout import (
     FRICTION_TOP,
     NORMAL_BOTTOM,
     NORMAL_TOP,
-    SCALARS,
     STANDARD_GRAVITY,
     STOREY_SHEAR,
 )
 from rpscli.physics.parameters import Block, Floats
+from rpscli.physics.part import part, routine
 
 
-@kernel
+@part
 def forget(block: Block) -> None:
     """Begin a time in full contact: nothing was demanded yet."""
     c = block.rows
@@ -52,7 +52,7 @@ def forget(block: Block) -> None:
             block.tops[i, TOP_SHEAR, k], block.tops[i, TOP_ACCELERATION, k] = 0.0, 0.0
 
 
-@kernel
+@part
 def mark_samples(c: Floats, first: int, last: int, each: int) -> None:
     """Write SEEN: 1 at the instants first, first + each, ... up to last."""
     for k in range(COLUMNS):
@@ -61,7 +61,7 @@ def mark_samples(c: Floats, first: int, last: int, each: int) -> None:
         c[SEEN * COLUMNS + k] = 1.0
 
 
-@kernel
+@routine
 def observe_floors(block: Block, z: Floats) -> None:
     """Raise the largest storey shears and absolute floor accelerations, column by column."""
     c, n = block.rows, z.shape[1]
@@ -84,10 +84,13 @@ def observe_floors(block: Block, z: Floats) -> None:
 
 
 @part
-def observe_contacts(c: Floats, b: Floats, L: int, l: int) -> None:
-    """Raise friction demands and lower least normal forces, column by column."""
-    cap_beam, floors = b[CAP_BEAM_MASS * L + l], b[FLOORS_MASS * L + l]
-    columns, gravity = b[COLUMNS_MASS * L + l], b[STANDARD_GRAVITY * L + l]
+def observe_contacts(c: Floats, s: Floats) -> None:
+    """Raise friction demands and lower least normal forces, column by column.
+
+    `s` are the numbers of the lane.
+    """
+    cap_beam, floors = s[CAP_BEAM_MASS], s[FLOORS_MASS]
+    columns, gravity = s[COLUMNS_MASS], s[STANDARD_GRAVITY]
     for k in range(COLUMNS):
         seen, V = c[SEEN * COLUMNS + k] > 0.0, c[PUSH * COLUMNS + k]
         across, upwards = c[AT * COLUMNS + k], c[RISE * COLUMNS + k]
@@ -104,18 +107,17 @@ def observe_contacts(c: Floats, b: Floats, L: int, l: int) -> None:
         c[row] = light_bottom if seen and light_bottom < c[row] else c[row]
 
 
-@kernel
-def hand_over(block: Block, b: Floats, L: int, l: int) -> None:
+@routine
+def hand_over(lane: Lane) -> None:
     """End a time in full contact: raise the demands of the lane by its own."""
-    c, n = block.rows, block.tops.shape[0]
+    s, x, c, tops = lane.numbers, lane.blocks, lane.block.rows, lane.block.tops
     for k in range(COLUMNS):
-        for row, tops in ((FRICTION_TOP, FRICTION_TOPS), (FRICTION_BOTTOM, FRICTION_BOTTOMS)):
-            b[row * L + l] = max(b[row * L + l], c[tops * COLUMNS + k])
-        for row, tops in ((NORMAL_TOP, NORMAL_TOPS), (NORMAL_BOTTOM, NORMAL_BOTTOMS)):
-            b[row * L + l] = min(b[row * L + l], c[tops * COLUMNS + k])
-    for i in range(n):
-        shear = (SCALARS + STOREY_SHEAR * (n + 1) + i) * L + l
-        acceleration = (SCALARS + FLOOR_ACCELERATION * (n + 1) + i) * L + l
+        s[FRICTION_TOP] = max(s[FRICTION_TOP], c[FRICTION_TOPS * COLUMNS + k])
+        s[FRICTION_BOTTOM] = max(s[FRICTION_BOTTOM], c[FRICTION_BOTTOMS * COLUMNS + k])
+        s[NORMAL_TOP] = min(s[NORMAL_TOP], c[NORMAL_TOPS * COLUMNS + k])
+        s[NORMAL_BOTTOM] = min(s[NORMAL_BOTTOM], c[NORMAL_BOTTOMS * COLUMNS + k])
+    for i in range(tops.shape[0]):
         for k in range(COLUMNS):
-            b[shear] = max(b[shear], block.tops[i, TOP_SHEAR, k])
-            b[acceleration] = max(b[acceleration], block.tops[i, TOP_ACCELERATION, k])
+            x[STOREY_SHEAR, i] = max(x[STOREY_SHEAR, i], tops[i, TOP_SHEAR, k])
+            acceleration = max(x[FLOOR_ACCELERATION, i], tops[i, TOP_ACCELERATION, k])
+            x[FLOOR_ACCELERATION, i] = acceleration

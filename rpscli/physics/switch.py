@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.energy import building_energy, uplifted_energy
-from rpscli.physics.jit import kernel, part
+from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
     ACCELERATION,
-    ARC,
     ARM_COS,
-    ARM_SIN,
     COUNTS,
     CREATED,
     CREATING,
@@ -19,20 +17,17 @@ from rpscli.physics.layout import (
     HIGH,
     IMPACT,
     LANDED,
-    LIFT_START,
     LIFTED_OFF,
     LOST,
     LOW,
     MOTION,
     OVERTURNING,
-    PATH_START,
     POSITION,
     RECONTACT,
     ROCKING,
     ROCKING_TO_ROLLING,
     ROLLING,
     ROLLING_TO_ROCKING,
-    SCALARS,
     SIDE,
     STALE,
     START,
@@ -40,158 +35,163 @@ from rpscli.physics.layout import (
     UPLIFT,
     VELOCITY,
 )
-from rpscli.physics.parameters import Floats, Lanes, Podium
-from rpscli.physics.table import podium_of
+from rpscli.physics.parameters import Floats
+from rpscli.physics.part import part, routine
+from rpscli.physics.podium_layout import (
+    ALPHA,
+    BETA,
+    BOUNCES,
+    FLOORS_JUMP,
+    RECONTACT_TOLERANCE,
+    RESTITUTION,
+    ROCKING_PHASE,
+    ROLLING_PHASE,
+    THETA_LIMIT,
+    R,
+)
+
+PHASE_NUMBERS = 5
+"""Numbers of a phase: in the podium's row, and in the lane's from ARM_COS on."""
 
 
-@kernel
-def now(lanes: Lanes, L: int, l: int) -> float:
+@part
+def now(lane: Lane) -> float:
     """Time since the start of the record [s]."""
-    b = lanes.buffer
-    return float(b[START * L + l] + b[TIME * L + l])
+    return float(lane.numbers[START] + lane.numbers[TIME])
 
 
-@kernel
+@routine
 def note(
-    lanes: Lanes,
-    l: int,
-    time: float,
-    kind: int,
-    rotation: float,
-    before: float,
-    after: float,
-    lost: float,
+    lane: Lane, time: float, kind: int, rotation: float, before: float, after: float, lost: float
 ) -> None:
     """Count an event, and log it if there is room (the caller sees from the counts if not)."""
-    whole, log = lanes.integers, lanes.log
+    whole, log = lane.whole, lane.log
     if log.shape[0] > 0:
         row = 0
         for i in range(EVENT_KINDS):
-            row += whole[l, COUNTS + i]
+            row += whole[COUNTS + i]
         if row < log.shape[0]:
             log[row, 0], log[row, 1], log[row, 2] = time, kind, rotation
             log[row, 3], log[row, 4], log[row, 5] = before, after, lost
-    whole[l, COUNTS + kind] += 1
+    whole[COUNTS + kind] += 1
 
 
-@kernel
-def enter_phase(lanes: Lanes, L: int, l: int, podium: Podium, motion: int) -> None:
+@routine
+def enter_phase(lane: Lane, motion: int) -> None:
     """Set the constants of a phase of motion and the range that the tilt has in it."""
-    b = lanes.buffer
-    phase = podium.rolling if motion == ROLLING else podium.rocking
-    b[ARM_COS * L + l], b[ARM_SIN * L + l], b[ARC * L + l] = phase.p, phase.q, phase.c
-    b[PATH_START * L + l], b[LIFT_START * L + l] = phase.u0, phase.v0
+    s, p = lane.numbers, lane.podium
+    lane.whole[MOTION] = motion
+    phase = ROLLING_PHASE if motion == ROLLING else ROCKING_PHASE
+    for i in range(PHASE_NUMBERS):
+        s[ARM_COS + i] = p[phase + i]
+    s[LOW], s[HIGH] = p[BETA], p[THETA_LIMIT]
     if motion == ROLLING:
-        b[LOW * L + l], b[HIGH * L + l] = 0.0, min(podium.beta, podium.theta_limit)
-    else:
-        b[LOW * L + l], b[HIGH * L + l] = podium.beta, podium.theta_limit
-    lanes.integers[l, MOTION] = motion
+        s[LOW], s[HIGH] = 0.0, min(p[BETA], p[THETA_LIMIT])
 
 
 @part
-def event_below(podium: Podium, motion: int) -> int:
+def leave_ground(lane: Lane) -> None:
+    """Enter the phase in which a tilt grows from zero: rolling, unless the edges are sharp."""
+    enter_phase(lane, ROLLING if lane.podium[BETA] > 0.0 else ROCKING)
+
+
+@part
+def event_below(lane: Lane) -> int:
     """What happens where the tilt falls below the range of its phase."""
-    return ROCKING_TO_ROLLING if motion == ROCKING and podium.beta > 0.0 else IMPACT
+    rocks = lane.whole[MOTION] == ROCKING and lane.podium[BETA] > 0.0
+    return ROCKING_TO_ROLLING if rocks else IMPACT
 
 
 @part
-def event_above(podium: Podium, motion: int) -> int:
+def event_above(lane: Lane) -> int:
     """What happens where the tilt rises above the range of its phase."""
-    rolls_on = motion == ROLLING and podium.beta < podium.theta_limit
+    rolls_on = lane.whole[MOTION] == ROLLING and lane.podium[BETA] < lane.podium[THETA_LIMIT]
     return ROLLING_TO_ROCKING if rolls_on else OVERTURNING
 
 
 @part
-def lift_off(lanes: Lanes, L: int, l: int, side: float) -> None:
+def lift_off(lane: Lane, side: float) -> None:
     """Leave full contact towards `side`; the floors' state is set already."""
-    b = lanes.buffer
-    podium = podium_of(lanes.podium, l)
-    b[SIDE * L + l] = side
-    enter_phase(lanes, L, l, podium, ROLLING if podium.beta > 0.0 else ROCKING)
-    note(lanes, l, now(lanes, L, l), UPLIFT, 0.0, 0.0, 0.0, 0.0)
-    b[STALE * L + l] = LIFTED_OFF
-
-
-@kernel
-def shift_floors(b: Floats, n: int, L: int, l: int, change: float) -> None:
-    """Add the same velocity to every floor [m/s]."""
-    for i in range(n):
-        b[(SCALARS + VELOCITY * (n + 1) + i + 1) * L + l] += change
+    lane.numbers[SIDE], lane.numbers[STALE] = side, LIFTED_OFF
+    leave_ground(lane)
+    note(lane, now(lane), UPLIFT, 0.0, 0.0, 0.0, 0.0)
 
 
 @part
-def go_over(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
+def shift_floors(x: Floats, change: float) -> None:
+    """Add the same velocity to every floor [m/s]; `x` are the blocks of the lane."""
+    for i in range(1, x.shape[1]):
+        x[VELOCITY, i] += change
+
+
+@part
+def go_over(lane: Lane) -> None:
     """Impact: from the edge on one side to the other.
 
     theta'+ = e theta'-, and floors that move with the cap beam jump by
     -2 R cos(alpha) (1 - e) theta'- (Theory, section 4; paper, Eq. 6). The tilt x = |theta| starts
     again from exactly zero, upwards.
     """
-    tilt, rate = (SCALARS + POSITION * (n + 1)) * L + l, (SCALARS + VELOCITY * (n + 1)) * L + l
-    before = b[SIDE * L + l] * min(b[rate], 0.0)
-    b[tilt] = 0.0
-    b[rate] = podium.restitution * abs(before)
-    b[SIDE * L + l] = -b[SIDE * L + l]
-    if podium.floors_jump > 0.0:
-        jump = -2.0 * podium.R * math.cos(podium.alpha) * (1.0 - podium.restitution) * before
-        shift_floors(b, n, L, l, jump)
+    s, x, p = lane.numbers, lane.blocks, lane.podium
+    before = s[SIDE] * min(x[VELOCITY, 0], 0.0)
+    x[POSITION, 0] = 0.0
+    x[VELOCITY, 0] = p[RESTITUTION] * abs(before)
+    s[SIDE] = -s[SIDE]
+    if p[FLOORS_JUMP] > 0.0:
+        shift_floors(x, -2.0 * p[R] * math.cos(p[ALPHA]) * (1.0 - p[RESTITUTION]) * before)
 
 
 @part
-def lock(b: Floats, n: int, L: int, l: int, podium: Podium) -> None:
+def lock(lane: Lane) -> None:
     """Full contact from now on.
 
     The floors lose the cap beam's velocity u_b' and keep the relative one; the bounces that are
-    left out would have changed it by `podium.bounces` u_b', which is added where asked for.
+    left out would have changed it by BOUNCES u_b', which is added where asked for.
     """
-    rate = (SCALARS + VELOCITY * (n + 1)) * L + l
-    base_rate = b[SIDE * L + l] * 2.0 * podium.R * math.cos(podium.alpha) * b[rate]
-    shift_floors(b, n, L, l, (podium.bounces - 1.0) * base_rate)
-    b[rate] = 0.0
+    s, x, p = lane.numbers, lane.blocks, lane.podium
+    base_rate = s[SIDE] * 2.0 * p[R] * math.cos(p[ALPHA]) * x[VELOCITY, 0]
+    shift_floors(x, (p[BOUNCES] - 1.0) * base_rate)
+    x[VELOCITY, 0] = 0.0
 
 
 @part
-def is_negligible(podium: Podium, rate: float, acceleration: float) -> bool:
+def is_negligible(p: Floats, rate: float, acceleration: float) -> bool:
     """Whether the excursion that begins with x' = rate at x = 0 is too small to follow.
 
     Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
-    it reaches x'^2/(2 |x''|).
+    it reaches x'^2/(2 |x''|). `p` are the numbers of the podium.
     """
-    least = podium.recontact_tolerance * podium.alpha
-    return acceleration < 0.0 and rate**2 < 2.0 * abs(acceleration) * least
+    least = p[RECONTACT_TOLERANCE] * p[ALPHA]
+    return acceleration < 0.0 and bool(rate**2 < 2.0 * abs(acceleration) * least)
 
 
 @part
-def land(lanes: Lanes, n: int, L: int, l: int, podium: Podium) -> None:
+def land(lane: Lane) -> None:
     """Impact at theta = 0."""
-    b = lanes.buffer
-    rate = (SCALARS + VELOCITY * (n + 1)) * L + l
-    enter_phase(lanes, L, l, podium, ROLLING if podium.beta > 0.0 else ROCKING)
-    arriving = b[SIDE * L + l] * b[rate]
-    before = uplifted_energy(b, n, L, l)
-    go_over(b, n, L, l, podium)
-    gone = before - uplifted_energy(b, n, L, l)
-    b[LOST * L + l] += gone
+    s, x = lane.numbers, lane.blocks
+    leave_ground(lane)
+    arriving = s[SIDE] * x[VELOCITY, 0]
+    before = uplifted_energy(lane)
+    go_over(lane)
+    gone = before - uplifted_energy(lane)
+    s[LOST] += gone
     if gone < 0.0:
-        b[CREATED * L + l] -= gone
-        lanes.integers[l, CREATING] += 1
-    note(lanes, l, now(lanes, L, l), IMPACT, 0.0, arriving, b[SIDE * L + l] * b[rate], gone)
-    b[STALE * L + l] = LANDED
+        s[CREATED] -= gone
+        lane.whole[CREATING] += 1
+    note(lane, now(lane), IMPACT, 0.0, arriving, s[SIDE] * x[VELOCITY, 0], gone)
+    s[STALE] = LANDED
 
 
 @part
-def comes_to_rest(lanes: Lanes, n: int, L: int, l: int) -> bool:
+def comes_to_rest(lane: Lane) -> bool:
     """After an impact: lock the storey if the next excursion would be negligible."""
-    b = lanes.buffer
-    podium = podium_of(lanes.podium, l)
-    rate = b[(SCALARS + VELOCITY * (n + 1)) * L + l]
-    acceleration = b[(SCALARS + ACCELERATION * (n + 1)) * L + l]
-    if not is_negligible(podium, rate, acceleration):
+    s, x = lane.numbers, lane.blocks
+    if not is_negligible(lane.podium, x[VELOCITY, 0], x[ACCELERATION, 0]):
         return False
-    before = uplifted_energy(b, n, L, l)
-    lock(b, n, L, l, podium)
-    gone = before - building_energy(b, n, L, l, 0.0)
-    b[LOST * L + l] += gone
-    note(lanes, l, now(lanes, L, l), RECONTACT, 0.0, b[SIDE * L + l] * rate, 0.0, gone)
-    lanes.integers[l, MOTION] = FULL_CONTACT
+    rate, before = s[SIDE] * x[VELOCITY, 0], uplifted_energy(lane)
+    lock(lane)
+    gone = before - building_energy(x, 0.0)
+    s[LOST] += gone
+    note(lane, now(lane), RECONTACT, 0.0, rate, 0.0, gone)
+    lane.whole[MOTION] = FULL_CONTACT
     return True

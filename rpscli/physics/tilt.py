@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from rpscli.physics import geometry
 from rpscli.physics.geometry import Phase
-from rpscli.physics.jit import kernel
+from rpscli.physics.part import part
 
-lever_arm = kernel(geometry.lever_arm)
-path_height = kernel(geometry.path_height)
-squared_distance = kernel(geometry.squared_distance)
-cap_beam_displacement = kernel(geometry.cap_beam_displacement)
-cap_beam_lift = kernel(geometry.cap_beam_lift)
+lever_arm = part(geometry.lever_arm)
+path_height = part(geometry.path_height)
+squared_distance = part(geometry.squared_distance)
+cap_beam_displacement = part(geometry.cap_beam_displacement)
+cap_beam_lift = part(geometry.cap_beam_lift)
 
 
-@kernel
+@part
 def tilt_inertia(
     inertia: float, beam: float, building: float, phase: Phase, B: float, C: float
 ) -> float:
@@ -29,7 +29,7 @@ def tilt_inertia(
     return inertia + beam * squared_distance(phase, C) + building * (B * B)
 
 
-@kernel
+@part
 def tilt_inertia_slope(beam: float, building: float, phase: Phase, B: float, C: float) -> float:
     """D(x) = A'(x)/2, with S' = 2 c B and B' = c - C.
 
@@ -38,7 +38,7 @@ def tilt_inertia_slope(beam: float, building: float, phase: Phase, B: float, C: 
     return B * (beam * phase.c + building * (phase.c - C))
 
 
-@kernel
+@part
 def restoring(D: float, B: float, rate: float, weight: float) -> float:
     """What turns the tilt back whatever the ground and the building do [rad/s2].
 
@@ -47,7 +47,7 @@ def restoring(D: float, B: float, rate: float, weight: float) -> float:
     return B * weight + D * (rate * rate)
 
 
-@kernel
+@part
 def tilt_acceleration(per_inertia: float, restoring: float, C: float, action: float) -> float:
     """x'' of A x'' = -B (g/R)(1 + 2 gamma + 2 gamma eta) - D x'^2 - C s action (paper, Eq. 2).
 

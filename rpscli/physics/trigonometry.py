@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rpscli.physics.jit import kernel
+from rpscli.physics.part import part
 
 S1, S2, S3, S4, S5 = -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800
 S6, S7, S8, S9 = 1 / 6227020800, -1 / 1307674368e3, 1 / 355687428096e3, -1 / 121645100408832e3
@@ -11,7 +11,7 @@ C6, C7, C8, C9 = 1 / 479001600, -1 / 87178291200, 1 / 20922789888e3, -1 / 640237
 C10 = 1 / 243290200817664e4
 
 
-@kernel
+@part
 def sine_cosine(x: float) -> tuple[float, float]:
     """The sine and cosine of x by their power series [x in rad].
 

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from rpscli.physics.contact_layout import (
-    COLUMNS,
-    ROWS,
-    SHAPES,
-)
+from rpscli.physics.contact_layout import COLUMNS, ROWS, SHAPES
 from rpscli.physics.layout import BLOCKS, SCALARS, WHOLE_NUMBERS
-from rpscli.physics.parameters import PODIUM_NUMBERS, Block, Floats, Lanes, Results, Shape
+from rpscli.physics.parameters import Block, Floats, Lanes, Results, Shape
+from rpscli.physics.podium_layout import PODIUM_NUMBERS
 
 
 def empty_lanes(acceleration: Floats, shape: Shape, results: Results) -> Lanes:
     """Lanes with nothing to do."""
     n, L = len(shape.floors), len(shape.stride)
-    rows = SCALARS + BLOCKS * (n + 1) + (n * n if len(shape.dense) > 0 else 0)
+    rows = SCALARS + BLOCKS * (n + 1)
+    buffer = np.zeros((rows + (n * n if len(shape.dense) > 0 else 0)) * L)
     return Lanes(
-        buffer=np.zeros(rows * L),
+        buffer=buffer,
+        numbers=buffer[: SCALARS * L].reshape(SCALARS, L).T,
+        blocks=np.moveaxis(buffer[SCALARS * L : rows * L].reshape(BLOCKS, n + 1, L), -1, 0),
         integers=np.zeros((L, WHOLE_NUMBERS), np.int64),
         podium=np.zeros((L, PODIUM_NUMBERS)),
         modes=np.zeros((L, SHAPES + 2 * n, n)),

@@ -5,14 +5,15 @@ from __future__ import annotations
 from paper_structures import Array, stillness
 
 from rpscli.analyses.history import empty_results, shape_of_one
+from rpscli.analyses.kernel_input import podium_parameters
 from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import layout, switch
 from rpscli.physics.driver import refresh
 from rpscli.physics.energy import uplifted_energy
+from rpscli.physics.lane import lane_of
 from rpscli.physics.loading import begin
-from rpscli.physics.table import podium_of
 from rpscli.physics.workspace import empty_lanes
 
 LEAST_DT = 0.01
@@ -38,15 +39,16 @@ class OneLane:
         given = points([point(0, still, 0, None, 1.0)])
         self.lanes = empty_lanes(joined([still])[0], self.shape, empty_results(1, n))
         self.buffer = self.lanes.buffer
-        begin(self.lanes, self.shape, 0, 0, systems, given)
-        self.podium = podium_of(self.lanes.podium, 0)
+        begin(self.lanes, 1, 0, 0, systems, given)
+        self.lane = lane_of(self.lanes, 0)
+        self.podium = podium_parameters(structure, settings or TimeHistorySettings())
         self.buffer[layout.SIDE] = side
-        switch.enter_phase(self.lanes, 1, 0, self.podium, motion)
+        switch.enter_phase(self.lane, motion)
 
     def block(self, number: int) -> Array:
         """A view of one of the blocks of n + 1 rows."""
-        start = layout.SCALARS + number * (self.storeys + 1)
-        return self.buffer[start : start + self.storeys + 1]
+        block: Array = self.lane.blocks[number]
+        return block
 
     @property
     def side(self) -> float:
@@ -72,12 +74,12 @@ class OneLane:
 
     def energy(self) -> float:
         """Kinetic, strain and potential energy [J]."""
-        return float(uplifted_energy(self.buffer, self.storeys, 1, 0))
+        return float(uplifted_energy(self.lane))
 
     def go_over(self) -> None:
         """Let the storey go over to its other edge."""
-        switch.go_over(self.buffer, self.storeys, 1, 0, self.podium)
+        switch.go_over(self.lane)
 
     def lock(self) -> None:
         """Let the storey come to rest."""
-        switch.lock(self.buffer, self.storeys, 1, 0, self.podium)
+        switch.lock(self.lane)
