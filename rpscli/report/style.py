@@ -77,6 +77,11 @@ def png(
     with matplotlib.style.context(["default", STYLE]):
         figure = Figure(figsize=(width, height), dpi=DPI, layout=layout)
         draw(figure)
+        if (engine := figure.get_layout_engine()) is not None:
+            # Once, and no more: matplotlib would do it in a trial drawing, and again in the real
+            # one, which takes twice as long.
+            engine.execute(figure)
+            figure.set_layout_engine(None)
         buffer = io.BytesIO()
         figure.savefig(
             buffer,

@@ -93,7 +93,7 @@ def test_the_energy_audit_closes_at_every_sample(result: TimeHistoryResult) -> N
     trace, energy = result.trace, result.energy
     assert result.impacts > 0
     gap = trace.energy_input - trace.energy_damped - trace.energy_impact - trace.energy_stored
-    # order 5 with w h = 1/4 in flight, order 4 with w h = 1/2 for damping in full contact
+    # order 6 with w h = 1/2 in flight, order 4 with w h = 1/2 for damping in full contact
     assert np.max(np.abs(gap)) < 2e-5 * energy.input
     assert energy.residual == pytest.approx(gap[-1], abs=1e-9 * energy.input)
     assert energy.stored == pytest.approx(trace.energy_stored[-1], rel=1e-9, abs=1e-6)

@@ -1,4 +1,4 @@
-"""One history by heyoka's Taylor integrator, uplifted; full contact is `standing`.
+"""One history by heyoka's Taylor integrator; full contact is `standing`, or heyoka's too.
 
 The ground acceleration is linear between samples, so the integrator stops at each of them and gets
 two new parameters; constants of the phase are parameters too, and one compiled integrator serves
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.measure import seconds
+from benchmarks.peers.heyoka_standing import HeyokaStanding
 from benchmarks.peers.landing import Landing
 from benchmarks.peers.rocking import Floats, PeerHistory, Phase, Rocking
 from benchmarks.peers.standing import fixed_base_of, stand
@@ -64,13 +65,16 @@ def equations(podium: Rocking) -> list[tuple[Any, Any]]:
 
 
 class HeyokaRocking:
-    """A compiled integrator for one podium."""
+    """A compiled integrator for one podium; `alone` if it follows full contact as well."""
 
-    def __init__(self, podium: Rocking, dt: float, tol: float = 1e-4) -> None:
+    def __init__(
+        self, podium: Rocking, dt: float, tol: float = 1e-4, *, alone: bool = False
+    ) -> None:
         import heyoka as hy  # noqa: PLC0415
 
         self.podium, self.landing = podium, Landing(podium)
         self.dt, self.base = dt, fixed_base_of(podium, dt)
+        self.standing = HeyokaStanding(self.base, tol) if alone else None
         x = hy.make_vars("x")
         self.integrator = hy.taylor_adaptive(
             equations(podium),
@@ -102,7 +106,12 @@ class HeyokaRocking:
         y, z = self.integrator.state, np.zeros(2 * n)
         interval, after = 0, 0.0
         while interval < len(slopes):
-            interval, after, side = stand(z, record, interval, after, self.base)
+            if self.standing is None:
+                interval, after, side = stand(z, record, interval, after, self.base)
+            else:
+                interval, after, side = self.standing.stand(
+                    z, self._slopes, self._intercepts, interval, after
+                )
             if side == 0.0:
                 break
             y[0], y[n + 1] = ASIDE, 0.0
