@@ -11,6 +11,6 @@ def announce_compilation(terminal: Terminal) -> None:
 
     announce_to(
         lambda name: terminal.note(
-            f"compiling the kernel for {name}, once for this version: less than a minute"
+            f"compiling the kernel for {name}, once for this version: half a minute at most"
         )
     )
