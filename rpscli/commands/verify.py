@@ -31,8 +31,8 @@ DIGITS = 7
 def command(terminal: Terminal) -> None:
     """Compare this installation with closed forms, published numbers and a second integrator.
 
-    Takes some seconds, half a minute if the kernels have to be compiled first. The exit code is 6 if
-    a single number is off.
+    Takes some seconds, half a minute if the kernels have to be compiled first. The exit code is 6
+    if a single number is off.
     """
     from rpscli.analyses.verification import verification  # noqa: PLC0415 -- numpy is slow
 

@@ -70,6 +70,9 @@ class Part(CPUDispatcher):
 class LinkedLibrary(JITCodeLibrary):
     """Code to be linked into that of a kernel, never run by itself."""
 
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Leave functions until the parts that they call are merged into them."""
+
     def _finalize_final_module(self) -> None:
         """Make no machine code."""
         self._finalize_dynamic_globals()
@@ -89,9 +92,6 @@ class LinkedLibrary(JITCodeLibrary):
 class PartLibrary(LinkedLibrary):
     """A part: translated, and left at that."""
 
-    def _optimize_functions(self, ll_module: Any) -> None:
-        """Leave the functions for their callers."""
-
     def _optimize_final_module(self) -> None:
         """Leave the module for its callers."""
 
@@ -99,11 +99,12 @@ class PartLibrary(LinkedLibrary):
 class RoutineLibrary(LinkedLibrary):
     """A routine: optimised with the parts that are merged into it, and kept as a function."""
 
-    def _optimize_functions(self, ll_module: Any) -> None:
-        """Only forbid merging: before its parts are there the function shows too little."""
-        for function in ll_module.functions:
+    def add_ir_module(self, ir_module: Any) -> None:
+        """Forbid merging it."""
+        for function in ir_module.functions:
             if not function.is_declaration:
-                function.add_function_attribute("noinline")
+                function.attributes.add("noinline")
+        super().add_ir_module(ir_module)
 
 
 class _Nobody:
