@@ -1,0 +1,56 @@
+"""Parts and routines: compiled into the kernels that call them, and plain Python without one."""
+
+from __future__ import annotations
+
+import numpy as np
+from paper_structures import Array, needs_compiled_kernels
+
+from rpscli.physics.jit import kernel
+from rpscli.physics.part import part, routine
+
+
+@part
+def power(x: float, times: int) -> float:
+    """x to a whole number."""
+    result = 1.0
+    for _ in range(times):
+        result *= x
+    return result
+
+
+@routine
+def add_powers(x: Array, total: Array) -> None:
+    """Adds x^2 and x^3."""
+    for i in range(len(x)):
+        total[i] += power(x[i], 2) + power(x[i], 3)
+
+
+@kernel
+def four_times(x: Array, total: Array) -> None:
+    """Adds them four times."""
+    for _ in range(4):
+        add_powers(x, total)
+
+
+X = np.linspace(-2.0, 2.0, 9)
+
+
+def test_without_a_kernel_they_run_as_python() -> None:
+    assert power(3.0, 4) == 81.0
+    total = np.zeros(9)
+    add_powers(X, total)
+    assert total.tolist() == (X**2 + X**3).tolist()
+
+
+def test_a_kernel_calls_them_compiled() -> None:
+    total = np.zeros(9)
+    four_times(X, total)
+    np.testing.assert_allclose(total, 4.0 * (X**2 + X**3), rtol=1e-14)
+
+
+@needs_compiled_kernels
+def test_a_part_is_compiled_once_for_all_constants() -> None:
+    four_times(X, np.zeros(9))
+    assert len(power.signatures) == 1  # type: ignore[attr-defined]
+    # none but the kernel is machine code: numba holds no entrance to the others
+    assert power.overloads[power.signatures[0]].library.get_pointer_to_function("power") == 0  # type: ignore[attr-defined]
