@@ -18,6 +18,12 @@ from rpscli.physics.layout import (
     IMPACT,
     LANDED,
     LIFTED_OFF,
+    LOG_ENERGY_LOST,
+    LOG_KIND,
+    LOG_RATE_AFTER,
+    LOG_RATE_BEFORE,
+    LOG_ROTATION,
+    LOG_TIME,
     LOST,
     LOW,
     MOTION,
@@ -71,8 +77,9 @@ def note(
         for i in range(EVENT_KINDS):
             row += whole[COUNTS + i]
         if row < log.shape[0]:
-            log[row, 0], log[row, 1], log[row, 2] = time, kind, rotation
-            log[row, 3], log[row, 4], log[row, 5] = before, after, lost
+            log[row, LOG_TIME], log[row, LOG_KIND], log[row, LOG_ROTATION] = time, kind, rotation
+            log[row, LOG_RATE_BEFORE], log[row, LOG_RATE_AFTER] = before, after
+            log[row, LOG_ENERGY_LOST] = lost
     whole[COUNTS + kind] += 1
 
 
