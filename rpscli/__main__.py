@@ -18,7 +18,11 @@ def main() -> None:
     # Matrices of a hundred storeys are small: threads of the linear algebra would only wait for
     # work, which costs as much as work, and studies use all cores by threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    program(prog_name="rps")
+    try:
+        program(prog_name="rps")
+    finally:
+        # Nor is anything to be looked for at the end, which frees all at once.
+        gc.freeze()
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ from rpscli.commands.terminal import Terminal
 from rpscli.commands.timehistory_tables import timehistory_tables
 from rpscli.errors import AnalysisError, RpsError, UsageError
 from rpscli.report.documents import heading, timehistory_document
+from rpscli.report.drawing import artists
 from rpscli.report.json_text import json_text
 
 if TYPE_CHECKING:
@@ -70,21 +71,22 @@ def command(
     given = read_case(request, terminal)
     ground = load_motion(given.case, MotionRequest(**motion))
     folder = case_folder(given, output, "timehistory", record=ground.inputs)
-    announce_compilation(terminal)
-    from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
-    from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
+    with artists() as drawing:
+        announce_compilation(terminal)
+        from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
+        from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
 
-    result = time_history(
-        given.case.structure, ground.horizontal, given.case.analysis, vertical=ground.vertical
-    )
+        result = time_history(
+            given.case.structure, ground.horizontal, given.case.analysis, vertical=ground.vertical
+        )
+        for name, content in timehistory_files(result, given.case.title, drawing):
+            folder.add(name, content)
     if result.failure:
         verdicts: list[Verdict] = []
         error: RpsError | None = AnalysisError(result.failure)
     else:
         verdicts = judge(result, [*case_conditions(given.case.limits), *conditions])
         error = exceeded(verdicts)
-    for name, content in timehistory_files(result, given.case.title):
-        folder.add(name, content)
     if animate is not None:
         from rpscli.report.animation import animation_gif  # noqa: PLC0415
 

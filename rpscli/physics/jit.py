@@ -18,6 +18,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from rpscli.physics.linking import KernelCompiler
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 OPTIONS: dict[str, Any] = {
@@ -67,7 +69,9 @@ def kernel(function: Function) -> Function:
     folder, config = cache_folder(), cast("Any", numba.config)
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
     try:
-        compiled: Any = numba.njit(function, cache=folder is not None, **OPTIONS)
+        compiled: Any = numba.njit(
+            function, cache=folder is not None, pipeline_class=KernelCompiler, **OPTIONS
+        )
     finally:
         config.CACHE_DIR = before
 

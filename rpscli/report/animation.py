@@ -69,7 +69,7 @@ def _draw_record(axes: Axes, result: TimeHistoryResult, plan: Plan) -> Any:
     axes.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.6)
     first, last = trace.time[plan.samples[0]], trace.time[plan.samples[-1]]
     axes.set_xlim(first, last)
-    axes.set_ylabel("$a_g$ [m/s$^2$]")
+    axes.set_ylabel("$a_g$ [m/s²]")
     axes.set_xlabel("time [s]")
     return axes.axvline(first, color=style.RED, lw=1.2)
 

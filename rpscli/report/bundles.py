@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.pushover import PushoverResult
@@ -12,6 +13,7 @@ from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.capacity_figure import capacity_figure
 from rpscli.report.csv_text import csv_text
 from rpscli.report.displacement_figure import displacement_figure
+from rpscli.report.drawing import Artists, drawn
 from rpscli.report.energy_figure import energy_figure
 from rpscli.report.modal_tables import eigenvalue_columns, mode_columns, shape_columns
 from rpscli.report.modes_figure import modes_figure
@@ -46,17 +48,21 @@ def pushover_files(result: PushoverResult, title: str) -> Files:
         yield "capacity.png", capacity_figure(result, title)
 
 
-def timehistory_files(result: TimeHistoryResult, title: str) -> Files:
+def timehistory_files(result: TimeHistoryResult, title: str, artists: Artists = ()) -> Files:
     """Files of a time history."""
     yield "timehistory.csv", csv_text(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
-    yield "rotation.png", rotation_figure(result, title)
-    yield "displacements.png", displacement_figure(result, title)
-    yield "moment_rotation.png", moment_figure(result, title)
-    yield "energy.png", energy_figure(result, title)
     yield "storeys.csv", csv_text(storey_columns(result))
+    figures: dict[str, Callable[..., bytes]] = {
+        "rotation.png": rotation_figure,
+        "displacements.png": displacement_figure,
+        "moment_rotation.png": moment_figure,
+        "energy.png": energy_figure,
+    }
     if result.structure.storeys:
-        yield "storey_shears.png", profile_figure(result, title)
+        figures["storey_shears.png"] = profile_figure
+    draws = {name: partial(draw, result, title) for name, draw in figures.items()}
+    yield from drawn(draws, artists).items()
 
 
 def record_files(motion: GroundMotion, spectrum: ResponseSpectrum) -> Files:

@@ -41,7 +41,7 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
         ratio = shear.secondary_xaxis("top", functions=style.over(static))
         ratio.set_xlabel("$V_i/V_{st}$ [-]")
         drift.set_xlabel(_drift(series[0][0])[1])
-        acceleration.set_xlabel("floor acceleration [m/s$^2$]")
+        acceleration.set_xlabel("floor acceleration [m/s²]")
         acceleration.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label="PGA")
         _levels(shear, result.structure.storeys)
         for axes in (shear, drift, acceleration):

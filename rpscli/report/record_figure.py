@@ -22,7 +22,7 @@ def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
     """Time histories on the left, the spectrum on the right."""
     a, dt = motion.acceleration, motion.dt
     histories = (
-        (a, "acceleration\n[m/s$^2$]", style.BLACK),
+        (a, "acceleration\n[m/s²]", style.BLACK),
         (velocity(a, dt), "velocity\n[m/s]", style.BLUE),
         (displacement(a, dt), "displacement\n[m]", style.GREEN),
     )
@@ -54,6 +54,6 @@ def _draw_history(
 def _draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
     axes.plot(spectrum.periods, spectrum.pseudo_acceleration, color=style.RED, lw=1.3)
     axes.set_xlabel("period [s]")
-    axes.set_ylabel(f"pseudo-acceleration, {spectrum.damping:.0%} damping [m/s$^2$]")
+    axes.set_ylabel(f"pseudo-acceleration, {spectrum.damping:.0%} damping [m/s²]")
     axes.set_xlim(0.0, spectrum.periods[-1])
     axes.set_ylim(bottom=0.0)

@@ -58,7 +58,7 @@ def _draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
     for sign in (1.0, -1.0):
         axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
     axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
-    axes.set_ylabel("ground\nacceleration [m/s$^2$]")
+    axes.set_ylabel("ground\nacceleration [m/s²]")
     style.legend_above(axes, 1)
 
 
