@@ -166,11 +166,9 @@ class _Shelf(Generic[Item]):
 
 def shape_of_many(structure: PodiumStructure, lanes: int) -> Shape:
     """Lanes side by side, for a number of floors that the compiler knows."""
-    dense = (0,) if has_dense_damping(structure) else ()
-    floors = (0,) * structure.storeys
-    if lanes == 1:
-        return Shape(floors, (0,), (0,), (0,), (), dense)
-    return Shape(floors, (0,) * lanes, np.zeros(lanes, np.int8), (), (), dense)
+    dense = ((),) if has_dense_damping(structure) else ()
+    floors = ((),) * structure.storeys
+    return Shape(floors, ((),) * lanes, ((),) * lanes, (), (), dense)
 
 
 def demand_of(history: History) -> Demand:

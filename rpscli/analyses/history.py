@@ -88,7 +88,7 @@ def empty_results(points: int, storeys: int, *, samples: int = 0, events: int = 
 def shape_of_one(structure: PodiumStructure) -> Shape:
     """One lane, any number of floors and any damping: a single kernel serves every structure."""
     dense = np.zeros(int(has_dense_damping(structure)), np.int8)
-    return Shape(np.zeros(structure.storeys, np.int8), (0,), (0,), (0,), (0,), dense)
+    return Shape(np.zeros(structure.storeys, np.int8), ((),), ((),), ((),), ((),), dense)
 
 
 @dataclass(frozen=True, eq=False)

@@ -54,7 +54,7 @@ from rpscli.physics.layout import (
     WEIGHT,
 )
 from rpscli.physics.parameters import Floats, Shape
-from rpscli.physics.part import part, routine
+from rpscli.physics.part import lane_routine, part
 from rpscli.physics.tilt import (
     cap_beam_displacement,
     lever_arm,
@@ -79,7 +79,7 @@ def phase_in(b: Floats, L: int, l: int) -> Phase:
     )
 
 
-@routine
+@lane_routine
 def accelerate(b: Floats, shape: Shape, lane: int, fraction: float) -> None:
     """Accelerations of tilt and floors at a stage of a step.
 

@@ -164,7 +164,7 @@ def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
 @part
 def alone(shape: Shape) -> Shape:
     """The same sizes for one lane of many."""
-    return Shape(shape.floors, shape.stride, (0,), (0,), shape.audit, shape.dense)
+    return Shape(shape.floors, shape.stride, ((),), ((),), shape.audit, shape.dense)
 
 
 @part

@@ -56,7 +56,7 @@ from rpscli.physics.layout import (
     WATCH,
 )
 from rpscli.physics.parameters import Floats, Shape
-from rpscli.physics.part import part, routine
+from rpscli.physics.part import lane_routine, part
 from rpscli.physics.runge_kutta import EVALUATIONS as EVALUATIONS_OF_A_STEP
 
 
@@ -74,7 +74,7 @@ def tilt_path(b: Floats, n: int, L: int, l: int) -> Quintic:
     )
 
 
-@routine
+@lane_routine
 def search_events(b: Floats, shape: Shape) -> None:
     """Look for events in the step just taken.
 
@@ -138,7 +138,7 @@ def friction(shear: float, normal: float) -> float:
     return abs(shear) / normal if normal > 0.0 else math.inf
 
 
-@routine
+@lane_routine
 def observe(b: Floats, shape: Shape) -> None:
     """Raise the demands of lanes whose quiet step ends at a sample of the record.
 
@@ -229,7 +229,7 @@ def raise_contacts(
     b[row] = min(b[row], light_bottom if seen else math.inf)
 
 
-@routine
+@lane_routine
 def take_over(b: Floats, shape: Shape) -> None:
     """Make the end of a quiet step the state of its lane."""
     L = len(shape.stride)

@@ -1,7 +1,7 @@
 """Which lanes a loop goes over, told so that the compiler can turn it into vector instructions.
 
 It does so where it sees that no index is negative (Python counts those from the end) and none
-overflows. A start that it knows and a bound on the number of lanes are enough for that.
+overflows: hence the bounds.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 from rpscli.physics.parameters import Shape
 from rpscli.physics.part import part
 
-MOST_LANES = 64
 MOST_FLOORS = 10_000
 
 
@@ -21,8 +20,8 @@ def first_lane(shape: Shape, lane: int) -> int:
 
 @part
 def lane_count(shape: Shape) -> int:
-    """Lanes that move together, at most `MOST_LANES`."""
-    return min(len(shape.lanes), MOST_LANES)
+    """Lanes that move together."""
+    return len(shape.lanes)
 
 
 @part

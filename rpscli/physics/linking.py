@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from llvmlite.binding import create_pass_builder, create_pipeline_tuning_options
 from numba.core import untyped_passes as untyped
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
@@ -59,7 +60,7 @@ class Library(JITCodeLibrary):
 
     def _optimize_final_module(self) -> None:
         """Optimise, once and not twice as numba does for the sake of counting references."""
-        passes, builder = self._codegen._module_pass_manager()
+        passes, builder = self._codegen._module_pass_manager(slp_vectorize=True)
         passes.run(self._final_module, builder)
 
 
@@ -110,10 +111,37 @@ class RoutineLibrary(LinkedLibrary):
         super().add_ir_module(ir_module)
 
 
+class LaneRoutineLibrary(RoutineLibrary):
+    """A routine that goes over lanes: its loops become vector instructions, as they stand.
+
+    A loop over a known number of lanes would otherwise be unrolled first, for the compiler to
+    find vectors in what is left.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Vectorise the loops, then optimise."""
+        tuning = create_pipeline_tuning_options(speed_level=3)
+        tuning.loop_vectorization, tuning.loop_unrolling = True, False
+        builder = create_pass_builder(self._codegen._tm, tuning)
+        builder.getModulePassManager().run(self._final_module, builder)
+        super()._optimize_final_module()
+
+
 class _Nobody:
     @staticmethod
     def set_env(name: str, env: Any) -> None:
         """Take no notice."""
+
+
+KIND = "rps_kind"
+"""Attribute of a Python function that says which library is made of it."""
+
+LIBRARIES: dict[str, type[Library]] = {
+    "kernel": KernelLibrary,
+    "part": PartLibrary,
+    "routine": RoutineLibrary,
+    "lane routine": LaneRoutineLibrary,
+}
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -124,10 +152,7 @@ class KernelLowering(NativeLowering):
 
     def run_pass(self, state: Any) -> bool:
         """Translate."""
-        if not state.flags.no_cpython_wrapper:
-            library: type[Library] = KernelLibrary
-        else:
-            library = PartLibrary if state.flags.forceinline else RoutineLibrary
+        library = LIBRARIES[getattr(state.func_id.func, KIND, "kernel")]
         state.library = library(state.targetctx.codegen(), state.func_id.func_qualname)
         return bool(super().run_pass(state))
 

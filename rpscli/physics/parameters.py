@@ -103,23 +103,24 @@ class Results(NamedTuple):
     log: Floats
 
 
-Size: TypeAlias = tuple[int, ...] | NDArray[np.int8]
+Count: TypeAlias = tuple[tuple[()], ...]
+"""As many empty entries: of such a tuple the compiler knows the length, and hands on nothing."""
+
+Size: TypeAlias = Count | NDArray[np.int8]
 
 
 class Shape(NamedTuple):
     """Sizes that the compiler may know: each is the length of an entry.
 
     A tuple's length is part of its type, so a kernel called with a tuple is compiled for that
-    length; an array's length is read at run time, and one kernel serves all. The values do not
-    matter.
+    length; an array's length is read at run time, and one kernel serves all.
 
     floors
         n.
     stride
-        L, the lanes that the buffer is made for; always a tuple.
+        L, the lanes that the buffer is made for.
     lanes
-        Lanes that move together. A tuple of one unrolls the loop over lanes away; an array keeps
-        it, for the compiler to turn it into vector instructions.
+        Lanes that move together: all, or one.
     alone
         Not empty: one lane of several moves by itself.
     audit
@@ -129,10 +130,10 @@ class Shape(NamedTuple):
     """
 
     floors: Size
-    stride: tuple[int, ...]
-    lanes: Size
-    alone: tuple[int, ...]
-    audit: tuple[int, ...]
+    stride: Count
+    lanes: Count
+    alone: Count
+    audit: Count
     dense: Size
 
 

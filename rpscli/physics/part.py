@@ -15,29 +15,35 @@ from numba.core import types
 from numba.core.registry import CPUDispatcher
 
 from rpscli.physics.jit import OPTIONS
-from rpscli.physics.linking import KernelCompiler
+from rpscli.physics.linking import KIND, KernelCompiler
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def part(function: Function) -> Function:
     """Merge into each caller: for steps of a longer function, and for what lanes loop over."""
-    return _translated(function, merge=True)
+    return _translated(function, "part")
 
 
 def routine(function: Function) -> Function:
     """Keep as a function: for hot loops, and for what is called from several places."""
-    return _translated(function, merge=False)
+    return _translated(function, "routine")
 
 
-def _translated(function: Function, *, merge: bool) -> Function:
+def lane_routine(function: Function) -> Function:
+    """Keep as a function whose loops over lanes are to become vector instructions."""
+    return _translated(function, "lane routine")
+
+
+def _translated(function: Function, kind: str) -> Function:
     """Compile with every kernel that calls it; called from Python it runs as Python."""
     if cast("Any", numba.config).DISABLE_JIT:
         return function
+    setattr(function, KIND, kind)
     options = {
         "nopython": True,
         "boundscheck": None,
-        "forceinline": merge,
+        "forceinline": kind == "part",
         "no_cpython_wrapper": True,
         "no_cfunc_wrapper": True,
         **OPTIONS,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from rpscli.physics.contact_layout import COLUMNS, ROWS, SHAPES
@@ -9,19 +11,31 @@ from rpscli.physics.layout import BLOCKS, SCALARS, WHOLE_NUMBERS
 from rpscli.physics.parameters import Block, Floats, Lanes, Results, Shape
 from rpscli.physics.podium_layout import PODIUM_NUMBERS
 
+CACHE_LINE = 64
+"""Bytes that the processor fetches at once. A vector of eight numbers fills a line; numpy begins
+an array anywhere, and then each vector would be fetched twice."""
+
+
+def zeros(*shape: int) -> Floats:
+    """An array of zeros that begins with a line of the cache."""
+    size, spare = math.prod(shape), CACHE_LINE // 8
+    room = np.zeros(size + spare)
+    first = -room.ctypes.data % CACHE_LINE // 8
+    return room[first : first + size].reshape(shape)
+
 
 def empty_lanes(acceleration: Floats, shape: Shape, results: Results) -> Lanes:
     """Lanes with nothing to do."""
     n, L = len(shape.floors), len(shape.stride)
     rows = SCALARS + BLOCKS * (n + 1)
-    buffer = np.zeros((rows + (n * n if len(shape.dense) > 0 else 0)) * L)
+    buffer = zeros((rows + (n * n if len(shape.dense) > 0 else 0)) * L)
     return Lanes(
         buffer=buffer,
         numbers=buffer[: SCALARS * L].reshape(SCALARS, L).T,
         blocks=np.moveaxis(buffer[SCALARS * L : rows * L].reshape(BLOCKS, n + 1, L), -1, 0),
         integers=np.zeros((L, WHOLE_NUMBERS), np.int64),
         podium=np.zeros((L, PODIUM_NUMBERS)),
-        modes=np.zeros((L, SHAPES + 2 * n, n)),
+        modes=zeros(L, SHAPES + 2 * n, n),
         block=empty_block(n),
         piece=np.zeros(6),
         acceleration=acceleration,
@@ -33,7 +47,7 @@ def empty_lanes(acceleration: Floats, shape: Shape, results: Results) -> Lanes:
 def empty_block(storeys: int) -> Block:
     """A block in full contact."""
     return Block(
-        rows=np.zeros(ROWS * COLUMNS),
-        modes=np.zeros((storeys, 3, COLUMNS)),
-        tops=np.zeros((storeys, 2, COLUMNS)),
+        rows=zeros(ROWS * COLUMNS),
+        modes=zeros(storeys, 3, COLUMNS),
+        tops=zeros(storeys, 2, COLUMNS),
     )
