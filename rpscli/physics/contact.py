@@ -49,7 +49,7 @@ from rpscli.physics.contact_layout import (
 from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, lower_hull, quintic
 from rpscli.physics.oscillator import transition
 from rpscli.physics.parameters import Block, Floats
-from rpscli.physics.part import part, routine
+from rpscli.physics.part import lane_routine, part, routine
 
 
 class Stance(NamedTuple):
@@ -191,7 +191,7 @@ def margin_path(path: Quintic, limit: float, climb: float, side: float) -> Quint
     )
 
 
-@part
+@lane_routine
 def raise_alarms(c: Floats, stance: Stance, h: float, least: float) -> None:
     """Write ALARM: 0 for steps in which the margin surely stays positive to both sides.
 

@@ -253,5 +253,6 @@ def keep_end(b: Floats, shape: Shape, state: int, ahead: int) -> None:
     start, end = (SCALARS + state * (n + 1)) * L, (SCALARS + ahead * (n + 1)) * L
     for c in range(n + 1):
         for l in range(lane_count(shape)):
-            old, new = b[start + c * L + l], b[end + c * L + l]
+            # Adding zero keeps the compiler from choosing between addresses, lane by lane.
+            old, new = b[start + c * L + l], b[end + c * L + l] + 0.0
             b[start + c * L + l] = new if b[QUIET * L + l] > 0.0 else old

@@ -37,7 +37,7 @@ from rpscli.physics.layout import (
     STOREY_SHEAR,
 )
 from rpscli.physics.parameters import Block, Floats
-from rpscli.physics.part import part, routine
+from rpscli.physics.part import lane_routine, part, routine
 
 
 @part
@@ -65,10 +65,13 @@ def mark_samples(c: Floats, first: int, last: int, each: int) -> None:
 def observe_floors(block: Block, z: Floats) -> None:
     """Raise the largest storey shears and absolute floor accelerations, column by column."""
     c, n = block.rows, z.shape[1]
+    threes = n - n % 3
     for i in range(n):
         for k in range(COLUMNS):
             c[SHEAR * COLUMNS + k], c[PULL * COLUMNS + k] = 0.0, 0.0
-        for r in range(n):
+        for r in range(0, threes, 3):
+            add_modes(block, z, i, r)
+        for r in range(threes, n):
             qs, pulls = block.modes[r, MODAL_Q], block.modes[r, MODAL_PULL]
             shape, shear = z[SHAPES + r, i], z[SHAPES + n + r, i]
             for k in range(COLUMNS):
@@ -84,6 +87,24 @@ def observe_floors(block: Block, z: Floats) -> None:
 
 
 @part
+def add_modes(block: Block, z: Floats, i: int, r: int) -> None:
+    """Add what the modes r, r + 1 and r + 2 contribute at floor i: the sum waits in a register."""
+    c, modes, n = block.rows, block.modes, z.shape[1]
+    q0, q1, q2 = modes[r, MODAL_Q], modes[r + 1, MODAL_Q], modes[r + 2, MODAL_Q]
+    a0, a1, a2 = modes[r, MODAL_PULL], modes[r + 1, MODAL_PULL], modes[r + 2, MODAL_PULL]
+    row = SHAPES + n + r
+    s0, s1, s2 = z[row, i], z[row + 1, i], z[row + 2, i]
+    for k in range(COLUMNS):
+        shear = c[SHEAR * COLUMNS + k]
+        c[SHEAR * COLUMNS + k] = shear + s0 * q0[k] + s1 * q1[k] + s2 * q2[k]
+    row = SHAPES + r
+    s0, s1, s2 = z[row, i], z[row + 1, i], z[row + 2, i]
+    for k in range(COLUMNS):
+        pull = c[PULL * COLUMNS + k]
+        c[PULL * COLUMNS + k] = pull + s0 * a0[k] + s1 * a1[k] + s2 * a2[k]
+
+
+@lane_routine
 def observe_contacts(c: Floats, s: Floats) -> None:
     """Raise friction demands and lower least normal forces, column by column.
 
