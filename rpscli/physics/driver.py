@@ -134,7 +134,7 @@ def advance(lanes: Lanes, shape: Shape) -> None:
     """Take a step in all lanes, and what needs no decision: most steps hold no event."""
     L = len(shape.stride)
     b, s = lanes.buffer, lanes.numbers
-    step(b, shape, (len(shape.floors) + 1) * L)
+    step(b, shape)
     search_events(b, shape)
     for l in range(L):
         if s[l, WATCH] > 0.0:

@@ -29,7 +29,7 @@ from rpscli.physics.layout import (
     VELOCITY,
 )
 from rpscli.physics.parameters import Floats, Shape
-from rpscli.physics.part import part, routine
+from rpscli.physics.part import lane_routine, part
 
 EVALUATIONS = 8
 """Accelerations of one step when the first are known."""
@@ -49,8 +49,8 @@ A85, A86, A87 = 236875 / 72618, -135 / 49, 15 / 22
 B1, B4, B6, B7, B8 = 11 / 144, 256 / 693, 125 / 504, 125 / 528, 5 / 72
 
 
-@routine
-def step(b: Floats, shape: Shape, size: int) -> None:
+@lane_routine
+def step(b: Floats, shape: Shape) -> None:
     """Advance all lanes, each by its own step.
 
     The coordinates of all lanes stand one after the other, so one loop combines the slopes of
@@ -58,17 +58,16 @@ def step(b: Floats, shape: Shape, size: int) -> None:
 
     Reads the state (blocks POSITION, VELOCITY, ACCELERATION); leaves it, and writes the end of the
     step to the blocks AHEAD, AHEAD_RATE and AHEAD_ACCELERATION; where energy is audited, its mean
-    flows over the step to GIVEN_MEAN and TAKEN_MEAN. `size` is (n + 1) L, told apart
-    from the shape so that the loops stay loops, quick to compile.
+    flows over the step to GIVEN_MEAN and TAKEN_MEAN.
     """
     n, L = floor_count(shape), len(shape.stride)
-    start, block = SCALARS * L, (n + 1) * L
-    step = start + STEPS * block
-    x, dx = start + AHEAD * block, start + AHEAD_RATE * block
-    ddx = start + AHEAD_ACCELERATION * block
-    x1, v1, a1 = start + POSITION * block, start + VELOCITY * block, start + ACCELERATION * block
-    v3, v4, v5, v6, v7 = v1 + block, v1 + 2 * block, v1 + 3 * block, v1 + 4 * block, v1 + 5 * block
-    a3, a4, a5, a6, a7 = a1 + block, a1 + 2 * block, a1 + 3 * block, a1 + 4 * block, a1 + 5 * block
+    start, size = SCALARS * L, (n + 1) * L
+    step = start + STEPS * size
+    x, dx = start + AHEAD * size, start + AHEAD_RATE * size
+    ddx = start + AHEAD_ACCELERATION * size
+    x1, v1, a1 = start + POSITION * size, start + VELOCITY * size, start + ACCELERATION * size
+    v3, v4, v5, v6, v7 = v1 + size, v1 + 2 * size, v1 + 3 * size, v1 + 4 * size, v1 + 5 * size
+    a3, a4, a5, a6, a7 = a1 + size, a1 + 2 * size, a1 + 3 * size, a1 + 4 * size, a1 + 5 * size
     for i in range(size):
         h = b[step + i] * A21
         b[x + i] = b[x1 + i] + h * b[v1 + i]
