@@ -28,6 +28,10 @@ Quintic: TypeAlias = tuple[float, float, float, float, float, float]
 NO_PASSAGE = 2.0
 """Returned instead of a t in [0, 1]."""
 
+SETTLED = 1e-9
+"""A correction so small leaves its square, less than rounding; at a double root, which is not known
+any better, its like."""
+
 DEEPEST_HALVING = 40
 """Pieces of 2^-40 of a step are below rounding: a contact of two roots there is one."""
 
@@ -151,8 +155,8 @@ def descent_in(piece: NDArray[np.float64]) -> float:
         better = t - f / fall if fall < 0.0 else -1.0
         if not low <= better <= high:
             better = 0.5 * (low + high)
-        if abs(better - t) <= 1e-15 * t:
-            break
+        if abs(better - t) <= SETTLED * t:
+            return better
         t = better
     return t
 

@@ -4,8 +4,8 @@ numba makes a library of every function: the intermediate code with that of all 
 anew in each caller, then machine code and entrances for C and Python, all of which is thrown away
 when the kernel has linked it. Of a part only the translation is wanted here, for it is merged into
 its callers and optimised there; of a routine the optimised code, added to the kernel as it is.
-That and leaving out passes for features that no kernel has takes a third of the time, and the
-kernels become faster: optimised more than once, their loops are worse.
+That, and leaving out passes for features that no kernel has, saves a third of the time; and the
+kernels become faster, for loops that are optimised anew in each caller become worse.
 
 This reaches into numba: libraries that leave out stages, and the passes that make them.
 """
@@ -112,10 +112,10 @@ class RoutineLibrary(LinkedLibrary):
 
 
 class LaneRoutineLibrary(RoutineLibrary):
-    """A routine that goes over lanes: its loops become vector instructions, as they stand.
+    """A routine that goes over lanes: its loops become vector instructions.
 
-    A loop over a known number of lanes would otherwise be unrolled first, for the compiler to
-    find vectors in what is left.
+    A loop over a known number of lanes would otherwise be unrolled before the compiler looks for
+    vectors, which it then has to find in what is left of it.
     """
 
     def _optimize_final_module(self) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from paper_structures import Array, needs_compiled_kernels
 
 from rpscli.physics.jit import kernel
-from rpscli.physics.part import part, routine
+from rpscli.physics.part import lane_routine, part, routine
 
 
 @part
@@ -33,6 +33,22 @@ def four_times(x: Array, total: Array) -> None:
     """Adds them four times."""
     for _ in range(4):
         add_powers(x, total)
+
+
+@lane_routine
+def add_rows(b: Array, lanes: tuple[tuple[()], ...]) -> None:
+    """Writes the sum of rows 0 and 1 where both are positive, else row 0, to row 2."""
+    L = len(lanes)
+    for lane in range(L):
+        first, second = b[lane], b[L + lane]
+        b[2 * L + lane] = first + second if first > 0.0 and second > 0.0 else first
+
+
+@kernel
+def add_rows_twice(b: Array, lanes: tuple[tuple[()], ...]) -> None:
+    """Does it again."""
+    add_rows(b, lanes)
+    add_rows(b, lanes)
 
 
 X = np.linspace(-2.0, 2.0, 9)
@@ -61,3 +77,19 @@ def test_a_part_is_compiled_once_for_all_constants() -> None:
     whole: Any = inspect.getclosurevars(four_times).nonlocals["compiled"]
     (compiled,) = whole.overloads.values()
     assert compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name) != 0
+
+
+@needs_compiled_kernels
+def test_the_loop_over_lanes_of_a_lane_routine_becomes_vector_instructions() -> None:
+    b = np.concatenate([np.linspace(-1.0, 2.5, 8), np.linspace(2.0, -1.5, 8), np.zeros(8)])
+    add_rows_twice(b, ((),) * 8)
+    both = (b[:8] > 0.0) & (b[8:16] > 0.0)
+    np.testing.assert_array_equal(b[16:], np.where(both, b[:8] + b[8:16], b[:8]))
+    (compiled,) = add_rows.overloads.values()  # type: ignore[attr-defined]
+    (code,) = [
+        str(each)
+        for each in compiled.library.get_defined_functions()
+        if each.name == compiled.fndesc.llvm_func_name
+    ]
+    assert "x double>" in code
+    assert "= load double" not in code  # nothing is left that goes lane by lane
