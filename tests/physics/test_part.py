@@ -37,11 +37,11 @@ def four_times(x: Array, total: Array) -> None:
 
 @lane_routine
 def add_rows(b: Array, lanes: tuple[tuple[()], ...]) -> None:
-    """Writes the sum of rows 0 and 1 where both are positive, else row 0, to row 2."""
+    """Raises row 2 to the sum of rows 0 and 1 where row 0 is positive."""
     L = len(lanes)
     for lane in range(L):
-        first, second = b[lane], b[L + lane]
-        b[2 * L + lane] = first + second if first > 0.0 and second > 0.0 else first
+        total = b[lane] + b[L + lane] if b[lane] > 0.0 else 0.0
+        b[2 * L + lane] = max(b[2 * L + lane], total)
 
 
 @kernel
@@ -83,8 +83,8 @@ def test_a_part_is_compiled_once_for_all_constants() -> None:
 def test_the_loop_over_lanes_of_a_lane_routine_becomes_vector_instructions() -> None:
     b = np.concatenate([np.linspace(-1.0, 2.5, 8), np.linspace(2.0, -1.5, 8), np.zeros(8)])
     add_rows_twice(b, ((),) * 8)
-    both = (b[:8] > 0.0) & (b[8:16] > 0.0)
-    np.testing.assert_array_equal(b[16:], np.where(both, b[:8] + b[8:16], b[:8]))
+    total = np.where(b[:8] > 0.0, b[:8] + b[8:16], 0.0)
+    np.testing.assert_array_equal(b[16:], np.maximum(total, 0.0))
     (compiled,) = add_rows.overloads.values()  # type: ignore[attr-defined]
     (code,) = [
         str(each)
