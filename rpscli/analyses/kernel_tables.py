@@ -69,7 +69,7 @@ def lane_column(structure: PodiumStructure, podium: Podium) -> NDArray[np.float6
 
 
 def modal_rows(structure: PodiumStructure) -> NDArray[np.float64]:
-    """What stands in the modal rows of a lane at rest (26 + 2 n, n), see `contact_layout`.
+    """What stands in the modal rows of a lane at rest (23 + 2 n, n), see `contact_layout`.
 
     The modes are those of the fixed base, mass-normalised, with the storey shears
     k_i (phi_i - phi_{i-1}) of each, and Gamma_r = phi_r^T M 1.

@@ -18,14 +18,13 @@ see `contact_layout`.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from rpscli.physics.contact_layout import (
     ALARM,
     AT,
     COLUMNS,
     DQ,
-    DQ_END,
     DRAG,
     GIVEN,
     MODAL_DQ,
@@ -37,7 +36,6 @@ from rpscli.physics.contact_layout import (
     PUSH,
     PUSH_BEND,
     PUSH_SLOPE,
-    Q_END,
     RISE,
     RISE_SLOPE,
     SLOPE,
@@ -63,6 +61,10 @@ class Stance(NamedTuple):
     share: float
     lift: float
     creep: float
+
+
+Map: TypeAlias = tuple[float, float, float, float, float, float, float, float]
+"""What a step makes of a mode: coefficients of q, q', a_g and its slope in q, then those in q'."""
 
 
 @routine
@@ -108,20 +110,47 @@ def march(block: Block, z: Floats, row: int) -> None:
 def follow(block: Block, z: Floats, row: int) -> None:
     """States of all modes at all instants: each is the map of the one before.
 
-    Mode after mode within an instant, so that none waits for its own last step.
+    Two modes go together, so that neither waits for its own last step; the last of an odd number
+    goes with itself.
     """
     c, modes, n = block.rows, block.modes, z.shape[1]
-    for r in range(n):
-        z[Q_END, r], z[DQ_END, r] = z[Q, r], z[DQ, r]
-    for k in range(COLUMNS):
-        at, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
-        for r in range(n):
-            q, dq = z[Q_END, r], z[DQ_END, r]
-            modes[r, MODAL_Q, k], modes[r, MODAL_DQ, k] = q, dq
-            still = z[row + 2, r] * at + z[row + 3, r] * slope
-            moving = z[row + 6, r] * at + z[row + 7, r] * slope
-            z[Q_END, r] = z[row, r] * q + (z[row + 1, r] * dq + still)
-            z[DQ_END, r] = z[row + 4, r] * q + (z[row + 5, r] * dq + moving)
+    for r in range(0, n, 2):
+        t = min(r + 1, n - 1)
+        one, other = map_of(z, row, r), map_of(z, row, t)
+        q, dq, p, dp = z[Q, r], z[DQ, r], z[Q, t], z[DQ, t]
+        qs, dqs, ps, dps = (
+            modes[r, MODAL_Q],
+            modes[r, MODAL_DQ],
+            modes[t, MODAL_Q],
+            modes[t, MODAL_DQ],
+        )
+        for k in range(COLUMNS):
+            at, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
+            qs[k], dqs[k], ps[k], dps[k] = q, dq, p, dp
+            q, dq = mapped(one, q, dq, at, slope)
+            p, dp = mapped(other, p, dp, at, slope)
+
+
+@part
+def map_of(z: Floats, row: int, r: int) -> Map:
+    """The map of mode r that stands at `row`."""
+    return (
+        z[row, r],
+        z[row + 1, r],
+        z[row + 2, r],
+        z[row + 3, r],
+        z[row + 4, r],
+        z[row + 5, r],
+        z[row + 6, r],
+        z[row + 7, r],
+    )
+
+
+@part
+def mapped(m: Map, q: float, dq: float, at: float, slope: float) -> tuple[float, float]:
+    """Displacement and velocity a step later, under the ground's acceleration and its slope."""
+    still, moving = m[2] * at + m[3] * slope, m[6] * at + m[7] * slope
+    return m[0] * q + (m[1] * dq + still), m[4] * q + (m[5] * dq + moving)
 
 
 @part

@@ -8,15 +8,13 @@ from __future__ import annotations
 (
     Q,  # modal displacements
     DQ,  # modal velocities
-    Q_END,
-    DQ_END,
     OMEGA,
     XI,
     PARTICIPATION,
     SQUARE,  # w^2
     DRAG,  # 2 xi w
     WHOLE,  # 8 rows: `oscillator.transition` over a contact step
-) = range(10)
+) = range(8)
 PART = WHOLE + 8  # 8 rows: over a part of one
 SHAPES = PART + 8  # n rows: mode shapes; then n rows: storey shears of each mode
 

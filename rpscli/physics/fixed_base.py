@@ -42,7 +42,7 @@ def integrate_fixed_base(
         (2, n): written with the largest storey shears k_i d_i [N] and absolute floor
         accelerations [m/s2].
     z, block
-        Its modal rows (26 + 2 n, n), and room for a block: see `contact_layout`.
+        Its modal rows (23 + 2 n, n), and room for a block: see `contact_layout`.
     """
     n, instants = samples.shape[1] // 2, samples.shape[0]
     fill_transition(z, dt, WHOLE)

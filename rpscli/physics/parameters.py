@@ -65,7 +65,7 @@ class Systems(NamedTuple):
     column
         (S, rows): what stands in the buffer of a lane before a history, see `layout`.
     modes
-        (S, 26 + 2 n, n): what stands in its modal rows, see `contact_layout`.
+        (S, 23 + 2 n, n): what stands in its modal rows, see `contact_layout`.
     """
 
     podium: Floats
@@ -153,7 +153,7 @@ class Lanes(NamedTuple):
     """Everything that histories need while they run, lane by lane: see `layout` and `contact`.
 
     `numbers` (L, rows) and `blocks` (L, blocks, n + 1) are views of the flat `buffer`. `podium`
-    (L, 34) are the numbers of `Podium`, `modes` (L, 26 + 2 n, n) the modal rows of full contact;
+    (L, 34) are the numbers of `Podium`, `modes` (L, 23 + 2 n, n) the modal rows of full contact;
     its `block` and `piece` (6,) are scratch; `acceleration` holds all records end to end, linear
     between samples; the samples and the log are those of `Results`.
     """
