@@ -4,6 +4,6 @@
 motion and `runge_kutta` a step of them; `contact` and `standing` the exact solution while every
 column stands on its flat ends; `events`, `inspection`, `flight` and `switch` find what happens in
 between and do it; `driver` strings them together, for several histories side by side. Steps run
-over the buffer of all lanes, see `layout`; the rest sees one of them, a `lane`. How all this becomes
-machine code stands in `jit`, `part` and `linking`.
+over the buffer of all lanes, see `layout`; the rest sees one of them, a `lane`. How all this
+becomes machine code stands in `jit`, `part` and `linking`.
 """
