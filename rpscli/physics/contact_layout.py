@@ -21,6 +21,8 @@ SHAPES = PART + 8  # n rows: mode shapes; then n rows: storey shears of each mod
 COLUMNS = 32
 """Instants of a block, its start included."""
 
+# A step looks at the next instant as well, the last one beyond its rows: not at ALARM, which the
+# same loop writes, for the compiler would then not make vectors of it.
 (
     AT,  # acceleration of the ground, and its slope over the step that begins
     SLOPE,
@@ -29,8 +31,8 @@ COLUMNS = 32
     PUSH,  # base shear of the modes, and two derivatives but for what the ground's slope adds
     PUSH_SLOPE,
     PUSH_BEND,
-    ALARM,  # 1 if the storey might uplift in the step that begins
     SEEN,  # 1 at samples of the record that come before any uplift
+    ALARM,  # 1 if the storey might uplift in the step that begins
     GIVEN,  # energy put in and damped during the step that begins
     TAKEN,
     SHEAR,  # scratch of one floor
