@@ -5,25 +5,14 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics.contact import (
-    Stance,
-    energies,
-    fill_transition,
-    first_uplift,
-    keep,
-    locate_uplift,
-    march,
-    raise_alarms,
-)
+from rpscli.physics.contact import energies, fill_transition, keep, march
 from rpscli.physics.contact_layout import (
     ALARM,
     AT,
     COLUMNS,
     DQ,
-    DRAG,
     GIVEN,
     PART,
-    PARTICIPATION,
     PUSH_BEND,
     SHAPES,
     SLOPE,
@@ -50,7 +39,6 @@ from rpscli.physics.layout import (
 )
 from rpscli.physics.parameters import Shape
 from rpscli.physics.part import part, routine
-from rpscli.physics.podium_layout import ALPHA, ETA, FLOORS_MASS, GAMMA
 from rpscli.physics.progress import REST_EVERY, enter_interval, store_sample
 from rpscli.physics.shaking import shake_block
 from rpscli.physics.standing_demands import (
@@ -61,18 +49,7 @@ from rpscli.physics.standing_demands import (
     observe_floors,
 )
 from rpscli.physics.switch import lift_off
-
-
-@part
-def stance_of(lane: Lane) -> Stance:
-    """What the lane's margin against uplift is made of."""
-    z, p = lane.modes, lane.podium
-    own, carried = 1.0 + 2.0 * p[GAMMA], 2.0 * p[GAMMA] * p[ETA]
-    creep = 0.0
-    for r in range(z.shape[1]):
-        creep += z[PARTICIPATION, r] * z[PARTICIPATION, r] * z[DRAG, r]
-    share = carried / p[FLOORS_MASS] if z.shape[1] > 0 else 0.0
-    return Stance(own, share, math.tan(p[ALPHA]) * (own + carried), creep)
+from rpscli.physics.uplift_search import first_uplift, locate_uplift, raise_alarms, stance_of
 
 
 @part

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from paper_structures import podium
 
 from rpscli.analyses.kernel_input import podium_parameters
@@ -14,13 +16,13 @@ from rpscli.physics.parameters import Podium, podium_numbers
 def test_every_number_stands_where_the_layout_says() -> None:
     """All numbers of the row differ, so none can stand in another's place."""
     numbers = iter(range(100))
-    fields = {
+    fields: dict[str, Any] = {
         name: Phase(*(float(next(numbers)) for _ in Phase._fields))
         if name in ("rolling", "rocking")
         else float(next(numbers))
         for name in Podium._fields
     }
-    row = podium_numbers(Podium(**fields))  # type: ignore[arg-type]
+    row = podium_numbers(Podium(**fields))
     assert len(row) == podium_layout.PODIUM_NUMBERS
     for name, value in fields.items():
         place = f"{name.upper()}_PHASE" if isinstance(value, Phase) else name.upper()
