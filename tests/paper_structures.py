@@ -104,7 +104,7 @@ def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
 
 
 def steps_an_interval(structure: PodiumStructure, dt: float, accuracy: float = 1.0) -> int:
-    """Runge-Kutta steps of an uplifted structure in a sampling interval without event."""
+    """Taylor steps of an uplifted structure in a sampling interval without event."""
     return max(math.ceil(dt * accuracy * flight_rate(structure)), 1)
 
 

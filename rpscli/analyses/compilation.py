@@ -23,10 +23,9 @@ def announce_to(listener: Listener) -> None:
     _listeners[:] = [listener]
 
 
-def lanes_of(structure: PodiumStructure, lanes: int, *, dense: bool) -> str:
+def lanes_of(structure: PodiumStructure, lanes: int) -> str:
     """Name of the kernel that follows many histories of such structures side by side."""
-    damping = ", any damping" if dense else ""
-    return f"{structure.storeys} storeys in {lanes} lanes{damping}"
+    return f"{structure.storeys} storeys in {lanes} lanes"
 
 
 def is_ready(name: str) -> bool:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.compilation import SINGLE, compiled, lanes_of
 from rpscli.analyses.failure import failure_text
 from rpscli.analyses.history import History, empty_results, history_of, shape_of_one
-from rpscli.analyses.kernel_input import aligned, has_dense_damping
+from rpscli.analyses.kernel_input import aligned
 from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
 from rpscli.analyses.outcome import Outcome, outcome_of
 from rpscli.analyses.settings import TimeHistorySettings
@@ -88,10 +88,9 @@ def demands(
     The kernels run without the GIL: call this from several threads to use several cores.
     """
     answers: dict[int, Demand] = {}
-    groups: dict[tuple[int, bool], list[int]] = {}
+    groups: dict[int, list[int]] = {}
     for i, request in enumerate(requests):
-        structure = request.structure
-        groups.setdefault((structure.storeys, has_dense_damping(structure)), []).append(i)
+        groups.setdefault(request.structure.storeys, []).append(i)
     for members in groups.values():
         histories = _run([requests[i] for i in members], worth_lanes, lanes)
         answers.update(zip(members, map(demand_of, histories), strict=True))
@@ -141,7 +140,7 @@ def _run(requests: Sequence[Request], worth_lanes: int, lanes: int) -> list[Hist
     structure = requests[0].structure
     if len(requests) >= worth_lanes:
         shape = shape_of_many(structure, lanes)
-        name = lanes_of(structure, lanes, dense=has_dense_damping(structure))
+        name = lanes_of(structure, lanes)
     else:
         shape, name = shape_of_one(structure), SINGLE
     with compiled(name):
@@ -166,9 +165,7 @@ class _Shelf(Generic[Item]):
 
 def shape_of_many(structure: PodiumStructure, lanes: int) -> Shape:
     """Lanes side by side, for a number of floors that the compiler knows."""
-    dense = ((),) if has_dense_damping(structure) else ()
-    floors = ((),) * structure.storeys
-    return Shape(floors, ((),) * lanes, ((),) * lanes, (), (), dense)
+    return Shape(((),) * structure.storeys, ((),) * lanes, ((),) * lanes, (), ())
 
 
 def demand_of(history: History) -> Demand:

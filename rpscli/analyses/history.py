@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.compilation import SINGLE, compiled
-from rpscli.analyses.kernel_input import aligned, has_dense_damping
+from rpscli.analyses.kernel_input import aligned
 from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
@@ -48,7 +48,7 @@ class History:
     energy_created: float
     creating_impacts: int
     counts: NDArray[np.int64]
-    evaluations: int
+    steps: int
 
 
 def history_of(numbers: NDArray[np.float64], integers: NDArray[np.int64]) -> History:
@@ -71,7 +71,7 @@ def history_of(numbers: NDArray[np.float64], integers: NDArray[np.int64]) -> His
         energy_created=float(numbers[layout.OUT_CREATED]),
         creating_impacts=int(integers[layout.OUT_CREATING]),
         counts=integers[layout.OUT_COUNTS :],
-        evaluations=int(integers[layout.OUT_EVALUATIONS]),
+        steps=int(integers[layout.OUT_STEPS]),
     )
 
 
@@ -86,9 +86,8 @@ def empty_results(points: int, storeys: int, *, samples: int = 0, events: int = 
 
 
 def shape_of_one(structure: PodiumStructure) -> Shape:
-    """One lane, any number of floors and any damping: a single kernel serves every structure."""
-    dense = np.zeros(int(has_dense_damping(structure)), np.int8)
-    return Shape(np.zeros(structure.storeys, np.int8), ((),), ((),), ((),), ((),), dense)
+    """One lane, any number of floors: a single kernel serves every structure."""
+    return Shape(np.zeros(structure.storeys, np.int8), ((),), ((),), ((),), ((),))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,17 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.parameters import Podium
 from rpscli.records.ground_motion import GroundMotion
 
 FLIGHT_ANGLE = 0.6
-"""Largest Runge-Kutta step times the highest uplifted frequency [rad], at accuracy 1."""
+"""Largest Taylor step times the highest uplifted frequency [rad], at accuracy 1."""
 
 FLIGHT_DECAY = 1.0
-"""Largest step times the fastest decay rate, where that asks for more: Runge-Kutta steps are
-unstable beyond about 4. Only strongly overdamped modes come near."""
+"""Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
+are unstable beyond about 4. Only strongly overdamped modes come near."""
 
 CONTACT_ANGLE = 1.0
 """The same for the exact steps in full contact, where it guards the search of uplift: the quintic
@@ -27,16 +26,13 @@ between two instants errs by (w h)^6/46080 of a mode's push."""
 
 def podium_parameters(structure: PodiumStructure, settings: TimeHistorySettings) -> Podium:
     """Parameters of the rocking storey and of the way its motion is followed."""
-    b, building = structure.bearing, structure.superstructure
+    b = structure.bearing
     limit = settings.overturning_limit * b.critical_rotation
     if abs(settings.initial_rotation) >= limit:
         raise ValueError(
             f"initial_rotation = {settings.initial_rotation:.6g} rad must stay below the"
             f" overturning limit {limit:.6g} rad"
         )
-    a0, a1 = 0.0, 0.0
-    if building is not None and isinstance(building.damping, RayleighDamping):
-        a0, a1 = building.damping.coefficients(building.frequencies)
     free = settings.free_vibration
     return Podium(
         R=b.semi_diagonal,
@@ -55,8 +51,6 @@ def podium_parameters(structure: PodiumStructure, settings: TimeHistorySettings)
         gravity=structure.gravity,
         restitution=structure.restitution,
         floors_jump=float(structure.impact_law.floors_jump),
-        a0=a0,
-        a1=a1,
         flight_rate=settings.accuracy * flight_rate(structure),
         contact_rate=highest_frequency(structure) / CONTACT_ANGLE,
         recontact_tolerance=settings.recontact_tolerance,
@@ -79,7 +73,7 @@ def bounces_left_out(structure: PodiumStructure) -> float:
 
 
 def flight_rate(structure: PodiumStructure) -> float:
-    """Runge-Kutta steps a second that follow the uplifted structure at accuracy 1 [1/s]."""
+    """Taylor steps a second that follow the uplifted structure at accuracy 1 [1/s]."""
     by_angle = highest_frequency(structure) / FLIGHT_ANGLE
     return max(by_angle, fastest_decay(structure) / FLIGHT_DECAY)
 
@@ -110,12 +104,6 @@ def fastest_decay(structure: PodiumStructure) -> float:
 def least_base_mass(structure: PodiumStructure) -> float:
     """Inertia against u_b at theta = 0 without the floors: columns and cap beam [kg]."""
     return 0.25 * structure.columns_mass * structure.bearing.inertia_ratio + structure.cap_beam_mass
-
-
-def has_dense_damping(structure: PodiumStructure) -> bool:
-    """Whether the damping matrix is not a0 M + a1 K."""
-    building = structure.superstructure
-    return building is not None and not isinstance(building.damping, RayleighDamping)
 
 
 def aligned(

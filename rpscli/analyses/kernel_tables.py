@@ -8,18 +8,21 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernel_input import has_dense_damping, podium_parameters
+from rpscli.analyses.kernel_input import podium_parameters
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import contact_layout, layout
 from rpscli.physics.parameters import Podium, Points, Systems, podium_numbers
 from rpscli.records.ground_motion import GroundMotion
 
+LEAST_SHAKEN = 1e-3
+"""Modes that hardly take part are not given more weight than those that take part so much."""
+
 
 def stacked_systems(
     systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]],
 ) -> Systems:
-    """Structures with the same number of floors and kind of damping, stacked."""
+    """Structures with the same number of floors, stacked."""
     podiums = [podium_parameters(*system) for system in systems]
     structures = [structure for structure, _ in systems]
     return Systems(
@@ -31,8 +34,8 @@ def stacked_systems(
 
 def lane_column(structure: PodiumStructure, podium: Podium) -> NDArray[np.float64]:
     """What stands in the buffer of a lane at rest: constants folded as `physics.layout` says."""
-    n, building = structure.storeys, structure.superstructure
-    column = np.zeros(layout.SCALARS + layout.BLOCKS * (n + 1))
+    n = structure.storeys
+    scalars, blocks = np.zeros(layout.SCALARS), np.zeros((layout.BLOCKS, n))
     own, carried = 1.0 + 2.0 * podium.gamma, 2.0 * podium.gamma * podium.eta
     for row, value in {
         layout.DIAMETER: 2.0 * podium.R,
@@ -42,7 +45,6 @@ def lane_column(structure: PodiumStructure, podium: Podium) -> NDArray[np.float6
         layout.WEIGHT: (own + carried) / podium.R,
         layout.PUSH: own / podium.R,
         layout.SHEAR: 2.0 / (podium.columns_mass * podium.R),
-        layout.DRAG: podium.a0,
         layout.COLUMNS_MASS: podium.columns_mass,
         layout.CAP_BEAM_MASS: podium.cap_beam_mass,
         layout.FLOORS_MASS: podium.floors_mass,
@@ -53,35 +55,42 @@ def lane_column(structure: PodiumStructure, podium: Podium) -> NDArray[np.float6
         layout.NORMAL_TOP: math.inf,
         layout.NORMAL_BOTTOM: math.inf,
     }.items():
-        column[row] = value
-    if building is None:
-        return column
-    for block, values in {
-        layout.STIFFNESS: building.stiffnesses,
-        layout.DAMPING: podium.a1 * building.stiffnesses,
-        layout.MASS: building.masses,
-        layout.INVERSE_MASS: 1.0 / building.masses,
+        scalars[row] = value
+    modes = modal_rows(structure)
+    for block, row in {
+        layout.SQUARE: contact_layout.SQUARE,
+        layout.DRAG: contact_layout.DRAG,
+        layout.PARTICIPATION: contact_layout.PARTICIPATION,
+        layout.STRAIN_WEIGHT: contact_layout.STRAIN_WEIGHT,
+        layout.PULLED_WEIGHT: contact_layout.PULLED_WEIGHT,
     }.items():
-        start = layout.SCALARS + block * (n + 1)
-        column[start : start + n] = values
-    dense = building.damping_matrix if has_dense_damping(structure) else np.empty(0)
-    return np.concatenate((column, dense.ravel()))
+        blocks[block] = modes[row]
+    shapes, shears = np.split(modes[contact_layout.SHAPES :], 2)
+    blocks[layout.STRAIN_BOUND] = 1.0 / np.sum(shears.T**2 / blocks[layout.STRAIN_WEIGHT], axis=1)
+    blocks[layout.PULLED_BOUND] = 1.0 / np.sum(shapes.T**2 / blocks[layout.PULLED_WEIGHT], axis=1)
+    return np.concatenate((scalars, blocks.ravel(), shapes.ravel(), shears.ravel()))
 
 
 def modal_rows(structure: PodiumStructure) -> NDArray[np.float64]:
-    """What stands in the modal rows of a lane at rest (23 + 2 n, n), see `contact_layout`.
+    """What stands in the modal rows of a lane at rest (25 + 2 n, n), see `contact_layout`.
 
     The modes are those of the fixed base, mass-normalised, with the storey shears
-    k_i (phi_i - phi_{i-1}) of each, and Gamma_r = phi_r^T M 1.
+    k_i (phi_i - phi_{i-1}) of each, and Gamma_r = phi_r^T M 1. The weights of
+    `physics.floor_demands` are best where what a mode adds to a demand is in proportion to its
+    weighted square; pulls are as large as Gamma_r, if all modes shake alike.
     """
     n, building = structure.storeys, structure.superstructure
     rows = np.zeros((contact_layout.SHAPES + 2 * n, n))
     if building is not None:
         omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T
+        square, shaken = omega * omega, np.abs(building.participation)
+        weight = 1.0 / np.maximum(shaken, LEAST_SHAKEN * shaken.max())
         rows[contact_layout.OMEGA], rows[contact_layout.XI] = omega, xi
         rows[contact_layout.PARTICIPATION] = building.participation
-        rows[contact_layout.SQUARE] = omega * omega
+        rows[contact_layout.SQUARE] = square
         rows[contact_layout.DRAG] = 2.0 * xi * omega
+        rows[contact_layout.STRAIN_WEIGHT] = square * square * weight
+        rows[contact_layout.PULLED_WEIGHT] = weight
         rows[contact_layout.SHAPES : contact_layout.SHAPES + n] = shapes
         rows[contact_layout.SHAPES + n :] = np.diff(shapes, prepend=0.0) * building.stiffnesses
     return rows

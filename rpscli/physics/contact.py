@@ -23,11 +23,15 @@ from rpscli.physics.contact_layout import (
     MODAL_Q,
     OMEGA,
     PARTICIPATION,
+    PULLED,
+    PULLED_WEIGHT,
     PUSH,
     PUSH_BEND,
     PUSH_SLOPE,
     SLOPE,
     SQUARE,
+    STRAIN,
+    STRAIN_WEIGHT,
     TAKEN,
     XI,
     Q,
@@ -36,8 +40,8 @@ from rpscli.physics.oscillator import transition
 from rpscli.physics.parameters import Block, Floats
 from rpscli.physics.part import part, routine
 
-Map: TypeAlias = tuple[float, float, float, float, float, float, float, float]
-"""What a step makes of a mode: coefficients of q, q', a_g and its slope in q, then those in q'."""
+Map: TypeAlias = tuple[float, float, float, float]
+"""What a step makes of a mode left alone: coefficients of q and q' in q, then those in q'."""
 
 
 @routine
@@ -54,7 +58,8 @@ def fill_transition(z: Floats, h: float, row: int) -> None:
 def march(block: Block, z: Floats, row: int) -> None:
     """Follow every mode through a block, from Q and DQ; the map of a step stands at `row`.
 
-    Reads the ground's motion (rows AT and SLOPE) and writes the modes' rows and the push. Few rows
+    Reads the ground's motion (rows AT and SLOPE) and writes the modes' rows, the push and
+    how much the modes are strained. Few rows
     meet in each loop over instants: so the compiler finds it worth checking that they do not
     overlap, and makes vector instructions.
     """
@@ -63,6 +68,8 @@ def march(block: Block, z: Floats, row: int) -> None:
         c[PUSH * COLUMNS + k] = 0.0
         c[PUSH_SLOPE * COLUMNS + k] = 0.0
         c[PUSH_BEND * COLUMNS + k] = 0.0
+        c[STRAIN * COLUMNS + k] = 0.0
+        c[PULLED * COLUMNS + k] = 0.0
     follow(block, z, row)
     for r in range(z.shape[1]):
         qs, dqs = block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ]
@@ -70,8 +77,11 @@ def march(block: Block, z: Floats, row: int) -> None:
         part, square, drag = z[PARTICIPATION, r], z[SQUARE, r], z[DRAG, r]
         for k in range(COLUMNS):
             pulls[k] = square * qs[k] + drag * dqs[k]
+        strain, pulled = z[STRAIN_WEIGHT, r], z[PULLED_WEIGHT, r]
         for k in range(COLUMNS):
             c[PUSH * COLUMNS + k] += part * pulls[k]
+            c[STRAIN * COLUMNS + k] += strain * (qs[k] * qs[k])
+            c[PULLED * COLUMNS + k] += pulled * (pulls[k] * pulls[k])
         for k in range(COLUMNS):
             ddq = -part * c[AT * COLUMNS + k] - pulls[k]
             rise = square * dqs[k] + drag * ddq
@@ -83,47 +93,53 @@ def march(block: Block, z: Floats, row: int) -> None:
 def follow(block: Block, z: Floats, row: int) -> None:
     """States of all modes at all instants: each is the map of the one before.
 
-    Two modes go together, so that neither waits for its own last step; the last of an odd number
-    goes with itself.
+    What the ground does to a step waits for nothing and comes first. Three modes then go together,
+    so that none waits for its own last step.
     """
-    c, modes, n = block.rows, block.modes, z.shape[1]
-    for r in range(0, n, 2):
-        t = min(r + 1, n - 1)
-        one, other = map_of(z, row, r), map_of(z, row, t)
-        q, dq, p, dp = z[Q, r], z[DQ, r], z[Q, t], z[DQ, t]
-        qs, dqs, ps, dps = (
-            modes[r, MODAL_Q],
-            modes[r, MODAL_DQ],
-            modes[t, MODAL_Q],
-            modes[t, MODAL_DQ],
-        )
-        for k in range(COLUMNS):
-            at, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
-            qs[k], dqs[k], ps[k], dps[k] = q, dq, p, dp
-            q, dq = mapped(one, q, dq, at, slope)
-            p, dp = mapped(other, p, dp, at, slope)
+    n = z.shape[1]
+    threes = n - n % 3
+    for r in range(n):
+        shove(block, z, row, r)
+    for r in range(0, threes, 3):
+        q0, v0 = block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ]
+        q1, v1 = block.modes[r + 1, MODAL_Q], block.modes[r + 1, MODAL_DQ]
+        q2, v2 = block.modes[r + 2, MODAL_Q], block.modes[r + 2, MODAL_DQ]
+        m0, m1, m2 = map_of(z, row, r), map_of(z, row, r + 1), map_of(z, row, r + 2)
+        x0, y0, x1, y1, x2, y2 = q0[0], v0[0], q1[0], v1[0], q2[0], v2[0]
+        for k in range(1, COLUMNS):
+            x0, y0 = mapped(m0, x0, y0, q0[k], v0[k])
+            x1, y1 = mapped(m1, x1, y1, q1[k], v1[k])
+            x2, y2 = mapped(m2, x2, y2, q2[k], v2[k])
+            q0[k], v0[k], q1[k], v1[k], q2[k], v2[k] = x0, y0, x1, y1, x2, y2
+    for r in range(threes, n):
+        qs, vs, m = block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ], map_of(z, row, r)
+        x, y = qs[0], vs[0]
+        for k in range(1, COLUMNS):
+            x, y = mapped(m, x, y, qs[k], vs[k])
+            qs[k], vs[k] = x, y
+
+
+@part
+def shove(block: Block, z: Floats, row: int, r: int) -> None:
+    """Write where the ground alone would bring mode r in each step, after its present state."""
+    c, qs, vs = block.rows, block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ]
+    a, b, c2, d = z[row + 2, r], z[row + 3, r], z[row + 6, r], z[row + 7, r]
+    qs[0], vs[0] = z[Q, r], z[DQ, r]
+    for k in range(COLUMNS - 1):
+        at, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
+        qs[k + 1], vs[k + 1] = a * at + b * slope, c2 * at + d * slope
 
 
 @part
 def map_of(z: Floats, row: int, r: int) -> Map:
     """The map of mode r that stands at `row`."""
-    return (
-        z[row, r],
-        z[row + 1, r],
-        z[row + 2, r],
-        z[row + 3, r],
-        z[row + 4, r],
-        z[row + 5, r],
-        z[row + 6, r],
-        z[row + 7, r],
-    )
+    return z[row, r], z[row + 1, r], z[row + 4, r], z[row + 5, r]
 
 
 @part
-def mapped(m: Map, q: float, dq: float, at: float, slope: float) -> tuple[float, float]:
-    """Displacement and velocity a step later, under the ground's acceleration and its slope."""
-    still, moving = m[2] * at + m[3] * slope, m[6] * at + m[7] * slope
-    return m[0] * q + (m[1] * dq + still), m[4] * q + (m[5] * dq + moving)
+def mapped(m: Map, q: float, dq: float, still: float, moving: float) -> tuple[float, float]:
+    """Displacement and velocity a step later, with what the ground does to them."""
+    return m[0] * q + (m[1] * dq + still), m[2] * q + (m[3] * dq + moving)
 
 
 @part

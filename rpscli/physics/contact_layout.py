@@ -13,8 +13,10 @@ from __future__ import annotations
     PARTICIPATION,
     SQUARE,  # w^2
     DRAG,  # 2 xi w
+    STRAIN_WEIGHT,  # see `layout`
+    PULLED_WEIGHT,
     WHOLE,  # 8 rows: `oscillator.transition` over a contact step
-) = range(8)
+) = range(10)
 PART = WHOLE + 8  # 8 rows: over a part of one
 SHAPES = PART + 8  # n rows: mode shapes; then n rows: storey shears of each mode
 
@@ -35,6 +37,8 @@ COLUMNS = 32
     ALARM,  # 1 if the storey might uplift in the step that begins
     GIVEN,  # energy put in and damped during the step that begins
     TAKEN,
+    STRAIN,  # weighted squares of modal displacements and pulls, see `layout`
+    PULLED,
     SHEAR,  # scratch of one floor
     PULL,
     FRICTION_TOPS,  # extremes since full contact began, column by column
@@ -42,9 +46,7 @@ COLUMNS = 32
     NORMAL_TOPS,
     NORMAL_BOTTOMS,
     ROWS,  # how many they are
-) = range(18)
+) = range(20)
 
-# Rows of a mode: displacement, velocity, and pull w^2 q + 2 xi w q' over its mass; of a floor:
-# largest storey shear and absolute acceleration since full contact began.
+# Rows of a mode: displacement, velocity, and pull w^2 q + 2 xi w q' over its mass.
 MODAL_Q, MODAL_DQ, MODAL_PULL = range(3)
-TOP_SHEAR, TOP_ACCELERATION = range(2)

@@ -1,69 +1,71 @@
 """Histories in lanes: step - search - observe - take over - switch.
 
 Each lane follows one history at a time; when it is over the lane takes the next one. All lanes
-make their Runge-Kutta steps together, each from its own time with its own length, so that the
-processor works on them at once; whatever is particular to one - full contact, the location of an
-event, a switch of phase - is done for that lane alone. No number passes from one lane to another:
-a history does not depend on its neighbours.
+make their Taylor steps together, each from its own time with its own length, so that the processor
+works on them at once; whatever is particular to one - full contact, the location of an event, a
+switch of phase - is done for that lane alone. No number passes from one lane to another: a history
+does not depend on its neighbours.
 """
 
 from __future__ import annotations
 
 from rpscli.physics.acceleration import accelerate
-from rpscli.physics.energy import building_energy, uplifted_energy
-from rpscli.physics.flight import attend, book_energy, plan_step, set_step, settle
+from rpscli.physics.energy import book_energy, building_energy, uplifted_energy
+from rpscli.physics.flight import attend, plan_step, settle
+from rpscli.physics.floor_demands import raise_floors
 from rpscli.physics.inspection import observe, raise_contacts, search_events, take_over
 from rpscli.physics.jit import kernel
 from rpscli.physics.lane import Lane, lane_of
 from rpscli.physics.layout import (
-    ACCELERATION,
     ACROSS,
-    AHEAD,
-    AHEAD_ACCELERATION,
-    AHEAD_RATE,
     AT_REST,
     ATTEND,
     COUNTS,
     CREATING,
-    EVALUATIONS,
+    DQ,
     EVENT_KINDS,
     FLOOR_ACCELERATION,
     FRESH,
     FULL_CONTACT,
-    GIVEN,
-    GIVEN_FIRST,
     GROUND,
     GROUND_UPWARDS,
     INTERVAL,
     MOTION,
+    NEXT_DQ,
+    NEXT_Q,
+    NEXT_RATE,
+    NEXT_TILT,
     NO_POINT,
     OUT_COUNTS,
     OUT_CREATING,
-    OUT_EVALUATIONS,
     OUT_FLOORS,
     OUT_INTERVALS,
     OUT_MOTION,
     OUT_OUTCOME,
     OUT_PEAK,
     OUT_ROTATION,
+    OUT_STEPS,
     OUT_STORED,
     OUT_TIME,
     OUTCOME,
     PEAK,
     POINT,
-    POSITION,
     QUIET,
+    RAISE,
+    RATE,
     RUNNING,
     SIDE,
     STALE,
+    STATE,
+    STEP,
+    STEPS,
     STOREY_SHEAR,
     SURVIVED,
-    TAKEN,
-    TAKEN_FIRST,
+    TILT,
     UPLIFT,
     UPWARDS,
-    VELOCITY,
     WATCH,
+    Q,
 )
 from rpscli.physics.loading import begin, lean
 from rpscli.physics.parameters import (
@@ -78,8 +80,8 @@ from rpscli.physics.part import part, routine
 from rpscli.physics.peak import watch_peak
 from rpscli.physics.podium_layout import INITIAL_ROTATION
 from rpscli.physics.progress import store_sample
-from rpscli.physics.runge_kutta import step
-from rpscli.physics.standing import stand, to_floors
+from rpscli.physics.series import step
+from rpscli.physics.standing import from_modes, stand
 from rpscli.physics.switch import now
 from rpscli.physics.workspace import empty_lanes
 
@@ -136,15 +138,19 @@ def advance(lanes: Lanes, shape: Shape) -> None:
     b, s = lanes.buffer, lanes.numbers
     step(b, shape)
     search_events(b, shape)
-    for l in range(L):
-        if s[l, WATCH] > 0.0:
-            watch_peak(lane_of(lanes, l))
-    observe(b, shape)
-    take_over(b, shape)
     if len(shape.audit) > 0:
         for l in range(L):
             if s[l, QUIET] > 0.0:
-                book_energy(s[l], shape)
+                book_energy(lane_of(lanes, l), shape, 1.0)
+    observe(b, shape)
+    raised = 0.0
+    for l in range(L):
+        if s[l, WATCH] > 0.0:
+            watch_peak(lane_of(lanes, l))
+        raised += s[l, RAISE]
+    if raised > 0.0:
+        raise_floors(b, shape)
+    take_over(b, shape)
 
 
 @part
@@ -152,19 +158,18 @@ def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
     """Accelerations of one lane at its present state and time."""
     lane = lane_of(lanes, l)
     s, x = lane.numbers, lane.blocks
-    for c in range(x.shape[1]):
-        x[AHEAD, c], x[AHEAD_RATE, c] = x[POSITION, c], x[VELOCITY, c]
+    s[NEXT_TILT], s[NEXT_RATE] = s[TILT], s[RATE]
+    for r in range(x.shape[1]):
+        x[NEXT_Q, r], x[NEXT_DQ, r] = x[Q, r], x[DQ, r]
     accelerate(lanes.buffer, alone(shape), l, 0.0)
-    for c in range(x.shape[1]):
-        x[ACCELERATION, c] = x[AHEAD_ACCELERATION, c]
-    s[EVALUATIONS] += 1.0
-    s[GIVEN_FIRST], s[TAKEN_FIRST] = s[GIVEN], s[TAKEN]
+    for i in range(STATE):
+        s[TILT + i] = s[NEXT_TILT + i]
 
 
 @part
 def alone(shape: Shape) -> Shape:
     """The same sizes for one lane of many."""
-    return Shape(shape.floors, shape.stride, ((),), ((),), shape.audit, shape.dense)
+    return Shape(shape.floors, shape.stride, ((),), ((),), shape.audit)
 
 
 @part
@@ -184,25 +189,24 @@ def engage(
     """
     L = len(shape.stride)
     lane = lane_of(lanes, l)
-    s, x = lane.numbers, lane.blocks
+    s = lane.numbers
     while waiting < points.integers.shape[0]:
         begin(lanes, L, l, waiting, systems, points)
         waiting += 1
         rotation = lane.podium[INITIAL_ROTATION]
         if rotation != 0.0:
             lean(lane, rotation)
-            plan_step(s, x)
+            plan_step(s)
             return waiting
         store_sample(lane)
         s[GROUND], s[GROUND_UPWARDS] = s[ACROSS], s[UPWARDS]
         raise_contacts(lanes.buffer, L, l, 1.0, 0.0, 0.0, 0.0)
         if stand(lane, shape):
-            plan_step(s, x)
+            plan_step(s)
             return waiting
         finish(lane, results)
     lane.whole[POINT] = NO_POINT
-    s[STALE] = FRESH
-    set_step(s, x, 0.0)
+    s[STALE], s[STEP] = FRESH, 0.0
     return waiting
 
 
@@ -210,18 +214,18 @@ def engage(
 def finish(lane: Lane, results: Results) -> None:
     """Write what the history leaves behind."""
     s, x, whole = lane.numbers, lane.blocks, lane.whole
-    n = x.shape[1] - 1
+    n = x.shape[1]
     numbers, integers = results.numbers[whole[POINT]], results.integers[whole[POINT]]
     if whole[MOTION] == FULL_CONTACT:
-        to_floors(lane)
-        numbers[OUT_STORED] = building_energy(x, 0.0)
+        from_modes(lane)
+        numbers[OUT_STORED] = building_energy(lane, 0.0)
     else:
         numbers[OUT_STORED] = uplifted_energy(lane)
     if whole[OUTCOME] == RUNNING:
         moved = lane.podium[INITIAL_ROTATION] != 0.0 or whole[COUNTS + UPLIFT] > 0
         whole[OUTCOME] = SURVIVED if moved else AT_REST
     numbers[OUT_TIME] = now(lane)
-    numbers[OUT_ROTATION] = s[SIDE] * x[POSITION, 0]
+    numbers[OUT_ROTATION] = s[SIDE] * s[TILT]
     for i in range(OUT_FLOORS - OUT_PEAK):
         numbers[OUT_PEAK + i] = s[PEAK + i]
     for i in range(n):
@@ -229,7 +233,7 @@ def finish(lane: Lane, results: Results) -> None:
         numbers[OUT_FLOORS + n + i] = x[FLOOR_ACCELERATION, i]
     integers[OUT_OUTCOME], integers[OUT_MOTION] = whole[OUTCOME], whole[MOTION]
     integers[OUT_INTERVALS] = whole[INTERVAL]
-    integers[OUT_EVALUATIONS] = int(s[EVALUATIONS])
+    integers[OUT_STEPS] = int(s[STEPS])
     integers[OUT_CREATING] = whole[CREATING]
     for i in range(EVENT_KINDS):
         integers[OUT_COUNTS + i] = whole[COUNTS + i]

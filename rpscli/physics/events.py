@@ -32,6 +32,9 @@ SETTLED = 1e-9
 """A correction so small leaves its square, less than rounding; at a double root, which is not known
 any better, its like."""
 
+NEAR = 1e-3
+"""The same where the quintic itself is no better: what it interpolates is met from there."""
+
 DEEPEST_HALVING = 40
 """Pieces of 2^-40 of a step are below rounding: a contact of two roots there is one."""
 
@@ -83,8 +86,11 @@ def value(b: Quintic, t: float) -> float:
 
 
 @routine
-def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
-    """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE`; `piece` (6,) is scratch."""
+def first_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
+    """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE`.
+
+    Corrections of it end below `settled`; `piece` (6,) is scratch.
+    """
     if min(lower_hull(b), b[0]) >= 0.0:
         return NO_PASSAGE
     level, index = 0, 0
@@ -95,7 +101,7 @@ def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
         if leaving < 0:
             return index * width
         if changes == 1 or (changes > 1 and level == DEEPEST_HALVING):
-            return (index + descent_in(piece)) * width
+            return (index + descent_in(piece, settled)) * width
         if changes == 0:
             index += 1
             while index % 2 == 0 and level > 0:
@@ -140,7 +146,7 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
 
 
 @part
-def descent_in(piece: NDArray[np.float64]) -> float:
+def descent_in(piece: NDArray[np.float64], settled: float) -> float:
     """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
     low, high = 0.0, 1.0
@@ -155,7 +161,7 @@ def descent_in(piece: NDArray[np.float64]) -> float:
         better = t - f / fall if fall < 0.0 else -1.0
         if not low <= better <= high:
             better = 0.5 * (low + high)
-        if abs(better - t) <= SETTLED * t:
+        if abs(better - t) <= settled * t:
             return better
         t = better
     return t

@@ -10,13 +10,11 @@ from rpscli.physics.contact_layout import (
     MODAL_Q,
     SHAPES,
     SLOPE,
-    TOP_ACCELERATION,
-    TOP_SHEAR,
     WHOLE,
 )
 from rpscli.physics.jit import kernel
 from rpscli.physics.parameters import Block, Floats
-from rpscli.physics.standing_demands import forget, mark_samples, observe_floors
+from rpscli.physics.standing_demands import mark_samples, observe_floors
 
 
 @kernel
@@ -42,11 +40,10 @@ def integrate_fixed_base(
         (2, n): written with the largest storey shears k_i d_i [N] and absolute floor
         accelerations [m/s2].
     z, block
-        Its modal rows (23 + 2 n, n), and room for a block: see `contact_layout`.
+        Its modal rows (25 + 2 n, n), and room for a block: see `contact_layout`.
     """
     n, instants = samples.shape[1] // 2, samples.shape[0]
     fill_transition(z, dt, WHOLE)
-    forget(block)
     c = block.rows
     steps = COLUMNS - 1
     for first in range(0, instants, steps):
@@ -59,7 +56,7 @@ def integrate_fixed_base(
         march(block, z, WHOLE)
         last = min(steps, instants - first) - 1
         mark_samples(c, 0, last, 1)
-        observe_floors(block, z)
+        observe_floors(block, z, tops[0], tops[1])
         for k in range(last + 1):
             for i in range(n):
                 u, du = 0.0, 0.0
@@ -68,7 +65,3 @@ def integrate_fixed_base(
                     du += z[SHAPES + r, i] * block.modes[r, MODAL_DQ, k]
                 samples[first + k, i], samples[first + k, n + i] = u, du
         keep(block, z, steps)
-    for i in range(n):
-        for k in range(COLUMNS):
-            tops[0, i] = max(tops[0, i], block.tops[i, TOP_SHEAR, k])
-            tops[1, i] = max(tops[1, i], block.tops[i, TOP_ACCELERATION, k])

@@ -11,66 +11,74 @@ import math
 from rpscli.physics.events import Quintic, lower_hull, quintic, upper_hull
 from rpscli.physics.lanes import floor_count, lane_count
 from rpscli.physics.layout import (
-    ACCELERATION,
-    AHEAD,
-    AHEAD_ACCELERATION,
-    AHEAD_RATE,
     ARC,
     ATTEND,
-    BASE,
-    BASE_SHEAR,
     CAP_BEAM_MASS,
+    CLEARED,
     COLUMNS_MASS,
     CRITICAL_TIME,
     DIAMETER,
-    EVALUATIONS,
-    FLOOR_ACCELERATION,
+    DQ,
     FLOORS_MASS,
     FRICTION_BOTTOM,
     FRICTION_TOP,
     GROUND,
     GROUND_UPWARDS,
-    HEIGHT,
     HIGH,
     LEFT,
-    LEVER,
-    LOCATING,
     LOW,
+    NEXT_BASE_SHEAR,
+    NEXT_DQ,
+    NEXT_HEIGHT,
+    NEXT_LEVER,
+    NEXT_Q,
+    NEXT_RATE,
+    NEXT_TILT,
+    NEXT_TURN,
     NORMAL_BOTTOM,
     NORMAL_TOP,
     PEAK,
     PEAK_TIME,
-    POSITION,
+    PULL,
+    PULLED,
+    PULLED_REACH,
+    PULLED_WEIGHT,
     QUIET,
+    RAISE,
+    RATE,
     SCALARS,
     SEEN,
     SIDE,
     STANDARD_GRAVITY,
     START,
+    STATE,
     STEP,
-    STIFFNESS,
-    STOREY_SHEAR,
+    STEPS,
+    STRAIN,
+    STRAIN_REACH,
+    STRAIN_WEIGHT,
     THETA_CR,
+    TILT,
     TIME,
-    VELOCITY,
+    TURN,
     WATCH,
+    Q,
 )
 from rpscli.physics.parameters import Floats, Shape
 from rpscli.physics.part import lane_routine, part
-from rpscli.physics.runge_kutta import EVALUATIONS as EVALUATIONS_OF_A_STEP
 
 
 @part
-def tilt_path(b: Floats, n: int, L: int, l: int) -> Quintic:
+def tilt_path(b: Floats, L: int, l: int) -> Quintic:
     """The tilt of a lane over the step just taken."""
     return quintic(
         b[STEP * L + l],
-        b[(SCALARS + POSITION * (n + 1)) * L + l],
-        b[(SCALARS + VELOCITY * (n + 1)) * L + l],
-        b[(SCALARS + ACCELERATION * (n + 1)) * L + l],
-        b[(SCALARS + AHEAD * (n + 1)) * L + l],
-        b[(SCALARS + AHEAD_RATE * (n + 1)) * L + l],
-        b[(SCALARS + AHEAD_ACCELERATION * (n + 1)) * L + l],
+        b[TILT * L + l],
+        b[RATE * L + l],
+        b[TURN * L + l],
+        b[NEXT_TILT * L + l],
+        b[NEXT_RATE * L + l],
+        b[NEXT_TURN * L + l],
     )
 
 
@@ -82,19 +90,19 @@ def search_events(b: Floats, shape: Shape) -> None:
     where a quiet step ends at a sample of the record; and WATCH: 1 where a quiet step may hold the
     largest tilt so far inside, or passes theta_cr for the first time.
     """
-    n, L = floor_count(shape), len(shape.stride)
-    velocity, after = (SCALARS + VELOCITY * (n + 1)) * L, (SCALARS + AHEAD_RATE * (n + 1)) * L
+    L = len(shape.stride)
     for l in range(lane_count(shape)):
-        path = tilt_path(b, n, L, l)
+        path = tilt_path(b, L, l)
         lowest, highest = min(lower_hull(path), path[0]), max(upper_hull(path), path[0])
         inside = (lowest >= b[LOW * L + l]) & (highest <= b[HIGH * L + l])
-        cleared = (b[LOCATING * L + l] < 0.0) & (abs(path[5]) < math.inf)
-        quiet = cleared | ((b[LOCATING * L + l] == 0.0) & inside)
-        turning = (b[velocity + l] > 0.0) & (b[after + l] < 0.0) & (highest > b[PEAK * L + l])
+        cleared = (b[CLEARED * L + l] > 0.0) & (abs(path[5]) < math.inf)
+        quiet = cleared | inside
+        turning = (b[RATE * L + l] > 0.0) & (b[NEXT_RATE * L + l] < 0.0)
+        higher = turning & (highest > b[PEAK * L + l])
         passing = (path[5] > b[THETA_CR * L + l]) & (b[CRITICAL_TIME * L + l] < 0.0)
         b[QUIET * L + l] = 1.0 if quiet else 0.0
         b[SEEN * L + l] = 1.0 if quiet & (b[LEFT * L + l] == 1.0) else 0.0
-        b[WATCH * L + l] = 1.0 if quiet & (turning | passing) else 0.0
+        b[WATCH * L + l] = 1.0 if quiet & (higher | passing) else 0.0
 
 
 @part
@@ -142,36 +150,33 @@ def friction(shear: float, normal: float) -> float:
 def observe(b: Floats, shape: Shape) -> None:
     """Raise the demands of lanes whose quiet step ends at a sample of the record.
 
-    The largest tilt is that of every step; `peak` sees to those that hold it inside.
+    The largest tilt is that of every step; `peak` sees to those that hold it inside. For storey
+    shears and floor accelerations see `floor_demands`: RAISE becomes 1 where any may be raised.
     """
     n, L = floor_count(shape), len(shape.stride)
-    rows = (n + 1) * L
-    block = SCALARS * L
-    for i in range(n):
-        here = block + AHEAD * rows + (i + 1) * L
-        below = here - L if i > 0 else BASE * L
-        k, shears = block + STIFFNESS * rows + i * L, block + STOREY_SHEAR * rows + i * L
-        for l in range(lane_count(shape)):
-            shear = b[SEEN * L + l] * abs(b[k + l] * (b[here + l] - b[below + l]))
-            b[shears + l] = max(b[shears + l], shear)
-        acceleration = block + AHEAD_ACCELERATION * rows + (i + 1) * L
-        tops = block + FLOOR_ACCELERATION * rows + i * L
-        for l in range(lane_count(shape)):
-            absolute = b[SEEN * L + l] * abs(b[acceleration + l] + b[GROUND * L + l])
-            b[tops + l] = max(b[tops + l], absolute)
-    velocity = block + AHEAD_RATE * rows
-    tilting = block + AHEAD_ACCELERATION * rows
     for l in range(lane_count(shape)):
-        rate, acceleration = b[velocity + l], b[tilting + l]
-        B, C, c = b[LEVER * L + l], b[HEIGHT * L + l], b[ARC * L + l]
-        across = b[SIDE * L + l] * b[DIAMETER * L + l] * (C * acceleration + B * (rate * rate))
-        upwards = b[DIAMETER * L + l] * (B * acceleration + (c - C) * (rate * rate))
-        raise_contacts(b, L, l, b[SEEN * L + l], across, upwards, b[BASE_SHEAR * L + l])
-    tilt = block + AHEAD * rows
+        b[STRAIN * L + l], b[PULLED * L + l] = 0.0, 0.0
+    for r in range(n):
+        row = (SCALARS + r) * L
+        for l in range(lane_count(shape)):
+            q, pull = b[row + NEXT_Q * n * L + l], b[row + PULL * n * L + l]
+            b[STRAIN * L + l] += b[row + STRAIN_WEIGHT * n * L + l] * (q * q)
+            b[PULLED * L + l] += b[row + PULLED_WEIGHT * n * L + l] * (pull * pull)
     for l in range(lane_count(shape)):
-        higher = (b[QUIET * L + l] > b[WATCH * L + l]) & (b[tilt + l] > b[PEAK * L + l])
+        strained = b[STRAIN * L + l] > b[STRAIN_REACH * L + l]
+        pulled = b[PULLED * L + l] > b[PULLED_REACH * L + l]
+        b[RAISE * L + l] = b[SEEN * L + l] if strained | pulled else 0.0
+    for l in range(lane_count(shape)):
+        rate, turn = b[NEXT_RATE * L + l], b[NEXT_TURN * L + l]
+        B, C, c = b[NEXT_LEVER * L + l], b[NEXT_HEIGHT * L + l], b[ARC * L + l]
+        across = b[SIDE * L + l] * b[DIAMETER * L + l] * (C * turn + B * (rate * rate))
+        upwards = b[DIAMETER * L + l] * (B * turn + (c - C) * (rate * rate))
+        raise_contacts(b, L, l, b[SEEN * L + l], across, upwards, b[NEXT_BASE_SHEAR * L + l])
+    for l in range(lane_count(shape)):
+        tilt = b[NEXT_TILT * L + l]
+        higher = (b[QUIET * L + l] > b[WATCH * L + l]) & (tilt > b[PEAK * L + l])
         time = b[START * L + l] + (b[TIME * L + l] + b[STEP * L + l])
-        b[PEAK * L + l] = b[tilt + l] if higher else b[PEAK * L + l]
+        b[PEAK * L + l] = tilt if higher else b[PEAK * L + l]
         b[PEAK_TIME * L + l] = time if higher else b[PEAK_TIME * L + l]
 
 
@@ -232,27 +237,28 @@ def raise_contacts(
 @lane_routine
 def take_over(b: Floats, shape: Shape) -> None:
     """Make the end of a quiet step the state of its lane."""
-    L = len(shape.stride)
-    keep_end(b, shape, POSITION, AHEAD)
-    keep_end(b, shape, VELOCITY, AHEAD_RATE)
-    keep_end(b, shape, ACCELERATION, AHEAD_ACCELERATION)
+    n, L = floor_count(shape), len(shape.stride)
+    for i in range(STATE):
+        keep_end(b, shape, TILT + i, NEXT_TILT + i)
+    for r in range(n):
+        keep_end(b, shape, SCALARS + Q * n + r, SCALARS + NEXT_Q * n + r)
+    for r in range(n):
+        keep_end(b, shape, SCALARS + DQ * n + r, SCALARS + NEXT_DQ * n + r)
     for l in range(lane_count(shape)):
         quiet = b[QUIET * L + l] > 0.0
         b[TIME * L + l] += b[STEP * L + l] if quiet else 0.0
         left = b[LEFT * L + l] - (1.0 if quiet else 0.0)
         b[LEFT * L + l] = left
         b[ATTEND * L + l] = 0.0 if quiet & (left > 0.0) else 1.0
-        b[LOCATING * L + l] = 0.0 if quiet else b[LOCATING * L + l]
-        b[EVALUATIONS * L + l] += EVALUATIONS_OF_A_STEP
+        b[CLEARED * L + l] = 0.0
+        b[STEPS * L + l] += 1.0
 
 
 @part
-def keep_end(b: Floats, shape: Shape, state: int, ahead: int) -> None:
-    """Copy a block of the step's end to one of its start."""
-    n, L = floor_count(shape), len(shape.stride)
-    start, end = (SCALARS + state * (n + 1)) * L, (SCALARS + ahead * (n + 1)) * L
-    for c in range(n + 1):
-        for l in range(lane_count(shape)):
-            # Adding zero keeps the compiler from choosing between addresses, lane by lane.
-            old, new = b[start + c * L + l], b[end + c * L + l] + 0.0
-            b[start + c * L + l] = new if b[QUIET * L + l] > 0.0 else old
+def keep_end(b: Floats, shape: Shape, state: int, end: int) -> None:
+    """Copy a row of the step's end to that of its start."""
+    L = len(shape.stride)
+    for l in range(lane_count(shape)):
+        # Adding zero keeps the compiler from choosing between addresses, lane by lane.
+        old, new = b[state * L + l], b[end * L + l] + 0.0
+        b[state * L + l] = new if b[QUIET * L + l] > 0.0 else old

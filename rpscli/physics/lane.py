@@ -15,7 +15,7 @@ from rpscli.physics.part import part
 class Lane(NamedTuple):
     """A lane: entry l of the arrays of `Lanes`, and what all lanes share.
 
-    `numbers` (rows,) and `blocks` (blocks, n + 1) are indexed by `layout`, `whole` by its whole
+    `numbers` (rows,) and `blocks` (blocks, n) are indexed by `layout`, `whole` by its whole
     numbers, `podium` by `podium_layout`, `modes` (rows, n) and `block` by `contact_layout`.
     """
 

@@ -3,10 +3,13 @@
 The motion of all lanes lives in one flat buffer: entry ``row * L + l`` belongs to lane l of L. One
 buffer with rows at offsets that the compiler knows is what lets it see that rows never overlap, so
 that a loop over lanes becomes one vector instruction. Rows 0 to SCALARS - 1 hold one number a lane;
-then come blocks of n + 1 rows, the tilt or the ground storey first, then the floors.
+then come blocks of n rows, one for each mode of the fixed base or for each floor.
 """
 
 from __future__ import annotations
+
+ORDER = 7
+"""Highest term of the Taylor series of the velocities; those of the positions have one more."""
 
 (
     # Constants of the structure, loaded with a history.
@@ -17,7 +20,6 @@ from __future__ import annotations
     WEIGHT,  # (1 + 2 gamma + 2 gamma eta)/R
     PUSH,  # (1 + 2 gamma)/R
     SHEAR,  # 2/(N m_c R)
-    DRAG,  # a0
     COLUMNS_MASS,  # N m_c
     CAP_BEAM_MASS,  # m_b
     FLOORS_MASS,  # M_tot
@@ -44,29 +46,42 @@ from __future__ import annotations
     STEP,
     LEFT,  # steps left in the interval
     INTERVAL_LENGTH,
+    PER_INTERVAL,  # 1 over it
     FLIGHT_STEP,
     FLIGHT_STEPS,  # steps in a whole interval
     CONTACT_STEP,
     CONTACT_STEPS,
-    # Written by each evaluation of the accelerations.
-    BASE,
-    BASE_RATE,
+    # The storey at the start of the step: x, x', x'', and what x'' was made of.
+    TILT,
+    RATE,
+    TURN,
     LEVER,
     HEIGHT,
     PER_INERTIA,
-    RESTORING,
     BASE_SHEAR,
-    MOMENTUM,
-    DRIVE,  # what accelerates every floor alike: -a_g + a0 u_b'
-    GROUND,
+    # The same at the end of the step.
+    NEXT_TILT,
+    NEXT_RATE,
+    NEXT_TURN,
+    NEXT_LEVER,
+    NEXT_HEIGHT,
+    NEXT_PER_INERTIA,
+    NEXT_BASE_SHEAR,
+    GROUND,  # a_g and g + a_v at the end of the step
     GROUND_UPWARDS,
+    FORCING,  # of the present order: acceleration of the cap beam
+    STRAIN,  # weighted squares of modal displacements and pulls at the end of the step, and
+    STRAIN_REACH,  # how large they may be without raising a storey shear,
+    PULLED,
+    PULLED_REACH,  # or a floor acceleration
+    STOREY,  # shear and pull of the floor that is looked at
+    FLOOR,
     # State of the step.
-    LOCATING,  # 0 cruising, > 0 re-steps done towards an event, -1 false alarm cleared
-    LEVEL,  # tilt of the event that is being located
-    LONGEST,  # length of the step in which the event was seen
+    CLEARED,  # 1 if it was looked at closely and holds no event
     QUIET,  # 1 if the step holds no event
     SEEN,  # 1 if a quiet step ends at a sample of the record
     WATCH,  # 1 if it may hold the largest tilt inside, or pass theta_cr for the first time
+    RAISE,  # 1 if what is seen may raise a storey shear or a floor acceleration
     ATTEND,  # 1 if the step ends at a sample or holds an event
     STALE,  # accelerations must be computed anew; if so, why: see `FRESH`
     # Running totals and extremes, in the order of the results; times that never came are negative.
@@ -81,34 +96,42 @@ from __future__ import annotations
     DAMPED,
     LOST,
     CREATED,
-    EVALUATIONS,
-    # Energy flows: at the present stage, at the start of the step, and their mean over the step.
-    GIVEN,
-    TAKEN,
-    GIVEN_FIRST,
-    TAKEN_FIRST,
-    GIVEN_MEAN,
-    TAKEN_MEAN,
-    SCALARS,  # how many they are
-) = range(73)
+    STEPS,
+    # Taylor coefficients over the step, ORDER + 1 each.
+    RATES,  # of x'
+) = range(78)
+TERMS = ORDER + 1
+STATE = NEXT_TILT - TILT
+LEVERS = RATES + TERMS  # of B
+HEIGHTS = LEVERS + TERMS  # of C
+INERTIAS = HEIGHTS + TERMS  # of A
+ACTIONS = INERTIAS + TERMS  # of s (a_g/R (1 + 2 gamma) - 2 V/(N m_c R))
+SCALARS = ACTIONS + TERMS
 
 (
-    STIFFNESS,
-    DAMPING,  # a1 times stiffness
-    MASS,
-    INVERSE_MASS,
-    FORCE,  # of each storey, and 0 above the roof
+    SQUARE,  # w^2
+    DRAG,  # 2 xi w
+    PARTICIPATION,
+    STRAIN_WEIGHT,  # of a squared displacement in STRAIN, and of a squared pull in PULLED
+    PULLED_WEIGHT,
+    STRAIN_BOUND,  # of a storey: its squared shear times this is at most STRAIN
+    PULLED_BOUND,  # of a floor: its squared acceleration times this is at most PULLED
     STOREY_SHEAR,  # largest elastic one so far
     FLOOR_ACCELERATION,  # largest absolute one so far
-    STEPS,  # the step length, once for each coordinate: see `runge_kutta`
-    AHEAD,  # positions, velocities and accelerations of the present stage of a step, and at last
-    AHEAD_RATE,  # of its end
-    AHEAD_ACCELERATION,
-    POSITION,  # the state at the start of the step
-    VELOCITY,  # 6 blocks, one a stage that is needed again; the first is the state's
-) = range(13)
-ACCELERATION = VELOCITY + 6
-BLOCKS = ACCELERATION + 6
+    Q,  # modal displacements at the start of the step, relative to the cap beam
+    PULL,  # w^2 q + 2 xi w q' of the present order, and at last of the end
+    NEXT_Q,  # at the end of the step
+    NEXT_DQ,
+    DQ,  # Taylor coefficients of the modal velocities, ORDER + 1 blocks
+) = range(14)
+BLOCKS = DQ + TERMS
+"""Then come n blocks, mode shapes, and another n, storey shears of each mode."""
+
+
+def rows(floors: int) -> int:
+    """How many rows there are."""
+    return SCALARS + (BLOCKS + 2 * floors) * floors
+
 
 # Whole numbers of a lane.
 (
@@ -120,11 +143,10 @@ BLOCKS = ACCELERATION + 6
     INTERVALS,
     MOTION,
     OUTCOME,
-    EVENT,  # kind of the event that is being located
     STALLED,
     CREATING,  # impacts that created energy
     COUNTS,  # 7 counts of events follow
-) = range(12)
+) = range(11)
 
 # Why the accelerations of a lane are stale.
 FRESH = 0.0
@@ -187,7 +209,7 @@ LOG_COLUMNS = 6
 ) = range(15)
 
 # Columns of the whole numbers of a result; the event counts follow.
-OUT_OUTCOME, OUT_MOTION, OUT_INTERVALS, OUT_EVALUATIONS, OUT_CREATING, OUT_COUNTS = range(6)
+OUT_OUTCOME, OUT_MOTION, OUT_INTERVALS, OUT_STEPS, OUT_CREATING, OUT_COUNTS = range(6)
 OUT_WHOLE_NUMBERS = OUT_COUNTS + EVENT_KINDS
 
 # How a history ended; it has not while RUNNING.

@@ -21,8 +21,8 @@ from rpscli.physics.layout import (
     NPTS,
     OUTCOME,
     PEAK,
+    PER_INTERVAL,
     POINT,
-    POSITION,
     RECORD,
     ROCKING,
     ROLLING,
@@ -30,6 +30,7 @@ from rpscli.physics.layout import (
     SCALE,
     SIDE,
     STALE,
+    TILT,
     VERTICAL,
     WHOLE_NUMBERS,
 )
@@ -62,6 +63,7 @@ def begin(lanes: Lanes, L: int, l: int, point: int, systems: Systems, points: Po
     whole[NPTS] = history[given.NPTS]
     whole[INTERVALS] = history[given.NPTS] - 1 + free
     s[SCALE], s[INTERVAL_LENGTH] = points.numbers[point, given.SCALE], dt
+    s[PER_INTERVAL] = 1.0 / dt
     steps = max(math.ceil(dt * p[FLIGHT_RATE]), 1)
     s[FLIGHT_STEP], s[FLIGHT_STEPS] = dt / steps, steps
     steps = max(math.ceil(dt * p[CONTACT_RATE]), 1)
@@ -75,5 +77,5 @@ def lean(lane: Lane, rotation: float) -> None:
     """Start from rest at a rotation, the building unstrained."""
     s, tilt = lane.numbers, abs(rotation)
     s[SIDE], s[PEAK], s[STALE] = math.copysign(1.0, rotation), tilt, LEANING
-    lane.blocks[POSITION, 0] = tilt
+    s[TILT] = tilt
     enter_phase(lane, ROLLING if tilt < lane.podium[BETA] else ROCKING)

@@ -37,8 +37,6 @@ class Podium(NamedTuple):
     gravity: float
     restitution: float
     floors_jump: float
-    a0: float
-    a1: float
     flight_rate: float
     contact_rate: float
     recontact_tolerance: float
@@ -58,14 +56,14 @@ def podium_numbers(podium: Podium) -> list[float]:
 
 
 class Systems(NamedTuple):
-    """Structures of the same number of floors n and kind of damping, stacked along the first axis.
+    """Structures of the same number of floors n, stacked along the first axis.
 
     podium
-        (S, 34): a row of `podium_numbers` each.
+        (S, 32): a row of `podium_numbers` each.
     column
         (S, rows): what stands in the buffer of a lane before a history, see `layout`.
     modes
-        (S, 23 + 2 n, n): what stands in its modal rows, see `contact_layout`.
+        (S, 25 + 2 n, n): what stands in its modal rows, see `contact_layout`.
     """
 
     podium: Floats
@@ -125,8 +123,6 @@ class Shape(NamedTuple):
         Not empty: one lane of several moves by itself.
     audit
         Not empty: integrate the energy flows.
-    dense
-        Not empty: damping matrices are given.
     """
 
     floors: Size
@@ -134,26 +130,24 @@ class Shape(NamedTuple):
     lanes: Count
     alone: Count
     audit: Count
-    dense: Size
 
 
 class Block(NamedTuple):
     """What is known of the instants of a block of steps in full contact, see `contact`.
 
-    `rows` is flat: entry ``row * COLUMNS + k``. `modes` (n, 3, COLUMNS) and `tops`
-    (n, 2, COLUMNS) hold the rows of modes and floors.
+    `rows` is flat: entry ``row * COLUMNS + k``. `modes` (n, 3, COLUMNS) holds the
+    rows of modes.
     """
 
     rows: Floats
     modes: Floats
-    tops: Floats
 
 
 class Lanes(NamedTuple):
     """Everything that histories need while they run, lane by lane: see `layout` and `contact`.
 
-    `numbers` (L, rows) and `blocks` (L, blocks, n + 1) are views of the flat `buffer`. `podium`
-    (L, 34) are the numbers of `Podium`, `modes` (L, 23 + 2 n, n) the modal rows of full contact;
+    `numbers` (L, rows) and `blocks` (L, blocks, n) are views of the flat `buffer`. `podium`
+    (L, 32) are the numbers of `Podium`, `modes` (L, 25 + 2 n, n) the modal rows of full contact;
     its `block` and `piece` (6,) are scratch; `acceleration` holds all records end to end, linear
     between samples; the samples and the log are those of `Results`.
     """

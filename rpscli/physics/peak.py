@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rpscli.physics.events import (
+    SETTLED,
     Quintic,
     first_descent,
     offset,
@@ -13,21 +14,21 @@ from rpscli.physics.events import (
 )
 from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
-    ACCELERATION,
-    AHEAD,
-    AHEAD_ACCELERATION,
-    AHEAD_RATE,
     CRITICAL_PASSAGE,
     CRITICAL_TIME,
+    NEXT_RATE,
+    NEXT_TILT,
+    NEXT_TURN,
     PEAK,
     PEAK_TIME,
-    POSITION,
+    RATE,
     SIDE,
     START,
     STEP,
     THETA_CR,
+    TILT,
     TIME,
-    VELOCITY,
+    TURN,
 )
 from rpscli.physics.parameters import Floats
 from rpscli.physics.part import part, routine
@@ -51,26 +52,18 @@ def crest(path: Quintic) -> tuple[float, float]:
 
 
 @part
-def tilt_of(s: Floats, x: Floats) -> Quintic:
-    """The tilt of a lane over the step just taken, from its numbers and blocks."""
-    return quintic(
-        s[STEP],
-        x[POSITION, 0],
-        x[VELOCITY, 0],
-        x[ACCELERATION, 0],
-        x[AHEAD, 0],
-        x[AHEAD_RATE, 0],
-        x[AHEAD_ACCELERATION, 0],
-    )
+def tilt_of(s: Floats) -> Quintic:
+    """The tilt of a lane over the step just taken, from its numbers."""
+    return quintic(s[STEP], s[TILT], s[RATE], s[TURN], s[NEXT_TILT], s[NEXT_RATE], s[NEXT_TURN])
 
 
 @routine
 def watch_peak(lane: Lane) -> None:
     """Raise the largest tilt by that of the step just taken, turning points included."""
-    s, x = lane.numbers, lane.blocks
-    height, fraction = x[AHEAD, 0], 1.0
-    path = tilt_of(s, x)
-    if x[VELOCITY, 0] > 0.0 and x[AHEAD_RATE, 0] < 0.0 and upper_hull(path) > s[PEAK]:
+    s = lane.numbers
+    height, fraction = s[NEXT_TILT], 1.0
+    path = tilt_of(s)
+    if s[RATE] > 0.0 and s[NEXT_RATE] < 0.0 and upper_hull(path) > s[PEAK]:
         fraction, height = crest(path)
     if height > s[PEAK]:
         s[PEAK] = height
@@ -84,7 +77,7 @@ def note_critical_passage(lane: Lane, path: Quintic) -> None:
     """Note when theta_cr was passed for the first time, within the step just taken."""
     s = lane.numbers
     level, h, side = s[THETA_CR], s[STEP], s[SIDE]
-    t = min(first_descent(offset(path, -1.0, level), lane.piece), 1.0)
+    t = min(first_descent(offset(path, -1.0, level), SETTLED, lane.piece), 1.0)
     rate = side * slope(path, t) / h if h > 0.0 else 0.0
     s[CRITICAL_TIME] = now(lane) + t * h
     note(lane, s[CRITICAL_TIME], CRITICAL_PASSAGE, side * level, rate, rate, 0.0)

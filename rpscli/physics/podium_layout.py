@@ -14,8 +14,6 @@ ROLLING_PHASE, ROCKING_PHASE = 5, 10  # the five numbers of a `geometry.Phase` e
     GRAVITY,
     RESTITUTION,
     FLOORS_JUMP,
-    A0,
-    A1,
     FLIGHT_RATE,
     CONTACT_RATE,
     RECONTACT_TOLERANCE,
@@ -25,4 +23,4 @@ ROLLING_PHASE, ROCKING_PHASE = 5, 10  # the five numbers of a `geometry.Phase` e
     FREE_VIBRATION,
     UNTIL_REST,
     PODIUM_NUMBERS,  # how many they are
-) = range(15, 35)
+) = range(15, 33)

@@ -18,6 +18,7 @@ from rpscli.physics.layout import (
     INTERVAL,
     INTERVAL_LENGTH,
     NPTS,
+    PER_INTERVAL,
     RECORD,
     SCALE,
     STANDARD_GRAVITY,
@@ -47,7 +48,7 @@ def shaking_in(lane: Lane, interval: int) -> Shaking:
     gravity, scale = s[STANDARD_GRAVITY], s[SCALE]
     if interval + 1 >= whole[NPTS]:
         return Shaking(0.0, 0.0, gravity, 0.0)
-    per_time = 1.0 / s[INTERVAL_LENGTH]
+    per_time = s[PER_INTERVAL]
     i = whole[RECORD] + interval
     across, end = scale * record[i], scale * record[i + 1]
     slope = (end - across) * per_time

@@ -5,37 +5,40 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from rpscli.physics import contact_layout
 from rpscli.physics.contact import energies, fill_transition, keep, march
 from rpscli.physics.contact_layout import (
     ALARM,
     AT,
     COLUMNS,
-    DQ,
     GIVEN,
     PART,
     PUSH_BEND,
-    SHAPES,
     SLOPE,
     TAKEN,
     WHOLE,
-    Q,
 )
 from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
     CONTACT_STEP,
     CONTACT_STEPS,
     DAMPED,
+    DQ,
     FAILED_NOT_FINITE,
+    FLOOR_ACCELERATION,
     INPUT,
     INTERVAL,
     INTERVAL_LENGTH,
     INTERVALS,
-    MASS,
     NPTS,
     OUTCOME,
-    POSITION,
+    PULLED_REACH,
+    RATE,
+    STOREY_SHEAR,
+    STRAIN_REACH,
+    TILT,
     TIME,
-    VELOCITY,
+    Q,
 )
 from rpscli.physics.parameters import Shape
 from rpscli.physics.part import part, routine
@@ -45,8 +48,10 @@ from rpscli.physics.standing_demands import (
     forget,
     hand_over,
     mark_samples,
+    may_raise,
     observe_contacts,
     observe_floors,
+    set_reach,
 )
 from rpscli.physics.switch import lift_off
 from rpscli.physics.uplift_search import first_uplift, locate_uplift, raise_alarms, stance_of
@@ -54,29 +59,19 @@ from rpscli.physics.uplift_search import first_uplift, locate_uplift, raise_alar
 
 @part
 def to_modes(lane: Lane) -> None:
-    """Modal state of the floors: Phi^T M u."""
+    """Begin full contact with the modes as they are."""
     x, z = lane.blocks, lane.modes
-    n = z.shape[1]
-    for r in range(n):
-        q, dq = 0.0, 0.0
-        for i in range(n):
-            weight = z[SHAPES + r, i] * x[MASS, i]
-            q += weight * x[POSITION, i + 1]
-            dq += weight * x[VELOCITY, i + 1]
-        z[Q, r], z[DQ, r] = q, dq
+    for r in range(z.shape[1]):
+        z[contact_layout.Q, r], z[contact_layout.DQ, r] = x[Q, r], x[DQ, r]
 
 
-@routine
-def to_floors(lane: Lane) -> None:
-    """Floors of the modal state: Phi q; the storey does not tilt."""
-    x, z = lane.blocks, lane.modes
-    n = z.shape[1]
-    for c in range(n + 1):
-        x[POSITION, c], x[VELOCITY, c] = 0.0, 0.0
-    for r in range(n):
-        for i in range(n):
-            x[POSITION, i + 1] += z[SHAPES + r, i] * z[Q, r]
-            x[VELOCITY, i + 1] += z[SHAPES + r, i] * z[DQ, r]
+@part
+def from_modes(lane: Lane) -> None:
+    """Take the modes over from full contact; the storey does not tilt."""
+    s, x, z = lane.numbers, lane.blocks, lane.modes
+    s[TILT], s[RATE] = 0.0, 0.0
+    for r in range(z.shape[1]):
+        x[Q, r], x[DQ, r] = z[contact_layout.Q, r], z[contact_layout.DQ, r]
 
 
 class Plan(NamedTuple):
@@ -137,12 +132,10 @@ def take_steps(lane: Lane, shape: Shape, plan: Plan, taken: int) -> bool:
             s[DAMPED] += c[TAKEN * COLUMNS + k - 1]
         if lane.samples.shape[0] > 0 and k % plan.each == 0:
             keep(block, z, k)
-            to_floors(lane)
+            from_modes(lane)
             whole[INTERVAL] = first + k // plan.each
             store_sample(lane)
     keep(block, z, taken)
-    if first + passed >= whole[NPTS]:
-        hand_over(lane)  # the end of the free vibration depends on the demands so far
     if passed == 0:
         s[TIME] = time + taken * plan.h
         return False
@@ -164,14 +157,14 @@ def uplift(lane: Lane, shape: Shape, at: int, h: float, side: float) -> None:
         s[DAMPED] += c[TAKEN * COLUMNS]
     keep(block, z, 1)
     s[TIME] += h
-    to_floors(lane)
+    from_modes(lane)
     lift_off(lane, side)
 
 
 @routine
 def stand(lane: Lane, shape: Shape) -> bool:
     """Follow a lane in full contact; True if it uplifts, False if its history is over."""
-    z, block, c = lane.modes, lane.block, lane.block.rows
+    x, z, block, c = lane.blocks, lane.modes, lane.block, lane.block.rows
     stance = stance_of(lane)
     forget(block)
     side, over, fine = 0.0, False, False
@@ -189,7 +182,9 @@ def stand(lane: Lane, shape: Shape) -> bool:
             if not alarm:
                 taken += 1
         mark_samples(c, plan.each, taken, plan.each)
-        observe_floors(block, z)
+        if may_raise(c, lane.numbers[STRAIN_REACH], lane.numbers[PULLED_REACH]):
+            observe_floors(block, z, x[STOREY_SHEAR], x[FLOOR_ACCELERATION])
+            set_reach(lane)
         observe_contacts(c, lane.numbers)
         if not math.isfinite(c[PUSH_BEND * COLUMNS + taken]):
             lane.whole[OUTCOME] = FAILED_NOT_FINITE

@@ -14,14 +14,15 @@ from rpscli.physics.contact_layout import (
     NORMAL_BOTTOMS,
     NORMAL_TOPS,
     PULL,
+    PULLED,
     PUSH,
     RISE,
     SEEN,
     SHAPES,
     SHEAR,
-    TOP_ACCELERATION,
-    TOP_SHEAR,
+    STRAIN,
 )
+from rpscli.physics.floor_demands import SURELY
 from rpscli.physics.inspection import contact_measures
 from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
@@ -33,8 +34,12 @@ from rpscli.physics.layout import (
     FRICTION_TOP,
     NORMAL_BOTTOM,
     NORMAL_TOP,
+    PULLED_BOUND,
+    PULLED_REACH,
     STANDARD_GRAVITY,
     STOREY_SHEAR,
+    STRAIN_BOUND,
+    STRAIN_REACH,
 )
 from rpscli.physics.parameters import Block, Floats
 from rpscli.physics.part import lane_routine, part, routine
@@ -47,9 +52,6 @@ def forget(block: Block) -> None:
     for k in range(COLUMNS):
         c[FRICTION_TOPS * COLUMNS + k], c[FRICTION_BOTTOMS * COLUMNS + k] = 0.0, 0.0
         c[NORMAL_TOPS * COLUMNS + k], c[NORMAL_BOTTOMS * COLUMNS + k] = math.inf, math.inf
-    for i in range(block.tops.shape[0]):
-        for k in range(COLUMNS):
-            block.tops[i, TOP_SHEAR, k], block.tops[i, TOP_ACCELERATION, k] = 0.0, 0.0
 
 
 @part
@@ -61,9 +63,31 @@ def mark_samples(c: Floats, first: int, last: int, each: int) -> None:
         c[SEEN * COLUMNS + k] = 1.0
 
 
+@part
+def set_reach(lane: Lane) -> None:
+    """Note what no storey and no floor has reached yet, see `floor_demands`."""
+    s, x = lane.numbers, lane.blocks
+    strain, pulled = math.inf, math.inf
+    for i in range(x.shape[1]):
+        shear, top = x[STOREY_SHEAR, i], x[FLOOR_ACCELERATION, i]
+        strain = min(strain, SURELY * (shear * shear) * x[STRAIN_BOUND, i])
+        pulled = min(pulled, SURELY * (top * top) * x[PULLED_BOUND, i])
+    s[STRAIN_REACH], s[PULLED_REACH] = strain, pulled
+
+
+@lane_routine
+def may_raise(c: Floats, strain: float, pulled: float) -> bool:
+    """Whether a sample is strained or pulled by more than that, see `floor_demands`."""
+    found = 0
+    for k in range(COLUMNS):
+        more = (c[STRAIN * COLUMNS + k] > strain) | (c[PULLED * COLUMNS + k] > pulled)
+        found |= 1 if more & (c[SEEN * COLUMNS + k] > 0.0) else 0
+    return found > 0
+
+
 @routine
-def observe_floors(block: Block, z: Floats) -> None:
-    """Raise the largest storey shears and absolute floor accelerations, column by column."""
+def observe_floors(block: Block, z: Floats, shears: Floats, accelerations: Floats) -> None:
+    """Raise the largest storey shears and absolute floor accelerations (n,)."""
     c, n = block.rows, z.shape[1]
     threes = n - n % 3
     for i in range(n):
@@ -77,13 +101,23 @@ def observe_floors(block: Block, z: Floats) -> None:
             for k in range(COLUMNS):
                 c[SHEAR * COLUMNS + k] += shear * qs[k]
                 c[PULL * COLUMNS + k] += shape * pulls[k]
-        shears, accelerations = block.tops[i, TOP_SHEAR], block.tops[i, TOP_ACCELERATION]
-        for k in range(COLUMNS):
-            shear = c[SEEN * COLUMNS + k] * abs(c[SHEAR * COLUMNS + k])
-            shears[k] = max(shears[k], shear)
-        for k in range(COLUMNS):
-            pull = c[SEEN * COLUMNS + k] * abs(c[PULL * COLUMNS + k])
-            accelerations[k] = max(accelerations[k], pull)
+        shears[i] = max(shears[i], largest_seen(c, SHEAR))
+        accelerations[i] = max(accelerations[i], largest_seen(c, PULL))
+
+
+@part
+def largest_seen(c: Floats, row: int) -> float:
+    """Largest absolute value of a row at samples; overwrites the row."""
+    for k in range(COLUMNS):
+        c[row * COLUMNS + k] = c[SEEN * COLUMNS + k] * abs(c[row * COLUMNS + k])
+    half = COLUMNS // 2  # halved so that the compiler compares vectors
+    while half >= 4:
+        for k in range(half):
+            one, other = c[row * COLUMNS + k], c[row * COLUMNS + half + k]
+            c[row * COLUMNS + k] = max(one, other)
+        half //= 2
+    first = row * COLUMNS
+    return float(max(c[first], c[first + 1], c[first + 2], c[first + 3]))
 
 
 @part
@@ -131,14 +165,9 @@ def observe_contacts(c: Floats, s: Floats) -> None:
 @routine
 def hand_over(lane: Lane) -> None:
     """End a time in full contact: raise the demands of the lane by its own."""
-    s, x, c, tops = lane.numbers, lane.blocks, lane.block.rows, lane.block.tops
+    s, c = lane.numbers, lane.block.rows
     for k in range(COLUMNS):
         s[FRICTION_TOP] = max(s[FRICTION_TOP], c[FRICTION_TOPS * COLUMNS + k])
         s[FRICTION_BOTTOM] = max(s[FRICTION_BOTTOM], c[FRICTION_BOTTOMS * COLUMNS + k])
         s[NORMAL_TOP] = min(s[NORMAL_TOP], c[NORMAL_TOPS * COLUMNS + k])
         s[NORMAL_BOTTOM] = min(s[NORMAL_BOTTOM], c[NORMAL_BOTTOMS * COLUMNS + k])
-    for i in range(tops.shape[0]):
-        for k in range(COLUMNS):
-            x[STOREY_SHEAR, i] = max(x[STOREY_SHEAR, i], tops[i, TOP_SHEAR, k])
-            acceleration = max(x[FLOOR_ACCELERATION, i], tops[i, TOP_ACCELERATION, k])
-            x[FLOOR_ACCELERATION, i] = acceleration

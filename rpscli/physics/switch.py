@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.energy import building_energy, uplifted_energy
+from rpscli.physics.energy import relative_momentum, tilting_energy
 from rpscli.physics.lane import Lane
 from rpscli.physics.layout import (
-    ACCELERATION,
+    ARC,
     ARM_COS,
+    ARM_SIN,
     COUNTS,
     CREATED,
     CREATING,
+    DQ,
     EVENT_KINDS,
+    FLOORS_MASS,
     FULL_CONTACT,
     HIGH,
     IMPACT,
@@ -28,7 +31,8 @@ from rpscli.physics.layout import (
     LOW,
     MOTION,
     OVERTURNING,
-    POSITION,
+    PARTICIPATION,
+    RATE,
     RECONTACT,
     ROCKING,
     ROCKING_TO_ROLLING,
@@ -37,11 +41,12 @@ from rpscli.physics.layout import (
     SIDE,
     STALE,
     START,
+    TILT,
     TIME,
+    TURN,
     UPLIFT,
-    VELOCITY,
 )
-from rpscli.physics.parameters import Floats
+from rpscli.physics.parameters import Floats, Integers
 from rpscli.physics.part import part, routine
 from rpscli.physics.podium_layout import (
     ALPHA,
@@ -66,21 +71,35 @@ def now(lane: Lane) -> float:
     return float(lane.numbers[START] + lane.numbers[TIME])
 
 
-@routine
+@part
 def note(
     lane: Lane, time: float, kind: int, rotation: float, before: float, after: float, lost: float
 ) -> None:
     """Count an event, and log it if there is room (the caller sees from the counts if not)."""
-    whole, log = lane.whole, lane.log
-    if log.shape[0] > 0:
-        row = 0
-        for i in range(EVENT_KINDS):
-            row += whole[COUNTS + i]
-        if row < log.shape[0]:
-            log[row, LOG_TIME], log[row, LOG_KIND], log[row, LOG_ROTATION] = time, kind, rotation
-            log[row, LOG_RATE_BEFORE], log[row, LOG_RATE_AFTER] = before, after
-            log[row, LOG_ENERGY_LOST] = lost
-    whole[COUNTS + kind] += 1
+    if lane.log.shape[0] > 0:
+        write_down(lane.whole, lane.log, time, kind, rotation, before, after, lost)
+    lane.whole[COUNTS + kind] += 1
+
+
+@routine
+def write_down(
+    whole: Integers,
+    log: Floats,
+    time: float,
+    kind: int,
+    rotation: float,
+    before: float,
+    after: float,
+    lost: float,
+) -> None:
+    """Write an event to the next row of the log, if there is one."""
+    row = 0
+    for i in range(EVENT_KINDS):
+        row += whole[COUNTS + i]
+    if row < log.shape[0]:
+        log[row, LOG_TIME], log[row, LOG_KIND], log[row, LOG_ROTATION] = time, kind, rotation
+        log[row, LOG_RATE_BEFORE], log[row, LOG_RATE_AFTER] = before, after
+        log[row, LOG_ENERGY_LOST] = lost
 
 
 @routine
@@ -99,7 +118,9 @@ def enter_phase(lane: Lane, motion: int) -> None:
 @part
 def leave_ground(lane: Lane) -> None:
     """Enter the phase in which a tilt grows from zero: rolling, unless the edges are sharp."""
-    enter_phase(lane, ROLLING if lane.podium[BETA] > 0.0 else ROCKING)
+    motion = ROLLING if lane.podium[BETA] > 0.0 else ROCKING
+    if lane.whole[MOTION] != motion:
+        enter_phase(lane, motion)
 
 
 @part
@@ -127,38 +148,53 @@ def lift_off(lane: Lane, side: float) -> None:
 @part
 def shift_floors(x: Floats, change: float) -> None:
     """Add the same velocity to every floor [m/s]; `x` are the blocks of the lane."""
-    for i in range(1, x.shape[1]):
-        x[VELOCITY, i] += change
+    for r in range(x.shape[1]):
+        x[DQ, r] += x[PARTICIPATION, r] * change
 
 
 @part
-def go_over(lane: Lane) -> None:
-    """Impact: from the edge on one side to the other.
+def upright_energy(s: Floats) -> float:
+    """Kinetic energy of the tilt at x = 0 [J], where B = p and C = c - q."""
+    return tilting_energy(s, s[ARM_COS], s[ARC] - s[ARM_SIN], s[RATE])
+
+
+@part
+def go_over(lane: Lane) -> float:
+    """Impact: from the edge on one side to the other; returns the energy lost [J].
 
     theta'+ = e theta'-, and floors that move with the cap beam jump by
-    -2 R cos(alpha) (1 - e) theta'- (Theory, section 4; paper, Eq. 6). The tilt x = |theta| starts
-    again from exactly zero, upwards.
+    -2 R cos(alpha) (1 - e) theta'- (Theory, section 4; paper, Eq. 6); those that do not keep their
+    own velocity. The tilt x = |theta| starts again from exactly zero, upwards.
     """
     s, x, p = lane.numbers, lane.blocks, lane.podium
-    before = s[SIDE] * min(x[VELOCITY, 0], 0.0)
-    x[POSITION, 0] = 0.0
-    x[VELOCITY, 0] = p[RESTITUTION] * abs(before)
-    s[SIDE] = -s[SIDE]
+    e, reach = p[RESTITUTION], 2.0 * p[R] * math.cos(p[ALPHA])
+    rate = s[SIDE] * min(s[RATE], 0.0)
+    lost = (1.0 - e * e) * upright_energy(s)
+    jump = -reach * (1.0 - e) * rate
     if p[FLOORS_JUMP] > 0.0:
-        shift_floors(x, -2.0 * p[R] * math.cos(p[ALPHA]) * (1.0 - p[RESTITUTION]) * before)
+        momentum = relative_momentum(x) + s[FLOORS_MASS] * (reach * rate + 0.5 * jump)
+        lost -= jump * momentum
+    else:
+        shift_floors(x, -jump)
+    s[TILT], s[RATE] = 0.0, e * abs(rate)
+    s[SIDE] = -s[SIDE]
+    return float(lost)
 
 
 @part
-def lock(lane: Lane) -> None:
-    """Full contact from now on.
+def lock(lane: Lane) -> float:
+    """Full contact from now on; returns the energy lost [J].
 
     The floors lose the cap beam's velocity u_b' and keep the relative one; the bounces that are
     left out would have changed it by BOUNCES u_b', which is added where asked for.
     """
     s, x, p = lane.numbers, lane.blocks, lane.podium
-    base_rate = s[SIDE] * 2.0 * p[R] * math.cos(p[ALPHA]) * x[VELOCITY, 0]
-    shift_floors(x, (p[BOUNCES] - 1.0) * base_rate)
-    x[VELOCITY, 0] = 0.0
+    base_rate, kept = s[SIDE] * 2.0 * p[R] * math.cos(p[ALPHA]) * s[RATE], p[BOUNCES]
+    carried = relative_momentum(x) + 0.5 * (1.0 + kept) * s[FLOORS_MASS] * base_rate
+    lost = upright_energy(s) + (1.0 - kept) * base_rate * carried
+    shift_floors(x, kept * base_rate)
+    s[TILT], s[RATE] = 0.0, 0.0
+    return float(lost)
 
 
 @part
@@ -175,29 +211,26 @@ def is_negligible(p: Floats, rate: float, acceleration: float) -> bool:
 @part
 def land(lane: Lane) -> None:
     """Impact at theta = 0."""
-    s, x = lane.numbers, lane.blocks
+    s = lane.numbers
     leave_ground(lane)
-    arriving = s[SIDE] * x[VELOCITY, 0]
-    before = uplifted_energy(lane)
-    go_over(lane)
-    gone = before - uplifted_energy(lane)
+    arriving = s[SIDE] * s[RATE]
+    gone = go_over(lane)
     s[LOST] += gone
     if gone < 0.0:
         s[CREATED] -= gone
         lane.whole[CREATING] += 1
-    note(lane, now(lane), IMPACT, 0.0, arriving, s[SIDE] * x[VELOCITY, 0], gone)
+    note(lane, now(lane), IMPACT, 0.0, arriving, s[SIDE] * s[RATE], gone)
     s[STALE] = LANDED
 
 
 @part
 def comes_to_rest(lane: Lane) -> bool:
     """After an impact: lock the storey if the next excursion would be negligible."""
-    s, x = lane.numbers, lane.blocks
-    if not is_negligible(lane.podium, x[VELOCITY, 0], x[ACCELERATION, 0]):
+    s = lane.numbers
+    if not is_negligible(lane.podium, s[RATE], s[TURN]):
         return False
-    rate, before = s[SIDE] * x[VELOCITY, 0], uplifted_energy(lane)
-    lock(lane)
-    gone = before - building_energy(x, 0.0)
+    rate = s[SIDE] * s[RATE]
+    gone = lock(lane)
     s[LOST] += gone
     note(lane, now(lane), RECONTACT, 0.0, rate, 0.0, gone)
     lane.whole[MOTION] = FULL_CONTACT

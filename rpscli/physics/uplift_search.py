@@ -33,7 +33,7 @@ from rpscli.physics.contact_layout import (
     SQUARE,
     Q,
 )
-from rpscli.physics.events import NO_PASSAGE, Quintic, first_descent, lower_hull, quintic
+from rpscli.physics.events import NO_PASSAGE, SETTLED, Quintic, first_descent, lower_hull, quintic
 from rpscli.physics.lane import Lane
 from rpscli.physics.parameters import Floats
 from rpscli.physics.part import lane_routine, part, routine
@@ -122,7 +122,7 @@ def first_uplift(c: Floats, stance: Stance, h: float, k: int, piece: Floats) -> 
     climb = stance.lift * (c[RISE_SLOPE * COLUMNS + k] * h)
     first, side = NO_PASSAGE, 0.0
     for sign in (1.0, -1.0):
-        t = first_descent(margin_path(path, limit, climb, sign), piece)
+        t = first_descent(margin_path(path, limit, climb, sign), SETTLED, piece)
         if t < first:
             first, side = t, sign
     return first, side
@@ -141,7 +141,9 @@ def margin_after(
     then = at + slope * h
     V, dV = 0.0, 0.0
     for r in range(z.shape[1]):
-        q_end, dq_end = mapped(map_of(z, PART, r), z[Q, r], z[DQ, r], at, slope)
+        still = z[PART + 2, r] * at + z[PART + 3, r] * slope
+        moving = z[PART + 6, r] * at + z[PART + 7, r] * slope
+        q_end, dq_end = mapped(map_of(z, PART, r), z[Q, r], z[DQ, r], still, moving)
         pull = z[SQUARE, r] * q_end + z[DRAG, r] * dq_end
         ddq_end = -z[PARTICIPATION, r] * then - pull
         V += z[PARTICIPATION, r] * pull

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from rpscli.physics.contact_layout import COLUMNS, ROWS, SHAPES
-from rpscli.physics.layout import BLOCKS, SCALARS, WHOLE_NUMBERS
+from rpscli.physics import contact_layout
+from rpscli.physics.contact_layout import COLUMNS, ROWS
+from rpscli.physics.layout import BLOCKS, SCALARS, WHOLE_NUMBERS, rows
 from rpscli.physics.parameters import Block, Floats, Lanes, Results, Shape
 from rpscli.physics.podium_layout import PODIUM_NUMBERS
 
@@ -27,15 +28,16 @@ def zeros(*shape: int) -> Floats:
 def empty_lanes(acceleration: Floats, shape: Shape, results: Results) -> Lanes:
     """Lanes with nothing to do."""
     n, L = len(shape.floors), len(shape.stride)
-    rows = SCALARS + BLOCKS * (n + 1)
-    buffer = zeros((rows + (n * n if len(shape.dense) > 0 else 0)) * L)
+    buffer = zeros(rows(n) * L)
     return Lanes(
         buffer=buffer,
         numbers=buffer[: SCALARS * L].reshape(SCALARS, L).T,
-        blocks=np.moveaxis(buffer[SCALARS * L : rows * L].reshape(BLOCKS, n + 1, L), -1, 0),
+        blocks=np.moveaxis(
+            buffer[SCALARS * L :].reshape(-1, n, L) if n > 0 else np.zeros((BLOCKS, 0, L)), -1, 0
+        ),
         integers=np.zeros((L, WHOLE_NUMBERS), np.int64),
         podium=np.zeros((L, PODIUM_NUMBERS)),
-        modes=zeros(L, SHAPES + 2 * n, n),
+        modes=zeros(L, contact_layout.SHAPES + 2 * n, n),
         block=empty_block(n),
         piece=np.zeros(6),
         acceleration=acceleration,
@@ -49,5 +51,4 @@ def empty_block(storeys: int) -> Block:
     return Block(
         rows=zeros(ROWS * COLUMNS),
         modes=zeros(storeys, 3, COLUMNS),
-        tops=zeros(storeys, 2, COLUMNS),
     )

@@ -30,13 +30,13 @@ CURVATURES = (0.25, 0.5, 1.5)
 ACCURACIES = (0.5, 1.0, 2.0, 4.0)
 TIGHT = 16.0
 COUNTED = 6
-"""Records whose right-hand sides are counted: that needs single histories."""
+"""Records whose steps are counted: that needs single histories."""
 COLUMNS = (
     "program",
     "all, to 1e-4",
     *(f"{n} storeys" for n in STOREYS),
     "ms/history",
-    "right-hand sides/sample",
+    "steps/sample",
 )
 
 Ensemble = dict[int, list[PodiumStructure]]
@@ -78,8 +78,8 @@ def heyoka(buildings: Iterable[PodiumStructure], records: list[GroundMotion], to
     return Answer(found, seconds(work, repeats=1))
 
 
-def evaluations(ensemble: Ensemble, records: list[GroundMotion], accuracy: float) -> float:
-    """Right-hand sides a sample, over the whole histories."""
+def steps(ensemble: Ensemble, records: list[GroundMotion], accuracy: float) -> float:
+    """Steps a sample, over the whole histories."""
     histories = [
         sampled_history(b, r, None, settings(accuracy)).history
         for buildings in ensemble.values()
@@ -87,7 +87,7 @@ def evaluations(ensemble: Ensemble, records: list[GroundMotion], accuracy: float
         for r in records[:COUNTED]
     ]
     samples = sum(h.intervals for h in histories)
-    return sum(h.evaluations for h in histories) / samples
+    return sum(h.steps for h in histories) / samples
 
 
 def main() -> None:
@@ -111,7 +111,7 @@ def main() -> None:
         line(
             f"rps, accuracy {accuracy:g}",
             lambda n, a=accuracy: rps(ensemble[n], records, a),  # type: ignore[misc]
-            f"{evaluations(ensemble, records, accuracy):.1f}",
+            f"{steps(ensemble, records, accuracy):.2f}",
         )
         for accuracy in ACCURACIES
     ]

@@ -43,30 +43,30 @@ class Work(NamedTuple):
     """What histories of one kind cost, a history that overturns counted as far as it goes."""
 
     milliseconds: float
-    evaluations: float
+    steps: float
     impacts: float
 
     @property
     def nanoseconds_each(self) -> float:
-        """Time over right-hand sides: full contact and events are in it too."""
-        return 1e6 * self.milliseconds / (self.evaluations * SECONDS / STEP)
+        """Time over steps: full contact and events are in it too."""
+        return 1e6 * self.milliseconds / (self.steps * SECONDS / STEP)
 
 
 def work_of(building: PodiumStructure, records: Sequence[GroundMotion]) -> Work:
-    """Time [ms a record], right-hand sides [a sample] and impacts, in the single kernel."""
+    """Time [ms a record], steps [a sample] and impacts, in the single kernel."""
     requests = [Request(building, r, SETTINGS) for r in records]
     spent = 1e3 * seconds(lambda: demands(requests, worth_lanes=ALONE))
     found = [sampled_history(building, r, None, SETTINGS).history for r in records]
     samples = sum(h.intervals for h in found)
     whole = samples / (records[0].npts - 1)
     impacts = sum(d.impacts for d in demands(requests, worth_lanes=ALONE))
-    return Work(spent / whole, sum(h.evaluations for h in found) / samples, impacts / whole)
+    return Work(spent / whole, sum(h.steps for h in found) / samples, impacts / whole)
 
 
 def with_storeys() -> None:
     """One kernel serves every number of storeys; beyond ten the period stays at one second.
 
-    Steps then shorten with the highest mode, so a history grows faster than a right-hand side.
+    Steps then shorten with the highest mode, so a history grows faster than a step.
     """
     records = [motion(seed, peak="0.4g") for seed in SEEDS]
     works = [work_of(structure(n, period=min(n / 10, 1.0)), records) for n in STOREYS]
@@ -75,13 +75,13 @@ def with_storeys() -> None:
         map(str, STOREYS),
         [f"{e:.0f}" for e in each],
         exponents(STOREYS, each),
-        [f"{w.evaluations:.1f}" for w in works],
+        [f"{w.steps:.2f}" for w in works],
         [f"{c:.3g}" for c in costs],
         exponents(STOREYS, costs),
         strict=True,
     )
-    columns = ("storeys", "ns/rhs", "exponent", "rhs/sample", "ms/history", "exponent")
-    show("One history of 40 s with storeys (rhs: a right-hand side)", columns, rows)
+    columns = ("storeys", "ns/step", "exponent", "steps/sample", "ms/history", "exponent")
+    show("One history of 40 s with storeys", columns, rows)
 
 
 def with_length() -> None:
@@ -93,11 +93,11 @@ def with_length() -> None:
         map(str, LENGTHS),
         [f"{c:.3g}" for c in costs],
         exponents(LENGTHS, costs),
-        [f"{w.evaluations:.1f}" for w in works],
+        [f"{w.steps:.2f}" for w in works],
         [f"{w.impacts:.0f}" for w in works],
         strict=True,
     )
-    columns = ("record, s", "ms/history", "exponent", "rhs/sample", "impacts")
+    columns = ("record, s", "ms/history", "exponent", "steps/sample", "impacts")
     show("One history of nine storeys with the record's length", columns, rows)
 
 
@@ -107,9 +107,9 @@ def with_impacts() -> None:
     rows = []
     for peak in PEAKS:
         work = work_of(building, [motion(s, peak=peak) for s in SEEDS])
-        numbers = (f"{work.impacts:.0f}", f"{work.evaluations:.1f}", f"{work.milliseconds:.3g}")
+        numbers = (f"{work.impacts:.0f}", f"{work.steps:.2f}", f"{work.milliseconds:.3g}")
         rows.append((peak, *numbers))
-    columns = ("peak", "impacts", "rhs/sample", "ms/history")
+    columns = ("peak", "impacts", "steps/sample", "ms/history")
     show("One history of 40 s and nine storeys with impacts", columns, rows)
 
 

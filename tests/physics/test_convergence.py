@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -20,16 +19,15 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import runge_kutta
 from rpscli.records.ground_motion import GroundMotion
 
 pytestmark = needs_compiled_kernels
 
 ACCURACIES = (0.8, 1.6, 3.2)
 REFERENCE = 48.0
-LEAST_STATE, LEAST_ENERGY = 5.2, 5.0
-"""Order six shows as 5.3 to 8: rounding is near, so the steps are few and long, and the error that
-counts is not always that of the same quantity. A method of order five stays below 5.1."""
+LEAST_STATE, LEAST_ENERGY = 6.1, 5.5
+"""Order seven shows as 6.2 to 8.5, of energy as 5.6 to 8: rounding is near, so the steps are few and long, and the error that
+counts is not always that of the same quantity. Without the last term none reaches 6.1."""
 
 
 class Orders(NamedTuple):
@@ -70,48 +68,11 @@ def observed(structure: PodiumStructure, record: GroundMotion) -> Orders:
     return Orders(state, energy, reference)
 
 
-def tilting(state: Array) -> Array:
-    """An oscillator whose stiffness and damping depend on its state."""
-    x, v = state
-    return np.array([v, -math.sin(x) - 0.1 * v * math.cos(x) + 0.2 * x * x])
-
-
-def one_step(state: Array, h: float) -> Array:
-    """What `step` does, from the same coefficients."""
-    slopes: list[Array] = []
-    for i in range(1, 9):
-        weights = [getattr(runge_kutta, f"A{i}{j}", 0.0) for j in range(1, i)]
-        moved = sum((w * k for w, k in zip(weights, slopes, strict=True)), np.zeros(2))
-        assert sum(weights) == pytest.approx([0.0, *INSTANTS][i - 1], abs=1e-15)
-        slopes.append(tilting(state + h * moved))
-    ends = [getattr(runge_kutta, f"B{j}", 0.0) for j in range(1, 9)]
-    return state + h * sum((w * k for w, k in zip(ends, slopes, strict=True)), np.zeros(2))
-
-
-INSTANTS = [getattr(runge_kutta, f"C{i}", 1.0) for i in range(2, 9)]
-
-
-def test_the_coefficients_are_of_order_six() -> None:
-    """A nonlinear equation, on which every condition of that order counts."""
-
-    def run(steps: int) -> Array:
-        state = np.array([0.3, 0.9])
-        for _ in range(steps):
-            state = one_step(state, 3.0 / steps)
-        return state
-
-    exact = run(600)
-    errors = [float(np.max(np.abs(run(steps) - exact))) for steps in (24, 36, 48)]
-    orders = -np.diff(np.log(errors)) / np.diff(np.log((24, 36, 48)))
-    assert orders == pytest.approx(6.0, abs=0.45)
-    assert errors[-1] > 1e-13  # not yet rounding
-
-
 @pytest.mark.parametrize(
     ("storeys", "rho"),
     [(0, FLAT), (1, FLAT), (1, 0.5), (3, FLAT), (3, 0.5), (6, 0.5)],
 )
-def test_flight_in_one_phase_is_of_order_six(storeys: int, rho: float) -> None:
+def test_flight_in_one_phase_is_of_order_seven(storeys: int, rho: float) -> None:
     # without springs the motion is slow: longer intervals, or one step would do for all
     dt = 0.02 if storeys else 0.2
     orders = observed(podium(storeys, 0.15, rho), waves(0.4, dt, 1.0, seed=1))

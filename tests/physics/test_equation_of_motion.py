@@ -38,7 +38,7 @@ class State(NamedTuple):
 
     def in_a_lane(self) -> OneLane:
         lane = OneLane(self.structure, self.motion, self.side)
-        lane.position[:], lane.velocity[:] = self.position, self.velocity
+        lane.place(self.position, self.velocity)
         return lane
 
     def accelerations(self) -> Array:
@@ -88,7 +88,7 @@ def states(draw: st.DrawFn) -> State:
 
 def drift_state(state: State, lane: OneLane) -> Array:
     """The same state as [theta, drifts, theta', drift rates], on the lane's own u_b and u_b'."""
-    base, base_rate = lane.buffer[layout.BASE], lane.buffer[layout.BASE_RATE]
+    base, base_rate = lane.base, lane.base_rate
     return np.concatenate(
         (
             [state.side * state.position[0]],
@@ -143,11 +143,11 @@ def test_energy_changes_by_what_the_ground_gives_and_the_dampers_take(state: Sta
     """dE/dt = -a_g [...] - a_v [...] - v'^T C v' (Theory, section 8): the flows that are noted."""
     lane, h = state.in_a_lane(), 1e-3
     moving = lane.accelerations(state.horizontal, state.vertical)
-    flow = lane.buffer[layout.GIVEN] - lane.buffer[layout.TAKEN]
+    given_power, taken = lane.powers()
+    flow = given_power - taken
     energies = {}
     for i in range(-3, 4):
-        lane.position[:] = state.position + i * h * state.velocity
-        lane.velocity[:] = state.velocity + i * h * moving
+        lane.place(state.position + i * h * state.velocity, state.velocity + i * h * moving)
         energies[i] = lane.energy()
     slope = sum(w * (energies[i] - energies[-i]) for i, w in SIXTH_ORDER.items()) / (60.0 * h)
     # What is left of the differences is rounding, eps/h of the largest term: the lift is a small

@@ -38,7 +38,7 @@ def arriving(
     """At theta = 0, coming from the right with theta' = rate < 0."""
     motion = ROCKING if structure.bearing.is_flat else ROLLING
     lane = OneLane(structure, motion, settings=settings)
-    lane.velocity[:] = [rate, *floors]
+    lane.place(np.zeros(structure.storeys + 1), np.array([rate, *floors]))
     return lane
 
 
@@ -48,7 +48,9 @@ def after_impact(
     """Rates after an impact from the right; energy lost over energy."""
     lane = arriving(structure, rate, floors)
     before = lane.energy()
-    lane.go_over()
+    gone = lane.go_over()
+    # both are differences of parts of the energy before
+    assert gone == pytest.approx(before - lane.energy(), abs=1e-13 * before)
     assert lane.side == -1.0
     assert lane.velocity[0] >= 0.0  # the tilt |theta| grows again, on the other side
     return lane.velocity, (before - lane.energy()) / before
@@ -59,7 +61,8 @@ def test_flexible_always_loses_energy(floors: list[float], rate: float, rho: flo
     structure = podium(3, 0.15, rho, law=ImpactLaw("flexible"))
     after, lost = after_impact(structure, rate, floors)
     assert lost > 0.0
-    assert after[1:].tolist() == floors
+    # to modes and back
+    assert after[1:] == pytest.approx(np.array(floors), abs=1e-13)
 
 
 @given(velocities, rates)
@@ -70,7 +73,7 @@ def test_rigid_keeps_the_relative_velocities(floors: list[float], rate: float) -
     # theta keeps its sense of turning: theta'+ = e theta'-
     assert after[0] == pytest.approx(-e * rate, rel=1e-15)
     relative = np.array(floors) - reach * rate
-    assert after[1:] - reach * e * rate == pytest.approx(relative, abs=1e-14)
+    assert after[1:] - reach * e * rate == pytest.approx(relative, abs=1e-13)
 
 
 def test_rigid_loses_energy_when_all_moves_together_and_creates_it_against_the_base() -> None:
@@ -92,9 +95,10 @@ def test_locking_keeps_the_relative_velocities(
     structure = podium(3, 0.15, rho)
     lane = arriving(structure, rate, floors)
     base_rate = 2.0 * structure.bearing.half_height * rate
-    lane.lock()
+    before, gone = lane.energy(), lane.lock()
+    assert gone == pytest.approx(before - lane.energy(), abs=1e-13 * before)
     assert lane.velocity[0] == 0.0
-    assert lane.velocity[1:] == pytest.approx(np.array(floors) - base_rate, abs=1e-15)
+    assert lane.velocity[1:] == pytest.approx(np.array(floors) - base_rate, abs=1e-13)
 
 
 @given(
@@ -109,10 +113,12 @@ def test_the_limit_is_what_endless_bounces_leave(
     bouncing, locking = (arriving(structure, -rate, floors, LIMIT) for _ in range(2))
     locking.lock()  # just after an impact, the tilt growing again
     while bouncing.velocity[0] > 1e-17:
-        bouncing.velocity[0] *= -1.0
+        velocity = bouncing.velocity
+        velocity[0] *= -1.0  # the floors' springs have no time to act
+        bouncing.place(bouncing.position, velocity)
         bouncing.go_over()
     # some fifty bounces round
-    assert locking.velocity[1:] == pytest.approx(bouncing.velocity[1:], abs=1e-14)
+    assert locking.velocity[1:] == pytest.approx(bouncing.velocity[1:], abs=1e-12)
 
 
 @pytest.mark.parametrize(("law", "share"), [("rigid", None), ("flexible", 1.0)])
@@ -143,22 +149,22 @@ def test_an_excursion_is_negligible_below_the_tolerance(tolerance: float) -> Non
 def test_the_energy_of_the_building_alone() -> None:
     above = building(2)
     lane = OneLane(podium(2, superstructure=above), ROLLING)
-    lane.position[1:], lane.velocity[1:] = [0.03, 0.05], [1.0, -2.0]
-    kinetic = 0.5 * float(above.masses @ lane.velocity[1:] ** 2)
-    for base, drifts in ((0.01, [0.02, 0.02]), (0.0, [0.03, 0.02])):
-        strain = 0.5 * float(above.stiffnesses @ np.array(drifts) ** 2)
-        energy = building_energy(lane.lane.blocks, base)
-        assert energy == pytest.approx(kinetic + strain, rel=1e-14)
+    lane.place(np.array([0.0, 0.03, 0.05]), np.array([0.0, 1.0, -2.0]))
+    strain = 0.5 * float(above.stiffnesses @ np.array([0.03, 0.02]) ** 2)
+    for base_rate in (0.0, 0.4):
+        kinetic = 0.5 * float(above.masses @ (np.array([1.0, -2.0]) + base_rate) ** 2)
+        energy = building_energy(lane.lane, base_rate)
+        assert energy == pytest.approx(kinetic + strain, rel=1e-13)
 
 
 def test_energies_of_equal_states_are_equal_up_to_lift() -> None:
     """At theta = 0 the uplifted energy is the building's and the tilt's kinetic one."""
     structure = podium(3, 0.15, 0.5)
     lane = arriving(structure, 0.0, [0.3, -0.2, 0.5])
-    lane.position[1:] = [0.01, 0.03, 0.02]
-    alone = building_energy(lane.lane.blocks, 0.0)
+    lane.place(np.array([0.0, 0.01, 0.03, 0.02]), np.array([0.0, 0.3, -0.2, 0.5]))
+    alone = building_energy(lane.lane, 0.0)
     assert lane.energy() == pytest.approx(alone, rel=1e-14)
-    lane.velocity[0] = -0.4
+    lane.place(lane.position, np.array([-0.4, 0.3, -0.2, 0.5]))
     rigid = replace(structure, superstructure=None)
     tilting = arriving(rigid, -0.4, []).energy()
     # floors add their vertical inertia to the tilt: M_tot (2 R B theta')^2/2, B = sin(alpha)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -45,7 +46,7 @@ def test_1_d_while_rocking_lacks_4_eta_gamma(x: float, rho: float) -> None:
 def tilt_acceleration(tan_alpha: float, rho: float, x: float, u: float) -> float:
     """theta'' of one storey at rest at the tilt x, the floor at u."""
     lane = OneLane(podium(1, tan_alpha, rho), ROLLING if rho else ROCKING)
-    lane.position[:] = [x, u]
+    lane.place(np.array([x, u]), np.zeros(2))
     return float(lane.accelerations()[0])
 
 

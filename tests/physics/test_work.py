@@ -1,4 +1,4 @@
-"""Bounds on work: right-hand sides a sample, steps an event; and buildings of any height."""
+"""Bounds on work: steps a sample, steps an event; and buildings of any height."""
 
 from __future__ import annotations
 
@@ -22,25 +22,24 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import ModalDamping, RayleighDamping
-from rpscli.physics.runge_kutta import EVALUATIONS
 
-BEYOND_A_PLAIN_STEP = 2.25
-"""Steps that an event adds on average: the one cut short and one that meets the event, and a second
-where the step is long for the quintic that aims."""
+BEYOND_A_PLAIN_STEP = 1.1
+"""Steps that an event adds on average: the one that leads on from it, and now and then one taken
+again after a false alarm."""
 
 
 def steps_an_event(result: TimeHistoryResult) -> float:
     """Steps beyond those of the uplifted intervals, over the number of events."""
     uplifted = int(np.count_nonzero(result.trace.phase))
-    plain = EVALUATIONS * uplifted * steps_an_interval(result.structure, result.record.dt)
-    return (result.history.evaluations - plain) / EVALUATIONS / len(result.events)
+    plain = uplifted * steps_an_interval(result.structure, result.record.dt)
+    return (result.history.steps - plain) / len(result.events)
 
 
 @needs_compiled_kernels
 @pytest.mark.parametrize(
     ("storeys", "rho"), [(0, FLAT), (0, 1.5), (3, 0.5), (6, FLAT), (9, 0.26), (9, 1.5)]
 )
-def test_an_event_costs_about_one_repeated_step(storeys: int, rho: float) -> None:
+def test_an_event_costs_about_one_step(storeys: int, rho: float) -> None:
     structure = podium(storeys, 0.10, rho)
     for seed in range(3):
         record = waves(12.0, 0.01, 2.5 * structure.uplift_acceleration, seed)
@@ -50,19 +49,19 @@ def test_an_event_costs_about_one_repeated_step(storeys: int, rho: float) -> Non
 
 
 @needs_compiled_kernels
-def test_right_hand_sides_a_sample_of_an_earthquake(fema_record: RecordLoader) -> None:
+def test_steps_a_sample_of_an_earthquake(fema_record: RecordLoader) -> None:
     result = time_history(podium(9, 0.15, 1.5), fema_record("farfield/1/b"))
     assert len(result.events) > 300
     assert steps_an_event(result) < BEYOND_A_PLAIN_STEP
-    # under four tenths of this history are uplifted: five steps a sample there, none elsewhere
+    # under four tenths of this history are uplifted: two steps a sample there, none elsewhere
     assert np.mean(result.trace.phase > 0) < 0.4
-    assert result.history.evaluations / len(result.trace.time) < 15.0
+    assert result.history.steps / len(result.trace.time) < 0.9
 
 
-def test_full_contact_needs_no_right_hand_side() -> None:
+def test_full_contact_needs_no_uplifted_step() -> None:
     result = time_history(podium(3), waves(2.0, 0.02, 0.2, seed=1))
     assert result.outcome == "at_rest"
-    assert result.history.evaluations == 0
+    assert result.history.steps == 0
 
 
 @needs_compiled_kernels
@@ -72,7 +71,7 @@ def test_work_grows_in_proportion_to_the_uplifted_time() -> None:
     counts = []
     for end in ends:
         settings = TimeHistorySettings(free_vibration=float(end), initial_rotation=0.2)
-        counts.append(time_history(structure, stillness(0.01), settings).history.evaluations)
+        counts.append(time_history(structure, stillness(0.01), settings).history.steps)
     assert np.diff(counts) / np.diff(ends) == pytest.approx(counts[0] / 2.0, rel=0.05)
 
 
@@ -98,7 +97,7 @@ def test_the_step_is_short_enough_for_every_uplifted_mode(
 @needs_compiled_kernels
 @pytest.mark.parametrize("damping", [5.0, 20.0])
 def test_an_overdamped_building_stays_stable(damping: float) -> None:
-    """Explicit steps diverge beyond h lambda = 4.3; the step heeds the decay rate."""
+    """Explicit steps diverge beyond h lambda = 4; the step heeds the decay rate."""
     above = building(1, damping=RayleighDamping(damping))
     settings = TimeHistorySettings(free_vibration=6.0, initial_rotation=0.03)
     result = time_history(podium(1, superstructure=above), stillness(0.01), settings)

@@ -1,0 +1,110 @@
+"""The Taylor series of the uplifted motion: it solves the equation of motion, order by order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from rpscli.analyses.kernel_input import highest_frequency
+from rpscli.physics import layout
+from rpscli.physics.events import NO_PASSAGE
+from rpscli.physics.layout import ORDER
+from rpscli.physics.terms import end_at, meet
+
+from .one_lane import OneLane
+from .test_equation_of_motion import State, states
+
+slopes = st.floats(-50.0, 50.0)
+
+
+def stepped(state: State, h: float, across: float, upwards: float) -> OneLane:
+    """After a step of length h under accelerations of the ground with these slopes [m/s3]."""
+    lane = state.in_a_lane()
+    lane.buffer[layout.ACROSS_SLOPE], lane.buffer[layout.UPWARDS_SLOPE] = across, upwards
+    lane.accelerations(state.horizontal, state.vertical)
+    lane.step(h)
+    return lane
+
+
+def fastest(state: State) -> float:
+    """A rate at which the state changes [1/s]."""
+    own = 10.0 * float(np.sqrt(state.structure.gravity / state.structure.bearing.semi_diagonal))
+    return own + highest_frequency(state.structure) + abs(float(state.velocity[0]))
+
+
+def residual(state: State, h: float, across: float, upwards: float, t: float) -> tuple[float, ...]:
+    """What is left of the equations of tilt and modes within a step, over what they are made of."""
+    lane = stepped(state, h, across, upwards)
+    turn, changes = lane.go_along(t)
+    s, x = lane.buffer, lane.lane.blocks
+    time = s[layout.TIME]
+    s[layout.TIME] = 0.0
+    lane.accelerations(state.horizontal + across * time, state.vertical + upwards * time)
+    ground = state.horizontal + across * time
+    B, C, rate = s[layout.LEVER], s[layout.HEIGHT], s[layout.RATE]
+    forced = s[layout.SIDE] * s[layout.DIAMETER] * (C * s[layout.TURN] + B * rate**2) + ground
+    exact = -x[layout.PARTICIPATION] * forced - x[layout.PULL]
+    size = 1.0 + abs(float(s[layout.TURN])) + float(np.max(np.abs(exact), initial=0.0))
+    modes = float(np.max(np.abs(changes - exact), initial=0.0))
+    return abs(turn - float(s[layout.TURN])) / size, modes / size
+
+
+@given(states(), slopes, slopes, st.floats(0.3, 1.0))
+def test_the_polynomials_satisfy_the_equations_of_motion(
+    state: State, across: float, upwards: float, t: float
+) -> None:
+    """Within a step they err by a term of order ORDER: a step half as long, 2^ORDER times less."""
+    h = 0.3 / fastest(state)
+    whole, half = (residual(state, part * h, across, upwards, t) for part in (1.0, 0.5))
+    for long, short in zip(whole, half, strict=True):
+        # (w h)^7/7! of the scale, and a floor of rounding
+        assert long < 1e-5
+        assert short < long * 2.0 ** -(ORDER - 1) + 1e-11
+
+
+@given(states(), slopes, slopes)
+def test_the_end_of_a_step_is_the_sum_of_its_terms(
+    state: State, across: float, upwards: float
+) -> None:
+    h = 0.15 / fastest(state)
+    lane, other = (stepped(state, h, across, upwards) for _ in range(2))
+    other.go_along(1.0)
+    s, x = lane.buffer, lane.lane.blocks
+    assert s[layout.NEXT_TILT] == pytest.approx(other.buffer[layout.TILT], abs=1e-15)
+    assert s[layout.NEXT_RATE] == pytest.approx(other.buffer[layout.RATE], rel=1e-13, abs=1e-13)
+    modes = other.lane.blocks
+    assert x[layout.NEXT_Q] == pytest.approx(modes[layout.Q], rel=1e-13, abs=1e-13)
+    assert x[layout.NEXT_DQ] == pytest.approx(modes[layout.DQ], rel=1e-12, abs=1e-12)
+
+
+@given(states(), st.floats(0.05, 0.95), st.floats(-0.05, 0.05))
+def test_a_level_is_met_where_the_path_passes_it(state: State, t: float, miss: float) -> None:
+    lane = stepped(state, 0.15 / fastest(state), 0.0, 0.0)
+    guide = stepped(state, 0.15 / fastest(state), 0.0, 0.0)
+    start, end = lane.buffer[layout.TILT], lane.buffer[layout.NEXT_TILT]
+    assume(abs(end - start) > 1e-6)
+    rates = lane.buffer[layout.RATE], lane.buffer[layout.NEXT_RATE]
+    assume(rates[0] * rates[1] > 0.25 * max(abs(rate) for rate in rates) ** 2)  # no turning point
+    guide.go_along(t)
+    level = guide.buffer[layout.TILT]
+    found = meet(lane.buffer, level, t + miss)
+    assert found < NO_PASSAGE
+    # the tilt is known to rounding, the instant to that over the rate
+    assert found == pytest.approx(t, abs=1e-14 / abs(end - start))
+    end_at(lane.buffer, lane.lane.blocks, found, level)
+    assert lane.buffer[layout.NEXT_TILT] == level
+    assert lane.buffer[layout.NEXT_RATE] == pytest.approx(guide.buffer[layout.RATE], rel=1e-9)
+
+
+@given(states())
+def test_a_step_of_no_length_leads_nowhere(state: State) -> None:
+    """One may be left after an event on the very sample."""
+    lane = stepped(state, 0.0, 1.0, 1.0)
+    s, x = lane.buffer, lane.lane.blocks
+    assert s[layout.NEXT_TILT] == s[layout.TILT]
+    assert s[layout.NEXT_RATE] == s[layout.RATE]
+    assert s[layout.NEXT_TURN] == s[layout.TURN]
+    assert x[layout.NEXT_Q].tolist() == x[layout.Q].tolist()
+    assert x[layout.NEXT_DQ].tolist() == x[layout.DQ].tolist()
