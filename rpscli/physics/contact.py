@@ -58,10 +58,9 @@ def fill_transition(z: Floats, h: float, row: int) -> None:
 def march(block: Block, z: Floats, row: int) -> None:
     """Follow every mode through a block, from Q and DQ; the map of a step stands at `row`.
 
-    Reads the ground's motion (rows AT and SLOPE) and writes the modes' rows, the push and
-    how much the modes are strained. Few rows
-    meet in each loop over instants: so the compiler finds it worth checking that they do not
-    overlap, and makes vector instructions.
+    Reads the ground's motion (rows AT and SLOPE) and writes the modes' rows, the push and how much
+    the modes are strained. Few rows meet in each loop over instants: so the compiler finds it worth
+    checking that they do not overlap, and makes vector instructions.
     """
     c = block.rows
     for k in range(COLUMNS):
@@ -93,41 +92,44 @@ def march(block: Block, z: Floats, row: int) -> None:
 def follow(block: Block, z: Floats, row: int) -> None:
     """States of all modes at all instants: each is the map of the one before.
 
-    What the ground does to a step waits for nothing and comes first. Three modes then go together,
-    so that none waits for its own last step.
+    What the ground does waits for nothing and comes first, see `shove`. Three modes then go
+    together, so that none waits for its own last step.
     """
-    n = z.shape[1]
+    modes, n = block.modes, z.shape[1]
     threes = n - n % 3
     for r in range(n):
         shove(block, z, row, r)
     for r in range(0, threes, 3):
-        q0, v0 = block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ]
-        q1, v1 = block.modes[r + 1, MODAL_Q], block.modes[r + 1, MODAL_DQ]
-        q2, v2 = block.modes[r + 2, MODAL_Q], block.modes[r + 2, MODAL_DQ]
+        q0, v0, f0 = modes[r, MODAL_Q], modes[r, MODAL_DQ], modes[r, MODAL_PULL]
+        q1, v1, f1 = modes[r + 1, MODAL_Q], modes[r + 1, MODAL_DQ], modes[r + 1, MODAL_PULL]
+        q2, v2, f2 = modes[r + 2, MODAL_Q], modes[r + 2, MODAL_DQ], modes[r + 2, MODAL_PULL]
         m0, m1, m2 = map_of(z, row, r), map_of(z, row, r + 1), map_of(z, row, r + 2)
-        x0, y0, x1, y1, x2, y2 = q0[0], v0[0], q1[0], v1[0], q2[0], v2[0]
-        for k in range(1, COLUMNS):
-            x0, y0 = mapped(m0, x0, y0, q0[k], v0[k])
-            x1, y1 = mapped(m1, x1, y1, q1[k], v1[k])
-            x2, y2 = mapped(m2, x2, y2, q2[k], v2[k])
+        x0, y0 = z[Q, r], z[DQ, r]
+        x1, y1 = z[Q, r + 1], z[DQ, r + 1]
+        x2, y2 = z[Q, r + 2], z[DQ, r + 2]
+        for k in range(COLUMNS):
+            still0, still1, still2 = q0[k], q1[k], q2[k]
             q0[k], v0[k], q1[k], v1[k], q2[k], v2[k] = x0, y0, x1, y1, x2, y2
+            x0, y0 = mapped(m0, x0, y0, still0, f0[k])
+            x1, y1 = mapped(m1, x1, y1, still1, f1[k])
+            x2, y2 = mapped(m2, x2, y2, still2, f2[k])
     for r in range(threes, n):
-        qs, vs, m = block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ], map_of(z, row, r)
-        x, y = qs[0], vs[0]
-        for k in range(1, COLUMNS):
-            x, y = mapped(m, x, y, qs[k], vs[k])
+        qs, vs, fs = modes[r, MODAL_Q], modes[r, MODAL_DQ], modes[r, MODAL_PULL]
+        m, x, y = map_of(z, row, r), z[Q, r], z[DQ, r]
+        for k in range(COLUMNS):
+            still = qs[k]
             qs[k], vs[k] = x, y
+            x, y = mapped(m, x, y, still, fs[k])
 
 
 @part
 def shove(block: Block, z: Floats, row: int, r: int) -> None:
-    """Write where the ground alone would bring mode r in each step, after its present state."""
-    c, qs, vs = block.rows, block.modes[r, MODAL_Q], block.modes[r, MODAL_DQ]
-    a, b, c2, d = z[row + 2, r], z[row + 3, r], z[row + 6, r], z[row + 7, r]
-    qs[0], vs[0] = z[Q, r], z[DQ, r]
-    for k in range(COLUMNS - 1):
+    """Write where the ground alone brings mode r in each step, and how fast, to Q and PULL."""
+    c, still, moving = block.rows, block.modes[r, MODAL_Q], block.modes[r, MODAL_PULL]
+    a, b, e, d = z[row + 2, r], z[row + 3, r], z[row + 6, r], z[row + 7, r]
+    for k in range(COLUMNS):
         at, slope = c[AT * COLUMNS + k], c[SLOPE * COLUMNS + k]
-        qs[k + 1], vs[k + 1] = a * at + b * slope, c2 * at + d * slope
+        still[k], moving[k] = a * at + b * slope, e * at + d * slope
 
 
 @part

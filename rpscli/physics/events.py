@@ -85,14 +85,19 @@ def value(b: Quintic, t: float) -> float:
     )
 
 
-@routine
+@part
 def first_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
     """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE`.
 
     Corrections of it end below `settled`; `piece` (6,) is scratch.
     """
-    if min(lower_hull(b), b[0]) >= 0.0:
-        return NO_PASSAGE
+    stays = min(lower_hull(b), b[0]) >= 0.0
+    return NO_PASSAGE if stays else search_descent(b, settled, piece)
+
+
+@routine
+def search_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
+    """The same for a quintic whose hull does not say that there is none."""
     level, index = 0, 0
     while True:
         width = 0.5**level

@@ -17,10 +17,10 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.lanes import floor_count, lane_count
+from rpscli.physics.lanes import floor_count, lane_count, written
 from rpscli.physics.layout import (
+    ACCELERATION_NOW,
     BLOCKS,
-    FLOOR,
     FLOOR_ACCELERATION,
     NEXT_Q,
     PULL,
@@ -28,7 +28,7 @@ from rpscli.physics.layout import (
     PULLED_REACH,
     SCALARS,
     SEEN,
-    STOREY,
+    SHEAR_NOW,
     STOREY_SHEAR,
     STRAIN_BOUND,
     STRAIN_REACH,
@@ -42,31 +42,33 @@ SURELY = 1.0 - 1e-9
 
 @lane_routine
 def raise_floors(b: Floats, shape: Shape) -> None:
-    """Raise the demands of storeys and floors by those at the end of the step, where SEEN."""
+    """Raise the demands of storeys and floors by those at the end of the step, where SEEN.
+
+    Floors follow one another within modes, so that no sum waits for its own last term.
+    """
     n, L = floor_count(shape), len(shape.stride)
     threes = n - n % 3
-    for i in range(n):
-        floor = (SCALARS + i) * L
-        for l in range(lane_count(shape)):
-            b[STOREY * L + l], b[FLOOR * L + l] = 0.0, 0.0
-        for r in range(0, threes, 3):
+    shears, tops = (SCALARS + SHEAR_NOW * n) * L, (SCALARS + ACCELERATION_NOW * n) * L
+    for i in range(n * L):
+        b[shears + i], b[tops + i] = 0.0, 0.0
+    for r in range(0, threes, 3):
+        for i in range(n):
             add_modes(b, shape, i, r)
-        for r in range(threes, n):
+    for r in range(threes, n):
+        for i in range(n):
             add_mode(b, shape, i, r)
-        for l in range(lane_count(shape)):
-            shear = b[SEEN * L + l] * abs(b[STOREY * L + l])
-            row = floor + STOREY_SHEAR * n * L + l
-            b[row] = max(b[row], shear)
-        for l in range(lane_count(shape)):
-            absolute = b[SEEN * L + l] * abs(b[FLOOR * L + l])
-            row = floor + FLOOR_ACCELERATION * n * L + l
-            b[row] = max(b[row], absolute)
     for l in range(lane_count(shape)):
         b[STRAIN_REACH * L + l], b[PULLED_REACH * L + l] = math.inf, math.inf
     for i in range(n):
         floor = (SCALARS + i) * L
         for l in range(lane_count(shape)):
-            extend_reach(b, n, L, floor, l)
+            seen = b[SEEN * L + l]
+            row = floor + STOREY_SHEAR * n * L + l
+            b[row] = written(max(b[row], seen * abs(b[floor + SHEAR_NOW * n * L + l])))
+            row = floor + FLOOR_ACCELERATION * n * L + l
+            b[row] = written(max(b[row], seen * abs(b[floor + ACCELERATION_NOW * n * L + l])))
+        for l in range(lane_count(shape)):
+            lower_reach(b, n, L, floor, l)
 
 
 @part
@@ -74,38 +76,42 @@ def add_mode(b: Floats, shape: Shape, i: int, r: int) -> None:
     """Add what mode r contributes at storey i: shear k_i (phi_i - phi_(i-1)) q and pull."""
     n, L = floor_count(shape), len(shape.stride)
     mode, shapes = (SCALARS + r) * L, (SCALARS + (BLOCKS + r) * n + i) * L
-    q, pull = mode + NEXT_Q * n * L, mode + PULL * n * L
+    q, pull, shears = mode + NEXT_Q * n * L, mode + PULL * n * L, shapes + n * n * L
+    shear, top = (SCALARS + SHEAR_NOW * n + i) * L, (SCALARS + ACCELERATION_NOW * n + i) * L
     for l in range(lane_count(shape)):
-        b[STOREY * L + l] += b[shapes + n * n * L + l] * b[q + l]
-        b[FLOOR * L + l] += b[shapes + l] * b[pull + l]
+        b[shear + l] += b[shears + l] * b[q + l]
+        b[top + l] += b[shapes + l] * b[pull + l]
 
 
 @part
 def add_modes(b: Floats, shape: Shape, i: int, r: int) -> None:
-    """The same for the modes r, r + 1 and r + 2: the sum waits in a register."""
+    """The same for the modes r, r + 1 and r + 2."""
     n, L = floor_count(shape), len(shape.stride)
     mode, shapes = (SCALARS + r) * L, (SCALARS + (BLOCKS + r) * n + i) * L
-    q, pull = mode + NEXT_Q * n * L, mode + PULL * n * L
-    next_shape, shears = n * L, shapes + n * n * L
+    q, pull, shears = mode + NEXT_Q * n * L, mode + PULL * n * L, shapes + n * n * L
+    shear, top = (SCALARS + SHEAR_NOW * n + i) * L, (SCALARS + ACCELERATION_NOW * n + i) * L
+    second, third = n * L, 2 * n * L
     for l in range(lane_count(shape)):
-        b[STOREY * L + l] += (
-            b[shears + l] * b[q + l]
-            + b[shears + next_shape + l] * b[q + L + l]
-            + b[shears + 2 * next_shape + l] * b[q + 2 * L + l]
+        b[shear + l] = (
+            b[shear + l]
+            + b[shears + l] * b[q + l]
+            + b[shears + second + l] * b[q + L + l]
+            + b[shears + third + l] * b[q + 2 * L + l]
         )
-        b[FLOOR * L + l] += (
-            b[shapes + l] * b[pull + l]
-            + b[shapes + next_shape + l] * b[pull + L + l]
-            + b[shapes + 2 * next_shape + l] * b[pull + 2 * L + l]
+        b[top + l] = (
+            b[top + l]
+            + b[shapes + l] * b[pull + l]
+            + b[shapes + second + l] * b[pull + L + l]
+            + b[shapes + third + l] * b[pull + 2 * L + l]
         )
 
 
 @part
-def extend_reach(b: Floats, n: int, L: int, floor: int, l: int) -> None:
+def lower_reach(b: Floats, n: int, L: int, floor: int, l: int) -> None:
     """Lower the reach of a lane to that of a floor whose rows begin at entry `floor`."""
     shear = b[floor + STOREY_SHEAR * n * L + l]
     reach = SURELY * (shear * shear) * b[floor + STRAIN_BOUND * n * L + l]
-    b[STRAIN_REACH * L + l] = min(b[STRAIN_REACH * L + l], reach)
+    b[STRAIN_REACH * L + l] = written(min(b[STRAIN_REACH * L + l], reach))
     top = b[floor + FLOOR_ACCELERATION * n * L + l]
     reach = SURELY * (top * top) * b[floor + PULLED_BOUND * n * L + l]
-    b[PULLED_REACH * L + l] = min(b[PULLED_REACH * L + l], reach)
+    b[PULLED_REACH * L + l] = written(min(b[PULLED_REACH * L + l], reach))

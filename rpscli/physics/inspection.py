@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.events import Quintic, lower_hull, quintic, upper_hull
-from rpscli.physics.lanes import floor_count, lane_count
+from rpscli.physics.lanes import floor_count, lane_count, written
 from rpscli.physics.layout import (
     ARC,
     ATTEND,
@@ -176,8 +176,8 @@ def observe(b: Floats, shape: Shape) -> None:
         tilt = b[NEXT_TILT * L + l]
         higher = (b[QUIET * L + l] > b[WATCH * L + l]) & (tilt > b[PEAK * L + l])
         time = b[START * L + l] + (b[TIME * L + l] + b[STEP * L + l])
-        b[PEAK * L + l] = tilt if higher else b[PEAK * L + l]
-        b[PEAK_TIME * L + l] = time if higher else b[PEAK_TIME * L + l]
+        b[PEAK * L + l] = written(tilt if higher else b[PEAK * L + l])
+        b[PEAK_TIME * L + l] = written(time if higher else b[PEAK_TIME * L + l])
 
 
 @part
@@ -225,13 +225,13 @@ def raise_contacts(
     )
     # What is not looked at counts as nothing; without branches, so that lanes go together.
     row = FRICTION_TOP * L + l
-    b[row] = max(b[row], top if seen else 0.0)
+    b[row] = written(max(b[row], top if seen else 0.0))
     row = FRICTION_BOTTOM * L + l
-    b[row] = max(b[row], bottom if seen else 0.0)
+    b[row] = written(max(b[row], bottom if seen else 0.0))
     row = NORMAL_TOP * L + l
-    b[row] = min(b[row], light_top if seen else math.inf)
+    b[row] = written(min(b[row], light_top if seen else math.inf))
     row = NORMAL_BOTTOM * L + l
-    b[row] = min(b[row], light_bottom if seen else math.inf)
+    b[row] = written(min(b[row], light_bottom if seen else math.inf))
 
 
 @lane_routine

@@ -28,3 +28,13 @@ def lane_count(shape: Shape) -> int:
 def floor_count(shape: Shape) -> int:
     """Floors, at most `MOST_FLOORS`."""
     return max(min(len(shape.floors), MOST_FLOORS), 0)
+
+
+@part
+def written(x: float) -> float:
+    """The same number, to be written wherever it came from (but -0 becomes 0).
+
+    What is either new or what stood there before invites the compiler to write only the new ones,
+    lane by lane; processors take ten times as long for that as for writing all.
+    """
+    return x + 0.0

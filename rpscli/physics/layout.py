@@ -74,8 +74,6 @@ ORDER = 7
     STRAIN_REACH,  # how large they may be without raising a storey shear,
     PULLED,
     PULLED_REACH,  # or a floor acceleration
-    STOREY,  # shear and pull of the floor that is looked at
-    FLOOR,
     # State of the step.
     CLEARED,  # 1 if it was looked at closely and holds no event
     QUIET,  # 1 if the step holds no event
@@ -99,7 +97,7 @@ ORDER = 7
     STEPS,
     # Taylor coefficients over the step, ORDER + 1 each.
     RATES,  # of x'
-) = range(78)
+) = range(76)
 TERMS = ORDER + 1
 STATE = NEXT_TILT - TILT
 LEVERS = RATES + TERMS  # of B
@@ -118,12 +116,14 @@ SCALARS = ACTIONS + TERMS
     PULLED_BOUND,  # of a floor: its squared acceleration times this is at most PULLED
     STOREY_SHEAR,  # largest elastic one so far
     FLOOR_ACCELERATION,  # largest absolute one so far
+    SHEAR_NOW,  # at the end of the step, where they are looked at
+    ACCELERATION_NOW,
     Q,  # modal displacements at the start of the step, relative to the cap beam
     PULL,  # w^2 q + 2 xi w q' of the present order, and at last of the end
     NEXT_Q,  # at the end of the step
     NEXT_DQ,
     DQ,  # Taylor coefficients of the modal velocities, ORDER + 1 blocks
-) = range(14)
+) = range(16)
 BLOCKS = DQ + TERMS
 """Then come n blocks, mode shapes, and another n, storey shears of each mode."""
 

@@ -76,6 +76,38 @@ def shake_block(lane: Lane, c: Floats, h: float, each: int, steps: int) -> None:
     `each` steps lead to the next sample, and from one to the next. The last instant belongs to the
     step before it: the ground acceleration may jump there.
     """
+    whole, gravity = lane.whole, lane.numbers[STANDARD_GRAVITY]
+    i = whole[INTERVAL]
+    if each == 1 and lane.numbers[TIME] == 0.0 and i + 1 < whole[NPTS]:
+        copy_samples(lane, c, AT, whole[RECORD] + i, steps, 0.0)
+        if whole[VERTICAL] >= 0:
+            copy_samples(lane, c, RISE, whole[VERTICAL] + i, steps, gravity)
+        else:
+            for k in range(COLUMNS):
+                c[RISE * COLUMNS + k], c[RISE_SLOPE * COLUMNS + k] = gravity, 0.0
+    else:
+        divide_intervals(lane, c, h, each, steps)
+
+
+@part
+def copy_samples(lane: Lane, c: Floats, row: int, start: int, steps: int, rest: float) -> None:
+    """Write `rest` plus a record to a row and its slope to the next: a step is an interval."""
+    scale, per_time = lane.numbers[SCALE], lane.numbers[PER_INTERVAL]
+    first, slopes = row * COLUMNS, (row + 1) * COLUMNS
+    samples = lane.acceleration[start : start + steps + 1]
+    for k in range(samples.shape[0]):
+        c[first + k] = rest + scale * samples[k]
+    for k in range(steps):
+        c[slopes + k] = (c[first + k + 1] - c[first + k]) * per_time
+    for k in range(steps, COLUMNS):
+        c[slopes + k] = 0.0
+    for k in range(steps + 1, COLUMNS):
+        c[first + k] = rest
+
+
+@part
+def divide_intervals(lane: Lane, c: Floats, h: float, each: int, steps: int) -> None:
+    """The same where a step does not lead from sample to sample."""
     interval, time = lane.whole[INTERVAL], lane.numbers[TIME]
     shaking = shaking_in(lane, interval)
     to_sample = each

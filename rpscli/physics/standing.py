@@ -172,8 +172,8 @@ def stand(lane: Lane, shape: Shape) -> bool:
         plan = plan_block(lane, FINE if fine else 1)
         shake_block(lane, c, plan.h, plan.each, plan.steps)
         march(block, z, plan.row)
-        raise_alarms(c, stance, plan.h, 0.0 if fine else NEAR)
-        taken, fraction, alarm = 0, 0.0, False
+        alarms = raise_alarms(c, stance, plan.h, 0.0 if fine else NEAR)
+        taken, fraction, alarm = 0 if alarms else plan.steps, 0.0, False
         while taken < plan.steps and not alarm:
             alarm = c[ALARM * COLUMNS + taken] > 0.0
             if alarm and fine:

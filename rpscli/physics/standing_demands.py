@@ -25,6 +25,7 @@ from rpscli.physics.contact_layout import (
 from rpscli.physics.floor_demands import SURELY
 from rpscli.physics.inspection import contact_measures
 from rpscli.physics.lane import Lane
+from rpscli.physics.lanes import written
 from rpscli.physics.layout import (
     CAP_BEAM_MASS,
     COLUMNS_MASS,
@@ -114,7 +115,7 @@ def largest_seen(c: Floats, row: int) -> float:
     while half >= 4:
         for k in range(half):
             one, other = c[row * COLUMNS + k], c[row * COLUMNS + half + k]
-            c[row * COLUMNS + k] = max(one, other)
+            c[row * COLUMNS + k] = written(max(one, other))
         half //= 2
     first = row * COLUMNS
     return float(max(c[first], c[first + 1], c[first + 2], c[first + 3]))
@@ -153,13 +154,13 @@ def observe_contacts(c: Floats, s: Floats) -> None:
             cap_beam, floors, columns, 0.0, 0.0, V, across, upwards, gravity
         )
         row = FRICTION_TOPS * COLUMNS + k
-        c[row] = top if seen and top > c[row] else c[row]
+        c[row] = written(max(c[row], top if seen else 0.0))
         row = FRICTION_BOTTOMS * COLUMNS + k
-        c[row] = bottom if seen and bottom > c[row] else c[row]
+        c[row] = written(max(c[row], bottom if seen else 0.0))
         row = NORMAL_TOPS * COLUMNS + k
-        c[row] = light_top if seen and light_top < c[row] else c[row]
+        c[row] = written(min(c[row], light_top if seen else math.inf))
         row = NORMAL_BOTTOMS * COLUMNS + k
-        c[row] = light_bottom if seen and light_bottom < c[row] else c[row]
+        c[row] = written(min(c[row], light_bottom if seen else math.inf))
 
 
 @routine

@@ -96,11 +96,12 @@ def margin_path(path: Quintic, limit: float, climb: float, side: float) -> Quint
 
 
 @lane_routine
-def raise_alarms(c: Floats, stance: Stance, h: float, least: float) -> None:
+def raise_alarms(c: Floats, stance: Stance, h: float, least: float) -> bool:
     """Write ALARM: 0 for steps in which the margin surely stays positive to both sides.
 
-    `least` is the share of the limit that has to be left for that.
+    `least` is the share of the limit that has to be left for that. Returns whether any is not 0.
     """
+    alarms = 0
     for k in range(COLUMNS):
         path = push_path(c, stance, h, k)
         limit = stance.lift * c[RISE * COLUMNS + k]
@@ -108,7 +109,10 @@ def raise_alarms(c: Floats, stance: Stance, h: float, least: float) -> None:
         one = margin_path(path, limit, climb, 1.0)
         other = margin_path(path, limit, climb, -1.0)
         margin = min(lower_hull(one), one[0], lower_hull(other), other[0])
-        c[ALARM * COLUMNS + k] = 0.0 if margin >= least * limit else 1.0
+        quiet = margin >= least * limit
+        c[ALARM * COLUMNS + k] = 0.0 if quiet else 1.0
+        alarms |= 0 if quiet else 1
+    return alarms > 0
 
 
 @routine

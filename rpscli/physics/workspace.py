@@ -29,12 +29,11 @@ def empty_lanes(acceleration: Floats, shape: Shape, results: Results) -> Lanes:
     """Lanes with nothing to do."""
     n, L = len(shape.floors), len(shape.stride)
     buffer = zeros(rows(n) * L)
+    blocks = buffer[SCALARS * L :].reshape(BLOCKS + 2 * n, n, L)
     return Lanes(
         buffer=buffer,
         numbers=buffer[: SCALARS * L].reshape(SCALARS, L).T,
-        blocks=np.moveaxis(
-            buffer[SCALARS * L :].reshape(-1, n, L) if n > 0 else np.zeros((BLOCKS, 0, L)), -1, 0
-        ),
+        blocks=np.moveaxis(blocks, -1, 0),
         integers=np.zeros((L, WHOLE_NUMBERS), np.int64),
         podium=np.zeros((L, PODIUM_NUMBERS)),
         modes=zeros(L, contact_layout.SHAPES + 2 * n, n),

@@ -26,8 +26,8 @@ pytestmark = needs_compiled_kernels
 ACCURACIES = (0.8, 1.6, 3.2)
 REFERENCE = 48.0
 LEAST_STATE, LEAST_ENERGY = 6.1, 5.5
-"""Order seven shows as 6.2 to 8.5, of energy as 5.6 to 8: rounding is near, so the steps are few and long, and the error that
-counts is not always that of the same quantity. Without the last term none reaches 6.1."""
+"""Order seven shows as 6.2 to 8.5, that of energy as 5.5 to 8: rounding is near, so the steps are
+few and long, and the error that counts is not always that of the same quantity."""
 
 
 class Orders(NamedTuple):
