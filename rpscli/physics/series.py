@@ -1,8 +1,8 @@
 """Taylor series of the uplifted motion over a step.
 
 With B' = (c - C) x', C' = B x' and the ground's acceleration linear in time, every term of the
-motion follows from those before it by sums of products (R. E. Moore, Interval Analysis, 1966,
-ch. 11; Theory, section 9). Coefficients are those of powers of t/h, h the step: f = f_0 + f_1 t/h
+motion follows from those before it by sums of products (A. Jorba and M. Zou, Exp. Math. 14 (2005)
+99-117; Theory, section 10). Coefficients are those of powers of t/h, h the step: f = f_0 + f_1 t/h
 + ..., so that a term is what it adds to the end, and derivatives are m/h times the next term:
 
     B_m = -(h/m) sum (C - c)_j x'_(m-1-j)           C_m = (h/m) sum B_j x'_(m-1-j)

@@ -49,8 +49,8 @@ def test_converged_histories(
     assert fine.max_rotation == printed(rotation)
     assert fine.storey_shears[0] / structure.static_base_shear == printed(shear)
     assert fine.impacts == impacts
-    # the default step stays within what its description promises
+    # the default step is far within the 1e-4 that its description promises for most histories
     default = demand(structure, record, TimeHistorySettings(free_vibration=10.0))
-    assert default.max_rotation == pytest.approx(fine.max_rotation, rel=1e-4)
-    assert default.storey_shears == pytest.approx(fine.storey_shears, rel=1e-3)
+    assert default.max_rotation == pytest.approx(fine.max_rotation, rel=1e-7)
+    assert default.storey_shears == pytest.approx(fine.storey_shears, rel=1e-5)
     assert default.impacts == impacts
