@@ -9,7 +9,8 @@ then come blocks of n rows, one for each mode of the fixed base or for each floo
 from __future__ import annotations
 
 ORDER = 7
-"""Highest term of the Taylor series of the velocities; those of the positions have one more."""
+"""Highest term of the Taylor series of the velocities; those of the positions have one more.
+`series` and `terms` are written out for it."""
 
 (
     # Constants of the structure, loaded with a history.
