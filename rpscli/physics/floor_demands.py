@@ -109,9 +109,14 @@ def add_modes(b: Floats, shape: Shape, i: int, r: int) -> None:
 @part
 def lower_reach(b: Floats, n: int, L: int, floor: int, l: int) -> None:
     """Lower the reach of a lane to that of a floor whose rows begin at entry `floor`."""
-    shear = b[floor + STOREY_SHEAR * n * L + l]
-    reach = SURELY * (shear * shear) * b[floor + STRAIN_BOUND * n * L + l]
+    shear, top = b[floor + STOREY_SHEAR * n * L + l], b[floor + FLOOR_ACCELERATION * n * L + l]
+    reach = reach_of(shear, b[floor + STRAIN_BOUND * n * L + l])
     b[STRAIN_REACH * L + l] = written(min(b[STRAIN_REACH * L + l], reach))
-    top = b[floor + FLOOR_ACCELERATION * n * L + l]
-    reach = SURELY * (top * top) * b[floor + PULLED_BOUND * n * L + l]
+    reach = reach_of(top, b[floor + PULLED_BOUND * n * L + l])
     b[PULLED_REACH * L + l] = written(min(b[PULLED_REACH * L + l], reach))
+
+
+@part
+def reach_of(largest: float, bound: float) -> float:
+    """What the weighted squares of the modes may reach without raising the largest demand."""
+    return SURELY * (largest * largest) * bound

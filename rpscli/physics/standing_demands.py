@@ -22,7 +22,7 @@ from rpscli.physics.contact_layout import (
     SHEAR,
     STRAIN,
 )
-from rpscli.physics.floor_demands import SURELY
+from rpscli.physics.floor_demands import reach_of
 from rpscli.physics.inspection import contact_measures
 from rpscli.physics.lane import Lane
 from rpscli.physics.lanes import written
@@ -71,8 +71,8 @@ def set_reach(lane: Lane) -> None:
     strain, pulled = math.inf, math.inf
     for i in range(x.shape[1]):
         shear, top = x[STOREY_SHEAR, i], x[FLOOR_ACCELERATION, i]
-        strain = min(strain, SURELY * (shear * shear) * x[STRAIN_BOUND, i])
-        pulled = min(pulled, SURELY * (top * top) * x[PULLED_BOUND, i])
+        strain = min(strain, reach_of(shear, x[STRAIN_BOUND, i]))
+        pulled = min(pulled, reach_of(top, x[PULLED_BOUND, i]))
     s[STRAIN_REACH], s[PULLED_REACH] = strain, pulled
 
 

@@ -169,7 +169,7 @@ def go_over(lane: Lane) -> float:
     s, x, p = lane.numbers, lane.blocks, lane.podium
     e, reach = p[RESTITUTION], 2.0 * p[R] * math.cos(p[ALPHA])
     rate = s[SIDE] * min(s[RATE], 0.0)
-    lost = (1.0 - e * e) * upright_energy(s)
+    lost = upright_energy(s)
     jump = -reach * (1.0 - e) * rate
     if p[FLOORS_JUMP] > 0.0:
         momentum = relative_momentum(x) + s[FLOORS_MASS] * (reach * rate + 0.5 * jump)
@@ -178,7 +178,7 @@ def go_over(lane: Lane) -> float:
         shift_floors(x, -jump)
     s[TILT], s[RATE] = 0.0, e * abs(rate)
     s[SIDE] = -s[SIDE]
-    return float(lost)
+    return float(lost - upright_energy(s))
 
 
 @part
