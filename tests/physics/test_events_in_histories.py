@@ -203,3 +203,24 @@ def test_impacts_jump_as_the_law_says(law: str) -> None:
     # two intervals of accelerations below 2 g tan(alpha) blur it
     assert change == pytest.approx(jump if law == "rigid" else 0.0, abs=0.06)
     assert jump > 0.0
+
+
+@pytest.mark.parametrize("rho", [FLAT, 0.5])
+def test_the_largest_tilt_may_lie_in_a_step_that_ends_on_an_impact(rho: float) -> None:
+    """A push that hardly exceeds the limit: up, over the top and down again within one step."""
+    structure = podium(0, 0.15, rho)
+    peak = 1.02 * structure.uplift_acceleration
+    record = ground([0.0, 0.5 * peak, peak, 0.5 * peak, 0.0, 0.0], 0.1)
+    coarse, fine = (
+        time_history(structure, record, TimeHistorySettings(accuracy=accuracy, free_vibration=0.0))
+        for accuracy in (1.0, 64.0)
+    )
+    assert [e.kind for e in coarse.events] == [e.kind for e in fine.events]
+    assert coarse.impacts > 0
+    up, down = coarse.events[:2]
+    assert up.time < coarse.history.max_rotation_time < down.time < 0.3
+    # the ground's corner at 0.2 s is a sample; behind it the motion is almost a cubic
+    assert coarse.max_rotation == pytest.approx(fine.max_rotation, rel=1e-8)
+    assert coarse.history.max_rotation_time == pytest.approx(
+        fine.history.max_rotation_time, abs=1e-8
+    )
