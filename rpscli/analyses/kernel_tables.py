@@ -50,6 +50,7 @@ def lane_column(structure: PodiumStructure, podium: Podium) -> NDArray[np.float6
         layout.FLOORS_MASS: podium.floors_mass,
         layout.STANDARD_GRAVITY: podium.gravity,
         layout.THETA_CR: podium.theta_cr,
+        layout.LAST_TERM: podium.last_term,
         layout.SIDE: 1.0,
         layout.CRITICAL_TIME: -1.0,
         layout.NORMAL_TOP: math.inf,

@@ -50,6 +50,7 @@ from rpscli.physics.layout import (
     ROCKING,
     ROLLING,
     ROLLING_TO_ROCKING,
+    ROUGH,
     SIDE,
     STALE,
     STALLED,
@@ -175,11 +176,15 @@ def go_on(lane: Lane) -> bool:
 def attend(lane: Lane, shape: Shape) -> bool:
     """Deal with a step that ends at a sample or holds an event; False if the history is over.
 
-    After a false alarm the same step is taken once more, and passes.
+    After a false alarm the same step is taken once more, and passes. A step that is too long for
+    its series is taken again at half the length, as are those after it up to the next sample.
     """
     s, whole = lane.numbers, lane.whole
     if s[QUIET] > 0.0:
         return go_on(lane)
+    if s[ROUGH] > 0.0:
+        s[STEP], s[LEFT] = 0.5 * s[STEP], 2.0 * s[LEFT]
+        return True
     if not math.isfinite(s[NEXT_TILT] + s[NEXT_RATE] + s[NEXT_TURN]):
         whole[OUTCOME] = FAILED_NOT_FINITE
         return False

@@ -25,6 +25,7 @@ from rpscli.physics.layout import (
     GROUND,
     GROUND_UPWARDS,
     HIGH,
+    LAST_TERM,
     LEFT,
     LOW,
     NEXT_BASE_SHEAR,
@@ -37,6 +38,7 @@ from rpscli.physics.layout import (
     NEXT_TURN,
     NORMAL_BOTTOM,
     NORMAL_TOP,
+    ORDER,
     PEAK,
     PEAK_TIME,
     PULL,
@@ -46,6 +48,8 @@ from rpscli.physics.layout import (
     QUIET,
     RAISE,
     RATE,
+    RATES,
+    ROUGH,
     SCALARS,
     SEEN,
     SIDE,
@@ -67,6 +71,9 @@ from rpscli.physics.layout import (
 from rpscli.physics.parameters import Floats, Shape
 from rpscli.physics.part import lane_routine, part
 
+MOST_STEPS = 4096.0
+"""An interval is not divided further than that."""
+
 
 @part
 def tilt_path(b: Floats, L: int, l: int) -> Quintic:
@@ -86,9 +93,10 @@ def tilt_path(b: Floats, L: int, l: int) -> Quintic:
 def search_events(b: Floats, shape: Shape) -> None:
     """Look for events in the step just taken.
 
-    Writes QUIET: 1 where the tilt surely stays in the range of its phase, and is finite; SEEN: 1
-    where a quiet step ends at a sample of the record; and WATCH: 1 where a quiet step may hold the
-    largest tilt so far inside, or passes theta_cr for the first time.
+    Writes ROUGH: 1 where the last term of the tilt's series says that the step is too long for it;
+    QUIET: 1 where it is not, and the tilt surely stays in the range of its phase, and is finite;
+    SEEN: 1 where a quiet step ends at a sample of the record; and WATCH: 1 where a quiet step may
+    hold the largest tilt so far inside, or passes theta_cr for the first time.
     """
     L = len(shape.stride)
     for l in range(lane_count(shape)):
@@ -96,10 +104,14 @@ def search_events(b: Floats, shape: Shape) -> None:
         lowest, highest = min(lower_hull(path), path[0]), max(upper_hull(path), path[0])
         inside = (lowest >= b[LOW * L + l]) & (highest <= b[HIGH * L + l])
         cleared = (b[CLEARED * L + l] > 0.0) & (abs(path[5]) < math.inf)
-        quiet = cleared | inside
+        first = abs(b[RATES * L + l]) + abs(b[(RATES + 1) * L + l]) + abs(b[(RATES + 2) * L + l])
+        last = abs(b[(RATES + ORDER) * L + l])
+        rough = (last > b[LAST_TERM * L + l] * first) & (b[LEFT * L + l] < MOST_STEPS)
+        quiet = (cleared | inside) & (not rough)
         turning = (b[RATE * L + l] > 0.0) & (b[NEXT_RATE * L + l] < 0.0)
         higher = turning & (highest > b[PEAK * L + l])
         passing = (path[5] > b[THETA_CR * L + l]) & (b[CRITICAL_TIME * L + l] < 0.0)
+        b[ROUGH * L + l] = 1.0 if rough else 0.0
         b[QUIET * L + l] = 1.0 if quiet else 0.0
         b[SEEN * L + l] = 1.0 if quiet & (b[LEFT * L + l] == 1.0) else 0.0
         b[WATCH * L + l] = 1.0 if quiet & (higher | passing) else 0.0

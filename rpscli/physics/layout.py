@@ -27,6 +27,7 @@ ORDER = 7
     STANDARD_GRAVITY,  # g
     THETA_CR,
     SCALE,  # factor on the record
+    LAST_TERM,  # of a series over its first three: a step with more is too long
     # The phase of motion: its constants, the side, and the range of the tilt in it.
     ARM_COS,
     ARM_SIN,
@@ -77,7 +78,8 @@ ORDER = 7
     PULLED_REACH,  # or a floor acceleration
     # State of the step.
     CLEARED,  # 1 if it was looked at closely and holds no event
-    QUIET,  # 1 if the step holds no event
+    ROUGH,  # 1 if the step is too long for its series
+    QUIET,  # 1 if the step is not, and holds no event
     SEEN,  # 1 if a quiet step ends at a sample of the record
     WATCH,  # 1 if it may hold the largest tilt inside, or pass theta_cr for the first time
     RAISE,  # 1 if what is seen may raise a storey shear or a floor acceleration
@@ -98,7 +100,7 @@ ORDER = 7
     STEPS,
     # Taylor coefficients over the step, ORDER + 1 each.
     RATES,  # of x'
-) = range(76)
+) = range(78)
 TERMS = ORDER + 1
 STATE = NEXT_TILT - TILT
 LEVERS = RATES + TERMS  # of B

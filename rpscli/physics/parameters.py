@@ -17,7 +17,8 @@ class Podium(NamedTuple):
     """The rocking storey and how its motion is followed; letters as in Theory, sections 1 and 2.
 
     `flight_rate` and `contact_rate` are the least numbers of steps a second, uplifted and in full
-    contact; each interval of a record is divided evenly. `bounces` is what the impacts left out at
+    contact; each interval of a record is divided evenly. `last_term` bounds the last term of an
+    uplifted step's series over its first three. `bounces` is what the impacts left out at
     re-contact add to the floors' velocity, over the cap beam's.
     """
 
@@ -39,6 +40,7 @@ class Podium(NamedTuple):
     floors_jump: float
     flight_rate: float
     contact_rate: float
+    last_term: float
     recontact_tolerance: float
     bounces: float
     max_events: float
@@ -59,7 +61,7 @@ class Systems(NamedTuple):
     """Structures of the same number of floors n, stacked along the first axis.
 
     podium
-        (S, 32): a row of `podium_numbers` each.
+        (S, 33): a row of `podium_numbers` each.
     column
         (S, rows): what stands in the buffer of a lane before a history, see `layout`.
     modes
@@ -147,7 +149,7 @@ class Lanes(NamedTuple):
     """Everything that histories need while they run, lane by lane: see `layout` and `contact`.
 
     `numbers` (L, rows) and `blocks` (L, blocks, n) are views of the flat `buffer`. `podium`
-    (L, 32) are the numbers of `Podium`, `modes` (L, 25 + 2 n, n) the modal rows of full contact;
+    (L, 33) are the numbers of `Podium`, `modes` (L, 25 + 2 n, n) the modal rows of full contact;
     its `block` and `piece` (6,) are scratch; `acceleration` holds all records end to end, linear
     between samples; the samples and the log are those of `Results`.
     """

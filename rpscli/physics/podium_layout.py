@@ -16,6 +16,7 @@ ROLLING_PHASE, ROCKING_PHASE = 5, 10  # the five numbers of a `geometry.Phase` e
     FLOORS_JUMP,
     FLIGHT_RATE,
     CONTACT_RATE,
+    LAST_TERM,
     RECONTACT_TOLERANCE,
     BOUNCES,
     MAX_EVENTS,
@@ -23,4 +24,4 @@ ROLLING_PHASE, ROCKING_PHASE = 5, 10  # the five numbers of a `geometry.Phase` e
     FREE_VIBRATION,
     UNTIL_REST,
     PODIUM_NUMBERS,  # how many they are
-) = range(15, 33)
+) = range(15, 34)

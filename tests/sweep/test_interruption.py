@@ -36,11 +36,14 @@ def long_study(workplace: Path) -> Path:
 
 
 def begun(process: subprocess.Popen[str], store: Path) -> None:
-    """Wait until some batches of points are stored."""
-    for _ in range(18_000):
-        if process.poll() is not None or (store.exists() and store.stat().st_size > 200_000):
+    """Wait until some batches of points are stored: the last that is seen may be half written."""
+    sizes = set()
+    for _ in range(36_000):
+        if store.exists():
+            sizes.add(store.stat().st_size)
+        if process.poll() is not None or sum(size > 200_000 for size in sizes) > 1:
             return
-        time.sleep(0.01)
+        time.sleep(0.005)
 
 
 def finished(folder: Path) -> dict[str, int]:
