@@ -85,7 +85,10 @@ def step(b: Floats, shape: Shape) -> None:
 
 @part
 def begin_series(b: Floats, shape: Shape) -> None:
-    """Terms of order 0: the state."""
+    """Terms of order 0: the state.
+
+    Its pull is formed again: a step may be repeated, and then PULL is already that of its end.
+    """
     n, L = floor_count(shape), len(shape.stride)
     for l in range(lane_count(shape)):
         b[RATES * L + l] = b[RATE * L + l]

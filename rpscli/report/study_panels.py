@@ -141,7 +141,8 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_axes: bool) 
     left, right = 0.62, 0.14
     bottom = 0.52 + LINE * legend_lines + (0.06 if legend_lines else 0.0)
     top = 0.32 + LINE * title_lines
-    across = 0.16 if share_axes else 0.36
+    # Where axes are shared, room for half of the last number of one and of the first of the next.
+    across = 0.32 if share_axes else 0.36
     down = 0.14 + LINE * title_lines + (0.0 if share_axes else 0.2)
     figure.suptitle(figure.get_suptitle(), y=1.0 - 0.08 / height, fontsize=8.0, color=style.GREY)
     figure.subplots_adjust(
