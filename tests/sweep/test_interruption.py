@@ -22,8 +22,8 @@ from rpscli.sweep.store import Store
 from rpscli.sweep.threads import Threads
 from sweep.small_studies import STUDY, Make, start
 
-MORE_RECORDS = ("seed: [1, 2, 3]", "seed: {low: 1, high: 60, count: 60}")
-"""720 points: enough to be interrupted in the middle."""
+MORE_RECORDS = ("seed: [1, 2, 3]", "seed: {low: 1, high: 180, count: 180}")
+"""2160 points: enough to be interrupted in the middle."""
 
 CSV = "results/study/sweep/points.csv"
 STORE = "results/study/sweep/study.sqlite"
@@ -70,8 +70,8 @@ def test_kill_9_and_resume_end_in_the_same_bytes(long_study: Path) -> None:
     process.communicate()
     assert process.returncode == -signal.SIGKILL
     points = finished(long_study)
-    assert 0 < points["kept"] < 720
-    assert points["kept"] + points["computed"] == 720
+    assert 0 < points["kept"] < 2160
+    assert points["kept"] + points["computed"] == 2160
     assert (long_study / CSV).read_bytes() == undisturbed(long_study)
 
 
@@ -86,7 +86,7 @@ def test_the_first_ctrl_c_drains_and_says_how_to_go_on(long_study: Path) -> None
     document = json.loads(out)
     assert document["error"]["type"] == "Interrupted"
     stored = document["points"]["stored"]
-    assert 0 < stored < 720
+    assert 0 < stored < 2160
     assert not (long_study / CSV).exists()
     assert finished(long_study)["kept"] == stored
 
@@ -116,7 +116,7 @@ def test_the_second_ctrl_c_stops_at_once(study_of: Make, workplace: Path) -> Non
         begin = resume(design, keys, store, retry_failed=False)
         with pytest.raises(KeyboardInterrupt):
             run(design, begin, store, Threads(bench, 1), interrupt)
-        assert 0 < len(store.outcomes()) < 720
+        assert 0 < len(store.outcomes()) < 2160
     assert signal.getsignal(signal.SIGINT) is before
 
 
