@@ -15,7 +15,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rpscli.analyses.demand import Demand, demand
+    from rpscli.analyses.demand import demand
+    from rpscli.analyses.largest_demands import Demand
     from rpscli.analyses.modal import ModalResult, modal
     from rpscli.analyses.pushover import PushoverResult, pushover
     from rpscli.analyses.results import TimeHistoryResult
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
     from rpscli.records.source import load_record
 
 _HOMES = {
-    "rpscli.analyses.demand": ("Demand", "demand"),
+    "rpscli.analyses.demand": ("demand",),
+    "rpscli.analyses.largest_demands": ("Demand",),
     "rpscli.analyses.modal": ("ModalResult", "modal"),
     "rpscli.analyses.pushover": ("PushoverResult", "pushover"),
     "rpscli.analyses.results": ("TimeHistoryResult",),
@@ -80,7 +82,7 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module  # noqa: PLC0415 -- not every import of rpscli needs it
 
     if name == "__version__":
-        return import_module("rpscli.report.versions").program_version()
+        return import_module("rpscli.report.files.versions").program_version()
     for module, names in _HOMES.items():
         if name in names:
             return getattr(import_module(module), name)

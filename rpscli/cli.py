@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 import click
 
-from rpscli.commands.lazy import LazyGroup, Member
+from rpscli.commands.shell.lazy import LazyGroup, Member
 
 COMMANDS = {
     "init": Member("rpscli.commands.init", "write a commented case to start from"),
@@ -17,8 +17,10 @@ COMMANDS = {
     "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
     "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
     "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
-    "sweep": Member("rpscli.commands.sweep", "all points of a study, stored as they end; reports"),
-    "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
+    "sweep": Member(
+        "rpscli.commands.sweep.command", "all points of a study, stored as they end; reports"
+    ),
+    "record": Member("rpscli.commands.record.group", "look at ground motions, convert, make them"),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
 }
 
@@ -36,7 +38,7 @@ class Program(LazyGroup):
             raise
         except BaseException as error:  # noqa: BLE001 -- the last stop of every error
             # Imported now, when it is needed.
-            from rpscli.commands.failure import report  # noqa: PLC0415
+            from rpscli.commands.shell.failure import report  # noqa: PLC0415
 
             code = report(error, as_json="--json" in words)
         sys.exit(code or 0)
@@ -45,7 +47,7 @@ class Program(LazyGroup):
 def _show_version(ctx: click.Context, option: click.Parameter, value: object) -> None:
     del option
     if value and not ctx.resilient_parsing:
-        from rpscli.report.versions import program_version  # noqa: PLC0415
+        from rpscli.report.files.versions import program_version  # noqa: PLC0415
 
         click.echo(f"rps {program_version()}")
         ctx.exit()

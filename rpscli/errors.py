@@ -4,6 +4,10 @@ A message names the place, the value found, the rule that it breaks and a remedy
 knows about terminals: the command line turns these into text and an exit status.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+
 
 class RpsError(Exception):
     """Base of every error that `rps` raises on purpose."""
@@ -61,3 +65,30 @@ class LimitExceeded(RpsError):
 
 class OutputError(RpsError):
     """A result cannot be written: no permission, a full disk, a file where a folder should be."""
+
+
+def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
+    """The known word that a mistyped one was probably meant to be; None if none is like it.
+
+    Parameters
+    ----------
+    word
+        What was written. Small and capital letters, ``-`` and ``_`` count as the same.
+    known
+        What might have been meant.
+    likeness
+        Least share of letters in common, from 0 to 1; smaller for long names that are made of
+        parts, such as those of files and records.
+
+    Examples
+    --------
+    >>> nearest("slendernes", ["slenderness", "semi_diagonal"])
+    'slenderness'
+    >>> nearest("colour", ["slenderness"]) is None
+    True
+    """
+    import difflib  # noqa: PLC0415 -- needed by those who made a mistake only
+
+    folded = {name.lower().replace("-", "_"): name for name in known}
+    found = difflib.get_close_matches(word.lower().replace("-", "_"), folded, 1, likeness)
+    return folded[found[0]] if found else None

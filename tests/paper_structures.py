@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 from oracles.storey_lagrangian import OracleSystem
 
-from rpscli.analyses.kernel_input import flight_rate
+from rpscli.analyses.kernels.step_lengths import uplifted_rate
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.damping import ModalDamping, RayleighDamping
@@ -105,7 +105,7 @@ def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
 
 def steps_an_interval(structure: PodiumStructure, dt: float, accuracy: float = 1.0) -> int:
     """Taylor steps of an uplifted structure in a sampling interval without event."""
-    return max(math.ceil(dt * accuracy * flight_rate(structure)), 1)
+    return max(math.ceil(dt * accuracy * uplifted_rate(structure)), 1)
 
 
 def oracle_system(structure: PodiumStructure) -> OracleSystem:

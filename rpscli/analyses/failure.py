@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rpscli.physics import layout
+from rpscli.physics import state
 
 if TYPE_CHECKING:
-    from rpscli.analyses.history import History
+    from rpscli.analyses.kernels.history import History
 
 PHASE_NAMES = {
-    layout.FULL_CONTACT: "full contact",
-    layout.ROLLING: "rolling",
-    layout.ROCKING: "rocking",
+    state.FULL_CONTACT: "full contact",
+    state.ROLLING: "rolling",
+    state.ROCKING: "rocking",
 }
 
 REASONS = {
-    layout.FAILED_NOT_FINITE: (
+    state.FAILED_NOT_FINITE: (
         "the motion is no longer finite; check masses and stiffnesses, or raise analysis.accuracy"
     ),
-    layout.FAILED_TOO_MANY_EVENTS: (
+    state.FAILED_TOO_MANY_EVENTS: (
         "there are more events than analysis.max_events allows; raise it,"
         " or raise analysis.recontact_tolerance"
     ),
-    layout.FAILED_STEP_TOO_SMALL: (
+    state.FAILED_STEP_TOO_SMALL: (
         "events follow each other without time passing; raise analysis.recontact_tolerance"
     ),
 }

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernel_tables import modal_rows
+from rpscli.analyses.kernels.systems import building_system
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
@@ -41,23 +41,28 @@ def fixed_base_response(
     ValueError
         If there is no building.
     """
-    from rpscli.physics.fixed_base import integrate_fixed_base  # noqa: PLC0415
+    from rpscli.physics.full_contact.fixed_base import integrate_fixed_base  # noqa: PLC0415
+    from rpscli.physics.run import empty_block  # noqa: PLC0415
 
     building = structure.superstructure
     if building is None:
         raise ValueError("a structure without superstructure has no fixed-base response")
-    n = building.storeys
-    samples = np.empty((intervals + 1, 2 * n))
-    from rpscli.physics.workspace import empty_block  # noqa: PLC0415
-
-    tops = np.zeros((2, n))
-    integrate_fixed_base(
-        record.acceleration, record.dt, samples, tops, modal_rows(structure), empty_block(n)
+    floors, largest = (
+        np.empty((intervals + 1, 2, building.storeys)),
+        np.zeros((2, building.storeys)),
     )
-    shears, accelerations = tops
+    integrate_fixed_base(
+        record.acceleration,
+        record.dt,
+        building_system(building),
+        empty_block(building.storeys),
+        floors,
+        largest,
+    )
+    shears, accelerations = largest
     return FixedBaseResponse(
         storey_shears=shears,
         floor_accelerations=accelerations,
-        floor_displacements=samples[:, :n],
+        floor_displacements=floors[:, 0],
         drifts=shears / building.stiffnesses,
     )

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.result_quantities import FIXED_BASE_MODES, UPLIFTED, values_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 
@@ -29,6 +31,10 @@ class FixedBaseModes:
     def periods(self) -> Array:
         """(n,) [s]."""
         return 2.0 * math.pi / self.frequencies
+
+    def profiles(self) -> dict[str, Array]:
+        """Shapes, one a row, from the cap beam up (n, n + 1)."""
+        return {"shapes": _from_cap_beam(self.shapes)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +64,10 @@ class UpliftedModes:
         """(n, n + 1): floors relative to the cap beam, u_t - 1 u_b."""
         return np.asarray(self.shapes[1:] - self.shapes[0])
 
+    def profiles(self) -> dict[str, Array]:
+        """Shapes and elastic shapes, one a row, from the cap beam up (n + 1, n + 1)."""
+        return {"shapes": self.shapes.T, "elastic_shapes": _from_cap_beam(self.elastic_shapes)}
+
 
 @dataclass(frozen=True, eq=False)
 class ModalResult:
@@ -67,6 +77,22 @@ class ModalResult:
     fixed_base: FixedBaseModes | None
     rolling: UpliftedModes | None
     rocking: UpliftedModes
+
+    @property
+    def uplifted(self) -> dict[str, UpliftedModes]:
+        """The uplifted states that exist, by name."""
+        states = {"rolling": self.rolling, "rocking": self.rocking}
+        return {name: modes for name, modes in states.items() if modes is not None}
+
+    def results(self) -> dict[str, dict[str, Any] | None]:
+        """Lists by mode and the parameters of each state; None for one that does not exist."""
+        fixed = self.fixed_base
+        states = {name: values_of(modes, UPLIFTED) for name, modes in self.uplifted.items()}
+        return {
+            "fixed_base": None if fixed is None else values_of(fixed, FIXED_BASE_MODES),
+            "rolling": None,
+            **states,
+        }
 
 
 def modal(structure: PodiumStructure) -> ModalResult:
@@ -195,3 +221,8 @@ def _scaled(shapes: Array) -> Array:
     """Columns scaled to 1 at the largest component, the roof positive."""
     peak = np.max(np.abs(shapes), axis=0)
     return np.asarray(shapes / np.where(shapes[-1] < 0.0, -peak, peak))
+
+
+def _from_cap_beam(shapes: Array) -> Array:
+    """Shapes, one a row, with the 0 of a cap beam that they are relative to."""
+    return np.pad(shapes.T, ((0, 0), (1, 0)))

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Literal
 
-from rpscli.analyses.history import History
-from rpscli.physics import layout
+from rpscli.analyses.kernels.history import History
+from rpscli.physics import state
 
 Outcome = Literal["at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"]
 
 OUTCOMES: dict[int, Outcome] = {
-    layout.AT_REST: "at_rest",
-    layout.SURVIVED: "survived",
-    layout.OVERTURNED_ROLLING: "overturned_rolling",
-    layout.OVERTURNED_ROCKING: "overturned_rocking",
+    state.AT_REST: "at_rest",
+    state.SURVIVED: "survived",
+    state.OVERTURNED_ROLLING: "overturned_rolling",
+    state.OVERTURNED_ROCKING: "overturned_rocking",
 }
 
 

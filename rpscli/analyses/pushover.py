@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 
@@ -60,6 +61,17 @@ class PushoverResult:
     initial_stiffness: float
     curve: StoreyCurve
     capacity: tuple[CapacityCurve, ...]
+
+    def results(self) -> dict[str, Any]:
+        """Scalars and the storey's curve."""
+        return {**values_of(self, PUSHOVER), "curve": values_of(self.curve, STOREY_CURVE)}
+
+    def curve_ratios(self) -> dict[str, Array]:
+        """The storey's curve without units."""
+        return {
+            "rotation_ratio": self.curve.rotation / self.critical_rotation,
+            "force_over_weight": self.curve.force / self.structure.weight,
+        }
 
 
 def pushover(

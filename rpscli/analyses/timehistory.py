@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from rpscli.analyses.failure import failure_text
 from rpscli.analyses.fixed_base import fixed_base_response
-from rpscli.analyses.history import sampled_history
-from rpscli.analyses.outcome import outcome_of
+from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.trace import event_list, trace_of
@@ -44,7 +42,7 @@ def time_history(
 
     Raises
     ------
-    ValueError
+    RecordError
         If the two components have different time steps.
     """
     settings = settings or TimeHistorySettings()
@@ -55,12 +53,10 @@ def time_history(
         fixed = fixed_base_response(structure, record, intervals)
     return TimeHistoryResult(
         structure=structure,
+        history=run.history,
         record=record,
         settings=settings,
-        outcome=outcome_of(run.history),
-        failure=failure_text(run.history),
-        history=run.history,
-        trace=trace_of(structure, record.dt, run.ground, run.samples),
+        trace=trace_of(structure, record.dt, run),
         events=event_list(run.log),
         fixed_base=fixed,
     )

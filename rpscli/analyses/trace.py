@@ -8,8 +8,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import geometry, layout
+from rpscli.physics import state
+from rpscli.physics.formulae import geometry
 
 Array = NDArray[np.float64]
 
@@ -24,13 +26,13 @@ EventKind = Literal[
 ]
 
 EVENT_NAMES: dict[int, EventKind] = {
-    layout.UPLIFT: "uplift",
-    layout.IMPACT: "impact",
-    layout.RECONTACT: "recontact",
-    layout.ROLLING_TO_ROCKING: "rolling_to_rocking",
-    layout.ROCKING_TO_ROLLING: "rocking_to_rolling",
-    layout.CRITICAL_PASSAGE: "critical_rotation_passed",
-    layout.OVERTURNING: "overturning",
+    state.UPLIFT: "uplift",
+    state.IMPACT: "impact",
+    state.RECONTACT: "recontact",
+    state.ROLLING_TO_ROCKING: "rolling_to_rocking",
+    state.ROCKING_TO_ROLLING: "rocking_to_rolling",
+    state.CRITICAL_PASSAGE: "critical_rotation_passed",
+    state.OVERTURNING: "overturning",
 }
 
 
@@ -46,11 +48,11 @@ class Event:
     energy_lost: float
 
 
-def event_list(log: Array) -> tuple[Event, ...]:
+def event_list(log: state.Record) -> tuple[Event, ...]:
     """Events from the rows of the kernel's log."""
     return tuple(
-        Event(row[0], EVENT_NAMES[int(row[1])], row[2], row[3], row[4], row[5])
-        for row in log.tolist()
+        Event(time, EVENT_NAMES[kind], theta, before, after, lost)
+        for time, kind, theta, before, after, lost in log.tolist()
     )
 
 
@@ -83,12 +85,11 @@ class Trace:
     energy_stored: Array
 
 
-def trace_of(structure: PodiumStructure, dt: float, ground: Array, samples: Array) -> Trace:
-    """Histories from the kernel's rows (`layout.ROW_...`), the ground acceleration and its step."""
-    n = structure.storeys
-    theta, rate = samples[:, layout.ROW_ROTATION], samples[:, layout.ROW_RATE]
-    u = samples[:, layout.ROW_FLOORS : layout.ROW_FLOORS + n]
-    du = samples[:, layout.ROW_FLOORS + n :]
+def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trace:
+    """Histories from what the kernel stored at samples every `dt` [s]."""
+    samples, ground = run.samples, run.ground
+    theta, rate = samples.theta, samples.theta_dot
+    u, du = run.floors[:, 0], run.floors[:, 1]
     b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
     base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
@@ -111,7 +112,7 @@ def trace_of(structure: PodiumStructure, dt: float, ground: Array, samples: Arra
         ground_acceleration=a_g,
         rotation=theta,
         rotation_rate=rate,
-        phase=samples[:, layout.ROW_PHASE].astype(np.int8),
+        phase=samples.phase.astype(np.int8),
         cap_beam_displacement=base,
         lift=diameter * lift,
         floor_displacements=u,
@@ -119,9 +120,9 @@ def trace_of(structure: PodiumStructure, dt: float, ground: Array, samples: Arra
         storey_shears=shears,
         floor_accelerations=-forces / building.masses if building is not None else forces,
         driving_moment=diameter * C * (forces.sum(axis=1) - beam * a_g),
-        energy_input=samples[:, layout.ROW_INPUT],
-        energy_damped=samples[:, layout.ROW_DAMPED],
-        energy_impact=samples[:, layout.ROW_LOST],
+        energy_input=samples.energy_input,
+        energy_damped=samples.energy_damped,
+        energy_impact=samples.energy_lost,
         energy_stored=stored,
     )
 

@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.case.builder import podium_structure, time_history_settings
-from rpscli.case.document import Document
-from rpscli.case.draft import Draft
-from rpscli.case.faults import Fault
-from rpscli.case.files import STDIN, read_text
+from rpscli.case.build import Podium, podium_of, podium_structure, time_history_settings
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.release_rule import release_rule
-from rpscli.case.restitution_rule import restitution_rule
-from rpscli.case.rules_bearing import bearing_rules, impact_rules
-from rpscli.case.rules_masses import masses_rules
-from rpscli.case.rules_superstructure import (
+from rpscli.case.rules.bearing import bearing_rules, impact_rules
+from rpscli.case.rules.masses import masses_rules
+from rpscli.case.rules.partial_case import PartialCase
+from rpscli.case.rules.podium import release_rule, restitution_rule
+from rpscli.case.rules.superstructure import (
     ignored_keys,
     ignored_text,
     limits_rules,
     superstructure_rules,
 )
-from rpscli.case.schema import CaseFile, LimitsSection, RecordSection
-from rpscli.case.schema_faults import schema_check
-from rpscli.case.yaml_text import read_yaml
+from rpscli.case.schema.case_file import CaseFile, LimitsSection, RecordSection
+from rpscli.case.schema.check import schema_check
+from rpscli.case.text.document import Document
+from rpscli.case.text.files import STDIN, read_text
+from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 
@@ -48,15 +47,21 @@ class Case:
         Where relative file names inside the case start.
     file
         The validated file.
+    podium
+        Columns and cap beam, built.
     warnings
         What the user should know although it is no fault.
+    digest
+        SHA-256 of the text; empty for a case made in memory.
     """
 
     name: str
     source: str
     folder: Path
     file: CaseFile
+    podium: Podium
     warnings: tuple[str, ...] = ()
+    digest: str = ""
 
     @property
     def title(self) -> str:
@@ -82,7 +87,7 @@ class Case:
     def structure(self) -> PodiumStructure:
         """The structure, built when it is first asked for."""
         try:
-            return podium_structure(self.file)
+            return podium_structure(self.podium, self.file)
         except ValueError as error:
             raise CaseError(f"{self.source}: {error}") from None
 
@@ -130,7 +135,8 @@ def parse_case(
     overrides
         See `apply_overrides`.
     """
-    return case_from_mapping(read_yaml(text, name), name, folder, overrides)
+    case = case_from_mapping(read_yaml(text, name), name, folder, overrides)
+    return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())
 
 
 def case_from_mapping(
@@ -154,26 +160,36 @@ def case_from_mapping(
     """
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
-    file, warnings = _checked(document)
+    file, partial = _checked(document)
     stem = Path(name.strip("<>")).stem or "case"
-    return Case(stem, name, folder or Path(), file, warnings)
+    podium = _podium(file, partial)
+    ignored = ignored_keys(partial)
+    warnings = (ignored_text(ignored),) if ignored else ()
+    return Case(stem, name, folder or Path(), file, podium, warnings)
 
 
-def _checked(document: Document) -> tuple[CaseFile, tuple[str, ...]]:
-    """The validated file and its warnings; all faults are raised together."""
+def _checked(document: Document) -> tuple[CaseFile, PartialCase]:
+    """The validated file; all faults are raised together."""
     check = schema_check(CaseFile, document)
-    draft = Draft(document, check)
-    found = [fault for rule in RULES for fault in rule(draft)]
-    faults = [*check.faults, *found]
+    partial = PartialCase(document, check)
+    faults = [*check.faults, *(fault for rule in RULES for fault in rule(partial))]
     document.refuse(fault for fault in faults if not check.meant.intersection(fault.needs))
-    file = CaseFile.model_validate(document.content)
-    document.refuse(_model_faults(file, document))
-    ignored = ignored_keys(draft)
-    return file, (ignored_text(ignored),) if ignored else ()
+    assert check.read is not None, "without faults the file is read"
+    return check.read, partial
 
 
-def _model_faults(file: CaseFile, document: Document) -> list[Fault]:
+def _podium(file: CaseFile, partial: PartialCase) -> Podium:
+    """Columns and cap beam, if the model takes them."""
+    assert partial.shape is not None, "the rules make sure that the shape is complete"
+    document = partial.document
     try:
-        return [*restitution_rule(file, document), *release_rule(file)]
+        podium = podium_of(file, partial.shape)
+        faults = [
+            *restitution_rule(podium, document),
+            *release_rule(podium.bearing, file.analysis),
+        ]
     except ValueError as error:
-        return [Fault(("podium",), f"podium: {error}", at_key=True)]
+        place = document.key_place(("podium",))
+        raise CaseError(f"{place}: podium: {error}") from None
+    document.refuse(faults)
+    return podium

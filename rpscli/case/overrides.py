@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
-from rpscli.case.document import Document
-from rpscli.case.faults import Fault, Path, Place, dotted, shown
-from rpscli.case.known_keys import field_at, section_at, unknown_key
-from rpscli.case.schema import CaseFile
-from rpscli.case.yaml_text import read_value
+from rpscli.case.schema.case_file import CaseFile
+from rpscli.case.schema.known_keys import field_at, section_at, unknown_key
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault, Path, Place, dotted, shown
+from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import CaseError
 
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rpscli.errors import LimitExceeded, UsageError
+from rpscli.analyses.result_quantities import LIMITED
+from rpscli.errors import LimitExceeded, UsageError, nearest
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.case.schema import LimitsSection
+    from rpscli.case.schema.case_file import LimitsSection
 
 EVENTS: dict[str, Callable[[TimeHistoryResult], float]] = {
     "overturning": lambda result: float(result.overturned),
@@ -20,23 +20,8 @@ EVENTS: dict[str, Callable[[TimeHistoryResult], float]] = {
 }
 """Conditions that name something that must not happen."""
 
-MEASURES: dict[str, Callable[[TimeHistoryResult], float | None]] = {
-    "rotation_ratio": lambda result: result.rotation_ratio,
-    "base_shear_ratio": lambda result: result.base_shear_ratio,
-    "drift_ratio": lambda result: result.drift_ratio,
-    "max_rotation": lambda result: result.max_rotation,
-    "max_cap_beam_displacement": lambda result: result.max_cap_beam_displacement,
-    "max_base_shear": lambda result: result.max_base_shear,
-    "friction_demand": lambda result: result.friction_demand,
-    "uplifts": lambda result: float(result.uplifts),
-    "impacts": lambda result: float(result.impacts),
-}
+LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Conditions of the form NAME=VALUE, by their names in JSON, in SI units."""
-
-NEEDS = {
-    "drift_ratio": "superstructure.storey_height in the case",
-    "base_shear_ratio": "a superstructure",
-}
 
 
 @dataclass(frozen=True)
@@ -80,10 +65,10 @@ def parse_condition(text: str) -> Condition:
     name, sign, value = (part.strip() for part in text.partition("="))
     if name in EVENTS and not sign:
         return Condition(name, 0.0, "--fail-on")
-    if name not in MEASURES:
-        known = [*EVENTS, *(f"{measure}=VALUE" for measure in MEASURES)]
-        close = difflib.get_close_matches(name, [*EVENTS, *MEASURES], n=1)
-        hint = f"did you mean {close[0]}?" if close else f"known are {', '.join(known)}"
+    if name not in LIMITS:
+        known = [*EVENTS, *(f"{limited}=VALUE" for limited in LIMITS)]
+        close = nearest(name, [*EVENTS, *LIMITS], 0.6)
+        hint = f"did you mean {close}?" if close else f"known are {', '.join(known)}"
         raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {hint}")
     try:
         limit = float(value)
@@ -117,10 +102,10 @@ def judge(result: TimeHistoryResult, conditions: Iterable[Condition]) -> list[Ve
 
 def _verdict(result: TimeHistoryResult, condition: Condition) -> Verdict:
     name = condition.name
-    value = (EVENTS.get(name) or MEASURES[name])(result)
+    value = EVENTS[name](result) if name in EVENTS else getattr(result, name)
     if value is None:
-        raise UsageError(f"{condition.source}: {name} needs {NEEDS[name]}")
-    return Verdict(name, value, condition.limit, value > condition.limit, condition.source)
+        raise UsageError(f"{condition.source}: {name} needs {LIMITS[name].needs}")
+    return Verdict(name, float(value), condition.limit, value > condition.limit, condition.source)
 
 
 def exceeded(verdicts: Iterable[Verdict]) -> LimitExceeded | None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rpscli.commands.options import CaseRequest, OutputRequest
-from rpscli.commands.terminal import Terminal
-from rpscli.report.output_folder import OutputFolder, Run
+from rpscli.commands.shell.options import CaseRequest, OutputRequest
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.report.files.output_folder import OutputFolder, Run
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -21,12 +20,10 @@ RESULTS = Path("results")
 
 @dataclass(frozen=True, eq=False)
 class CaseInput:
-    """A case with what identifies it."""
+    """A case, and where it came from."""
 
     case: Case
     request: CaseRequest
-    digest: str
-    """SHA-256 of the case file's text."""
 
     @property
     def file(self) -> Path | None:
@@ -36,19 +33,11 @@ class CaseInput:
 
 def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
     """Read and check a case; its warnings go to the terminal."""
-    from rpscli.case.case import parse_case  # noqa: PLC0415 -- pydantic and yaml are slow
-    from rpscli.case.files import read_text  # noqa: PLC0415
+    from rpscli.case.case import load_case  # noqa: PLC0415 -- pydantic and yaml are slow
 
-    text = read_text(request.source)
-    piped = request.source == "-"
-    case = parse_case(
-        text,
-        name="<stdin>" if piped else request.source,
-        folder=None if piped else Path(request.source).parent,
-        overrides=request.overrides,
-    )
+    case = load_case(request.source, request.overrides)
     terminal.warn(case.warnings)
-    return CaseInput(case, request, hashlib.sha256(text.encode()).hexdigest())
+    return CaseInput(case, request)
 
 
 def case_folder(
@@ -60,7 +49,7 @@ def case_folder(
         "overrides": list(given.request.overrides),
         **inputs,
     }
-    run = Run(command, given.case.name, given.file, given.digest, resolved)
+    run = Run(command, given.case.name, given.file, given.case.digest, resolved)
     place = output.place or RESULTS / given.case.name / command
     return OutputFolder(place, run, force=output.force)
 

@@ -8,10 +8,10 @@ import click
 
 from rpscli.commands.case_input import case_heading, read_case
 from rpscli.commands.check_tables import check_tables
-from rpscli.commands.failure import concluded, leave
 from rpscli.commands.motion import MotionRequest, load_motion
-from rpscli.commands.options import CaseRequest, case_options, terminal_options
-from rpscli.commands.terminal import Terminal
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.options import CaseRequest, case_options, terminal_options
+from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import RecordError
 from rpscli.report.documents import heading
 
@@ -29,7 +29,7 @@ def command(request: CaseRequest, terminal: Terminal) -> None:
     line for each of them; so does a record that cannot be read.
     """
     given = read_case(request, terminal)
-    from rpscli.report.derived import derived_quantities  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.tables.derived import derived_quantities  # noqa: PLC0415 -- numpy is slow
 
     derived = derived_quantities(given.case.structure)
     record, error = _record(given.case)

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import click
 
-from rpscli.commands.options import terminal_options
-from rpscli.commands.terminal import Terminal, emit
+from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.terminal import Terminal, emit
 from rpscli.errors import Refused
 from rpscli.report.documents import heading
-from rpscli.report.whole_files import write_whole
+from rpscli.report.files.whole_files import write_whole
 
 
 @click.command("init")
@@ -20,7 +20,7 @@ from rpscli.report.whole_files import write_whole
 @terminal_options
 def command(file: Path, *, force: bool, terminal: Terminal) -> None:
     """Write a commented case to FILE (case.yaml by default; - is the standard output)."""
-    from rpscli.case.starter import starter_text  # noqa: PLC0415
+    from rpscli.case.text.files import starter_text  # noqa: PLC0415
 
     text = starter_text()
     if str(file) == "-":

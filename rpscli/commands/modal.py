@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.commands.case_input import case_folder, case_heading, read_case, write
-from rpscli.commands.numbers import shown
-from rpscli.commands.options import (
+from rpscli.commands.shell.numbers import shown
+from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
     output_options,
     terminal_options,
 )
-from rpscli.commands.tables import table
-from rpscli.commands.tables import title as heading_line
-from rpscli.commands.terminal import Terminal
-from rpscli.report.documents import heading, modal_document
+from rpscli.commands.shell.tables import table
+from rpscli.commands.shell.tables import title as heading_line
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.report.documents import heading
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -49,7 +49,7 @@ def command(request: CaseRequest, output: OutputRequest, terminal: Terminal) -> 
         **heading(),
         "command": "modal",
         "case": case_heading(given),
-        **modal_document(result),
+        **result.results(),
         "warnings": given.case.warnings,
         "files": folder.files,
     }
@@ -57,12 +57,9 @@ def command(request: CaseRequest, output: OutputRequest, terminal: Terminal) -> 
 
 
 def _tables(result: ModalResult, title: str) -> Iterator[RenderableType]:
-    from rpscli.report.modal_tables import uplifted_states  # noqa: PLC0415 -- numpy is slow
-
-    states = uplifted_states(result)
     storey = [
         (name, shown(modes.frequency_parameter), shown(modes.frequency_parameter_rigid))
-        for name, modes in states
+        for name, modes in result.uplifted.items()
     ]
     yield heading_line(title)
     yield table(("storey's own mode", "p_ext rad/s", "rigid estimate rad/s"), storey)
@@ -73,7 +70,7 @@ def _tables(result: ModalResult, title: str) -> Iterator[RenderableType]:
         for i, w in enumerate(fixed.frequencies)
     ]
     yield table(("full contact", "rad/s", "T s", "xi %"), rows)
-    for name, modes in states:
+    for name, modes in result.uplifted.items():
         yield table(
             (f"{name}", "rad/s", "of fixed base", "xi %", "of fixed base"),
             [

@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rpscli.errors import RecordError, UsageError
+from rpscli.errors import UsageError
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
-    from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 
 @dataclass(frozen=True)
@@ -22,28 +22,19 @@ class MotionRequest:
     scale: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """Ground motion of a run, scaled."""
-
-    horizontal: GroundMotion
-    vertical: GroundMotion | None
-    scale: float
-
-    @property
-    def inputs(self) -> dict[str, Any]:
-        """What identifies the motion in `run.json`; digests are those of the scaled samples."""
-        components = {"horizontal": self.horizontal, "vertical": self.vertical}
-        return {
-            "scale": self.scale,
-            **{
-                name: motion and {"source": motion.source, "sha256": motion.digest}
-                for name, motion in components.items()
-            },
-        }
+def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
+    """What identifies a motion in `run.json`; digests are those of the scaled samples."""
+    components = {"horizontal": motion.horizontal, "vertical": motion.vertical}
+    return {
+        "scale": motion.scale,
+        **{
+            name: found and {"source": found.source, "sha256": found.digest}
+            for name, found in components.items()
+        },
+    }
 
 
-def load_motion(case: Case, request: MotionRequest) -> Motion:
+def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     """Read the motion; a `--record` stands in place of the whole `record` section of the case.
 
     Raises
@@ -53,6 +44,7 @@ def load_motion(case: Case, request: MotionRequest) -> Motion:
     RecordError
         If a record cannot be read, or the components have different time steps.
     """
+    from rpscli.records.ground_motion import MotionComponents  # noqa: PLC0415 -- numpy is slow
     from rpscli.records.source import load_record  # noqa: PLC0415
 
     given = case.record if request.record is None else None
@@ -68,16 +60,10 @@ def load_motion(case: Case, request: MotionRequest) -> Motion:
         raise UsageError(f"{case.source}: the case names no record; give one with --record")
     if request.vertical is not None:
         vertical = load_record(request.vertical)
-    if vertical is not None and vertical.dt != horizontal.dt:
-        raise RecordError(
-            f"{vertical.source}: the vertical record has dt = {vertical.dt} s, the horizontal one"
-            f" {horizontal.dt} s: they must agree; resample one of them"
-        )
+    motion = MotionComponents(horizontal, vertical)
     scale = request.scale
     if scale is None:
         scale = 1.0 if given is None else given.scale
     if not math.isfinite(scale):
         raise UsageError(f"--scale {scale}: must be a finite number")
-    if scale != 1.0:
-        horizontal, vertical = horizontal.scaled(scale), vertical and vertical.scaled(scale)
-    return Motion(horizontal, vertical, scale)
+    return motion if scale == 1.0 else motion.scaled(scale)

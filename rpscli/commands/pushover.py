@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING
 
 import click
 
+from rpscli.analyses.result_quantities import PUSHOVER
 from rpscli.commands.case_input import case_folder, case_heading, read_case, write
-from rpscli.commands.numbers import shown
-from rpscli.commands.options import (
+from rpscli.commands.shell.numbers import measured, shown
+from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
     output_options,
     terminal_options,
 )
-from rpscli.commands.tables import listing, table
-from rpscli.commands.tables import title as heading_line
-from rpscli.commands.terminal import Terminal
+from rpscli.commands.shell.tables import listing, table
+from rpscli.commands.shell.tables import title as heading_line
+from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading, pushover_document
 
@@ -90,14 +91,14 @@ def _pattern(text: str) -> PatternName | list[float]:
 
 
 def _tables(result: PushoverResult, title: str) -> Iterator[RenderableType]:
-
+    scalars = {q.name: (q.label, measured(getattr(result, q.name), q.unit)) for q in PUSHOVER}
     rows = [
-        ("uplift force", f"{shown(result.uplift_force * 1e-3)} kN"),
-        ("stiffness after uplift", f"{shown(result.initial_stiffness * 1e-3)} kN/m"),
-        ("largest force", f"{shown(float(result.curve.force.max()) * 1e-3)} kN"),
-        ("critical rotation", f"{shown(result.critical_rotation)} rad"),
-        ("critical displacement", f"{shown(result.critical_displacement)} m"),
-        ("lift at the critical rotation", f"{shown(float(result.curve.lift[-1]))} m"),
+        scalars["uplift_force"],
+        scalars["initial_stiffness"],
+        ("largest force", measured(float(result.curve.force.max()), "N")),
+        scalars["critical_rotation"],
+        scalars["critical_displacement"],
+        ("lift at the critical rotation", measured(float(result.curve.lift[-1]), "m")),
     ]
     yield heading_line(title)
     yield listing(rows)

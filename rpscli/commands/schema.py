@@ -6,9 +6,9 @@ import sys
 
 import click
 
-from rpscli.commands.options import terminal_options
-from rpscli.commands.terminal import Terminal, emit
-from rpscli.report.json_text import json_text
+from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.terminal import Terminal, emit
+from rpscli.report.files.json_text import json_text
 
 
 @click.command("schema")
@@ -19,6 +19,6 @@ def command(terminal: Terminal) -> None:
     Editors that know YAML check and complete a case by it.
     """
     del terminal
-    from rpscli.case.json_schema import case_json_schema  # noqa: PLC0415
+    from rpscli.case.schema.json_schema import case_json_schema  # noqa: PLC0415
 
     emit(json_text(case_json_schema()), sys.stdout)

@@ -8,27 +8,29 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.commands.acceptance import Verdict, case_conditions, exceeded, judge, parse_condition
 from rpscli.commands.case_input import CaseInput, case_folder, case_heading, read_case, write
-from rpscli.commands.compilation import announce_compilation
-from rpscli.commands.failure import concluded, leave
-from rpscli.commands.motion import Motion, MotionRequest, load_motion
-from rpscli.commands.options import (
+from rpscli.commands.motion import MotionRequest, load_motion, motion_inputs
+from rpscli.commands.shell.compilation import announce_compilation
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
     output_options,
     terminal_options,
 )
-from rpscli.commands.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.timehistory_tables import timehistory_tables
 from rpscli.errors import AnalysisError, RpsError, UsageError
 from rpscli.report.documents import heading, timehistory_document
-from rpscli.report.drawing import artists
-from rpscli.report.json_text import json_text
+from rpscli.report.figures.drawing import artists
+from rpscli.report.files.json_text import json_text
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
+    from rpscli.records.ground_motion import MotionComponents
 
 
 @click.command("timehistory")
@@ -44,9 +46,7 @@ if TYPE_CHECKING:
     multiple=True,
     metavar="WHAT",
     help="End with exit code 10 on overturning, on uplift, or if a result exceeds a value, such as"
-    " rotation_ratio=0.5, base_shear_ratio=2, drift_ratio=0.005, max_rotation=0.1,"
-    " max_cap_beam_displacement=0.3, max_base_shear=2e6, friction_demand=0.3, uplifts=2,"
-    " impacts=50 (SI units); repeatable.",
+    f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units); repeatable.",
 )
 @click.option(
     "--animate", type=click.Path(path_type=Path), metavar="FILE.gif", help="Also draw it moving."
@@ -70,7 +70,7 @@ def command(
         raise UsageError(f"--animate {animate}: must end with .gif, the only format there is")
     given = read_case(request, terminal)
     ground = load_motion(given.case, MotionRequest(**motion))
-    folder = case_folder(given, output, "timehistory", record=ground.inputs)
+    folder = case_folder(given, output, "timehistory", record=motion_inputs(ground))
     with artists() as drawing:
         announce_compilation(terminal)
         from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
@@ -88,7 +88,7 @@ def command(
         verdicts = judge(result, [*case_conditions(given.case.limits), *conditions])
         error = exceeded(verdicts)
     if animate is not None:
-        from rpscli.report.animation import animation_gif  # noqa: PLC0415
+        from rpscli.report.figures.animation import animation_gif  # noqa: PLC0415
 
         terminal.note("drawing the animation")
         folder.add_at(animate, animation_gif(result, given.case.title))
@@ -102,7 +102,7 @@ def command(
 
 
 def _document(
-    given: CaseInput, ground: Motion, result: TimeHistoryResult, verdicts: list[Verdict]
+    given: CaseInput, ground: MotionComponents, result: TimeHistoryResult, verdicts: list[Verdict]
 ) -> dict[str, Any]:
     document = {
         **heading(),

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rpscli.analyses.result_quantities import HISTORY
 from rpscli.commands.acceptance import EVENTS, Verdict
-from rpscli.commands.numbers import percent, shown
-from rpscli.commands.tables import table
-from rpscli.commands.tables import title as heading_line
-from rpscli.report.storeys import fixed_base_demands, isolated_demands
+from rpscli.commands.shell.numbers import measured, percent, shown
+from rpscli.commands.shell.tables import table
+from rpscli.commands.shell.tables import title as heading_line
+from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -25,6 +26,8 @@ OUTCOMES = {
     "overturned_rocking": "overturns, rocking",
     "failed": "the analysis failed",
 }
+
+QUANTITIES = {quantity.name: quantity for quantity in HISTORY}
 
 Row = tuple[str, str, str, str]
 
@@ -44,48 +47,31 @@ def timehistory_tables(
 
 def outcome_table(result: TimeHistoryResult) -> Table:
     """The largest demands beside those of the fixed base."""
-    fixed = result.fixed_base
-    rows: list[Row] = [
-        (
-            "largest rotation",
-            f"{shown(result.max_rotation)} rad",
-            f"{shown(result.rotation_ratio)} theta_cr",
-            "",
-        ),
-        ("cap beam displacement", f"{shown(result.max_cap_beam_displacement)} m", "", ""),
+    rows = [
+        _row(result, "max_rotation", f"{shown(result.rotation_ratio)} theta_cr"),
+        _row(result, "max_rotation_time"),
+        _row(result, "max_cap_beam_displacement"),
     ]
-    if fixed is not None:
-        rows.append(
-            (
-                "base shear",
-                f"{shown(result.max_base_shear * 1e-3)} kN",
-                f"{shown(result.base_shear_ratio)} V_st",
-                f"{shown(fixed.base_shear * 1e-3)} kN",
-            )
-        )
-        demands = fixed_base_demands(result)
-        if demands is not None and demands.drift_ratio is not None:
-            rows.append(
-                (
-                    "drift ratio",
-                    shown(result.drift_ratio),
-                    "",
-                    shown(float(max(demands.drift_ratio))),
-                )
-            )
-    rows += [*_motion(result), *_energy(result)]
+    if result.fixed_base is not None:
+        ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
+        rows.append(_row(result, "max_base_shear", ratio, shear))
+    demands = fixed_base_demands(result)
+    if demands is not None and demands.drift_ratio is not None:
+        rows.append(_row(result, "drift_ratio", fixed=float(max(demands.drift_ratio))))
+    rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
+    rows += [_row(result, "friction_demand"), _row(result, "duration"), *_energy(result)]
     heads = ["", "on bearings", "normalised", "fixed base"]
-    if fixed is None:
+    if result.fixed_base is None:
         return table(heads[:3], [row[:3] for row in rows])
     return table(heads, rows)
 
 
-def _motion(result: TimeHistoryResult) -> list[Row]:
-    return [
-        ("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""),
-        ("friction demand |F|/N", shown(result.friction_demand), "", ""),
-        ("duration", f"{shown(result.duration)} s", "", ""),
-    ]
+def _row(
+    result: TimeHistoryResult, name: str, normalised: str = "", fixed: float | None = None
+) -> Row:
+    _, unit, label, *_ = QUANTITIES[name]
+    beside = "" if fixed is None else measured(fixed, unit)
+    return label, measured(getattr(result, name), unit), normalised, beside
 
 
 def _energy(result: TimeHistoryResult) -> list[Row]:
@@ -98,10 +84,10 @@ def _energy(result: TimeHistoryResult) -> list[Row]:
         "residual": energy.residual,
     }
     rows = [
-        (f"  {name}", f"{shown(part * 1e-3)} kJ", percent(part, supplied), "")
+        (f"  {name}", measured(part, "J"), percent(part, supplied), "")
         for name, part in parts.items()
     ]
-    return [("energy input", f"{shown(energy.input * 1e-3)} kJ", "", ""), *rows]
+    return [("energy input", measured(energy.input, "J"), "", ""), *rows]
 
 
 def storeys_table(result: TimeHistoryResult) -> Table:

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.compilation import announce_compilation
-from rpscli.commands.failure import concluded, leave
-from rpscli.commands.numbers import shown
-from rpscli.commands.options import terminal_options
-from rpscli.commands.tables import table, title
-from rpscli.commands.terminal import Terminal
+from rpscli.commands.shell.compilation import announce_compilation
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.numbers import shown
+from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.tables import table, title
+from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import VerificationMismatch
 from rpscli.report.documents import heading
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rpscli.analyses.comparison import Comparison
+    from rpscli.analyses.verification.comparison import Comparison
 
 DIGITS = 7
 
@@ -34,7 +34,7 @@ def command(terminal: Terminal) -> None:
     Takes some seconds, half a minute if the kernels have to be compiled first. The exit code is 6
     if a single number is off.
     """
-    from rpscli.analyses.verification import verification  # noqa: PLC0415 -- numpy is slow
+    from rpscli.analyses.verification.suite import verification  # noqa: PLC0415 -- numpy is slow
 
     announce_compilation(terminal)
     found = list(verification())

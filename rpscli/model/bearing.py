@@ -8,7 +8,23 @@ from functools import cached_property
 
 import numpy as np
 
-from rpscli.physics import geometry
+from rpscli.physics.formulae import geometry
+
+
+def first_order_critical_curvature_ratio(slenderness: float, wedge_slenderness: float) -> float:
+    """rho_cr = (1 - tan(alpha)/tan(alpha'))/2 (paper, Eq. 1): sin(beta) taken as tan(beta).
+
+    Parameters
+    ----------
+    slenderness, wedge_slenderness
+        tan(alpha) and tan(alpha').
+
+    Examples
+    --------
+    >>> first_order_critical_curvature_ratio(0.15, 0.30)
+    0.25
+    """
+    return 0.5 * (1.0 - slenderness / wedge_slenderness)
 
 
 @dataclass(frozen=True)
@@ -148,8 +164,8 @@ class Bearing:
 
     @property
     def critical_curvature_ratio_of_paper(self) -> float:
-        """rho_cr = (1 - tan alpha/tan alpha')/2 (paper, Eq. 1): sin beta taken as tan beta."""
-        return 0.5 * (1.0 - self.slenderness / math.tan(self.alpha_wedge))
+        """rho_cr to first order, as the paper has it (Eq. 1)."""
+        return first_order_critical_curvature_ratio(self.slenderness, math.tan(self.alpha_wedge))
 
     @cached_property
     def critical_curvature_ratio(self) -> float:

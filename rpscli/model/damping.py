@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from rpscli.model.superstructure import Superstructure
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -34,7 +32,7 @@ class RayleighDamping:
     ratio: float
     modes: tuple[int, int] = (1, 2)
 
-    def coefficients(self, frequencies: NDArray[np.float64]) -> tuple[float, float]:
+    def coefficients(self, frequencies: Array) -> tuple[float, float]:
         """a0 [1/s] and a1 [s], from circular frequencies (n,) [rad/s]."""
         first, second = (float(frequencies[min(i, len(frequencies)) - 1]) for i in self.modes)
         if first == second:
@@ -42,15 +40,30 @@ class RayleighDamping:
         a1 = 2.0 * self.ratio / (first + second)
         return a1 * first * second, a1
 
-    def ratios(self, frequencies: NDArray[np.float64]) -> NDArray[np.float64]:
+    def ratios(self, frequencies: Array) -> Array:
         """Damping ratio of every mode, (n,): a0/(2 w) + a1 w/2."""
         a0, a1 = self.coefficients(frequencies)
         return 0.5 * (a0 / frequencies + a1 * frequencies)
 
-    def matrix(self, building: Superstructure) -> NDArray[np.float64]:
-        """C, (n, n) [N s/m]."""
-        a0, a1 = self.coefficients(building.frequencies)
-        return a0 * building.mass_matrix + a1 * building.stiffness_matrix
+    def matrix(self, M: Array, K: Array, w: Array, Phi: Array) -> Array:
+        """C = a0 M + a1 K.
+
+        Parameters
+        ----------
+        M, K
+            Mass [kg] and stiffness [N/m], (n, n).
+        w
+            Fixed-base circular frequencies, (n,), ascending [rad/s].
+        Phi
+            Mass-normalised mode shapes, (n, n), one a column [kg^-1/2].
+
+        Returns
+        -------
+        (n, n) [N s/m].
+        """
+        del Phi
+        a0, a1 = self.coefficients(w)
+        return a0 * M + a1 * K
 
 
 @dataclass(frozen=True)
@@ -59,11 +72,26 @@ class ModalDamping:
 
     ratio: float
 
-    def ratios(self, frequencies: NDArray[np.float64]) -> NDArray[np.float64]:
+    def ratios(self, frequencies: Array) -> Array:
         """Damping ratio of every mode, (n,)."""
         return np.full_like(frequencies, self.ratio)
 
-    def matrix(self, building: Superstructure) -> NDArray[np.float64]:
-        """C = M Phi diag(2 xi w) Phi^T M, (n, n) [N s/m]; Phi mass-normalised."""
-        weighted = building.masses[:, None] * building.shapes
-        return np.asarray((weighted * (2.0 * self.ratio * building.frequencies)) @ weighted.T)
+    def matrix(self, M: Array, K: Array, w: Array, Phi: Array) -> Array:
+        """C = M Phi diag(2 xi w) Phi^T M.
+
+        Parameters
+        ----------
+        M, K
+            Mass [kg] and stiffness [N/m], (n, n).
+        w
+            Fixed-base circular frequencies, (n,), ascending [rad/s].
+        Phi
+            Mass-normalised mode shapes, (n, n), one a column [kg^-1/2].
+
+        Returns
+        -------
+        (n, n) [N s/m].
+        """
+        del K
+        weighted = M.diagonal()[:, None] * Phi
+        return np.asarray((weighted * (2.0 * self.ratio * w)) @ weighted.T)

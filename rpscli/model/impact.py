@@ -46,6 +46,17 @@ class ImpactLaw:
         A value <= 0 means that the column does not go over to its other edge; the case is then
         outside the model.
 
+        Parameters
+        ----------
+        bearing
+            Shape of every column.
+        gamma
+            m_b/(N m_c), cap beam over columns.
+        eta
+            M_tot/m_b, building over cap beam.
+
+        Examples
+        --------
         >>> round(ImpactLaw().ratio(Bearing(1.5, 0.15, 0.3, 0.5), 10.0, 6.0), 5)
         0.95604
         """
@@ -58,13 +69,33 @@ class ImpactLaw:
 
 
 def rigid_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
-    """e if the floors move with the cap beam (paper, Eq. 6, where c = e^2)."""
+    """e if the floors move with the cap beam (paper, Eq. 6, where c = e^2).
+
+    Parameters
+    ----------
+    bearing
+        Shape of every column.
+    gamma
+        m_b/(N m_c), cap beam over columns.
+    eta
+        M_tot/m_b, building over cap beam.
+    """
     Io, carried = bearing.inertia_ratio, 4.0 * gamma * (1.0 + eta)
     return 1.0 - 2.0 * math.sin(bearing.alpha) ** 2 * (1.0 + carried) / (Io + carried)
 
 
 def flexible_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
-    """e if only the vertical momentum of the floors takes part (Theory, section 4)."""
+    """e if only the vertical momentum of the floors takes part (Theory, section 4).
+
+    Parameters
+    ----------
+    bearing
+        Shape of every column.
+    gamma
+        m_b/(N m_c), cap beam over columns.
+    eta
+        M_tot/m_b, building over cap beam.
+    """
     Io, a = bearing.inertia_ratio, bearing.alpha
     sin2, beam, floors = math.sin(a) ** 2, 4.0 * gamma, 4.0 * gamma * eta * math.sin(a) ** 2
     return (Io - 2.0 * sin2 + beam * math.cos(2.0 * a) - floors) / (Io + beam + floors)

@@ -13,7 +13,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics import geometry
+from rpscli.physics.formulae import geometry
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,8 +134,8 @@ class PodiumStructure:
         alpha W (2 rho - 1)/(2 R) (Theory, section 5).
         """
         phase = self.bearing.rocking if self.bearing.is_flat else self.bearing.rolling
-        B = geometry.lever_arm(phase, 1.0, 0.0)
-        C = geometry.path_height(phase, 1.0, 0.0)
+        B = geometry.contact_arm(phase, 1.0, 0.0)
+        C = geometry.contact_height(phase, 1.0, 0.0)
         slope = (phase.c - C) * C - B**2
         return self.weight * slope / (2.0 * self.bearing.semi_diagonal * C**3)
 

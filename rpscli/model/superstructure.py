@@ -20,6 +20,13 @@ def profile_shape(storeys: int, profile: Profile) -> NDArray[np.float64]:
     """First fixed-base mode that a profile asks for, (n,), 1 at the roof.
 
     ``sine`` is the usual shear profile sin(pi i/2n) (Theory, section 7).
+
+    Parameters
+    ----------
+    storeys
+        n.
+    profile
+        Of the mode; ``uniform``, a stiffness, counts as ``sine``.
     """
     height = np.arange(1, storeys + 1) / storeys
     if profile == "linear":
@@ -82,6 +89,13 @@ def shear_modes(
     """Frequencies (n,) [rad/s], ascending, and mass-normalised shapes (n, n), one a column.
 
     The sign of a shape is fixed by a positive roof.
+
+    Parameters
+    ----------
+    masses
+        (n,) floor masses from the bottom [kg].
+    stiffnesses
+        (n,) storey stiffnesses from the bottom [N/m].
     """
     root = 1.0 / np.sqrt(masses)
     squares, vectors = np.linalg.eigh(root[:, None] * stiffness_matrix(stiffnesses) * root)
@@ -151,7 +165,9 @@ class Superstructure:
     @cached_property
     def damping_matrix(self) -> NDArray[np.float64]:
         """C, (n, n) [N s/m]."""
-        return self.damping.matrix(self)
+        return self.damping.matrix(
+            self.mass_matrix, self.stiffness_matrix, self.frequencies, self.shapes
+        )
 
     @cached_property
     def _modes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

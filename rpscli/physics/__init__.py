@@ -1,9 +1,8 @@
-"""Compiled kernels on plain floats and arrays; no strings, no exceptions, no files.
+"""Compiled kernels on records with named fields; no strings, no exceptions, no files.
 
-`geometry` and `tilt` hold the formulae of the rocking storey, `acceleration` the equations of
-motion, `series` a step of them and `terms` the motion within it; `contact` and `standing` the exact
-solution while every column stands on its flat ends; `events`, `inspection`, `flight` and `switch`
-find what happens in between and do it; `driver` strings them together, for several histories side
-by side. Steps run over the buffer of all lanes, see `layout`; the rest sees one of them, a `lane`.
-How all this becomes machine code stands in `jit`, `part` and `linking`.
+`state` names every number once. `equation_of_motion` is the method: what moves, with its Taylor
+terms; `formulae` is the mathematics below it. `uplifted` takes Taylor steps of all lanes together and
+finds what happens in them, `full_contact` follows a building on a fixed base exactly until it
+uplifts, `transitions` go from one phase of motion to the next, `energy` audits. `driver` strings
+them together. How all this becomes machine code stands in `compile`.
 """

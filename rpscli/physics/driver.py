@@ -1,4 +1,4 @@
-"""Histories in lanes: step - search - observe - take over - switch.
+"""Histories in lanes: step - check - observe - accept - switch.
 
 Each lane follows one history at a time; when it is over the lane takes the next one. All lanes
 make their Taylor steps together, each from its own time with its own length, so that the processor
@@ -9,231 +9,222 @@ does not depend on its neighbours.
 
 from __future__ import annotations
 
-from rpscli.physics.acceleration import accelerate
+import math
+
+from rpscli.physics.compile import compiled, kernel
 from rpscli.physics.energy import book_energy, building_energy, uplifted_energy
-from rpscli.physics.flight import attend, plan_step, settle
-from rpscli.physics.floor_demands import raise_floors
-from rpscli.physics.inspection import observe, raise_contacts, search_events, take_over
-from rpscli.physics.jit import kernel
-from rpscli.physics.lane import Lane, lane_of
-from rpscli.physics.layout import (
-    ACROSS,
+from rpscli.physics.equation_of_motion import renew_accelerations
+from rpscli.physics.full_contact.stand import stand
+from rpscli.physics.ground import set_ground
+from rpscli.physics.run import Run, empty_state
+from rpscli.physics.samples import store_sample
+from rpscli.physics.state import (
+    AFTER_RELEASE,
     AT_REST,
-    ATTEND,
-    COUNTS,
-    CREATING,
-    DQ,
     EVENT_KINDS,
-    FLOOR_ACCELERATION,
-    FRESH,
     FULL_CONTACT,
-    GROUND,
-    GROUND_UPWARDS,
-    INTERVAL,
-    MOTION,
-    NEXT_DQ,
-    NEXT_Q,
-    NEXT_RATE,
-    NEXT_TILT,
-    NO_POINT,
-    OUT_COUNTS,
-    OUT_CREATING,
-    OUT_FLOORS,
-    OUT_INTERVALS,
-    OUT_MOTION,
-    OUT_OUTCOME,
-    OUT_PEAK,
-    OUT_ROTATION,
-    OUT_STEPS,
-    OUT_STORED,
-    OUT_TIME,
-    OUTCOME,
-    PEAK,
-    POINT,
-    QUIET,
-    RAISE,
-    RATE,
+    GOES_ON,
+    IS_OVER,
+    LANES,
+    NO_HISTORY,
+    NOTHING_NEW,
+    ROCKING,
+    ROLLING,
     RUNNING,
-    SIDE,
-    STALE,
-    STATE,
-    STEP,
-    STEPS,
-    STOREY_SHEAR,
+    STANDS,
     SURVIVED,
-    TILT,
     UPLIFT,
-    UPWARDS,
-    WATCH,
-    Q,
+    Record,
 )
-from rpscli.physics.loading import begin, lean
-from rpscli.physics.parameters import (
-    Floats,
-    Lanes,
-    Points,
-    Results,
-    Shape,
-    Systems,
-)
-from rpscli.physics.part import part, routine
-from rpscli.physics.peak import watch_peak
-from rpscli.physics.podium_layout import INITIAL_ROTATION
-from rpscli.physics.progress import store_sample
-from rpscli.physics.series import step
-from rpscli.physics.standing import from_modes, stand
-from rpscli.physics.switch import now
-from rpscli.physics.workspace import empty_lanes
+from rpscli.physics.transitions.phases import enter_phase
+from rpscli.physics.uplifted.demands import observe_ends, raise_contacts, raise_floors
+from rpscli.physics.uplifted.locate_event import go_on_renewed, next_interval, resolve_step
+from rpscli.physics.uplifted.peak import raise_peak
+from rpscli.physics.uplifted.steps import accept_steps, check_steps, plan_steps
+from rpscli.physics.uplifted.taylor_step import take_steps
 
 
-def integrate(
-    systems: Systems, acceleration: Floats, points: Points, shape: Shape, results: Results
-) -> None:
-    """Follow every history of `points` from rest; writes `results`.
+def integrate(run: Run, lanes: int = LANES) -> None:
+    """Follow every history of `run.requests` from rest; writes `run.results`.
 
     Parameters
     ----------
-    systems, acceleration, points
-        What to run: structures, records of the ground end to end, and which of them meet.
-    shape
-        Sizes: n must be that of the systems, the lanes at least one.
+    run
+        What to run; its systems all have the same number of storeys.
+    lanes
+        Histories side by side: 1 or `LANES`. The results are the same.
     """
-    integrate_lanes(systems, points, shape, results, empty_lanes(acceleration, shape, results))
+    integrate_lanes(empty_state(int(run.systems.n[0]), lanes), run)
 
 
 @kernel
-def integrate_lanes(
-    systems: Systems, points: Points, shape: Shape, results: Results, lanes: Lanes
-) -> None:
-    """The same, in lanes that are made already."""
-    L = len(shape.stride)
-    s, whole = lanes.numbers, lanes.integers
-    for l in range(L):
-        whole[l, POINT] = NO_POINT
-    waiting, active, started = 0, L, False
+def integrate_lanes(state: Record, run: Run) -> None:
+    """The same, in lanes that are made already: an array of one `state.STATE`.
+
+    What many samples need is handed on by itself: of each array in a tuple references are counted.
+    """
+    s = state[0]
+    systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block[0]
+    sampled = output.samples.shape[0] > 0
+    s.audited = 1 if sampled else 0
+    for l in range(s.lanes):
+        s.history[l], s.accepted[l] = NO_HISTORY, 0.0
+        s.waits[l], s.renew[l] = 1.0, NOTHING_NEW
+    waiting, active, started = 0, s.lanes, False
     while active > 0:
         if started:
-            advance(lanes, shape)
-        for l in range(L):
-            if started and (whole[l, POINT] == NO_POINT or s[l, ATTEND] == 0.0):
+            take_steps(s)
+            check_steps(s)
+            observe_ends(s)
+            observe_lanes(s, systems, block, output.log)
+            accept_steps(s)
+        for l in range(s.lanes):
+            if s.waits[l] == 0.0 or (started and s.history[l] == NO_HISTORY):
                 continue
-            flies = started and attend(lane_of(lanes, l), shape)
-            while not flies or s[l, STALE] != FRESH:
-                if flies:
-                    refresh(lanes, shape, l)
-                    flies = settle(lane_of(lanes, l), shape)
-                    continue
-                if whole[l, POINT] != NO_POINT:
-                    finish(lane_of(lanes, l), results)
-                waiting = engage(lanes, shape, l, waiting, systems, points, results)
-                flies = True
-            active -= whole[l, POINT] == NO_POINT
+            fate, system = IS_OVER, systems[s.system[l]]
+            if s.accepted[l] > 0.0:
+                fate = next_interval(s, l, acceleration)
+                if sampled:
+                    store_sample(s, l, system, output)
+            elif started:
+                fate = resolve_step(s, l, system, block, output.log)
+            while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
+                system = systems[s.system[l]]
+                if fate == GOES_ON:
+                    renew_accelerations(s, l)
+                    fate = go_on_renewed(s, l, system, output)
+                elif fate == STANDS:
+                    fate = stand(s, l, system, block, acceleration, output)
+                    plan_steps(s, l)
+                else:
+                    if s.history[l] != NO_HISTORY:
+                        finish_history(s, l, system, run.results)
+                    if waiting < run.requests.shape[0]:
+                        fate = begin_history(s, l, run, waiting)
+                        waiting += 1
+                    else:
+                        idle(s, l)
+                        fate = GOES_ON
+            active -= s.history[l] == NO_HISTORY
         started = True
 
 
-@part
-def advance(lanes: Lanes, shape: Shape) -> None:
-    """Take a step in all lanes, and what needs no decision: most steps hold no event."""
-    L = len(shape.stride)
-    b, s = lanes.buffer, lanes.numbers
-    step(b, shape)
-    search_events(b, shape)
-    if len(shape.audit) > 0:
-        for l in range(L):
-            if s[l, QUIET] > 0.0:
-                book_energy(lane_of(lanes, l), shape, 1.0)
-    observe(b, shape)
-    raised = 0.0
-    for l in range(L):
-        if s[l, WATCH] > 0.0:
-            watch_peak(lane_of(lanes, l))
-        raised += s[l, RAISE]
-    if raised > 0.0:
-        raise_floors(b, shape)
-    take_over(b, shape)
+@compiled
+def observe_lanes(s: Record, systems: Record, block: Record, log: Record) -> None:
+    """What few steps ask for, lane by lane."""
+    for l in range(s.lanes):
+        if s.audited > 0 and s.accepted[l] > 0.0:
+            book_energy(s, l, 1.0)
+        if s.peak_inside[l] > 0.0:
+            raise_peak(s, l, block, log)
+        if s.demands_rise[l] > 0.0:
+            raise_floors(s, l, systems[s.system[l]])
 
 
-@part
-def refresh(lanes: Lanes, shape: Shape, l: int) -> None:
-    """Accelerations of one lane at its present state and time."""
-    lane = lane_of(lanes, l)
-    s, x = lane.numbers, lane.blocks
-    s[NEXT_TILT], s[NEXT_RATE] = s[TILT], s[RATE]
-    for r in range(x.shape[1]):
-        x[NEXT_Q, r], x[NEXT_DQ, r] = x[Q, r], x[DQ, r]
-    accelerate(lanes.buffer, alone(shape), l, 0.0)
-    for i in range(STATE):
-        s[TILT + i] = s[NEXT_TILT + i]
+@compiled
+def idle(s: Record, l: int) -> None:
+    """Leave a lane without a history: it makes empty steps."""
+    s.history[l] = NO_HISTORY
+    s.renew[l], s.step[l] = NOTHING_NEW, 0.0
 
 
-@part
-def alone(shape: Shape) -> Shape:
-    """The same sizes for one lane of many."""
-    return Shape(shape.floors, shape.stride, ((),), ((),), shape.audit)
+@compiled
+def begin_history(s: Record, l: int, run: Run, history: int) -> int:
+    """Load a history into a lane, at rest at the start of its record: STANDS, or GOES_ON tilted."""
+    request = run.requests[history]
+    system = run.systems[request.system]
+    load_system(s, l, system)
+    s.history[l], s.system[l] = history, request.system
+    s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
+    s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
+    s.outcome[l], s.phase[l], s.renew[l] = RUNNING, FULL_CONTACT, NOTHING_NEW
+    s.interval[l] = 0
+    s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
+    steps = max(math.ceil(request.dt * system.uplifted_rate), 1)
+    s.uplifted_step[l], s.uplifted_steps[l] = request.dt / steps, steps
+    steps = max(math.ceil(request.dt * system.contact_rate), 1)
+    s.contact_step[l], s.contact_steps[l] = request.dt / steps, steps
+    s.side[l], s.theta[l], s.theta_dot[l], s.theta_ddot[l] = 1.0, 0.0, 0.0, 0.0
+    s.no_event[l], s.stalled[l] = 0.0, 0
+    clear_results(s, l)
+    set_ground(s, l, run.acceleration)
+    if system.initial_rotation != 0.0:
+        release(s, l, system)
+        plan_steps(s, l)
+        return GOES_ON
+    store_sample(s, l, system, run.output)
+    s.next_a_g[l], s.next_g_up[l] = s.a_g[l], s.g_up[l]
+    raise_contacts(s, l, 1.0, 0.0, 0.0, 0.0)
+    return STANDS
 
 
-@part
-def engage(
-    lanes: Lanes,
-    shape: Shape,
-    l: int,
-    waiting: int,
-    systems: Systems,
-    points: Points,
-    results: Results,
-) -> int:
-    """Give a lane the next history that uplifts; returns the number of the one after it.
-
-    Histories that stay in full contact to their end are finished on the way. A lane for which
-    there is none left is marked by NO_POINT and makes empty steps.
-    """
-    L = len(shape.stride)
-    lane = lane_of(lanes, l)
-    s = lane.numbers
-    while waiting < points.integers.shape[0]:
-        begin(lanes, L, l, waiting, systems, points)
-        waiting += 1
-        rotation = lane.podium[INITIAL_ROTATION]
-        if rotation != 0.0:
-            lean(lane, rotation)
-            plan_step(s)
-            return waiting
-        store_sample(lane)
-        s[GROUND], s[GROUND_UPWARDS] = s[ACROSS], s[UPWARDS]
-        raise_contacts(lanes.buffer, L, l, 1.0, 0.0, 0.0, 0.0)
-        if stand(lane, shape):
-            plan_step(s)
-            return waiting
-        finish(lane, results)
-    lane.whole[POINT] = NO_POINT
-    s[STALE], s[STEP] = FRESH, 0.0
-    return waiting
+@compiled
+def load_system(s: Record, l: int, system: Record) -> None:
+    """Constants of the structure, folded as the equation of motion wants them."""
+    ground_factor, carried = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
+    s.diameter[l], s.io_1[l] = 2.0 * system.R, system.Io - 1.0
+    s.one_4gamma[l], s.four_gamma_eta[l] = 1.0 + 4.0 * system.gamma, 2.0 * carried
+    s.weight_over_R[l] = (ground_factor + carried) / system.R
+    s.ground_over_R[l] = ground_factor / system.R
+    s.shear_factor[l] = 2.0 / (system.columns_mass * system.R)
+    s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
+    s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
+    s.theta_cr[l], s.last_term[l] = system.theta_cr, system.last_term
+    for r in range(s.n):
+        s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[r], system.two_xi_omega[r]
+        s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[r], system.shear_weight[r]
+        s.acceleration_weight[r, l] = system.acceleration_weight[r]
+        s.q[r, l], s.dq[0, r, l] = 0.0, 0.0
 
 
-@routine
-def finish(lane: Lane, results: Results) -> None:
-    """Write what the history leaves behind."""
-    s, x, whole = lane.numbers, lane.blocks, lane.whole
-    n = x.shape[1]
-    numbers, integers = results.numbers[whole[POINT]], results.integers[whole[POINT]]
-    if whole[MOTION] == FULL_CONTACT:
-        from_modes(lane)
-        numbers[OUT_STORED] = building_energy(lane, 0.0)
-    else:
-        numbers[OUT_STORED] = uplifted_energy(lane)
-    if whole[OUTCOME] == RUNNING:
-        moved = lane.podium[INITIAL_ROTATION] != 0.0 or whole[COUNTS + UPLIFT] > 0
-        whole[OUTCOME] = SURVIVED if moved else AT_REST
-    numbers[OUT_TIME] = now(lane)
-    numbers[OUT_ROTATION] = s[SIDE] * s[TILT]
-    for i in range(OUT_FLOORS - OUT_PEAK):
-        numbers[OUT_PEAK + i] = s[PEAK + i]
-    for i in range(n):
-        numbers[OUT_FLOORS + i] = x[STOREY_SHEAR, i]
-        numbers[OUT_FLOORS + n + i] = x[FLOOR_ACCELERATION, i]
-    integers[OUT_OUTCOME], integers[OUT_MOTION] = whole[OUTCOME], whole[MOTION]
-    integers[OUT_INTERVALS] = whole[INTERVAL]
-    integers[OUT_STEPS] = int(s[STEPS])
-    integers[OUT_CREATING] = whole[CREATING]
+@compiled
+def clear_results(s: Record, l: int) -> None:
+    """Nothing has happened yet."""
+    s.max_theta[l], s.max_theta_time[l], s.critical_time[l] = 0.0, 0.0, -1.0
+    s.friction_top[l], s.friction_bottom[l] = 0.0, 0.0
+    s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
+    s.shear_harmless[l], s.acceleration_harmless[l] = 0.0, 0.0
+    for i in range(s.n):
+        s.storey_shear[l, i], s.floor_acceleration[l, i] = 0.0, 0.0
+    s.energy_input[l], s.energy_damped[l] = 0.0, 0.0
+    s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
+    s.steps[l], s.creating_impacts[l] = 0.0, 0
     for i in range(EVENT_KINDS):
-        integers[OUT_COUNTS + i] = whole[COUNTS + i]
+        s.events[l, i] = 0
+
+
+@compiled
+def release(s: Record, l: int, system: Record) -> None:
+    """Start from rest at a rotation, the building unstrained."""
+    theta = abs(system.initial_rotation)
+    s.side[l] = math.copysign(1.0, system.initial_rotation)
+    s.theta[l], s.max_theta[l], s.renew[l] = theta, theta, AFTER_RELEASE
+    enter_phase(s, l, system, ROLLING if theta < system.beta else ROCKING)
+
+
+@compiled
+def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
+    """Write what the history leaves behind."""
+    result = results[s.history[l]]
+    if s.phase[l] == FULL_CONTACT:
+        result.energy_stored = building_energy(s, l, 0.0)
+    else:
+        result.energy_stored = uplifted_energy(s, l)
+    if s.outcome[l] == RUNNING:
+        moved = system.initial_rotation != 0.0 or s.events[l, UPLIFT] > 0
+        s.outcome[l] = SURVIVED if moved else AT_REST
+    result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
+    result.steps, result.creating_impacts = int(s.steps[l]), s.creating_impacts[l]
+    result.time = s.interval_start[l] + s.time[l]
+    result.rotation = s.side[l] * s.theta[l]
+    result.max_theta, result.max_theta_time = s.max_theta[l], s.max_theta_time[l]
+    result.critical_time = s.critical_time[l]
+    result.friction_top, result.friction_bottom = s.friction_top[l], s.friction_bottom[l]
+    result.normal_top, result.normal_bottom = s.normal_top[l], s.normal_bottom[l]
+    result.energy_input, result.energy_damped = s.energy_input[l], s.energy_damped[l]
+    result.energy_lost, result.energy_created = s.energy_lost[l], s.energy_created[l]
+    for i in range(s.n):
+        result.storey_shear[i] = s.storey_shear[l, i]
+        result.floor_acceleration[i] = s.floor_acceleration[l, i]
+    for i in range(EVENT_KINDS):
+        result.events[i] = s.events[l, i]

@@ -1,4 +1,4 @@
-"""A ground motion: what every reader, pulse and set returns, and every analysis takes."""
+"""Ground motions, which every reader, pulse and set returns, and their components."""
 
 from __future__ import annotations
 
@@ -107,3 +107,60 @@ class GroundMotion:
             acceleration=self.acceleration * factor,
             description=f"{self.description}; {note}" if self.description else note,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class MotionComponents:
+    """The components of one ground motion: horizontal, and vertical where that is known.
+
+    Parameters
+    ----------
+    horizontal : GroundMotion
+        Along the structure.
+    vertical : GroundMotion, optional
+        Positive upwards, with the same time step; it may be longer or shorter.
+    scale : float
+        What the accelerations of both were multiplied by since they were read.
+
+    Raises
+    ------
+    RecordError
+        If their time steps differ.
+
+    Examples
+    --------
+    >>> along = GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5, "x", "x.at2", "PEER AT2")
+    >>> up = GroundMotion(np.array([1.0, 2.0]), 0.5, "z", "z.at2", "PEER AT2")
+    >>> MotionComponents(along, up).of_one_length[1].acceleration.tolist()
+    [1.0, 2.0, 0.0]
+    """
+
+    horizontal: GroundMotion
+    vertical: GroundMotion | None = None
+    scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.vertical is not None and self.vertical.dt != self.horizontal.dt:
+            raise RecordError(
+                f"{self.vertical.source}: the vertical record has dt = {self.vertical.dt} s, the"
+                f" horizontal one {self.horizontal.dt} s: they must agree; resample one of them"
+            )
+
+    def scaled(self, factor: float) -> MotionComponents:
+        """Both components times `factor`."""
+        vertical = self.vertical and self.vertical.scaled(factor)
+        return MotionComponents(self.horizontal.scaled(factor), vertical, self.scale * factor)
+
+    @property
+    def of_one_length(self) -> tuple[GroundMotion, GroundMotion | None]:
+        """Both with the same number of samples: the shorter one goes on as zero."""
+        along, up = self.horizontal, self.vertical
+        if up is None or up.npts == along.npts:
+            return along, up
+        npts = max(along.npts, up.npts)
+        return _prolonged(along, npts), _prolonged(up, npts)
+
+
+def _prolonged(motion: GroundMotion, npts: int) -> GroundMotion:
+    after = np.zeros(npts - motion.npts)
+    return replace(motion, acceleration=np.concatenate([motion.acceleration, after]))

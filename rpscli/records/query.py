@@ -6,11 +6,15 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 
-from rpscli.errors import RecordError
-from rpscli.records.acceleration_units import KNOWN_UNITS, canonical_unit, unit_factor
-from rpscli.records.numerals import NUMBER_PATTERN, to_float
+from rpscli.errors import RecordError, nearest
+from rpscli.records.quantities import (
+    KNOWN_UNITS,
+    NUMBER_PATTERN,
+    canonical_unit,
+    to_float,
+    unit_factor,
+)
 
 _QUANTITY = re.compile(rf"\s*({NUMBER_PATTERN})\s*(.*?)\s*")
 _UNITS = {
@@ -22,14 +26,21 @@ _UNITS = {
 }
 
 
-def closest(word: str, known: Sequence[str]) -> str | None:
-    """The known word that resembles `word` most, if any does."""
-    return next(iter(get_close_matches(word, known, n=1, cutoff=0.5)), None)
+LIKENESS = 0.5
+"""Of a name to the one that was meant: names of records are long, and made of parts."""
 
 
-def nearest(word: str, known: Sequence[str]) -> str:
-    """A hint that names the closest known word, or else all of them."""
-    close = closest(word, known)
+def hint(word: str, known: Sequence[str]) -> str:
+    """What might have been meant: the nearest known word, or else all of them.
+
+    Parameters
+    ----------
+    word : str
+        What was written.
+    known : sequence of str
+        All that may be written.
+    """
+    close = nearest(word, known, LIKENESS)
     return f"did you mean {close}?" if close else f"known: {', '.join(known)}"
 
 
@@ -41,7 +52,16 @@ class Query:
     values: Mapping[str, str]
 
     def quantity(self, key: str, kind: str, default: float | None = None) -> float:
-        """A number with an optional unit of that kind ("time", "velocity", ...), in SI.
+        """A number with an optional unit, in SI.
+
+        Parameters
+        ----------
+        key : str
+            Name of the option.
+        kind : str
+            What it measures: "time", "frequency", "velocity", "angle" or "ratio".
+        default : float, optional [SI]
+            Its value where it is not written.
 
         Raises
         ------
@@ -91,6 +111,15 @@ class Query:
 def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
     """Split `key=value&key=value`.
 
+    Parameters
+    ----------
+    text : str
+        What follows the question mark of a source.
+    source : str
+        The whole source, for messages.
+    allowed : sequence of str
+        The keys that there are.
+
     Raises
     ------
     RecordError
@@ -100,7 +129,7 @@ def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
     for item in filter(None, text.split("&")):
         key, _, value = (part.strip() for part in item.partition("="))
         if key not in allowed:
-            raise RecordError(f"{source}: option {key!r} is not known; {nearest(key, allowed)}")
+            raise RecordError(f"{source}: option {key!r} is not known; {hint(key, allowed)}")
         if key in values:
             raise RecordError(f"{source}: {key} is given twice; keep one")
         if not value:

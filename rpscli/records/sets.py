@@ -18,9 +18,9 @@ import numpy as np
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
+from rpscli.records.formats.time_axis import uniform_step
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.query import nearest
-from rpscli.records.time_axis import uniform_step
+from rpscli.records.query import hint
 
 SCHEME = "fema_p695"
 
@@ -63,14 +63,21 @@ def expand_set(rest: str, source: str) -> list[str]:
     if not found:
         raise RecordError(
             f"{source}: no component of FEMA P695 fits {pattern!r}; "
-            f"{nearest(pattern, COMPONENTS) if '*' not in pattern else 'sets: ' + ', '.join(_SETS)}"
+            f"{hint(pattern, COMPONENTS) if '*' not in pattern else 'sets: ' + ', '.join(_SETS)}"
         )
     suffix = "?normalised" if normalised else ""
     return [f"{SCHEME}:{component}{suffix}" for component in found]
 
 
 def load_component(rest: str, source: str) -> GroundMotion:
-    """Read one component, `farfield/1/b` or `farfield/1/b?normalised`.
+    """Read one component.
+
+    Parameters
+    ----------
+    rest : str
+        What follows `fema_p695:`, such as `farfield/1/b` or `farfield/1/b?normalised`.
+    source : str
+        The whole source, for messages.
 
     Raises
     ------
@@ -79,10 +86,8 @@ def load_component(rest: str, source: str) -> GroundMotion:
     """
     component, normalised = _split(rest, source)
     if component not in COMPONENTS:
-        hint = (
-            "load one component at a time" if "*" in component else nearest(component, COMPONENTS)
-        )
-        raise RecordError(f"{source}: FEMA P695 has no component {component!r}; {hint}")
+        remedy = "load one component at a time" if "*" in component else hint(component, COMPONENTS)
+        raise RecordError(f"{source}: FEMA P695 has no component {component!r}; {remedy}")
     return _component(_package_folder(source), component, source, normalised=normalised)
 
 

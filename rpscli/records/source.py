@@ -7,11 +7,12 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from rpscli.errors import RecordError
-from rpscli.records import pulses, sets, synthetic
-from rpscli.records.acceleration_units import canonical_unit, unit_factor
+from rpscli.errors import RecordError, nearest
+from rpscli.records import sets
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.query import closest, nearest, parse_query
+from rpscli.records.made import pulses, synthetic
+from rpscli.records.quantities import canonical_unit, unit_factor
+from rpscli.records.query import LIKENESS, hint, parse_query
 
 _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
     sets.SCHEME: sets.load_component,
@@ -67,7 +68,7 @@ def load_record(
     if path.is_dir():
         raise RecordError(f"{path}: a folder; name one of its files")
     _require_file(path, source)
-    from rpscli.records.formats import read_record  # noqa: PLC0415 -- sets and pulses are no files
+    from rpscli.records.formats.registry import read_record  # noqa: PLC0415 -- sets and pulses are no files
 
     return read_record(
         path,
@@ -84,6 +85,13 @@ def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> lis
     Files of a folder or glob come sorted by name, each with the options of the pattern; what a
     source stands for keeps its place in the list, and nothing comes twice. Of a folder, only the
     files that are recognised as records count (velocities and displacements do not).
+
+    Parameters
+    ----------
+    sources : sequence of str
+        As users write them: files, folders, globs, sets with ``*``, pulses, synthetic motions.
+    folder : Path, optional
+        Where relative paths start; else the working directory.
 
     Raises
     ------
@@ -107,7 +115,7 @@ def _expand(source: str, folder: Path | None) -> list[str]:
         return sets.expand_set(rest, source)
     if scheme:
         return [source]
-    from rpscli.records.formats import is_record  # noqa: PLC0415 -- see above
+    from rpscli.records.formats.registry import is_record  # noqa: PLC0415 -- see above
 
     place, options = _split_options(source)
     suffix = f"?{options}" if options else ""
@@ -136,8 +144,7 @@ def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
         return "", source
     if match[1] not in _MAKERS:
         raise RecordError(
-            f"{source}: {match[1]!r} is no kind of record source; "
-            f"{nearest(match[1], list(_MAKERS))}"
+            f"{source}: {match[1]!r} is no kind of record source; {hint(match[1], list(_MAKERS))}"
         )
     return match[1], match[2]
 
@@ -159,6 +166,6 @@ def _require_file(path: Path, source: str) -> None:
     if not path.parent.is_dir():
         raise RecordError(f"{source}: there is no folder {path.parent}")
     names = sorted(entry.name for entry in path.parent.iterdir())
-    close = closest(path.name, names)
-    hint = f"; did you mean {path.parent / close}?" if close else ""
-    raise RecordError(f"{source}: there is no file {path}{hint}")
+    close = nearest(path.name, names, LIKENESS)
+    meant = f"; did you mean {path.parent / close}?" if close else ""
+    raise RecordError(f"{source}: there is no file {path}{meant}")

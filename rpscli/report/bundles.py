@@ -9,23 +9,23 @@ from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.pushover import PushoverResult
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.spectrum import ResponseSpectrum
-from rpscli.report.capacity_figure import capacity_figure
-from rpscli.report.csv_text import csv_text
-from rpscli.report.displacement_figure import displacement_figure
-from rpscli.report.drawing import Artists, drawn
-from rpscli.report.energy_figure import energy_figure
-from rpscli.report.modal_tables import eigenvalue_columns, mode_columns, shape_columns
-from rpscli.report.modes_figure import modes_figure
-from rpscli.report.moment_figure import moment_figure
-from rpscli.report.profile_figure import profile_figure
-from rpscli.report.pushover_tables import capacity_columns, storey_curve_columns
-from rpscli.report.record_figure import record_figure
-from rpscli.report.record_tables import motion_columns, spectrum_columns
-from rpscli.report.rotation_figure import rotation_figure
-from rpscli.report.storey_curve_figure import storey_curve_figure
-from rpscli.report.storeys import storey_columns
-from rpscli.report.timehistory_tables import event_columns, history_columns
+from rpscli.records.measures.spectrum import ResponseSpectrum
+from rpscli.report.figures.capacity import capacity_figure
+from rpscli.report.figures.displacement import displacement_figure
+from rpscli.report.figures.drawing import Artists, drawn
+from rpscli.report.figures.energy import energy_figure
+from rpscli.report.figures.modes import modes_figure
+from rpscli.report.figures.moment import moment_figure
+from rpscli.report.figures.profile import profile_figure
+from rpscli.report.figures.record import record_figure
+from rpscli.report.figures.rotation import rotation_figure
+from rpscli.report.figures.storey_curve import storey_curve_figure
+from rpscli.report.files.csv_text import csv_text
+from rpscli.report.tables.modal import eigenvalue_columns, mode_columns, shape_columns
+from rpscli.report.tables.pushover import capacity_columns, storey_curve_columns
+from rpscli.report.tables.record import motion_columns, spectrum_columns
+from rpscli.report.tables.storeys import storey_columns
+from rpscli.report.tables.timehistory import event_columns, history_columns
 
 Files = Iterator[tuple[str, str | bytes]]
 """Names and contents."""

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rpscli.report.json_text import SCHEMA_VERSION
-from rpscli.report.versions import program_version
+from rpscli.report.files.json_text import SCHEMA_VERSION
+from rpscli.report.files.versions import program_version
 
 if TYPE_CHECKING:
-    from rpscli.analyses.modal import ModalResult, UpliftedModes
     from rpscli.analyses.pushover import PushoverResult
     from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.report.storeys import StoreyDemands
+    from rpscli.report.tables.storeys import StoreyDemands
 
 Document = dict[str, Any]
 
@@ -34,50 +33,15 @@ def failure_document(kind: str, message: str, exit_code: int) -> Document:
     }
 
 
-def modal_document(result: ModalResult) -> Document:
-    """Frequencies in rad/s; lists by mode; eigenvalues as [re, im] in 1/s."""
-    fixed = result.fixed_base
-    return {
-        "fixed_base": None
-        if fixed is None
-        else {
-            "frequencies": fixed.frequencies,
-            "periods": fixed.periods,
-            "damping": fixed.damping,
-        },
-        "rolling": None if result.rolling is None else _uplifted(result.rolling),
-        "rocking": _uplifted(result.rocking),
-    }
-
-
-def _uplifted(modes: UpliftedModes) -> Document:
-    return {
-        "frequencies": modes.frequencies,
-        "damping": modes.damping,
-        "frequency_ratio": modes.frequency_ratio,
-        "damping_ratio": modes.damping_ratio,
-        "frequency_parameter": modes.frequency_parameter,
-        "frequency_parameter_rigid": modes.frequency_parameter_rigid,
-        "eigenvalues": modes.eigenvalues,
-    }
-
-
 def pushover_document(result: PushoverResult) -> Document:
     """Forces in N, displacements in m, the storey's curve and one entry a load pattern."""
-    return {
-        "uplift_force": result.uplift_force,
-        "critical_rotation": result.critical_rotation,
-        "critical_displacement": result.critical_displacement,
-        "initial_stiffness": result.initial_stiffness,
-        "curve": asdict(result.curve),
-        "capacity": [asdict(curve) for curve in result.capacity],
-    }
+    return {**result.results(), "capacity": [asdict(curve) for curve in result.capacity]}
 
 
 def timehistory_document(result: TimeHistoryResult) -> Document:
     """Scalar results, demands of each storey, energies [J], and what to be warned of."""
     # Every command begins a document, few need numpy for it.
-    from rpscli.report.storeys import fixed_base_demands, isolated_demands  # noqa: PLC0415
+    from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands  # noqa: PLC0415
 
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
     return {

@@ -8,9 +8,12 @@ import json
 import math
 from collections.abc import Iterator
 
-from rpscli.sweep.described import described, identifying_columns
-from rpscli.sweep.results import SCALARS
-from rpscli.sweep.table import WHOLE, Table
+from rpscli.case.schema.key_units import unit
+from rpscli.sweep.design.described import described, identifying_columns
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.reports.intensities import UNITS
+from rpscli.sweep.table import Table
 
 LINES_A_PIECE = 1000
 
@@ -19,23 +22,36 @@ def points_csv(table: Table) -> Iterator[str]:
     """The text, in pieces. Numbers have all their digits; what does not exist is empty."""
     design = table.design
     histories = design.plan.analysis == "timehistory"
-    header = [*identifying_columns(design), *(["scale"] if histories else []), "outcome"]
-    names = SCALARS[design.plan.analysis]
+    results = SCALARS[design.plan.analysis]
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow([*header, *names])
+    writer.writerow(f"{name} [{of}]" for name, of in _columns(design))
     for number, point in enumerate(design):
         cells = [_cell(value) for value in described(design, point).values()]
         if histories:
-            cells.append(_number("scale", _scale(table, number)))
+            cells.append(_number(_scale(table, number)))
         cells.append(str(table.outcomes[number]))
-        cells += [_number(name, float(table.columns[name][number])) for name in names]
+        cells += [
+            _number(float(table.columns[path][number]), whole=quantity.whole)
+            for path, quantity in results.items()
+        ]
         writer.writerow(cells)
         if number % LINES_A_PIECE == LINES_A_PIECE - 1:
             yield buffer.getvalue()
             buffer.seek(0)
             buffer.truncate()
     yield buffer.getvalue()
+
+
+def _columns(design: Design) -> Iterator[tuple[str, str]]:
+    """Names and units of all columns."""
+    for name in identifying_columns(design):
+        yield name, next((u for m, u in UNITS.items() if m == name), unit(name))
+    if design.plan.analysis == "timehistory":
+        yield "scale", "-"
+    yield "outcome", "-"
+    for path, quantity in SCALARS[design.plan.analysis].items():
+        yield path, quantity.unit
 
 
 def _scale(table: Table, number: int) -> float:
@@ -46,10 +62,10 @@ def _scale(table: Table, number: int) -> float:
     return float(table.scale[number])
 
 
-def _number(name: str, value: float) -> str:
+def _number(value: float, *, whole: bool = False) -> str:
     if not math.isfinite(value):
         return ""
-    return str(int(value)) if name in WHOLE else repr(value)
+    return str(int(value)) if whole else repr(value)
 
 
 def _cell(value: object) -> str:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 from rpscli.errors import OutputError, Refused, RpsError
-from rpscli.sweep.results import FAILED, Results
+from rpscli.sweep.evaluation.results import FAILED, Results
 
 FILE = "study.sqlite"
 FORMAT = "1"
@@ -23,15 +23,18 @@ APPLICATION = 0x72707331
 """Marks the file as ours in its header: "rps1"."""
 
 SCHEMA = """
-CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE points (
+CREATE TABLE IF NOT EXISTS meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS points (
     key BLOB PRIMARY KEY,     -- digest of resolved case, record, scale and solver
     point TEXT NOT NULL,      -- what the study called it: varied keys, record, scale (JSON)
     outcome TEXT NOT NULL,
     message TEXT,             -- why it failed
     results TEXT NOT NULL     -- JSON
 ) WITHOUT ROWID;
-CREATE TABLE yardsticks (key BLOB PRIMARY KEY, storey_shears TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS fixed_base (
+    key BLOB PRIMARY KEY,
+    storey_shears TEXT NOT NULL
+) WITHOUT ROWID;
 """
 
 
@@ -130,11 +133,10 @@ class Store:
         with self._told():
             self._db.execute("BEGIN EXCLUSIVE")
             self._refuse_other_programs()
-            if not self._tables():
-                for statement in SCHEMA.split(";\n"):
-                    self._db.execute(statement)
-                self._db.execute(f"PRAGMA application_id = {APPLICATION}")
-                self._db.execute("INSERT INTO meta VALUES ('format', ?)", (FORMAT,))
+            for statement in SCHEMA.split(";\n"):
+                self._db.execute(statement)
+            self._db.execute(f"PRAGMA application_id = {APPLICATION}")
+            self._db.execute("INSERT OR IGNORE INTO meta VALUES ('format', ?)", (FORMAT,))
             self._db.execute("COMMIT")
         self._check()
 
@@ -185,17 +187,17 @@ class Store:
                 ).fetchone()
                 yield None if row is None else Stored(row[0], row[1], json.loads(row[2]))
 
-    def yardsticks(self) -> dict[bytes, list[float]]:
+    def fixed_base(self) -> dict[bytes, list[float]]:
         """Storey shears on a fixed base, by key."""
         with self._told():
-            rows = self._db.execute("SELECT key, storey_shears FROM yardsticks")
+            rows = self._db.execute("SELECT key, storey_shears FROM fixed_base")
             return {key: json.loads(text) for key, text in rows}
 
-    def add_yardsticks(self, shears: Mapping[bytes, list[float]]) -> None:
+    def add_fixed_base(self, shears: Mapping[bytes, list[float]]) -> None:
         """Store storey shears on a fixed base."""
         rows = [(key, _json(values)) for key, values in shears.items()]
         with self._transaction():
-            self._db.executemany("REPLACE INTO yardsticks VALUES (?, ?)", rows)
+            self._db.executemany("REPLACE INTO fixed_base VALUES (?, ?)", rows)
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.sweep.design import Design
-from rpscli.sweep.results import FAILED, SCALARS, value_at
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.evaluation.results import FAILED, SCALARS, value_at
 from rpscli.sweep.store import Stored
 
 Array = NDArray[np.float64]
@@ -19,9 +19,6 @@ Indices = NDArray[np.int64]
 
 MISSING = ""
 """Outcome of a point that has not been computed."""
-
-WHOLE = frozenset({"uplifts", "impacts", "creating_impacts"})
-"""Results that are counts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +61,6 @@ class Table:
         """(points,) which overturned."""
         return np.char.startswith(self.outcomes, "overturned")
 
-    @property
-    def missing(self) -> int:
-        """Points that have not been computed."""
-        return int(np.sum(self.outcomes == MISSING))
-
 
 def tabulate(design: Design, stored: Iterable[Stored | None]) -> Table:
     """Columns from the rows of the store, given in the order of the study."""
@@ -77,7 +69,7 @@ def tabulate(design: Design, stored: Iterable[Stored | None]) -> Table:
     outcomes = np.full(count, MISSING, dtype="U20")
     scale = np.full(count, np.nan)
     messages: dict[int, str] = {}
-    shears = np.full((count, max(facts.storeys for facts in design.facts)), np.nan)
+    shears = np.full((count, max(properties.storeys for properties in design.properties)), np.nan)
     for number, row in enumerate(stored):
         if row is None:
             continue

@@ -17,10 +17,11 @@ from paper_structures import (
 )
 
 from rpscli.analyses.demand import demand
-from rpscli.analyses.history import FIRST_LOG
+from rpscli.analyses.kernels.history import FIRST_LOG
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.errors import RecordError
 from rpscli.model.damping import ModalDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
@@ -53,6 +54,9 @@ def test_maxima_are_those_of_the_samples(result: TimeHistoryResult) -> None:
     sampled = float(np.max(np.abs(trace.rotation)))
     # turning points lie between samples: x'' dt^2/8 above the nearest at most
     assert sampled <= result.max_rotation <= sampled + 50.0 * 0.02**2 / 8.0
+    assert result.max_rotation_time == pytest.approx(
+        trace.time[np.argmax(np.abs(trace.rotation))], abs=0.02
+    )
     if result.structure.storeys == 0:
         assert result.max_base_shear == 0.0
         assert result.base_shear_ratio is None
@@ -161,6 +165,13 @@ def test_scalars_are_plain_and_complete(result: TimeHistoryResult) -> None:
     assert "failure" not in scalars or scalars["failure"] is None
 
 
+def test_a_structure_at_rest_has_no_largest_rotation() -> None:
+    still = ground(0.5 * RECORD.acceleration / RECORD.pga, 0.02)
+    quiet = time_history(podium(0), still, SETTINGS)
+    assert quiet.outcome == "at_rest"
+    assert (quiet.max_rotation, quiet.max_rotation_time) == (0.0, None)
+
+
 def test_the_restoring_moment_lifts_the_weight() -> None:
     """dW v_b/dtheta, odd in theta, zero at theta_cr."""
     structure = podium(2, 0.15, 0.5)
@@ -210,7 +221,7 @@ def test_a_shorter_component_goes_on_as_zero() -> None:
     upwards = ground(np.zeros(longer.npts), 0.02)
     three = time_history(structure, RECORD, settings, vertical=upwards)
     assert len(three.trace.time) == longer.npts
-    with pytest.raises(ValueError, match="they must agree"):
+    with pytest.raises(RecordError, match="they must agree"):
         time_history(structure, RECORD, SETTINGS, vertical=ground([0.0, 1.0], 0.01))
 
 

@@ -19,9 +19,10 @@ from benchmarks.peers.rocking import rocking_of
 from benchmarks.structures import STEP, motions, structure
 from benchmarks.tables import show
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.history import sampled_history
+from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
+from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import GroundMotion
 
 RECORDS = 60
@@ -92,6 +93,7 @@ def steps(ensemble: Ensemble, records: list[GroundMotion], accuracy: float) -> f
 
 def main() -> None:
     """Measure, and print one table."""
+    with_heyoka = installed("heyoka")
     records = motions(RECORDS)
     ensemble = {n: [structure(n, rho) for rho in CURVATURES] for n in STOREYS}
     reference = {n: rps(ensemble[n], records, TIGHT).rotations for n in STOREYS}
@@ -115,7 +117,7 @@ def main() -> None:
         )
         for accuracy in ACCURACIES
     ]
-    if installed("heyoka"):
+    if with_heyoka:
         lines += [
             line(
                 f"heyoka, tol {tol:.0e}",
@@ -124,7 +126,9 @@ def main() -> None:
             )
             for tol in (1e-4, 1e-12)
         ]
-    title = f"Histories within 1e-4 in max|theta| of rps at accuracy {TIGHT:g}; rps in 8 lanes"
+    title = (
+        f"Histories within 1e-4 in max|theta| of rps at accuracy {TIGHT:g}; rps in {LANES} lanes"
+    )
     show(title, COLUMNS, lines)
 
 

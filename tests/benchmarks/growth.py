@@ -16,9 +16,10 @@ from benchmarks.measure import seconds
 from benchmarks.structures import SECONDS, STEP, motion, structure
 from benchmarks.tables import show
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.history import sampled_history
+from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
+from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import GroundMotion
 
 SEEDS = range(1, 5)
@@ -53,7 +54,7 @@ class Work(NamedTuple):
 
 
 def work_of(building: PodiumStructure, records: Sequence[GroundMotion]) -> Work:
-    """Time [ms a record], steps [a sample] and impacts, in the single kernel."""
+    """Time [ms a record], steps [a sample] and impacts, one history at a time."""
     requests = [Request(building, r, SETTINGS) for r in records]
     spent = 1e3 * seconds(lambda: demands(requests, worth_lanes=ALONE))
     found = [sampled_history(building, r, None, SETTINGS).history for r in records]
@@ -64,7 +65,7 @@ def work_of(building: PodiumStructure, records: Sequence[GroundMotion]) -> Work:
 
 
 def with_storeys() -> None:
-    """One kernel serves every number of storeys; beyond ten the period stays at one second.
+    """Two kernels serve every number of storeys; beyond ten the period stays at one second.
 
     Steps then shorten with the highest mode, so a history grows faster than a step.
     """
@@ -134,7 +135,8 @@ def with_points() -> None:
         exponents(POINTS, costs),
         strict=True,
     )
-    show("Points of three storeys in 8 lanes of a core", ("points", "ms/point", "exponent"), rows)
+    title = f"Points of three storeys in {LANES} lanes of a core"
+    show(title, ("points", "ms/point", "exponent"), rows)
 
 
 def on_threads(threads: int) -> Callable[[], None]:

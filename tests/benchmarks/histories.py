@@ -20,12 +20,13 @@ from benchmarks.peers.rocking import PeerHistory, rocking_of
 from benchmarks.peers.scipy_history import ScipyRocking, compiled_rates, python_rates
 from benchmarks.structures import STEP, motions, structure
 from benchmarks.tables import figure, say, show
-from rpscli.analyses.demand import Demand, Request, demands
+from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.fixed_base import fixed_base_response
-from rpscli.analyses.history import sampled_history
+from rpscli.analyses.kernels.history import sampled_history
+from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import layout
+from rpscli.physics.state import IMPACT, LANES
 from rpscli.records.ground_motion import GroundMotion
 
 RECORDS = 64
@@ -53,30 +54,24 @@ def many(
     return demands([Request(building, r, settings) for r in records], worth_lanes=1)
 
 
-def rps_any(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
-    """One history in the kernel that serves any number of storeys, without its samples."""
-    found = demands([Request(building, record, SETTINGS)], worth_lanes=ALONE)[0]
-    return PeerHistory(found.max_rotation, found.impacts)
-
-
 def rps_alone(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
-    """One history in a kernel compiled for its number of storeys."""
-    found = demands([Request(building, record, SETTINGS)], worth_lanes=1, lanes=1)[0]
+    """One history by itself, without its samples."""
+    found = demands([Request(building, record, SETTINGS)], worth_lanes=ALONE)[0]
     return PeerHistory(found.max_rotation, found.impacts)
 
 
 def rps_sampled(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
     """One history with all of its samples and its log of events."""
     history = sampled_history(building, record, None, SETTINGS).history
-    return PeerHistory(history.max_rotation, int(history.counts[layout.IMPACT]))
+    return PeerHistory(history.max_rotation, int(history.counts[IMPACT]))
 
 
 def rps_lanes(building: PodiumStructure, records: Sequence[GroundMotion]) -> Contest:
-    """Eight at once: only the time of all is known."""
+    """Side by side: only the time of all is known."""
     found = many(building, records, SETTINGS)
     spent = seconds(lambda: many(building, records, SETTINGS), repeats=5) / len(records)
     return Contest(
-        f"rps, {len(records)} in 8 lanes",
+        f"rps, {len(records)} in {LANES} lanes",
         [spent] * len(records),
         [d.max_rotation for d in found],
         [d.impacts for d in found],
@@ -135,12 +130,11 @@ def rows(
     building = structure(storeys)
     limit = TIGHT.overturning_limit * building.critical_rotation
     exact = [d.max_rotation for d in many(building, records, TIGHT)]
-    alone = run("rps, one, kernel of its storeys", lambda r: rps_alone(building, r), records)
-    anyone = run("rps, one, kernel of any storeys", lambda r: rps_any(building, r), records)
+    alone = run("rps, one", lambda r: rps_alone(building, r), records)
     sampled = run("rps, one with all samples", lambda r: rps_sampled(building, r), records)
     lanes = rps_lanes(building, records)
     gain = float(np.sum(alone.times) / np.sum(lanes.times))
-    ours = (sampled, anyone, alone, lanes)
+    ours = (sampled, alone, lanes)
     lines = []
     for c in (*peers(building, records, heyoka=heyoka), *ours):
         faster = c.times_faster(alone)
@@ -158,8 +152,8 @@ def rows(
 
 def main() -> None:
     """Measure, and print one table."""
+    heyoka, opensees = installed("heyoka"), installed("openseespy.opensees")
     records = motions(RECORDS)
-    heyoka, opensees = installed("heyoka"), installed("openseespy")
     lines = [line for n in (3, 9) for line in rows(n, records, heyoka=heyoka, opensees=opensees)]
     show(
         "One history of 40 s at 200 Hz on one core; ratios: times that rps is faster",

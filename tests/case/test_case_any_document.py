@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rpscli.case.case import case_from_mapping
-from rpscli.case.document import Document
-from rpscli.case.known_keys import known_paths
 from rpscli.case.overrides import apply_overrides
-from rpscli.case.schema import CaseFile
-from rpscli.case.yaml_text import read_yaml
+from rpscli.case.schema.case_file import CaseFile
+from rpscli.case.schema.known_keys import known_paths
+from rpscli.case.text.document import Document
+from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
 
 from .conftest import BUILDING, FRAME

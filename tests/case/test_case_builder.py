@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -196,6 +197,6 @@ def test_what_the_model_refuses_is_named_after_the_file(building: str) -> None:
     weightless = case.file.model_copy(
         update={"analysis": case.file.analysis.model_copy(update={"gravity": 0.0})}
     )
-    broken = type(case)(case.name, case.source, case.folder, weightless)
+    broken = replace(case, file=weightless)
     with pytest.raises(CaseError, match=r"c\.yaml: .*gravity"):
         assert broken.structure

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from rpscli.case.json_schema import case_json_schema
-from rpscli.case.known_keys import field_at, known_paths, section_of
-from rpscli.case.schema import CaseFile
+from rpscli.case.schema.case_file import CaseFile
+from rpscli.case.schema.json_schema import case_json_schema
+from rpscli.case.schema.known_keys import field_at, known_paths, section_of
 
 SCHEMA = case_json_schema()
 UNITS = {

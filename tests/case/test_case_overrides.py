@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from rpscli.case.case import case_from_mapping, parse_case
-from rpscli.case.document import Document
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.yaml_text import read_yaml
+from rpscli.case.text.document import Document
+from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rpscli.case.case import Case, load_case, parse_case
-from rpscli.case.starter import starter_text
+from rpscli.case.text.files import starter_text
 from rpscli.model.podium import PodiumStructure
 
 FOLDER = Path(__file__).parents[2] / "cases"

@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rpscli.case.case import parse_case
-from rpscli.case.common_units import COMMON_UNITS
-from rpscli.case.units import KINDS, _parsed, si_value
+from rpscli.case.schema.units import COMMON_UNITS, KINDS, _parsed, si_value
 
 # A factor of a unit is exact but for the rounding of one product.
 ROUNDING = 1e-14
@@ -114,7 +113,7 @@ def test_units_that_messages_propose_are_common(unit: str) -> None:
 @pytest.mark.parametrize(("mass", "code"), [("200 t", 0), ("200 kN", 1), ("14 slug", 1)])
 def test_pint_is_imported_only_for_unusual_units(mass: str, code: int) -> None:
     program = (
-        "import sys; from rpscli.case.units import si_value\n"
+        "import sys; from rpscli.case.schema.units import si_value\n"
         f"try: si_value({mass!r}, 'kg')\n"
         "except ValueError: pass\n"
         "sys.exit('pint' in sys.modules)"

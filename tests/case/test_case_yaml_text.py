@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rpscli.case.case import parse_case
-from rpscli.case.document import MISSING
-from rpscli.case.yaml_text import read_value, read_yaml
+from rpscli.case.text.document import MISSING
+from rpscli.case.text.yaml_text import read_value, read_yaml
 from rpscli.errors import CaseError
 
 

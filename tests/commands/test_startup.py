@@ -50,11 +50,11 @@ def test_check_needs_no_kernels_and_no_pictures(workplace: Path) -> None:
 def test_check_with_common_units_needs_no_library_of_units(workplace: Path) -> None:
     units = ["superstructure.storey_mass=200 t", "podium.bearing.semi_diagonal=150 cm"]
     found = imported(workplace, "check", "small.yaml", *(f"--set={unit}" for unit in units))
-    assert not found & {"pint", "numba", "scipy", "matplotlib", "rpscli.records.formats"}
+    assert not found & {"pint", "numba", "scipy", "matplotlib", "rpscli.records.formats.registry"}
 
 
 def test_a_document_of_an_error_needs_no_numpy(workplace: Path) -> None:
-    code = "import sys, rpscli.commands.failure; sys.exit('numpy' in sys.modules)"
+    code = "import sys, rpscli.commands.shell.failure; sys.exit('numpy' in sys.modules)"
     root = str(Path(__file__).parents[2])
     subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": root}, check=True)
 

@@ -236,9 +236,9 @@ def test_an_animation(rps_json: InvokeJson) -> None:
 
 def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
-    monkeypatch.setattr("rpscli.physics.jit.is_compiled", lambda _: False)
-    monkeypatch.setattr("rpscli.analyses.compilation._announced", set())
+    monkeypatch.setattr("rpscli.physics.compile.is_compiled", lambda _: False)
+    monkeypatch.setattr("rpscli.analyses.kernels.compilation._announced", set())
     heard = rps("timehistory", "small.yaml").stderr
-    assert heard.count("compiling the kernel for histories one by one") == 1
-    monkeypatch.setattr("rpscli.analyses.compilation._announced", set())
+    assert heard.count("compiling the kernel for buildings of up to 32 storeys") == 1
+    monkeypatch.setattr("rpscli.analyses.kernels.compilation._announced", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""

@@ -12,15 +12,16 @@ from click.testing import CliRunner
 from oracles.second_integrator import simulate
 from paper_structures import needs_compiled_kernels, oracle_system
 
-from rpscli.analyses import verification, verification_geometry
-from rpscli.analyses.comparison import Known, compare
-from rpscli.analyses.verification_histories import (
+from rpscli.analyses.verification import geometry, suite
+from rpscli.analyses.verification.comparison import Known, compare
+from rpscli.analyses.verification.histories import (
     FREE_VIBRATION,
     REFERENCES,
     Reference,
     shipped_record,
 )
-from rpscli.analyses.verification_structures import paper_podium
+from rpscli.analyses.verification.pulses import least_amplitude
+from rpscli.analyses.verification.structures import block, paper_podium
 from rpscli.cli import program
 from rpscli.records.source import load_record
 
@@ -31,7 +32,7 @@ ROOT = Path(__file__).parents[2]
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only what takes no time."""
     for name in ("buildings", "free_rocking", "pulses", "histories"):
-        monkeypatch.setattr(verification, name, lambda: iter(()))
+        monkeypatch.setattr(suite, name, lambda: iter(()))
 
 
 @needs_compiled_kernels
@@ -59,9 +60,9 @@ def test_the_table_has_a_verdict_for_each_number(short: None) -> None:
 
 
 def test_a_number_that_is_off_ends_with_6(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = list(verification_geometry.EXPECTED)
+    rows = list(geometry.EXPECTED)
     rows[4] = rows[4]._replace(critical_rotation="0.2947")
-    monkeypatch.setattr(verification_geometry, "EXPECTED", tuple(rows))
+    monkeypatch.setattr(geometry, "EXPECTED", tuple(rows))
     result = CliRunner().invoke(program, ["verify"])
     assert result.exit_code == 6
     assert result.stdout.count("DIFFERS") == 1
@@ -70,9 +71,9 @@ def test_a_number_that_is_off_ends_with_6(short: None, monkeypatch: pytest.Monke
 
 
 def test_the_document_says_what_is_off(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(verification_geometry, "EXPECTED", verification_geometry.EXPECTED[:1])
+    monkeypatch.setattr(geometry, "EXPECTED", geometry.EXPECTED[:1])
     known = replace(compare("made", "one", "-", Known(1.0, 0.5), 1.6), unit="m")
-    monkeypatch.setattr(verification, "modes", lambda: iter((known,)))
+    monkeypatch.setattr(suite, "modes", lambda: iter((known,)))
     result = CliRunner().invoke(program, ["verify", "--json"])
     assert result.exit_code == 6
     document = json.loads(result.stdout)
@@ -80,6 +81,21 @@ def test_the_document_says_what_is_off(short: None, monkeypatch: pytest.MonkeyPa
     assert document["error"]["type"] == "VerificationMismatch"
     assert document["mismatches"] == 1
     assert [line["quantity"] for line in document["comparisons"] if not line["holds"]] == ["one"]
+
+
+def test_counts_are_told_as_whole_numbers(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(geometry, "EXPECTED", ())
+    known = compare("made", "impacts", "-", Known(52.0, 0.0), 53.0)
+    monkeypatch.setattr(suite, "modes", lambda: iter((known,)))
+    result = CliRunner().invoke(program, ["verify"])
+    assert result.exit_code == 6
+    assert "impacts: 53 instead of 52 -, tolerance 0 (made)" in result.stderr
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("near", [0.3, 0.9])
+def test_a_least_pulse_that_is_not_near_is_no_number(near: float) -> None:
+    assert math.isnan(least_amplitude(block(0.2, 0.6), "half-sine", near))
 
 
 def test_what_is_no_number_does_not_agree() -> None:

@@ -11,43 +11,25 @@ from hypothesis import strategies as st
 from paper_structures import FLAT
 from scipy.optimize import brentq
 
+from rpscli.analyses.verification.comparison import Known, printed
+from rpscli.analyses.verification.geometry import EXPECTED, Geometry
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 
-# tan alpha, rho, beta, theta_cr, u_b(theta_cr), v_b(theta_cr); R = 1.5 m, tan alpha' = 2 tan alpha.
-# The printed digits differ from row to row; half of the last one is the tolerance.
-GEOMETRY = [
-    (0.10, 0.25, "0.2014", "0.1974", "0.593", "0.030"),
-    (0.10, 0.5, "0.1002", "0.1984", "0.5975", "0.044"),
-    (0.10, 1.5, "0.0333", "0.1977", "0.5971", "0.054"),
-    (0.15, 0.25, "0.3047", "0.2915", "0.877", "0.065"),
-    (0.15, 0.5, "0.1506", "0.2946", "0.8917", "0.099"),
-    (0.15, 1.5, "0.0500", "0.2925", "0.8902", "0.120"),
-    (0.20, 0.25, "0.4115", "0.3805", "1.148", "0.113"),
-    (0.20, 0.5, "0.2014", "0.3876", "1.1807", "0.172"),
-    (0.20, 1.5, "0.0667", "0.3828", "1.1771", "0.208"),
-    (0.10, FLAT, "0", "0.0997", "0.2985", "0.015"),
-    (0.15, FLAT, "0", "0.1489", "0.4450", "0.033"),
-    (0.20, FLAT, "0", "0.1974", "0.5883", "0.058"),
-]
+
+def close(known: Known) -> object:
+    return pytest.approx(known.value, abs=known.tolerance)
 
 
-def printed(text: str) -> object:
-    """The number, good to half of its last digit; .098495 is printed as .099, rounded twice."""
-    digits = len(text.partition(".")[2])
-    return pytest.approx(float(text), abs=0.51 * 10.0**-digits)
-
-
-@pytest.mark.parametrize(("tan_alpha", "rho", "beta", "critical", "u_b", "lift"), GEOMETRY)
-def test_table_of_geometry(
-    tan_alpha: float, rho: float, beta: str, critical: str, u_b: str, lift: str
-) -> None:
-    bearing = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, rho)
+@pytest.mark.parametrize("row", EXPECTED)
+def test_table_of_geometry(row: Geometry) -> None:
+    bearing = Bearing(1.5, row.tan_alpha, 2.0 * row.tan_alpha, row.rho)
     _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(np.array([bearing.critical_rotation]))
-    assert bearing.beta == printed(beta)
-    assert bearing.critical_rotation == printed(critical)
-    assert u[0] == printed(u_b)
-    assert v[0] == printed(lift)
+    assert bearing.beta == close(printed(row.beta))
+    assert bearing.critical_rotation == close(printed(row.critical_rotation))
+    assert u[0] == close(printed(row.displacement))
+    # .098495 is printed as .099, rounded twice
+    assert v[0] == close(printed(row.lift, 0.51))
 
 
 slopes = st.floats(0.01, 0.5)

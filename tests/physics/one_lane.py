@@ -5,50 +5,89 @@ from __future__ import annotations
 import numpy as np
 from paper_structures import Array, stillness
 
-from rpscli.analyses.history import empty_results, shape_of_one
-from rpscli.analyses.kernel_input import podium_parameters
-from rpscli.analyses.kernel_tables import joined, point, points, stacked_systems
+from rpscli.analyses.kernels.history import Request, run_of
+from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import layout, switch
-from rpscli.physics.driver import refresh
-from rpscli.physics.energy import phase_of, powers_after, uplifted_energy
-from rpscli.physics.geometry import cap_beam_displacement
-from rpscli.physics.lane import lane_of
-from rpscli.physics.loading import begin
-from rpscli.physics.series import step
-from rpscli.physics.terms import integral, modal_terms, slope, tilt_terms, value
-from rpscli.physics.workspace import empty_lanes
+from rpscli.physics.compile import kernel
+from rpscli.physics.driver import begin_history
+from rpscli.physics.energy import powers_within, uplifted_energy
+from rpscli.physics.equation_of_motion import (
+    cap_beam_acceleration,
+    cap_beam_displacement,
+    contact_height,
+    phase_constants,
+    renew_accelerations,
+)
+from rpscli.physics.formulae.taylor import integral, modal_terms, rotation_terms, slope, value
+from rpscli.physics.run import empty_state
+from rpscli.physics.state import Record
+from rpscli.physics.transitions.impact import change_edge, lock
+from rpscli.physics.transitions.phases import enter_phase
+from rpscli.physics.uplifted.demands import observe_ends
+from rpscli.physics.uplifted.taylor_step import take_steps
 
 LEAST_DT = 0.01
 
 
-class OneLane:
-    """The buffer of a single lane after `begin`, in a phase of motion at theta = 0.
+@kernel
+def renew_first(state: Record) -> None:
+    """Compute the accelerations of the first lane anew."""
+    renew_accelerations(state[0], 0)
 
-    States are [x, u_1 ... u_n] and their rates: the tilt x = |theta| first, then the floors.
+
+@kernel
+def step_first(state: Record) -> None:
+    """Take a step in the first lane."""
+    take_steps(state[0])
+
+
+@kernel
+def observe_first(state: Record) -> None:
+    """Observe the end of a step in the first lane."""
+    observe_ends(state[0])
+
+
+class OneLane:
+    """The state of a single lane after `begin_history`, in a phase of motion at theta = 0.
+
+    `s` is the record, whose lane 0 is meant. Positions are [x, u_1 ... u_n]: the tilt x = |theta|
+    first, then the floors.
     """
 
     def __init__(
         self,
         structure: PodiumStructure,
-        motion: int,
+        phase: int,
         side: float = 1.0,
         settings: TimeHistorySettings | None = None,
     ) -> None:
-        n = self.storeys = structure.storeys
+        self.storeys = structure.storeys
         self.structure = structure
-        self.shape = shape_of_one(structure)
         systems = stacked_systems([(structure, settings or TimeHistorySettings())])
-        still = stillness(LEAST_DT)
-        given = points([point(0, still, 0, None, 1.0)])
-        self.lanes = empty_lanes(joined([still])[0], self.shape, empty_results(1, n))
-        self.buffer = self.lanes.buffer
-        begin(self.lanes, 1, 0, 0, systems, given)
-        self.lane = lane_of(self.lanes, 0)
-        self.podium = podium_parameters(structure, settings or TimeHistorySettings())
-        self.buffer[layout.SIDE] = side
-        switch.enter_phase(self.lane, motion)
+        self.run = run_of(systems, [stillness(LEAST_DT)], [Request(0, 0)])
+        self.system = systems[0]
+        self.state = empty_state(self.storeys, lanes=1)
+        self.s = self.state[0]
+        begin_history(self.s, 0, self.run, 0)
+        self.s.side[0] = side
+        enter_phase(self.s, 0, self.system, phase)
+
+    def modes(self, name: str) -> Array:
+        """A field of the modes in this lane, (n,): a view."""
+        rows: Array = self.s[name][: self.storeys, 0]
+        return rows
+
+    @property
+    def q(self) -> Array:
+        """Modal displacements."""
+        return self.modes("q")
+
+    @property
+    def dq(self) -> Array:
+        """Modal velocities."""
+        rates: Array = self.s.dq[0, : self.storeys, 0]
+        return rates
 
     @property
     def shapes(self) -> Array:
@@ -59,86 +98,92 @@ class OneLane:
     @property
     def side(self) -> float:
         """Sign of theta."""
-        return float(self.buffer[layout.SIDE])
+        return float(self.s.side[0])
 
     @property
     def base(self) -> float:
         """u_b [m]."""
-        s, x = self.buffer, self.buffer[layout.TILT]
-        way = cap_beam_displacement(phase_of(s), x, np.cos(x), np.sin(x))
-        return float(s[layout.SIDE] * s[layout.DIAMETER] * way)
+        s, x = self.s, self.s.theta[0]
+        way = cap_beam_displacement(phase_constants(s, 0), x, np.cos(x), np.sin(x))
+        return float(s.side[0] * s.diameter[0] * way)
 
     @property
-    def base_rate(self) -> float:
+    def base_velocity(self) -> float:
         """u_b' [m/s]."""
-        s, x = self.buffer, self.buffer[layout.TILT]
-        phase = phase_of(s)
-        C = phase.c + phase.p * np.sin(x) - phase.q * np.cos(x)
-        return float(s[layout.SIDE] * s[layout.DIAMETER] * C * s[layout.RATE])
+        s, x = self.s, self.s.theta[0]
+        C = contact_height(phase_constants(s, 0), np.cos(x), np.sin(x))
+        return float(s.side[0] * s.diameter[0] * C * s.theta_dot[0])
 
     @property
     def position(self) -> Array:
         """The tilt and the floors' displacements."""
-        floors = self.base + self.shapes @ self.lane.blocks[layout.Q]
-        return np.array([self.buffer[layout.TILT], *floors])
+        return np.array([self.s.theta[0], *(self.base + self.shapes @ self.q)])
 
     @property
     def velocity(self) -> Array:
         """Their rates."""
-        floors = self.base_rate + self.shapes @ self.lane.blocks[layout.DQ]
-        return np.array([self.buffer[layout.RATE], *floors])
+        return np.array([self.s.theta_dot[0], *(self.base_velocity + self.shapes @ self.dq)])
 
     def place(self, position: Array, velocity: Array) -> None:
         """Put it somewhere."""
-        self.buffer[layout.TILT], self.buffer[layout.RATE] = position[0], velocity[0]
+        self.s.theta[0], self.s.theta_dot[0] = position[0], velocity[0]
         if (above := self.structure.superstructure) is not None:
             weights = self.shapes.T * above.masses
-            self.lane.blocks[layout.Q] = weights @ (position[1:] - self.base)
-            self.lane.blocks[layout.DQ] = weights @ (velocity[1:] - self.base_rate)
+            self.q[:] = weights @ (position[1:] - self.base)
+            self.dq[:] = weights @ (velocity[1:] - self.base_velocity)
 
     def accelerations(self, horizontal: float = 0.0, vertical: float = 0.0) -> Array:
         """x'' and u'' at the present state while the ground moves with these accelerations."""
-        s = self.buffer
-        s[layout.ACROSS] = horizontal
-        s[layout.UPWARDS] = self.podium.gravity + vertical
-        refresh(self.lanes, self.shape, 0)
-        B, C, turn = s[layout.LEVER], s[layout.HEIGHT], s[layout.TURN]
-        across = s[layout.SIDE] * s[layout.DIAMETER] * (C * turn + B * s[layout.RATE] ** 2)
-        blocks = self.lane.blocks
-        modes = -blocks[layout.PARTICIPATION] * (across + horizontal) - blocks[layout.PULL]
-        return np.array([turn, *(across + self.shapes @ modes)])
+        s = self.s
+        s.a_g[0], s.g_up[0] = horizontal, s.gravity[0] + vertical
+        renew_first(self.state)
+        across, _ = self.cap_beam_acceleration()
+        modes = -self.modes("Gamma") * (across + horizontal) - self.modes("modal_force")
+        return np.array([s.theta_ddot[0], *(across + self.shapes @ modes)])
+
+    def cap_beam_acceleration(self) -> tuple[float, float]:
+        """u_b'' and v_b'' [m/s2]; the accelerations must be known."""
+        s = self.s
+        found: tuple[float, float] = cap_beam_acceleration(
+            s, 0, s.B[0], s.C[0], s.theta_dot[0], s.theta_ddot[0]
+        )
+        return found
 
     def step(self, h: float) -> None:
         """Take a step of length h [s]; the accelerations must be known."""
-        self.buffer[layout.STEP] = h
-        step(self.buffer, self.shape)
+        self.s.step[0] = h
+        step_first(self.state)
+
+    def observe(self) -> None:
+        """Observe the end of the step that was taken."""
+        observe_first(self.state)
 
     def go_along(self, t: float) -> tuple[float, Array]:
         """Put it where it is a fraction t into the step that was taken; x'' and q'' there."""
-        s, x, h = self.buffer, self.lane.blocks, self.buffer[layout.STEP]
-        rates = tilt_terms(s)
-        modes = [modal_terms(x, r) for r in range(self.storeys)]
-        s[layout.TILT] += h * integral(rates, t)
-        s[layout.RATE] = value(rates, t)
+        s, h = self.s, self.s.step[0]
+        tilt = rotation_terms(s, 0)
+        modes = [modal_terms(s, r, 0) for r in range(self.storeys)]
+        s.theta[0] += h * integral(tilt, t)
+        s.theta_dot[0] = value(tilt, t)
         for r, terms in enumerate(modes):
-            x[layout.Q, r] += h * integral(terms, t)
-            x[layout.DQ, r] = value(terms, t)
-        s[layout.TIME] += t * h
-        return slope(rates, t) / h, np.array([slope(terms, t) / h for terms in modes])
+            self.q[r] += h * integral(terms, t)
+            self.dq[r] = value(terms, t)
+        s.time[0] += t * h
+        return slope(tilt, t) / h, np.array([slope(terms, t) / h for terms in modes])
 
     def powers(self) -> tuple[float, float]:
         """Power of the ground and of the dampers at the present state [W]."""
-        self.buffer[layout.RATES] = self.buffer[layout.RATE]
-        return powers_after(self.lane, 0.0)
+        self.s.dtheta_terms[0, 0] = self.s.theta_dot[0]
+        return powers_within(self.s, 0, 0.0)
 
     def energy(self) -> float:
         """Kinetic, strain and potential energy [J]."""
-        return float(uplifted_energy(self.lane))
+        return float(uplifted_energy(self.s, 0))
 
-    def go_over(self) -> float:
+    def change_edge(self) -> float:
         """Let the storey go over to its other edge; returns the energy lost [J]."""
-        return float(switch.go_over(self.lane))
+        return float(change_edge(self.s, 0, self.system))
 
     def lock(self) -> float:
         """Let the storey come to rest; returns the energy lost [J]."""
-        return float(switch.lock(self.lane))
+        return float(lock(self.s, 0, self.system))

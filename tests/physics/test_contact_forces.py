@@ -6,35 +6,35 @@ import numpy as np
 import pytest
 from paper_structures import FLAT, Array, block, ground, podium, stillness, waves
 
-from rpscli.analyses.history import History, sampled_history
+from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import layout
-from rpscli.physics.geometry import path_along
+from rpscli.physics.formulae.geometry import path_along
+from rpscli.physics.state import FULL_CONTACT, IMPACT
 
 DT = 0.005
 RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
 
 
-def stored_samples(structure: PodiumStructure) -> tuple[Array, History]:
-    """The kernel's rows under both components, and its demands."""
+def stored_samples(structure: PodiumStructure) -> SampledHistory:
+    """The kernel's samples under both components, and its demands."""
     settings = TimeHistorySettings(free_vibration=0.0)
     run = sampled_history(structure, RECORD, VERTICAL, settings)
-    assert run.history.counts[layout.IMPACT] > 0
-    return run.samples, run.history
+    assert run.history.counts[IMPACT] > 0
+    return run
 
 
-def base_accelerations(structure: PodiumStructure, rows: Array) -> tuple[Array, Array]:
+def base_accelerations(structure: PodiumStructure, run: SampledHistory) -> tuple[Array, Array]:
     """u_b'' and v_b'' by the chain rule on u_b(theta), v_b(theta) (Theory, section 8)."""
-    bearing = structure.bearing
-    theta, rate, acceleration = rows[:, 0], rows[:, 1], rows[:, 2]
+    bearing, samples = structure.bearing, run.samples
+    theta, rate, acceleration = samples.theta, samples.theta_dot, samples.theta_ddot
     side, x = np.sign(theta), np.abs(theta)
     B, C, _, _ = path_along(bearing.rolling, bearing.rocking, bearing.beta, x)
     falls = np.where(x < bearing.beta, bearing.rolling.c, 0.0) - C
     lean = side + (theta == 0.0) * np.sign(acceleration)
     diameter = 2.0 * bearing.semi_diagonal
-    moving = rows[:, layout.ROW_PHASE] != layout.FULL_CONTACT
+    moving = samples.phase != FULL_CONTACT
     u = diameter * (C * acceleration + lean * B * rate**2)
     v = diameter * (lean * B * acceleration + falls * rate**2)
     return u * moving, v * moving
@@ -44,21 +44,21 @@ def base_accelerations(structure: PodiumStructure, rows: Array) -> tuple[Array, 
     "structure", [podium(0, 0.15, 0.5), podium(2, 0.15, FLAT), podium(3, 0.15, 0.5)], ids=str
 )
 def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) -> None:
-    rows, history = stored_samples(structure)
-    n, above = structure.storeys, structure.superstructure
-    u_b, v_b = base_accelerations(structure, rows)
+    run = stored_samples(structure)
+    samples, history, above = run.samples, run.history, structure.superstructure
+    u_b, v_b = base_accelerations(structure, run)
     a_h, a_v = RECORD.acceleration, VERTICAL.acceleration
     beam, columns, g = structure.cap_beam_mass, structure.columns_mass, structure.gravity
-    floors = np.zeros(len(rows))
+    floors = np.zeros(len(samples))
     if above is not None:
         bearing = structure.bearing
         _, C, path, _ = path_along(
-            bearing.rolling, bearing.rocking, bearing.beta, np.abs(rows[:, 0])
+            bearing.rolling, bearing.rocking, bearing.beta, np.abs(samples.theta)
         )
-        base = 2.0 * bearing.semi_diagonal * np.sign(rows[:, 0]) * path
-        base_rate = 2.0 * bearing.semi_diagonal * C * rows[:, 1]
-        base_rate *= rows[:, layout.ROW_PHASE] != layout.FULL_CONTACT
-        u, du = rows[:, layout.ROW_FLOORS :][:, :n], rows[:, layout.ROW_FLOORS :][:, n:]
+        base = 2.0 * bearing.semi_diagonal * np.sign(samples.theta) * path
+        base_rate = 2.0 * bearing.semi_diagonal * C * samples.theta_dot
+        base_rate *= samples.phase != FULL_CONTACT
+        u, du = run.floors[:, 0], run.floors[:, 1]
         pull = (u - base[:, None]) @ above.stiffness_matrix
         pull += (du - base_rate[:, None]) @ above.damping_matrix
         absolute = -pull / above.masses  # u'' + a_g of each floor by itself
@@ -81,16 +81,16 @@ def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) ->
 def test_the_chain_rule_follows_the_stored_motion() -> None:
     """Second differences of u_b and v_b, away from events, are their accelerations."""
     structure = podium(2, 0.15, 0.5)
-    rows, _ = stored_samples(structure)
-    bearing, theta = structure.bearing, rows[:, 0]
+    run = stored_samples(structure)
+    bearing, theta = structure.bearing, run.samples.theta
     _, _, u, v = path_along(bearing.rolling, bearing.rocking, bearing.beta, np.abs(theta))
     diameter = 2.0 * bearing.semi_diagonal
     paths = diameter * np.sign(theta) * u, diameter * v
-    phase = rows[:, layout.ROW_PHASE]
+    phase = run.samples.phase
     same = (phase[2:] == phase[:-2]) & (phase[1:-1] == phase[2:]) & (phase[2:] > 0)
     same &= (np.sign(theta[2:]) == np.sign(theta[:-2])) & (np.abs(theta[1:-1]) > 0.01)
     assert same.sum() > 50
-    for path, acceleration in zip(paths, base_accelerations(structure, rows), strict=True):
+    for path, acceleration in zip(paths, base_accelerations(structure, run), strict=True):
         difference = (path[2:] - 2.0 * path[1:-1] + path[:-2]) / DT**2
         # order 2: (w dt)^2/12 of the fastest mode, w = 90 rad/s
         error = np.abs(difference - acceleration[1:-1])[same]

@@ -16,8 +16,9 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics import layout, tilt
-from rpscli.physics.layout import ROCKING, ROLLING
+from rpscli.physics.equation_of_motion import inertia, inertia_slope
+from rpscli.physics.formulae.geometry import contact_arm, contact_height
+from rpscli.physics.state import ROCKING, ROLLING
 
 from .one_lane import OneLane
 
@@ -88,13 +89,13 @@ def states(draw: st.DrawFn) -> State:
 
 def drift_state(state: State, lane: OneLane) -> Array:
     """The same state as [theta, drifts, theta', drift rates], on the lane's own u_b and u_b'."""
-    base, base_rate = lane.base, lane.base_rate
+    base, base_velocity = lane.base, lane.base_velocity
     return np.concatenate(
         (
             [state.side * state.position[0]],
             np.diff(state.position[1:], prepend=base),
             [state.side * state.velocity[0]],
-            np.diff(state.velocity[1:], prepend=base_rate),
+            np.diff(state.velocity[1:], prepend=base_velocity),
         )
     )
 
@@ -160,15 +161,15 @@ def test_energy_changes_by_what_the_ground_gives_and_the_dampers_take(state: Sta
 def inertia_and_slope(state: State, shift: float = 0.0) -> tuple[float, float]:
     """A and D a little off the state's tilt, in its own phase."""
     lane = OneLane(state.structure, state.motion)
-    podium, b = lane.podium, lane.buffer
-    phase = podium.rolling if state.motion == ROLLING else podium.rocking
+    s, bearing = lane.s, state.structure.bearing
+    phase = bearing.rolling if state.motion == ROLLING else bearing.rocking
     x = float(state.position[0]) + shift
-    B = tilt.lever_arm(phase, math.cos(x), math.sin(x))
-    C = tilt.path_height(phase, math.cos(x), math.sin(x))
-    beam, building = b[layout.BEAM], b[layout.BUILDING]
+    B = contact_arm(phase, math.cos(x), math.sin(x))
+    C = contact_height(phase, math.cos(x), math.sin(x))
+    beam, building = s.one_4gamma[0], s.four_gamma_eta[0]
     return (
-        tilt.tilt_inertia(b[layout.INERTIA], beam, building, phase, B, C),
-        tilt.tilt_inertia_slope(beam, building, phase, B, C),
+        inertia(s.io_1[0], beam, building, phase, B, C),
+        inertia_slope(beam, building, phase, B, C),
     )
 
 

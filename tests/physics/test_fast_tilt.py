@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from paper_structures import building, needs_compiled_kernels, steps_an_interval, stillness
 
-from rpscli.analyses import kernel_input
+from rpscli.analyses.kernels import systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
@@ -50,7 +50,7 @@ def test_steps_are_halved_where_the_tilt_is_fast(
 ) -> None:
     kept, steps = drift(structure, rotation, 1.0)
     with monkeypatch.context() as patch:
-        patch.setattr(kernel_input, "LAST_TERM", math.inf)
+        patch.setattr(systems, "LAST_TERM", math.inf)
         lost, plain = drift(structure, rotation, 1.0)
     assert steps > plain
     assert kept < 1e-5

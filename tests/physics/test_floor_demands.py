@@ -6,16 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from paper_structures import FLAT, building, needs_compiled_kernels, podium, waves
+from paper_structures import FLAT, Array, building, needs_compiled_kernels, podium, waves
 
-from rpscli.analyses.kernel_tables import modal_rows
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import ModalDamping, RayleighDamping
-from rpscli.physics import contact_layout, layout
-from rpscli.physics.floor_demands import raise_floors
-from rpscli.physics.inspection import observe
-from rpscli.physics.layout import ROLLING
+from rpscli.physics.state import ROLLING
+from rpscli.physics.uplifted.demands import raise_floors
 
 from .one_lane import OneLane
 
@@ -24,12 +21,25 @@ amplitudes = st.lists(st.integers(-1000, 1000).map(lambda k: 1e-3 * k), min_size
 
 def seen(lane: OneLane, q: list[float], dq: list[float]) -> bool:
     """Whether the lane, at a sample with this modal state, asks for its floors to be looked at."""
-    s, x = lane.buffer, lane.lane.blocks
-    x[layout.NEXT_Q], x[layout.NEXT_DQ] = q, dq
-    x[layout.PULL] = x[layout.SQUARE] * x[layout.NEXT_Q] + x[layout.DRAG] * x[layout.NEXT_DQ]
-    s[layout.SEEN] = s[layout.QUIET] = 1.0
-    observe(s, lane.shape)
-    return bool(s[layout.RAISE] > 0.0)
+    s = lane.s
+    lane.modes("next_q")[:], lane.modes("next_dq")[:] = q, dq
+    springs, dampers = lane.modes("omega2") * q, lane.modes("two_xi_omega") * dq
+    lane.modes("modal_force")[:] = springs + dampers
+    s.at_sample[0] = s.accepted[0] = 1.0
+    lane.observe()
+    return bool(s.demands_rise[0] > 0.0)
+
+
+def raise_by_end(lane: OneLane) -> Array:
+    """Demands of storeys and floors, raised by those at the end of the step."""
+    raise_floors(lane.s, 0, lane.system)
+    return demands_of(lane)
+
+
+def demands_of(lane: OneLane) -> Array:
+    """Largest storey shears and floor accelerations so far."""
+    s, n = lane.s, lane.storeys
+    return np.array([s.storey_shear[0, :n], s.floor_acceleration[0, :n]])
 
 
 @given(amplitudes, amplitudes, st.lists(st.tuples(amplitudes, amplitudes), max_size=5))
@@ -37,14 +47,12 @@ def test_what_is_passed_over_would_raise_nothing(
     q: list[float], dq: list[float], before: list[tuple[list[float], list[float]]]
 ) -> None:
     lane = OneLane(podium(4, 0.15, 0.5), ROLLING)
-    x = lane.lane.blocks
     for state in before:
         if seen(lane, *state):
-            raise_floors(lane.buffer, lane.shape)
-    reached = x[[layout.STOREY_SHEAR, layout.FLOOR_ACCELERATION]].copy()
+            raise_by_end(lane)
+    reached = demands_of(lane)
     asked = seen(lane, q, dq)
-    raise_floors(lane.buffer, lane.shape)
-    raised = x[[layout.STOREY_SHEAR, layout.FLOOR_ACCELERATION]]
+    raised = raise_by_end(lane)
     assert np.all(raised >= reached)
     assert asked or np.array_equal(raised, reached)
 
@@ -52,11 +60,10 @@ def test_what_is_passed_over_would_raise_nothing(
 def test_small_motion_after_large_is_passed_over() -> None:
     """Otherwise the bound would be safe, and of no use."""
     lane = OneLane(podium(4, 0.15, 0.5), ROLLING)
-    x = lane.lane.blocks
     # a jerk of the ground moves modes like this
-    q = x[layout.PARTICIPATION] / x[layout.SQUARE]
+    q = lane.modes("Gamma") / lane.modes("omega2")
     assert seen(lane, q.tolist(), [0.0] * 4)
-    raise_floors(lane.buffer, lane.shape)
+    raise_by_end(lane)
     assert not seen(lane, (0.2 * q).tolist(), [0.0] * 4)
     assert seen(lane, (2.0 * q).tolist(), [0.0] * 4)
 
@@ -64,19 +71,17 @@ def test_small_motion_after_large_is_passed_over() -> None:
 @pytest.mark.parametrize("storeys", [1, 2, 5, 12])
 def test_the_bounds_are_sums_over_modes(storeys: int) -> None:
     """For the sums that are in proportion to what bounds them, the bound is the value."""
-    structure = podium(storeys)
-    lane = OneLane(structure, ROLLING)
-    x, rows = lane.lane.blocks, modal_rows(structure)
-    shapes, shears = np.split(rows[contact_layout.SHAPES :], 2)
+    lane = OneLane(podium(storeys), ROLLING)
+    n, system = storeys, lane.system
     for factors, weight, bound in (
-        (shears, layout.STRAIN_WEIGHT, layout.STRAIN_BOUND),
-        (shapes, layout.PULLED_WEIGHT, layout.PULLED_BOUND),
+        (system.storey_shear_of, lane.modes("shear_weight"), system.shear_bound_of),
+        (system.phi, lane.modes("acceleration_weight"), system.acceleration_bound_of),
     ):
-        assert np.all(x[weight] > 0.0)
-        for i in range(storeys):
-            worst = factors[:, i] / x[weight]
-            value = float(factors[:, i] @ worst)
-            assert value**2 * x[bound, i] == pytest.approx(x[weight] @ worst**2, rel=1e-12)
+        assert np.all(weight > 0.0)
+        for i in range(n):
+            worst = factors[:n, i] / weight
+            value = float(factors[:n, i] @ worst)
+            assert value**2 * bound[i] == pytest.approx(weight @ worst**2, rel=1e-12)
 
 
 @needs_compiled_kernels

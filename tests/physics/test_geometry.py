@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from rpscli.model.bearing import Bearing
-from rpscli.physics import geometry
-from rpscli.physics.geometry import Phase
+from rpscli.physics.formulae import geometry
+from rpscli.physics.formulae.geometry import Phase
 
 ROUNDING = 2e-14
 """A few dozen roundings of numbers of the size 1 + 4 rho, which every tolerance is scaled by."""
@@ -49,8 +49,8 @@ def value(phase: Phase, name: str, x: float) -> float:
     if name == "u":
         return geometry.cap_beam_displacement(phase, x, cos_x, sin_x)
     formula: dict[str, Callable[[Phase, float, float], float]] = {
-        "B": geometry.lever_arm,
-        "C": geometry.path_height,
+        "B": geometry.contact_arm,
+        "C": geometry.contact_height,
         "v": geometry.cap_beam_lift,
     }
     return formula[name](phase, cos_x, sin_x)

@@ -11,15 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from paper_structures import FLAT, Array, building, podium
 
-from rpscli.analyses.kernel_input import podium_parameters
+from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.impact import ImpactKind, ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.energy import building_energy
-from rpscli.physics.layout import ROCKING, ROLLING
-from rpscli.physics.parameters import podium_numbers
-from rpscli.physics.podium_layout import RECONTACT_TOLERANCE
-from rpscli.physics.switch import is_negligible
+from rpscli.physics.state import ROCKING, ROLLING
+from rpscli.physics.transitions.impact import is_negligible
 
 from .one_lane import OneLane
 
@@ -48,7 +46,7 @@ def after_impact(
     """Rates after an impact from the right; energy lost over energy."""
     lane = arriving(structure, rate, floors)
     before = lane.energy()
-    gone = lane.go_over()
+    gone = lane.change_edge()
     # both are differences of parts of the energy before
     assert gone == pytest.approx(before - lane.energy(), abs=1e-13 * before)
     assert lane.side == -1.0
@@ -116,7 +114,7 @@ def test_the_limit_is_what_endless_bounces_leave(
         velocity = bouncing.velocity
         velocity[0] *= -1.0  # the floors' springs have no time to act
         bouncing.place(bouncing.position, velocity)
-        bouncing.go_over()
+        bouncing.change_edge()
     # some fifty bounces round
     assert locking.velocity[1:] == pytest.approx(bouncing.velocity[1:], abs=1e-12)
 
@@ -127,8 +125,9 @@ def test_what_the_limit_adds(law: ImpactKind, share: float | None) -> None:
     structure = podium(2, 0.15, 0.5, law=ImpactLaw(law))
     expected = 2.0 / (1.0 + structure.restitution) if share is None else share
     relative, limit = TimeHistorySettings(), LIMIT
-    assert podium_parameters(structure, relative).bounces == 0.0
-    assert podium_parameters(structure, limit).bounces == pytest.approx(expected, rel=1e-15)
+    systems = stacked_systems([(structure, relative), (structure, limit)])
+    assert systems[0].bounces == 0.0
+    assert systems[1].bounces == pytest.approx(expected, rel=1e-15)
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
@@ -136,14 +135,14 @@ def test_an_excursion_is_negligible_below_the_tolerance(tolerance: float) -> Non
     """Height x'^2/(2 |x''|) against tol alpha, but only if x'' points back."""
     settings = TimeHistorySettings(recontact_tolerance=tolerance)
     structure = podium(0, 0.15, FLAT)
-    row = np.array(podium_numbers(podium_parameters(structure, settings)))
+    system = stacked_systems([(structure, settings)])[0]
     limit = math.sqrt(2.0 * 3.0 * tolerance * structure.bearing.alpha)
-    assert is_negligible(row, limit * (1.0 - 1e-12), -3.0)
-    assert not is_negligible(row, limit * (1.0 + 1e-12), -3.0)
-    assert not is_negligible(row, 0.0, 0.0)
-    assert not is_negligible(row, 0.0, 3.0)
-    row[RECONTACT_TOLERANCE] = 0.0
-    assert not is_negligible(row, 1e-300, -3.0)
+    assert is_negligible(system, limit * (1.0 - 1e-12), -3.0)
+    assert not is_negligible(system, limit * (1.0 + 1e-12), -3.0)
+    assert not is_negligible(system, 0.0, 0.0)
+    assert not is_negligible(system, 0.0, 3.0)
+    system.recontact_tolerance = 0.0
+    assert not is_negligible(system, 1e-300, -3.0)
 
 
 def test_the_energy_of_the_building_alone() -> None:
@@ -153,7 +152,7 @@ def test_the_energy_of_the_building_alone() -> None:
     strain = 0.5 * float(above.stiffnesses @ np.array([0.03, 0.02]) ** 2)
     for base_rate in (0.0, 0.4):
         kinetic = 0.5 * float(above.masses @ (np.array([1.0, -2.0]) + base_rate) ** 2)
-        energy = building_energy(lane.lane, base_rate)
+        energy = building_energy(lane.s, 0, base_rate)
         assert energy == pytest.approx(kinetic + strain, rel=1e-13)
 
 
@@ -162,7 +161,7 @@ def test_energies_of_equal_states_are_equal_up_to_lift() -> None:
     structure = podium(3, 0.15, 0.5)
     lane = arriving(structure, 0.0, [0.3, -0.2, 0.5])
     lane.place(np.array([0.0, 0.01, 0.03, 0.02]), np.array([0.0, 0.3, -0.2, 0.5]))
-    alone = building_energy(lane.lane, 0.0)
+    alone = building_energy(lane.s, 0, 0.0)
     assert lane.energy() == pytest.approx(alone, rel=1e-14)
     lane.place(lane.position, np.array([-0.4, 0.3, -0.2, 0.5]))
     rigid = replace(structure, superstructure=None)

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from rpscli.physics import jit
-from rpscli.physics.jit import cache_folder, is_compiled, kernel, remember_compiled
+from rpscli.physics import compile as compilation
+from rpscli.physics.compile import (
+    cache_folder,
+    is_compiled,
+    kernel,
+    remember_compiled,
+    sources_digest,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -51,22 +58,38 @@ def test_nowhere_to_write_means_no_cache(fresh_folder: pytest.MonkeyPatch, tmp_p
     assert double(3.0) == 6.0
 
 
+@pytest.mark.parametrize("source", ["energy.py", "uplifted/steps.py", "formulae/geometry.py"])
 def test_the_folder_is_named_after_the_sources(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path, source: str
 ) -> None:
     """A changed kernel must not meet machine code of the old one, inlined functions included."""
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
-    for source in Path(jit.__file__).parent.glob("*.py"):
-        (tmp_path / source.name).write_bytes(source.read_bytes())
-    fresh_folder.setattr(jit, "__file__", str(tmp_path / "jit.py"))
-    before = cache_folder()
-    with (tmp_path / "geometry.py").open("a") as geometry:
-        geometry.write("\n")
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
+    sources = tmp_path / "physics"
+    shutil.copytree(compilation.SOURCES, sources, ignore=shutil.ignore_patterns("__pycache__"))
+    fresh_folder.setattr(compilation, "SOURCES", sources)
+    before, digest = cache_folder(), sources_digest(sources)
+    assert before is not None
+    assert before.name == f"kernels-{digest}"
+    assert digest == sources_digest(Path(compilation.__file__).parent)  # wherever they are
+    with (sources / source).open("a") as file:
+        file.write("\n")
     cache_folder.cache_clear()
     after = cache_folder()
-    assert before is not None
     assert after is not None
     assert before != after
+    assert digest != sources_digest(sources)
+
+
+def test_a_source_that_moves_to_another_folder_counts_as_changed(tmp_path: Path) -> None:
+    for place in ("one", "two"):
+        (tmp_path / place / "sub").mkdir(parents=True)
+    (tmp_path / "one" / "a.py").write_text("A = 1\n")
+    (tmp_path / "two" / "sub" / "a.py").write_text("A = 1\n")
+    one, two = (sources_digest(tmp_path / place) for place in ("one", "two"))
+    assert one != two
+    # what is no source does not count
+    (tmp_path / "one" / "notes.txt").write_text("A = 2\n")
+    assert sources_digest(tmp_path / "one") == one
 
 
 def twice(x: float) -> float:
@@ -75,11 +98,11 @@ def twice(x: float) -> float:
 
 def test_what_was_compiled_is_remembered(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
-    fresh_folder.setattr(jit, "_compiled_here", set())
+    fresh_folder.setattr(compilation, "_compiled_here", set())
     assert not is_compiled("three, of them")
     remember_compiled("three, of them")
     assert is_compiled("three, of them")
     # another process, so to speak: only the disk knows
-    fresh_folder.setattr(jit, "_compiled_here", set())
+    fresh_folder.setattr(compilation, "_compiled_here", set())
     assert is_compiled("three, of them")
     assert not is_compiled("three")

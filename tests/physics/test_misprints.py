@@ -13,8 +13,9 @@ from paper_structures import FLAT, podium
 from rpscli.analyses.modal import linearised_matrices
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import tilt
-from rpscli.physics.layout import ROCKING, ROLLING
+from rpscli.physics import equation_of_motion
+from rpscli.physics.formulae.geometry import contact_arm, contact_height
+from rpscli.physics.state import ROCKING, ROLLING
 
 from .one_lane import OneLane
 
@@ -22,11 +23,11 @@ from .one_lane import OneLane
 def inertia(structure: PodiumStructure, x: float) -> tuple[float, float, float]:
     """A, our D and the printed D = -C B, rocking."""
     phase, gamma, eta = structure.bearing.rocking, structure.gamma, structure.eta
-    B = tilt.lever_arm(phase, math.cos(x), math.sin(x))
-    C = tilt.path_height(phase, math.cos(x), math.sin(x))
+    B = contact_arm(phase, math.cos(x), math.sin(x))
+    C = contact_height(phase, math.cos(x), math.sin(x))
     beam, building = 1.0 + 4.0 * gamma, 4.0 * gamma * eta
-    A = tilt.tilt_inertia(1.0 / 3.0, beam, building, phase, B, C)
-    return A, tilt.tilt_inertia_slope(beam, building, phase, B, C), -C * B
+    A = equation_of_motion.inertia(1.0 / 3.0, beam, building, phase, B, C)
+    return A, equation_of_motion.inertia_slope(beam, building, phase, B, C), -C * B
 
 
 @given(st.floats(0.01, 0.4), st.sampled_from([FLAT, 0.5]))

@@ -7,11 +7,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rpscli.analyses.kernel_input import highest_frequency
-from rpscli.physics import layout
-from rpscli.physics.events import NO_PASSAGE
-from rpscli.physics.layout import ORDER
-from rpscli.physics.terms import end_at, meet
+from rpscli.analyses.kernels.step_lengths import highest_frequency
+from rpscli.physics.formulae.quintic import NO_PASSAGE
+from rpscli.physics.formulae.taylor import end_step_at, fraction_at
+from rpscli.physics.state import ORDER
 
 from .one_lane import OneLane
 from .test_equation_of_motion import State, states
@@ -22,7 +21,7 @@ slopes = st.floats(-50.0, 50.0)
 def stepped(state: State, h: float, across: float, upwards: float) -> OneLane:
     """After a step of length h under accelerations of the ground with these slopes [m/s3]."""
     lane = state.in_a_lane()
-    lane.buffer[layout.ACROSS_SLOPE], lane.buffer[layout.UPWARDS_SLOPE] = across, upwards
+    lane.s.a_g_slope[0], lane.s.g_up_slope[0] = across, upwards
     lane.accelerations(state.horizontal, state.vertical)
     lane.step(h)
     return lane
@@ -38,17 +37,17 @@ def residual(state: State, h: float, across: float, upwards: float, t: float) ->
     """What is left of the equations of tilt and modes within a step, over what they are made of."""
     lane = stepped(state, h, across, upwards)
     turn, changes = lane.go_along(t)
-    s, x = lane.buffer, lane.lane.blocks
-    time = s[layout.TIME]
-    s[layout.TIME] = 0.0
+    s = lane.s
+    time = float(s.time[0])
+    s.time[0] = 0.0
     lane.accelerations(state.horizontal + across * time, state.vertical + upwards * time)
     ground = state.horizontal + across * time
-    B, C, rate = s[layout.LEVER], s[layout.HEIGHT], s[layout.RATE]
-    forced = s[layout.SIDE] * s[layout.DIAMETER] * (C * s[layout.TURN] + B * rate**2) + ground
-    exact = -x[layout.PARTICIPATION] * forced - x[layout.PULL]
-    size = 1.0 + abs(float(s[layout.TURN])) + float(np.max(np.abs(exact), initial=0.0))
+    B, C, theta_dot, theta_ddot = s.B[0], s.C[0], s.theta_dot[0], s.theta_ddot[0]
+    forced = s.side[0] * s.diameter[0] * (C * theta_ddot + B * theta_dot**2) + ground
+    exact = -lane.modes("Gamma") * forced - lane.modes("modal_force")
+    size = 1.0 + abs(float(theta_ddot)) + float(np.max(np.abs(exact), initial=0.0))
     modes = float(np.max(np.abs(changes - exact), initial=0.0))
-    return abs(turn - float(s[layout.TURN])) / size, modes / size
+    return abs(turn - float(theta_ddot)) / size, modes / size
 
 
 @given(states(), slopes, slopes, st.floats(0.3, 1.0))
@@ -69,40 +68,39 @@ def test_the_end_of_a_step_is_the_sum_of_its_terms(
     h = 0.15 / fastest(state)
     lane, other = (stepped(state, h, across, upwards) for _ in range(2))
     other.go_along(1.0)
-    s, x = lane.buffer, lane.lane.blocks
-    assert s[layout.NEXT_TILT] == pytest.approx(other.buffer[layout.TILT], abs=1e-15)
-    assert s[layout.NEXT_RATE] == pytest.approx(other.buffer[layout.RATE], rel=1e-13, abs=1e-13)
-    modes = other.lane.blocks
-    assert x[layout.NEXT_Q] == pytest.approx(modes[layout.Q], rel=1e-13, abs=1e-13)
-    assert x[layout.NEXT_DQ] == pytest.approx(modes[layout.DQ], rel=1e-12, abs=1e-12)
+    s = lane.s
+    assert s.next_theta[0] == pytest.approx(other.s.theta[0], abs=1e-15)
+    assert s.next_theta_dot[0] == pytest.approx(other.s.theta_dot[0], rel=1e-13, abs=1e-13)
+    assert lane.modes("next_q") == pytest.approx(other.q, rel=1e-13, abs=1e-13)
+    assert lane.modes("next_dq") == pytest.approx(other.dq, rel=1e-12, abs=1e-12)
 
 
 @given(states(), st.floats(0.05, 0.95), st.floats(-0.05, 0.05))
 def test_a_level_is_met_where_the_path_passes_it(state: State, t: float, miss: float) -> None:
     lane = stepped(state, 0.15 / fastest(state), 0.0, 0.0)
     guide = stepped(state, 0.15 / fastest(state), 0.0, 0.0)
-    start, end = lane.buffer[layout.TILT], lane.buffer[layout.NEXT_TILT]
+    start, end = lane.s.theta[0], lane.s.next_theta[0]
     assume(abs(end - start) > 1e-6)
-    rates = lane.buffer[layout.RATE], lane.buffer[layout.NEXT_RATE]
+    rates = lane.s.theta_dot[0], lane.s.next_theta_dot[0]
     assume(rates[0] * rates[1] > 0.25 * max(abs(rate) for rate in rates) ** 2)  # no turning point
     guide.go_along(t)
-    level = guide.buffer[layout.TILT]
-    found = meet(lane.buffer, level, t + miss)
+    level = guide.s.theta[0]
+    found = fraction_at(lane.s, 0, level, t + miss)
     assert found < NO_PASSAGE
     # the tilt is known to rounding, the instant to that over the rate
     assert found == pytest.approx(t, abs=1e-14 / abs(end - start))
-    end_at(lane.buffer, lane.lane.blocks, found, level)
-    assert lane.buffer[layout.NEXT_TILT] == level
-    assert lane.buffer[layout.NEXT_RATE] == pytest.approx(guide.buffer[layout.RATE], rel=1e-9)
+    end_step_at(lane.s, 0, found, level)
+    assert lane.s.next_theta[0] == level
+    assert lane.s.next_theta_dot[0] == pytest.approx(guide.s.theta_dot[0], rel=1e-9)
 
 
 @given(states())
 def test_a_step_of_no_length_leads_nowhere(state: State) -> None:
     """One may be left after an event on the very sample."""
     lane = stepped(state, 0.0, 1.0, 1.0)
-    s, x = lane.buffer, lane.lane.blocks
-    assert s[layout.NEXT_TILT] == s[layout.TILT]
-    assert s[layout.NEXT_RATE] == s[layout.RATE]
-    assert s[layout.NEXT_TURN] == s[layout.TURN]
-    assert x[layout.NEXT_Q].tolist() == x[layout.Q].tolist()
-    assert x[layout.NEXT_DQ].tolist() == x[layout.DQ].tolist()
+    s = lane.s
+    assert s.next_theta[0] == s.theta[0]
+    assert s.next_theta_dot[0] == s.theta_dot[0]
+    assert s.next_theta_ddot[0] == s.theta_ddot[0]
+    assert lane.modes("next_q").tolist() == lane.q.tolist()
+    assert lane.modes("next_dq").tolist() == lane.dq.tolist()

@@ -8,9 +8,9 @@ import pytest
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
+from rpscli.records.formats.time_axis import uniform_step
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
-from rpscli.records.time_axis import uniform_step
 
 VALUES = [0.1, -0.2, 0.3, 0.05]
 

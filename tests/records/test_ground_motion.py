@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 
 def motion(values: list[float], dt: float = 0.5) -> GroundMotion:
@@ -66,3 +66,42 @@ def test_refuses(values: list[float], dt: float, message: str) -> None:
 def test_refuses_two_rows() -> None:
     with pytest.raises(RecordError, match="one row"):
         GroundMotion(np.zeros((2, 5)), 0.1, "n", "s", "f")
+
+
+def test_components_are_made_equally_long() -> None:
+    long = motion([1.0, -2.0, 3.0, 4.0])
+    short = motion([5.0, 6.0])
+    for along, up in ((long, short), (short, long)):
+        first, second = MotionComponents(along, up).of_one_length
+        assert second is not None
+        for given, found in ((along, first), (up, second)):
+            assert found.npts == 4
+            assert found.source == given.source
+            assert found.acceleration[: given.npts].tolist() == given.acceleration.tolist()
+            assert not found.acceleration[given.npts :].any()
+
+
+def test_components_that_need_no_zeros_stay_as_they_are() -> None:
+    along = motion([1.0, -2.0])
+    up = motion([5.0, 6.0])
+    assert MotionComponents(along, up).of_one_length == (along, up)
+    assert MotionComponents(along).of_one_length == (along, None)
+
+
+def test_components_have_one_time_step() -> None:
+    along = motion([1.0, -2.0])
+    up = motion([5.0, 6.0], 0.2)
+    with pytest.raises(RecordError, match=r"vertical .* dt = 0\.2 s, .* 0\.5 s: they must agree"):
+        MotionComponents(along, up)
+
+
+def test_components_are_scaled_together() -> None:
+    along = motion([1.0, -2.0])
+    up = motion([5.0, 6.0])
+    scaled = MotionComponents(along, up).scaled(2.0).scaled(0.25)
+    assert scaled.scale == 0.5
+    assert scaled.horizontal.acceleration.tolist() == [0.5, -1.0]
+    assert scaled.vertical is not None
+    assert scaled.vertical.acceleration.tolist() == [2.5, 3.0]
+    alone = MotionComponents(along).scaled(3.0)
+    assert (alone.vertical, alone.scale) == (None, 3.0)

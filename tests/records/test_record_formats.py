@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.formats import FORMATS, is_record
-from rpscli.records.record_text import read_text
+from rpscli.records.formats.record_text import read_text
+from rpscli.records.formats.registry import FORMATS, is_record
 from rpscli.records.source import load_record
 
 VALUES = [1.5, -2.25, 30.125, -4.5, 5.0, 6.0, -7.0, 8.0, 9.0, -10.0, 11.0, 12.0]

@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.acceleration_units import canonical_unit
-from rpscli.records.numerals import numbers_in
-from rpscli.records.record_text import read_text
+from rpscli.records.formats.record_text import read_text
+from rpscli.records.quantities import canonical_unit, numbers_in
 from rpscli.records.source import load_record
 
 

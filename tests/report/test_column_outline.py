@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
-from rpscli.report import column_outline
-from rpscli.report.column_outline import leaning_outline, upright_outline
+from rpscli.report.figures import column_outline
+from rpscli.report.figures.column_outline import leaning_outline, upright_outline
 
 slendernesses = st.floats(0.05, 0.4)
 curvatures = st.sampled_from([0.0, 0.25, 0.5, 1.5, 4.0])

@@ -16,7 +16,7 @@ import pytest
 HEAD = """
 import os, sys, threading
 from functools import partial
-from rpscli.report.drawing import artists, drawn
+from rpscli.report.figures.drawing import artists, drawn
 
 def picture(of):
     return f"{of} by {os.getpid()}".encode()

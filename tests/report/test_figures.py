@@ -3,63 +3,21 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 from PIL import Image
 
+from report.small_results import CURVED, FLAT, KINDS, ROLLER, structure
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
-from rpscli.analyses.results import TimeHistoryResult
-from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import ModalDamping
-from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure, profile_stiffnesses
-from rpscli.records.source import load_record
-from rpscli.report import style
-from rpscli.report.animation import MOST_FRAMES, frame_plan
 from rpscli.report.bundles import modal_files, pushover_files, timehistory_files
-from rpscli.report.displacement_figure import shown_floors
-from rpscli.report.rotation_figure import rotation_figure
-
-CURVED = Bearing(1.5, 0.15, 0.30, 0.5)
-ROLLER = Bearing(1.5, 0.15, 0.30, 0.25)  # overturns rolling
-FLAT = Bearing(1.5, 0.15, 0.15, 0.0)
-
-
-def building(storeys: int, *, heights: bool = True) -> Superstructure:
-    masses = np.full(storeys, 2e5)
-    stiffnesses = profile_stiffnesses(masses, 0.1 * storeys)
-    return Superstructure(
-        masses, stiffnesses, ModalDamping(0.05), np.full(storeys, 3.0) if heights else None
-    )
-
-
-def structure(
-    bearing: Bearing = CURVED, storeys: int = 2, *, heights: bool = True
-) -> PodiumStructure:
-    return PodiumStructure(
-        bearing, 2e4, 2e5, building(storeys, heights=heights) if storeys else None
-    )
-
-
-def history(made: PodiumStructure, pulse: str, free: float | None = 0.5) -> TimeHistoryResult:
-    return time_history(made, load_record(pulse), TimeHistorySettings(free_vibration=free))
-
-
-KINDS: dict[str, Callable[[], TimeHistoryResult]] = {
-    "rolls": lambda: history(structure(), "pulse:half_sine?amplitude=0.3g&period=0.6"),
-    "at rest": lambda: history(structure(), "pulse:half_sine?amplitude=0.01g&period=0.6"),
-    "overturns": lambda: history(structure(), "pulse:half_sine?amplitude=1.5g&period=1.5", None),
-    "flat, one storey, no heights": lambda: history(
-        structure(FLAT, 1, heights=False), "pulse:half_sine?amplitude=0.4g&period=0.6"
-    ),
-    "frame": lambda: history(structure(FLAT, 0), "pulse:half_sine?amplitude=0.4g&period=0.6"),
-}
+from rpscli.report.figures import style
+from rpscli.report.figures.animation import MOST_FRAMES, frame_plan
+from rpscli.report.figures.displacement import shown_floors
+from rpscli.report.figures.rotation import rotation_figure
 
 
 @pytest.mark.parametrize("kind", KINDS)

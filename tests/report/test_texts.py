@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rpscli.report.csv_text import Column, csv_text
-from rpscli.report.json_text import json_text, plain
+from rpscli.analyses.result_quantities import plain
+from rpscli.report.files.csv_text import Column, csv_text
+from rpscli.report.files.json_text import json_text
 
 values = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False)

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from paper_structures import Array, RecordLoader, needs_compiled_kernels
+from sweep.small_studies import study_file
 
 from reproduction.conftest import CASES, Reproduce, Row
-from rpscli.case.study import load_study
-from rpscli.sweep.design import lay_out
 
 pytestmark = needs_compiled_kernels
 
@@ -37,7 +36,7 @@ FLAT = 3
 def test_the_studies_are_those_of_the_paper(
     name: str, points: int, fema_record: RecordLoader
 ) -> None:
-    assert len(lay_out(load_study(CASES / f"{name}.yaml"))) == points
+    assert len(study_file(CASES / f"{name}.yaml").design) == points
 
 
 def column(rows: list[Row], name: str) -> Array:

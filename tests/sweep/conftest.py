@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from rpscli.case.study import Study, parse_study
+from rpscli.case.study.study import Study, parse_study
 from rpscli.cli import program
+from rpscli.report.study.registry import REPORTS
 from sweep.small_studies import BASE, STUDY, Make
 
 
@@ -35,7 +36,7 @@ def study_of(workplace: Path) -> Make:
         for old, new in changes:
             assert old in text
             text = text.replace(old, new)
-        return parse_study(text, name="study.yaml", overrides=overrides)
+        return parse_study(text, name="study.yaml", kinds=REPORTS, overrides=overrides)
 
     return make
 
@@ -43,7 +44,7 @@ def study_of(workplace: Path) -> Make:
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures cost nothing; what they look like is not what is tested."""
-    monkeypatch.setattr("rpscli.report.style.png", lambda *_: b"a figure")
+    monkeypatch.setattr("rpscli.report.figures.style.png", lambda *_: b"a figure")
 
 
 @pytest.fixture

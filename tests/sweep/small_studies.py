@@ -1,14 +1,14 @@
-"""Texts of a small case and study, and a way to run `rps` beside the tests."""
+"""Texts of a small case and study, and a way to read a file with one."""
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from rpscli.case.study import Study
+from rpscli.case.study.study import Study
+from rpscli.commands.shell.options import CaseRequest
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.sweep.input import StudyInput, read_study
 
 ROOT = Path(__file__).parents[2]
 
@@ -47,14 +47,6 @@ scale: [0.5, 1.0]
 Make = Callable[..., Study]
 
 
-def start(*arguments: str, folder: Path) -> subprocess.Popen[str]:
-    """`rps ...` in a process of its own, interruptible as from a terminal."""
-    search = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
-    return subprocess.Popen(
-        [sys.executable, "-m", "rpscli", *arguments],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": search},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+def study_file(path: Path | str, *overrides: str) -> StudyInput:
+    """A study as `rps sweep` reads it."""
+    return read_study(CaseRequest(str(path), overrides), Terminal(quiet=True))

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from rpscli.analyses.demand import Demand, Request, demands
+from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.timehistory import time_history
 from rpscli.records.source import load_record
-from rpscli.sweep.batch import Bench, run_batch
-from rpscli.sweep.design import lay_out
-from rpscli.sweep.results import SCALARS, value_at
-from rpscli.sweep.systems import resolved
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.evaluation.batch import run_batch
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.evaluation.results import SCALARS, value_at
+from rpscli.sweep.evaluation.systems import resolved
 from sweep.small_studies import STUDY, Make
 
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
@@ -20,26 +22,26 @@ PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
 
 def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
     design = lay_out(study_of())
-    together = run_batch(Bench(design.plan), list(design))
-    backwards = run_batch(Bench(design.plan), list(design)[::-1])
-    alone = [run_batch(Bench(design.plan), [design[number]])[0] for number in (0, 17, 35)]
+    together = run_batch(StudyContext(design.plan), list(design))
+    backwards = run_batch(StudyContext(design.plan), list(design)[::-1])
+    alone = [run_batch(StudyContext(design.plan), [design[number]])[0] for number in (0, 17, 35)]
     assert backwards[::-1] == together
     assert alone == [together[number] for number in (0, 17, 35)]
 
 
 def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
     design = lay_out(study_of(STUDY, PERTURB))
-    bench = Bench(design.plan)
+    context = StudyContext(design.plan)
     for number in (3, 40, 76):
         point = design[number]
         assert point.record is not None
         case = resolved(design.plan, point.values)
-        structure = bench.systems[point].perturbed(point.restitution_change)
+        structure = context.systems[point].perturbed(point.restitution_change)
         changed = case.structure.restitution * point.restitution_change
         assert structure.restitution == pytest.approx(changed, rel=1e-12)
         motion = load_record(point.record.source).scaled(point.scale * point.scale_change)
         single = time_history(structure, motion, case.analysis).scalars()
-        row = run_batch(bench, [point])[0]
+        row = run_batch(context, [point])[0]
         assert row.outcome == single["outcome"]
         for name in set(single) & set(SCALARS["timehistory"]):
             # Kernels for one and for many histories round differently; impacts amplify that.
@@ -54,11 +56,11 @@ def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: M
     points = list(design)[:4]
     assert points[0].record is not None
     bad = points[1]._replace(record=points[0].record._replace(source="gone.at2"))
-    rows = run_batch(Bench(design.plan), [points[0], bad, points[2]])
+    rows = run_batch(StudyContext(design.plan), [points[0], bad, points[2]])
     assert [row.outcome for row in rows][1] == "failed"
     assert "gone.at2" in str(rows[1].message)
     assert rows[1].results == {}
-    whole = run_batch(Bench(design.plan), points)
+    whole = run_batch(StudyContext(design.plan), points)
     assert [rows[0], rows[2]] == [whole[0], whole[2]]
 
 
@@ -73,8 +75,8 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
             raise FloatingPointError("boom")
         return demands(requests)
 
-    monkeypatch.setattr("rpscli.sweep.batch.demands", fragile)
-    rows = run_batch(Bench(design.plan), points)
+    monkeypatch.setattr("rpscli.sweep.evaluation.batch.demands", fragile)
+    rows = run_batch(StudyContext(design.plan), points)
     assert [row.outcome == "failed" for row in rows] == [False, True, False]
     assert rows[1].message == "FloatingPointError: boom"
 
@@ -82,11 +84,11 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
 def test_modal_points_have_the_modes(study_of: Make) -> None:
     begin = STUDY.index("records:")
     design = lay_out(study_of(STUDY[:begin] + "analysis: modal\n"))
-    bench = Bench(design.plan)
-    rows = run_batch(bench, list(design))
+    context = StudyContext(design.plan)
+    rows = run_batch(context, list(design))
     flat, curved = rows[2].results, rows[0].results
     assert flat["rolling"] is None
-    modes = modal(bench.systems[design[0]].structure)
+    modes = modal(context.systems[design[0]].structure)
     assert modes.rolling is not None
     found = value_at(curved, "rolling.frequency_ratio.0")
     assert found == modes.rolling.frequency_ratio[0]
@@ -97,9 +99,9 @@ def test_modal_points_have_the_modes(study_of: Make) -> None:
 def test_pushover_points_have_the_curve(study_of: Make) -> None:
     begin = STUDY.index("records:")
     design = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
-    bench = Bench(design.plan)
-    row = run_batch(bench, [design[0]])[0]
-    expected = pushover(bench.systems[design[0]].structure)
+    context = StudyContext(design.plan)
+    row = run_batch(context, [design[0]])[0]
+    expected = pushover(context.systems[design[0]].structure)
     assert row.outcome == "done"
     assert row.results["uplift_force"] == expected.uplift_force
     assert row.results["curve"]["force"] == expected.curve.force.tolist()

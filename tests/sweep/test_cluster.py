@@ -12,18 +12,18 @@ from typing import Any
 import pytest
 
 from rpscli.errors import RpsError, UsageError
-from rpscli.sweep.batch import Bench
-from rpscli.sweep.cluster import Cluster, compute
-from rpscli.sweep.design import lay_out
-from rpscli.sweep.engine import Engine
-from rpscli.sweep.keys import all_keys
-from rpscli.sweep.points import Plan, Point
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.evaluation.points import Plan, Point
 from rpscli.sweep.points_csv import points_csv
-from rpscli.sweep.resume import resume
-from rpscli.sweep.runner import Progress, run
+from rpscli.sweep.run.cluster import Cluster, compute
+from rpscli.sweep.run.engine import Engine
+from rpscli.sweep.run.keys import all_keys
+from rpscli.sweep.run.resume import resume
+from rpscli.sweep.run.runner import Progress, run
+from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import tabulate
-from rpscli.sweep.threads import Threads
 from sweep.small_studies import STUDY, Make
 
 distributed = pytest.importorskip("distributed")
@@ -44,8 +44,8 @@ def scheduler() -> Iterator[str]:
 
 def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, scheduler: str) -> None:
     design = lay_out(study_of(STUDY, RECORDS))
-    bench = Bench(design.plan)
-    keys = all_keys(design, bench)
+    context = StudyContext(design.plan)
+    keys = all_keys(design, context)
     engine = Cluster(scheduler, design.plan)
     workers = list(engine._client.run(os.getpid).values())
     killed: list[int] = []
@@ -56,7 +56,7 @@ def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, schedu
             killed.append(workers[0])
 
     texts = []
-    engines: list[tuple[str, Engine]] = [("cluster", engine), ("threads", Threads(bench, 1))]
+    engines: list[tuple[str, Engine]] = [("cluster", engine), ("threads", Threads(context, 1))]
     for name, made in engines:
         with Store(workplace / name) as store:
             begin = resume(design, keys, store, retry_failed=False)
@@ -99,6 +99,6 @@ def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make, sched
 
 
 def test_no_scheduler_is_told(study_of: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rpscli.sweep.cluster.PATIENCE", 0.3)
+    monkeypatch.setattr("rpscli.sweep.run.cluster.PATIENCE", 0.3)
     with pytest.raises(UsageError, match="no Dask scheduler"):
         Cluster("tcp://127.0.0.1:9", lay_out(study_of()).plan)

@@ -8,16 +8,16 @@ import math
 import numpy as np
 import pytest
 
-from rpscli.case.study_schema import PerturbSection, RangeSection, SampleSection
-from rpscli.records.intensity import intensity_measures
+from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
+from rpscli.records.measures.intensity import intensity_measures
+from rpscli.records.measures.spectrum import spectral_acceleration
 from rpscli.records.source import load_record
-from rpscli.records.spectrum import spectral_acceleration
-from rpscli.sweep.batch import Bench
-from rpscli.sweep.design import lay_out
-from rpscli.sweep.keys import all_keys
-from rpscli.sweep.perturbation import changes
-from rpscli.sweep.sampling import balance_note, sample
-from rpscli.sweep.schedule import LARGEST_BATCH, batches
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.design.perturbation import changes
+from rpscli.sweep.design.sampling import balance_note, sample
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.run.keys import all_keys
+from rpscli.sweep.run.schedule import LARGEST_BATCH, batches
 from sweep.small_studies import STUDY, Make
 
 MEASURE = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.6]}")
@@ -90,10 +90,10 @@ def test_uneven_sobol_sizes_are_remarked_on() -> None:
 
 def test_records_are_scaled_to_a_measure(study_of: Make) -> None:
     design = lay_out(study_of(STUDY, MEASURE))
-    bench = Bench(design.plan)
+    context = StudyContext(design.plan)
     for point in (design[0], design[9]):
         assert point.record is not None
-        motion = load_record(point.record.source).scaled(bench.factor(point))
+        motion = load_record(point.record.source).scaled(context.factor(point))
         assert intensity_measures(motion).pgv == pytest.approx(point.scale, rel=1e-12)
 
 
@@ -102,7 +102,7 @@ def test_arias_intensity_grows_with_the_square(study_of: Make) -> None:
     design = lay_out(study_of(STUDY, arias))
     point = design[1]
     assert point.record is not None
-    motion = load_record(point.record.source).scaled(Bench(design.plan).factor(point))
+    motion = load_record(point.record.source).scaled(StudyContext(design.plan).factor(point))
     assert intensity_measures(motion).arias == pytest.approx(0.6, rel=1e-12)
 
 
@@ -113,13 +113,13 @@ def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
         "  - superstructure.period: [0.3, 0.6]\n  - podium.bearing.curv",
     )
     design = lay_out(study_of(STUDY, sa, vary))
-    bench = Bench(design.plan)
+    context = StudyContext(design.plan)
     periods = set()
     for system in range(4):
         point = design[system * 3 * design.points_of_system]
         assert point.record is not None
         assert point.period == pytest.approx(point.values[2], rel=1e-12)
-        motion = load_record(point.record.source).scaled(bench.factor(point))
+        motion = load_record(point.record.source).scaled(context.factor(point))
         # The measure is linear in the motion.
         found = spectral_acceleration(motion, float(point.values[2]), 0.05)
         assert found == pytest.approx(2.0, rel=1e-9)
@@ -144,11 +144,11 @@ def test_the_record_of_the_case_serves_where_the_study_has_none(study_of: Make) 
 def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) -> None:
     whole = lay_out(study_of())
     turned = lay_out(study_of(STUDY, ("critical, 0.5, 0", "0, critical"), ("0.5, 1.0", "1.0")))
-    first, second = (all_keys(design, Bench(design.plan)) for design in (whole, turned))
+    first, second = (all_keys(design, StudyContext(design.plan)) for design in (whole, turned))
     assert len(set(first)) == len(first)
     assert set(second) < set(first)
     titled = lay_out(study_of(STUDY, ("Test", "Other")))
-    assert all_keys(titled, Bench(titled.plan)) == first
+    assert all_keys(titled, StudyContext(titled.plan)) == first
 
 
 def test_batches_hold_every_point_once_and_one_size_of_building(study_of: Make) -> None:

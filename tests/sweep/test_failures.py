@@ -12,14 +12,13 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from rpscli.case.study import load_study
 from rpscli.cli import program
-from rpscli.records.at2_writer import at2_text
+from rpscli.records.formats.at2_writer import at2_text
 from rpscli.records.source import load_record
-from rpscli.sweep.batch import Bench, run_batch
-from rpscli.sweep.described import reproduction
-from rpscli.sweep.design import lay_out
-from sweep.small_studies import BASE, STUDY
+from rpscli.sweep.design.described import reproduction
+from rpscli.sweep.evaluation.batch import run_batch
+from rpscli.sweep.evaluation.context import StudyContext
+from sweep.small_studies import BASE, STUDY, study_file
 
 Document = Callable[..., dict[str, Any]]
 
@@ -47,10 +46,11 @@ def test_the_rest_goes_on(spoilt: Path, sweep_json: Document) -> None:
     assert document["points"]["failed"] == 12
     assert document["outcomes"]["failed"] == 12
     points = rows(spoilt, "points.csv")
-    assert {p["outcome"] == "failed" for p in points if p["record"] == "bad.at2"} == {True}
-    assert {p["outcome"] == "failed" for p in points if p["record"] == "good.at2"} == {False}
-    failed = [p for p in points if p["outcome"] == "failed"]
-    assert all(p["max_rotation"] == "" and p["scale"] in {"0.5", "1.0"} for p in failed)
+    failed = [p for p in points if p["outcome [-]"] == "failed"]
+    assert {p["record [-]"] for p in failed} == {"bad.at2"}
+    assert {p["record [-]"] for p in points if p not in failed} == {"good.at2"}
+    assert all(p["max_rotation [rad]"] == "" for p in failed)
+    assert {p["scale [-]"] for p in failed} == {"0.5", "1.0"}
     shares = rows(spoilt, "overturning.csv")
     assert {(row["counted [-]"], row["failed [-]"]) for row in shares} == {("6", "6")}
 
@@ -68,12 +68,11 @@ def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json:
 
 
 def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path, sweep_json: Document) -> None:
-    study = load_study("study.yaml", ("perturb={members: 3}", "podium.cap_beam_mass_ratio=8"))
-    design = lay_out(study)
-    bench = Bench(design.plan)
+    design = study_file("study.yaml", "perturb={members: 3}", "podium.cap_beam_mass_ratio=8").design
+    context = StudyContext(design.plan)
     point = design[2]
-    row = run_batch(bench, [point])[0]
-    words = shlex.split(reproduction(design, bench, point, Path("base.yaml")))
+    row = run_batch(context, [point])[0]
+    words = shlex.split(reproduction(design, context, point, Path("base.yaml")))
     single = CliRunner().invoke(program, [*words[1:], "--json"])
     found = json.loads(single.stdout)
     assert found["max_rotation"] == pytest.approx(row.results["max_rotation"], rel=1e-6)

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from rpscli.case.study_reports import FragilityOptions, LimitStates, SpectrumOptions
 from rpscli.errors import CaseError
-from rpscli.sweep.batch import Bench
-from rpscli.sweep.design import lay_out
-from rpscli.sweep.intensities import intensity
-from rpscli.sweep.lognormal import Lognormal, lognormal_fit
-from rpscli.sweep.probit import probit_fit, separated
-from rpscli.sweep.statistics_fragility import fragility_report
-from rpscli.sweep.statistics_spectrum import pulse_period, spectrum_report
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
+from rpscli.sweep.fits.probit import probit_fit, separated
+from rpscli.sweep.reports.fragility import FragilityOptions, LimitStates, fragility_report
+from rpscli.sweep.reports.intensities import intensity
+from rpscli.sweep.reports.overturning_spectrum import SpectrumOptions, pulse_period, spectrum_report
 from rpscli.sweep.store import Stored
 from rpscli.sweep.table import tabulate
 from sweep.small_studies import STUDY, Make
@@ -35,9 +34,17 @@ def drawn(count: int, seed: int = 0) -> tuple[Array, Flags]:
     return im, im > capacity
 
 
-def fit(im: Array, y: Flags, weight: float = 1.0, **options: object) -> Lognormal:
-    cluster = np.arange(len(im))
-    return lognormal_fit(im, y, cluster, weight, np.array([0.8]), FragilityOptions(**options))
+def fit(
+    im: Array,
+    y: Flags,
+    weight: float = 1.0,
+    *,
+    resamples: int = 200,
+    confidence: float = 0.9,
+    seed: int = 1,
+) -> Lognormal:
+    bootstrap = Bootstrap(resamples, confidence, seed)
+    return lognormal_fit(im, y, np.arange(len(im)), weight, np.array([0.8]), bootstrap)
 
 
 @pytest.mark.parametrize(("count", "seed"), [(40, 1), (400, 2), (4000, 3)])
@@ -145,6 +152,32 @@ def test_hopeless_data_get_no_curve_but_a_reason(flags: list[int], note: str) ->
     assert math.isnan(found.median)
 
 
+def test_a_fit_that_does_not_converge_is_no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    im, y = drawn(40)
+    assert fit(im, y, resamples=0).method == "maximum likelihood"
+    monkeypatch.setattr("rpscli.sweep.fits.probit.MOST_STEPS", 2)
+    found = fit(im, y, resamples=0)
+    assert found.method == "none"
+    assert found.note is not None
+    assert "did not converge" in found.note
+    assert np.isnan([found.median, found.beta, *found.curve]).all()
+
+
+def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
+    # A quarter of all samples has the second record twice, and thus one intensity alone.
+    im, y = np.array([0.5, 1.0, 1.5, 2.0]), np.array([False, True, False, True])
+    cluster = np.array([0, 0, 0, 1])
+    found = lognormal_fit(im, y, cluster, 1.0, np.array([0.8]), Bootstrap(60, 0.9, 1))
+    assert found.note is not None
+    lost = int(found.note.split()[0])
+    # Binomial with p = 1/4 and 60 trials: outside of these has a chance below 0.1 %.
+    assert 4 <= lost <= 27
+    assert found.note == f"{lost} of 60 bootstrap samples have no fit"
+    # Their slopes would be anything up to 1e275.
+    assert np.abs(np.log(found.beta_band)).max() < 50.0
+    assert 0.0 <= found.band[0][0] <= found.band[1][0] <= 1.0
+
+
 def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Make) -> None:
     measured = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}")
     design = lay_out(study_of(STUDY, measured))
@@ -162,7 +195,7 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     options = FragilityOptions(
         limits=LimitStates(rotation_ratio=(0.5,), drift_ratio=(0.01,)), series=(), resamples=0
     )
-    report = fragility_report(table, intensity(table, Bench(design.plan), options), options)
+    report = fragility_report(table, intensity(table, StudyContext(design.plan), options), options)
     assert [curve.limit.label for curve in report.curves] == [
         "rotation_ratio > 0.5",
         "drift_ratio > 0.01",
@@ -179,15 +212,15 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
 
 def test_intensities_follow_records_and_scales(study_of: Make) -> None:
     design = lay_out(study_of())
-    bench = Bench(design.plan)
+    context = StudyContext(design.plan)
     rows = [Stored("survived", None, {"scale": point.scale}) for point in design]
     table = tabulate(design, rows)
-    pga = intensity(table, bench, FragilityOptions(measure="PGA"))
+    pga = intensity(table, context, FragilityOptions(measure="PGA"))
     assert pga.values[1] == pytest.approx(0.5 * 9.80665, rel=1e-9)
     assert pga.values[0] == pytest.approx(0.25 * 9.80665, rel=1e-9)
-    arias = intensity(table, bench, FragilityOptions(measure="Arias"))
+    arias = intensity(table, context, FragilityOptions(measure="Arias"))
     assert arias.values[0] == pytest.approx(0.25 * arias.values[1], rel=1e-12)
-    assert intensity(table, bench, FragilityOptions()).measure == "PGV"
+    assert intensity(table, context, FragilityOptions()).measure == "PGV"
 
 
 def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
@@ -201,9 +234,9 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
         Stored("overturned_rocking" if p.scale > 0.3 else "survived", None, {"scale": p.scale})
         for p in design
     ]
-    report = spectrum_report(tabulate(design, rows), Bench(design.plan), SpectrumOptions())
-    panel, facts = report.panels[0], design.facts[0]
-    p = facts.frequency_parameter
+    report = spectrum_report(tabulate(design, rows), StudyContext(design.plan), SpectrumOptions())
+    panel, properties = report.panels[0], design.properties[0]
+    p = properties.frequency_parameter
     assert panel.frequency_ratio[:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
     # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
     assert panel.amplitude_ratio[:2] == pytest.approx([0.2 / 0.10, 0.4 / 0.10], rel=1e-9)

@@ -6,89 +6,81 @@ import json
 import os
 import signal
 import subprocess
-import time
-from collections.abc import Callable, Iterator
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
 from click.testing import Result
 
-from rpscli.sweep.batch import Bench
-from rpscli.sweep.design import lay_out
-from rpscli.sweep.keys import all_keys
-from rpscli.sweep.resume import resume
-from rpscli.sweep.runner import Progress, run
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.evaluation.batch import Row, run_batch
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.run.keys import all_keys
+from rpscli.sweep.run.resume import resume
+from rpscli.sweep.run.runner import Progress, run
+from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.store import Store
-from rpscli.sweep.threads import Threads
-from sweep.small_studies import STUDY, Make, start
+from sweep.small_studies import ROOT, STUDY, Make
 
-MORE_RECORDS = ("seed: [1, 2, 3]", "seed: {low: 1, high: 180, count: 180}")
-"""2160 points: enough to be interrupted in the middle."""
+POINTS = 36
+"""Of the study; one thread computes them in batches of nine."""
 
 CSV = "results/study/sweep/points.csv"
-STORE = "results/study/sweep/study.sqlite"
 
 
-@pytest.fixture
-def long_study(workplace: Path) -> Path:
-    (workplace / "study.yaml").write_text(STUDY.replace(*MORE_RECORDS))
-    return workplace
+def ended(*arguments: str, folder: Path, program: str = "-mrpscli") -> tuple[int, str, str]:
+    """Exit code, output and errors of a process."""
+    done = subprocess.run(
+        [sys.executable, program, *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    return done.returncode, done.stdout, done.stderr
 
 
-def begun(process: subprocess.Popen[str], store: Path) -> None:
-    """Wait until some batches of points are stored: the last that is seen may be half written."""
-    sizes = set()
-    for _ in range(36_000):
-        if store.exists():
-            sizes.add(store.stat().st_size)
-        if process.poll() is not None or sum(size > 200_000 for size in sizes) > 1:
-            return
-        time.sleep(0.005)
+def interrupted(number: signal.Signals, folder: Path) -> tuple[int, str, str]:
+    """A run of the study that gets a signal at its third batch."""
+    program = str(Path(__file__).with_name("interrupted.py"))
+    study = ("sweep", "study.yaml", "--jobs", "1", "--json")
+    return ended(number.name, *study, folder=folder, program=program)
 
 
 def finished(folder: Path) -> dict[str, int]:
     """Run the study to its end; what it had to do."""
-    process = start("sweep", "study.yaml", "--json", folder=folder)
-    out, err = process.communicate(timeout=120)
-    assert process.returncode == 0, err
+    code, out, err = ended("sweep", "study.yaml", "--json", folder=folder)
+    assert code == 0, err
     points: dict[str, int] = json.loads(out)["points"]
     return points
 
 
-def undisturbed(folder: Path) -> bytes:
-    """`points.csv` of a run in one go, with one thread."""
-    process = start("sweep", "study.yaml", "--jobs", "1", "-o", "calm", folder=folder)
-    process.communicate(timeout=120)
-    assert process.returncode == 0
-    return (folder / "calm/points.csv").read_bytes()
+def test_kill_9_and_resume_end_in_the_same_bytes(workplace: Path) -> None:
+    code, _, _ = interrupted(signal.SIGKILL, workplace)
+    assert code == -signal.SIGKILL
+    points = finished(workplace)
+    assert (points["kept"], points["computed"]) == (18, 18)
+    code, _, err = ended("sweep", "study.yaml", "--jobs", "1", "-o", "calm", folder=workplace)
+    assert code == 0, err
+    assert (workplace / CSV).read_bytes() == (workplace / "calm/points.csv").read_bytes()
 
 
-def test_kill_9_and_resume_end_in_the_same_bytes(long_study: Path) -> None:
-    process = start("sweep", "study.yaml", "--jobs", "1", folder=long_study)
-    begun(process, long_study / STORE)
-    process.kill()
-    process.communicate()
-    assert process.returncode == -signal.SIGKILL
-    points = finished(long_study)
-    assert 0 < points["kept"] < 2160
-    assert points["kept"] + points["computed"] == 2160
-    assert (long_study / CSV).read_bytes() == undisturbed(long_study)
-
-
-def test_the_first_ctrl_c_drains_and_says_how_to_go_on(long_study: Path) -> None:
-    process = start("sweep", "study.yaml", "--jobs", "1", "--json", folder=long_study)
-    begun(process, long_study / STORE)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
+    code, out, err = interrupted(signal.SIGINT, workplace)
+    assert code == 130
     assert "Ctrl-C again" in err
     assert "the same command goes on" in err
     document = json.loads(out)
     assert document["error"]["type"] == "Interrupted"
-    stored = document["points"]["stored"]
-    assert 0 < stored < 2160
-    assert not (long_study / CSV).exists()
-    assert finished(long_study)["kept"] == stored
+    # The batch under way was finished and stored.
+    assert document["points"] == {"total": POINTS, "stored": 27}
+    assert not (workplace / CSV).exists()
+    assert finished(workplace)["kept"] == 27
 
 
 def test_one_thread_or_two_give_the_same_bytes(
@@ -99,34 +91,44 @@ def test_one_thread_or_two_give_the_same_bytes(
     assert (workplace / "1/points.csv").read_bytes() == (workplace / "2/points.csv").read_bytes()
 
 
-def test_the_second_ctrl_c_stops_at_once(study_of: Make, workplace: Path) -> None:
-    design = lay_out(study_of(STUDY, MORE_RECORDS))
-    bench = Bench(design.plan)
-    keys = all_keys(design, bench)
+def test_the_second_ctrl_c_stops_at_once(
+    study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    design = lay_out(study_of())
+    context = StudyContext(design.plan)
+    keys = all_keys(design, context)
     told: list[str] = []
+    over = threading.Event()
+
+    def one_batch(context: StudyContext, points: Sequence[Point]) -> list[Row]:
+        if points[0].number:
+            over.wait()
+        return run_batch(context, points)
 
     def interrupt(progress: Progress) -> None:
-        if not told:
-            os.kill(os.getpid(), signal.SIGINT)
-            told.append("first")
-            os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), signal.SIGINT)
+        told.append("first")
+        os.kill(os.getpid(), signal.SIGINT)
 
+    monkeypatch.setattr("rpscli.sweep.run.threads.run_batch", one_batch)
     before = signal.getsignal(signal.SIGINT)
     with Store(workplace) as store:
         begin = resume(design, keys, store, retry_failed=False)
         with pytest.raises(KeyboardInterrupt):
-            run(design, begin, store, Threads(bench, 1), interrupt)
-        assert 0 < len(store.outcomes()) < 2160
+            run(design, begin, store, Threads(context, 1), interrupt)
+        assert told == ["first"]
+        assert len(store.outcomes()) == 9  # the second batch is still under way
+    over.set()
     assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:
     design = lay_out(study_of())
-    bench = Bench(design.plan)
+    context = StudyContext(design.plan)
     seen: list[Progress] = []
     with Store(workplace) as store:
-        begin = resume(design, all_keys(design, bench), store, retry_failed=False)
-        finish = run(design, begin, store, Threads(bench, 2), seen.append)
+        begin = resume(design, all_keys(design, context), store, retry_failed=False)
+        finish = run(design, begin, store, Threads(context, 2), seen.append)
     assert (finish.computed, finish.interrupted) == (36, False)
     assert [p.done for p in seen] == sorted(p.done for p in seen)
     assert seen[-1].done == seen[-1].total == 36
@@ -135,11 +137,11 @@ def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:
 
 def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None:
     design = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0, 1.0]")))
-    bench = Bench(design.plan)
+    context = StudyContext(design.plan)
     with Store(workplace) as store:
-        begin = resume(design, all_keys(design, bench), store, retry_failed=False)
+        begin = resume(design, all_keys(design, context), store, retry_failed=False)
         assert len(begin.pending) == 18
-        run(design, begin, store, Threads(bench, 1))
+        run(design, begin, store, Threads(context, 1))
         rows = list(store.stored(begin.keys))
     assert len(rows) == 36
     assert rows[0] == rows[1]
@@ -152,6 +154,6 @@ def test_an_error_of_the_engine_is_not_swallowed(study_of: Make, workplace: Path
     def broken() -> Iterator[list[object]]:
         yield [object()]
 
-    engine = Threads(Bench(design.plan), 2)
+    engine = Threads(StudyContext(design.plan), 2)
     with pytest.raises(AttributeError):
         list(engine.outcomes(broken()))  # type: ignore[arg-type]

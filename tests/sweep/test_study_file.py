@@ -6,13 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from rpscli.case.json_schema import json_schema_of
-from rpscli.case.study import load_study
-from rpscli.case.study_reports import REPORTS
-from rpscli.case.study_schema import MeasureScale, StudyFile
+from rpscli.case.schema.json_schema import json_schema_of
+from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.errors import CaseError
-from rpscli.sweep.design import lay_out
-from sweep.small_studies import STUDY, Make
+from rpscli.report.study.registry import REPORTS
+from rpscli.sweep.design.layout import lay_out
+from sweep.small_studies import STUDY, Make, study_file
 
 SAMPLE = "sample: {size: 4, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\n"
 
@@ -129,11 +128,11 @@ def test_an_override_cannot_fix_what_varies(study_of: Make) -> None:
 
 def test_a_missing_file_is_named(workplace: Path) -> None:
     with pytest.raises(CaseError, match=r"did you mean study\.yaml"):
-        load_study("stduy.yaml")
+        study_file("stduy.yaml")
 
 
 def test_the_format_has_a_json_schema() -> None:
     keys = json_schema_of(StudyFile)["properties"]
     assert {"vary", "records", "scale", "sample", "perturb", "reports"} <= keys.keys()
-    for options in REPORTS.values():
-        assert json_schema_of(options)["additionalProperties"] is False
+    for report in REPORTS.values():
+        assert json_schema_of(report.options)["additionalProperties"] is False

@@ -13,11 +13,9 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
-from rpscli.case.study import load_study
 from rpscli.cli import program
-from rpscli.sweep.design import lay_out
-from rpscli.sweep.results import SCALARS
-from sweep.small_studies import BASE, ROOT, STUDY
+from rpscli.sweep.evaluation.results import SCALARS
+from sweep.small_studies import BASE, ROOT, STUDY, study_file
 
 Document = Callable[..., dict[str, Any]]
 
@@ -37,7 +35,7 @@ reports:
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
 def test_shipped_studies_are_valid_and_small(path: Path) -> None:
-    design = lay_out(load_study(path))
+    design = study_file(path).design
     assert 1 < len(design) <= 400
     assert design.study.reports
 
@@ -52,11 +50,11 @@ def test_parametric_studies_run_with_their_figures(
     assert result.exit_code == 0, result.stderr
     folder = tmp_path / "results" / name / "sweep"
     drawn = sorted(file.name for file in folder.glob("*.png"))
-    assert drawn == sorted(f"{request.stem}.png" for request in load_study(path).reports)
+    assert drawn == sorted(f"{request.stem}.png" for request in study_file(path).study.reports)
     assert all((folder / f).read_bytes().startswith(b"\x89PNG") for f in drawn)
     with (folder / "points.csv").open(newline="") as file:
         header = next(csv.reader(file))
-    assert header[-len(SCALARS["modal" if "modal" in name else "pushover"]) - 1] == "outcome"
+    assert header[-len(SCALARS["modal" if "modal" in name else "pushover"]) - 1] == "outcome [-]"
 
 
 def test_every_report_leaves_a_table_and_a_figure(workplace: Path) -> None:
@@ -80,23 +78,22 @@ def test_points_csv_has_the_published_columns(
     with (workplace / "results/study/sweep/points.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == [
-        "podium.bearing.slenderness",
-        "podium.bearing.wedge_slenderness",
-        "podium.bearing.curvature_ratio",
-        "record",
-        "scale",
-        "outcome",
-        *SCALARS["timehistory"],
+        "podium.bearing.slenderness [-]",
+        "podium.bearing.wedge_slenderness [-]",
+        "podium.bearing.curvature_ratio [-]",
+        "record [-]",
+        "scale [-]",
+        "outcome [-]",
+        *(f"{name} [{quantity.unit}]" for name, quantity in SCALARS["timehistory"].items()),
     ]
+    assert {"max_rotation [rad]", "max_rotation_time [s]", "pga [m/s2]"} < set(rows[0])
     assert len(rows) == 36
     first = rows[0]
-    assert (first["podium.bearing.slenderness"], first["podium.bearing.curvature_ratio"]) == (
-        "0.1",
-        "critical",
-    )
-    assert first["uplifts"].isdecimal()
+    assert first["podium.bearing.slenderness [-]"] == "0.1"
+    assert first["podium.bearing.curvature_ratio [-]"] == "critical"
+    assert first["uplifts [-]"].isdecimal()
     # Every digit is there: text and number are one another's.
-    assert repr(float(first["max_rotation"])) == first["max_rotation"]
+    assert repr(float(first["max_rotation [rad]"])) == first["max_rotation [rad]"]
 
 
 def test_a_measure_and_an_ensemble_have_columns_of_their_own(
@@ -110,10 +107,11 @@ def test_a_measure_and_an_ensemble_have_columns_of_their_own(
     with (workplace / "results/study/sweep/points.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0])[3:9] == [
-        "member", "restitution_change", "PGV", "record", "scale", "outcome",
+        "member [-]", "restitution_change [-]", "PGV [m/s]", "record [-]", "scale [-]",
+        "outcome [-]",
     ]  # fmt: skip
-    assert float(rows[0]["pgv"]) == pytest.approx(0.3, rel=1e-12)
-    assert float(rows[1]["pgv"]) == pytest.approx(0.3, rel=0.0101)
+    assert float(rows[0]["pgv [m/s]"]) == pytest.approx(0.3, rel=1e-12)
+    assert float(rows[1]["pgv [m/s]"]) == pytest.approx(0.3, rel=0.0101)
 
 
 def test_a_dry_run_shows_the_points_and_writes_nothing(

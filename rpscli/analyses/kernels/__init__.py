@@ -1,0 +1,1 @@
+"""Structures and records in, histories out: what the analyses hand to the compiled kernels."""

@@ -1,0 +1,195 @@
+"""Running the kernel: histories of structures under records."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.kernels.compilation import compiled
+from rpscli.analyses.kernels.systems import stacked_systems
+from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.model.podium import PodiumStructure
+from rpscli.physics.run import Output, Run, empty_block
+from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, Record, records
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
+
+FIRST_LOG = 4096
+"""Rows of the event log at the first attempt; a longer history is run once more."""
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """What one history leaves behind besides samples and log, SI units.
+
+    `outcome`, `motion` and the entries of `counts` are coded in `physics.state`. `friction` is the
+    largest |F|/N and `least_normal` the least normal force over the weight on it, each at the upper
+    and at the lower end of the columns.
+    `motion`, `rotation` and `time` are those of the end, after `intervals` of the record's steps.
+    Times that never came are negative. `energies` are input, damped, lost at impacts, and stored at
+    the end; the energy created at impacts counts negatively in what was lost. Input and damped are
+    known of sampled histories only.
+    """
+
+    outcome: int
+    motion: int
+    rotation: float
+    time: float
+    intervals: int
+    max_rotation: float
+    max_rotation_time: float
+    critical_time: float
+    storey_shears: NDArray[np.float64]
+    floor_accelerations: NDArray[np.float64]
+    friction: NDArray[np.float64]
+    least_normal: NDArray[np.float64]
+    energies: NDArray[np.float64]
+    energy_created: float
+    creating_impacts: int
+    counts: NDArray[np.int64]
+    steps: int
+
+
+def history_of(result: Record, storeys: int) -> History:
+    """The history of one `state.RESULT`."""
+    return History(
+        outcome=int(result.outcome),
+        motion=int(result.phase),
+        rotation=float(result.rotation),
+        time=float(result.time),
+        intervals=int(result.intervals),
+        max_rotation=float(result.max_theta),
+        max_rotation_time=float(result.max_theta_time),
+        critical_time=float(result.critical_time),
+        storey_shears=result.storey_shear[:storeys].copy(),
+        floor_accelerations=result.floor_acceleration[:storeys].copy(),
+        friction=np.array([result.friction_top, result.friction_bottom]),
+        least_normal=np.array([result.normal_top, result.normal_bottom]),
+        energies=np.array(
+            [result.energy_input, result.energy_damped, result.energy_lost, result.energy_stored]
+        ),
+        energy_created=float(result.energy_created),
+        creating_impacts=int(result.creating_impacts),
+        counts=result.events.copy(),
+        steps=int(result.steps),
+    )
+
+
+@dataclass(frozen=True)
+class Request:
+    """A history to run: numbers of its structure and its records among all, and a factor."""
+
+    system: int
+    record: int
+    vertical: int | None = None
+    scale: float = 1.0
+
+
+def run_of(
+    systems: Record,
+    motions: Sequence[GroundMotion],
+    requests: Sequence[Request],
+    *,
+    rows: int = 0,
+    events: int = 0,
+) -> Run:
+    """What the kernel needs to run histories, and room for their results.
+
+    Parameters
+    ----------
+    systems
+        (S,) records, see `stacked_systems`.
+    motions
+        Records of the ground; those of the two components of a motion are equally long.
+    requests
+        The histories.
+    rows, events
+        Samples and events of the first history for which there is room.
+    """
+    n = int(systems.n[0])
+    starts = np.cumsum([0] + [motion.npts for motion in motions])
+    given = records(REQUEST, n, count=len(requests))
+    for row, request in zip(given, requests, strict=True):
+        motion, above = motions[request.record], request.vertical
+        row.system, row.record = request.system, starts[request.record]
+        row.vertical = NO_RECORD if above is None else starts[above]
+        row.npts, row.dt, row.scale = motion.npts, motion.dt, request.scale
+    return Run(
+        systems=systems,
+        requests=given,
+        acceleration=np.concatenate([motion.acceleration for motion in motions]),
+        results=records(RESULT, n, count=len(requests)),
+        output=Output(
+            samples=records(SAMPLE, n, count=rows),
+            floors=np.empty((rows, 2, n)),
+            log=records(EVENT, n, count=events),
+        ),
+        block=empty_block(n),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SampledHistory:
+    """A history with its samples and events, records of `physics.state`.
+
+    `ground` is the horizontal acceleration, as long as the longer component [m/s2]; `samples`
+    (intervals + 1,), `floors` (intervals + 1, 2, n) displacements and velocities [m, m/s] relative
+    to the ground, `log` (events,).
+    """
+
+    history: History
+    ground: NDArray[np.float64]
+    samples: Record
+    floors: NDArray[np.float64]
+    log: Record
+
+
+def sampled_history(
+    structure: PodiumStructure,
+    record: GroundMotion,
+    vertical: GroundMotion | None,
+    settings: TimeHistorySettings,
+) -> SampledHistory:
+    """Run one history and keep everything.
+
+    Parameters
+    ----------
+    structure, settings
+        What is followed, and how.
+    record, vertical
+        Components of the ground acceleration, with the same time step.
+
+    Raises
+    ------
+    RecordError
+        If the time steps differ.
+    """
+    # Imported here: compiling or loading kernels costs time that other commands need not pay.
+    from rpscli.physics.driver import integrate  # noqa: PLC0415
+
+    along, upwards = MotionComponents(record, vertical).of_one_length
+    motions = [along] if upwards is None else [along, upwards]
+    request = Request(0, 0, None if upwards is None else 1)
+    systems = stacked_systems([(structure, settings)])
+    free = settings.free_vibration
+    longest = LONGEST_FREE_VIBRATION if free is None else free
+    rows = along.npts + int(np.ceil(longest / record.dt)) + 1
+    events = FIRST_LOG
+    while True:
+        run = run_of(systems, motions, [request], rows=rows, events=events)
+        with compiled(structure.storeys):
+            integrate(run, lanes=1)
+        history = history_of(run.results[0], structure.storeys)
+        if (seen := int(history.counts.sum())) <= events:
+            break
+        events = seen
+    kept, output = slice(history.intervals + 1), run.output
+    return SampledHistory(
+        history,
+        along.acceleration,
+        output.samples[kept].copy(),
+        output.floors[kept].copy(),
+        output.log[:seen],
+    )

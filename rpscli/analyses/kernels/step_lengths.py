@@ -1,0 +1,65 @@
+"""How long a step may be: bounds on the frequencies and decay rates of a structure."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from rpscli.model.podium import PodiumStructure
+
+UPLIFTED_ANGLE = 0.6
+"""Largest Taylor step times the highest uplifted frequency [rad], at accuracy 1."""
+
+UPLIFTED_DECAY = 1.0
+"""Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
+are unstable beyond about 4. Only strongly overdamped modes come near."""
+
+LAST_TERM = 1e-6
+"""Largest last term of the series of a step, over its first three, at accuracy 1; what a series
+omits is smaller still. Steps made for the fastest mode hardly ever come near. Where the tilt itself
+changes faster, in large rotations of short columns or past theta_cr under floors that weigh
+hundreds of them, they are halved."""
+
+CONTACT_ANGLE = 1.0
+"""The same for the exact steps in full contact, where it guards the search of uplift: the quintic
+between two instants errs by (w h)^6/46080 of a mode's push."""
+
+
+def uplifted_rate(structure: PodiumStructure) -> float:
+    """Taylor steps a second that follow the uplifted structure at accuracy 1 [1/s]."""
+    by_angle = highest_frequency(structure) / UPLIFTED_ANGLE
+    return max(by_angle, fastest_decay(structure) / UPLIFTED_DECAY)
+
+
+def contact_rate(structure: PodiumStructure) -> float:
+    """Steps a second in full contact [1/s]."""
+    return highest_frequency(structure) / CONTACT_ANGLE
+
+
+def highest_frequency(structure: PodiumStructure) -> float:
+    """A bound on the frequencies of the uplifted structure [rad/s].
+
+    Freeing the cap beam, whose inertia is at least N m_c Io/4 + m_b, adds at most the first storey
+    spring over that mass (Theory, section 6; Weyl's inequality).
+    """
+    square = (structure.gravity / structure.bearing.semi_diagonal) * (
+        1.0 + abs(2.0 * structure.bearing.curvature_ratio - 1.0)
+    )
+    if (building := structure.superstructure) is not None:
+        base = building.stiffnesses[0] / least_base_mass(structure)
+        square += float(building.frequencies[-1] ** 2 + base)
+    return math.sqrt(square)
+
+
+def fastest_decay(structure: PodiumStructure) -> float:
+    """A bound on the decay rates of the uplifted structure [1/s], by the same inequality for C."""
+    if (building := structure.superstructure) is None:
+        return 0.0
+    fixed = np.max(2.0 * building.damping_ratios * building.frequencies)
+    return float(fixed + building.damping_matrix.sum() / least_base_mass(structure))
+
+
+def least_base_mass(structure: PodiumStructure) -> float:
+    """Inertia against u_b at theta = 0 without the floors: columns and cap beam [kg]."""
+    return 0.25 * structure.columns_mass * structure.bearing.inertia_ratio + structure.cap_beam_mass

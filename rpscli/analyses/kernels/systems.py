@@ -1,0 +1,109 @@
+"""Structures and settings as the kernels read them: records of `rpscli.physics.state.SYSTEM`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rpscli.analyses.kernels.step_lengths import LAST_TERM, contact_rate, uplifted_rate
+from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
+from rpscli.physics.state import ORDER, SYSTEM, Record, records
+
+LEAST_SHAKEN = 1e-3
+"""Modes that hardly take part are not given more weight than those that take part so much."""
+
+
+def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
+    """Structures with the same number of storeys, each with its settings: (S,) records."""
+    stacked = records(SYSTEM, systems[0][0].storeys, count=len(systems))
+    for record, (structure, settings) in zip(stacked, systems, strict=True):
+        fill_podium(record, structure)
+        fill_settings(record, structure, settings)
+        if structure.superstructure is not None:
+            fill_building(record, structure.superstructure)
+    return stacked
+
+
+def building_system(building: Superstructure) -> Record:
+    """A building alone, (1,): what full contact on a fixed base reads."""
+    system = records(SYSTEM, building.storeys)
+    fill_building(system[0], building)
+    return system
+
+
+def fill_podium(record: Record, structure: PodiumStructure) -> None:
+    """The rocking storey."""
+    b = structure.bearing
+    record.n = structure.storeys
+    record.R, record.alpha, record.beta = b.semi_diagonal, b.alpha, b.beta
+    record.theta_cr = b.critical_rotation
+    record.rolling[:], record.rocking[:] = b.rolling, b.rocking
+    record.Io, record.gamma, record.eta = b.inertia_ratio, structure.gamma, structure.eta
+    record.columns_mass = structure.columns_mass
+    record.cap_beam_mass = structure.cap_beam_mass
+    record.floors_mass = structure.superstructure_mass
+    record.gravity = structure.gravity
+    record.restitution = structure.restitution
+    record.floors_jump = structure.impact_law.floors_jump
+
+
+def fill_settings(
+    record: Record, structure: PodiumStructure, settings: TimeHistorySettings
+) -> None:
+    """How the motion is followed.
+
+    Raises
+    ------
+    ValueError
+        If the structure would start beyond the overturning limit.
+    """
+    limit = settings.overturning_limit * structure.critical_rotation
+    if abs(settings.initial_rotation) >= limit:
+        raise ValueError(
+            f"initial_rotation = {settings.initial_rotation:.6g} rad must stay below the"
+            f" overturning limit {limit:.6g} rad"
+        )
+    free = settings.free_vibration
+    record.theta_limit = limit
+    record.uplifted_rate = settings.accuracy * uplifted_rate(structure)
+    record.contact_rate = contact_rate(structure)
+    record.last_term = LAST_TERM * settings.accuracy**-ORDER
+    record.recontact_tolerance = settings.recontact_tolerance
+    record.bounces = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
+    record.max_events = settings.max_events
+    record.initial_rotation = settings.initial_rotation
+    record.free_vibration = LONGEST_FREE_VIBRATION if free is None else free
+    record.until_rest = free is None
+
+
+def bounces_left_out(structure: PodiumStructure) -> float:
+    """What the impacts after re-contact would add to each floor's relative velocity, over u_b'.
+
+    Left to bounce for ever, the cap beam stops, and the floors keep their absolute velocity but
+    for the jumps of the impact law: 2/(1 + e) if they jump with the beam, 1 if they do not
+    (Theory, section 3).
+    """
+    return 2.0 / (1.0 + structure.restitution) if structure.impact_law.floors_jump else 1.0
+
+
+def fill_building(record: Record, building: Superstructure) -> None:
+    """The modes of the fixed base, mass-normalised, with the storey shears of each.
+
+    The weights of `physics.uplifted.demands` are best where what a mode adds to a demand is in
+    proportion to its weighted square; modal forces are as large as Gamma_r, if all modes shake
+    alike.
+    """
+    n = record.n = building.storeys
+    omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T
+    omega2, shaken = omega * omega, np.abs(building.participation)
+    weight = 1.0 / np.maximum(shaken, LEAST_SHAKEN * shaken.max())
+    shears = np.diff(shapes, prepend=0.0) * building.stiffnesses
+    record.omega[:n], record.xi[:n], record.Gamma[:n] = omega, xi, building.participation
+    record.omega2[:n], record.two_xi_omega[:n] = omega2, 2.0 * xi * omega
+    record.phi[:n, :n], record.storey_shear_of[:n, :n] = shapes, shears
+    record.shear_weight[:n], record.acceleration_weight[:n] = omega2 * omega2 * weight, weight
+    record.shear_bound_of[:n] = 1.0 / np.sum(shears.T**2 / record.shear_weight[:n], axis=1)
+    record.acceleration_bound_of[:n] = 1.0 / np.sum(shapes.T**2 / weight, axis=1)

@@ -1,0 +1,151 @@
+"""What a history asks of its structure at most: the results that need no samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.failure import failure_text
+from rpscli.analyses.kernels.history import History
+from rpscli.analyses.outcome import Outcome, outcome_of
+from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS, values_of
+from rpscli.model.podium import PodiumStructure
+from rpscli.physics import state
+
+
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """Largest demands of a history; SI units."""
+
+    structure: PodiumStructure
+    history: History
+
+    @property
+    def outcome(self) -> Outcome:
+        """How the history ended."""
+        return outcome_of(self.history)
+
+    @property
+    def failure(self) -> str | None:
+        """Why the history could not be carried to its end; None if it could."""
+        return failure_text(self.history)
+
+    @property
+    def overturned(self) -> bool:
+        """Whether the overturning limit was passed."""
+        return self.outcome.startswith("overturned")
+
+    @property
+    def max_rotation(self) -> float:
+        """Largest |theta|, turning points between samples included [rad]."""
+        return self.history.max_rotation
+
+    @property
+    def max_rotation_time(self) -> float | None:
+        """When |theta| was largest [s]; None if there was no rotation."""
+        return self.history.max_rotation_time if self.max_rotation > 0.0 else None
+
+    @property
+    def rotation_ratio(self) -> float:
+        """max |theta|/theta_cr."""
+        return self.max_rotation / self.critical_rotation
+
+    @property
+    def critical_rotation(self) -> float:
+        """theta_cr [rad]."""
+        return self.structure.critical_rotation
+
+    @property
+    def critical_passage_time(self) -> float | None:
+        """When |theta| passed theta_cr for the first time [s]; None if never."""
+        return self.history.critical_time if self.history.critical_time >= 0.0 else None
+
+    @property
+    def max_cap_beam_displacement(self) -> float:
+        """Largest |u_b| [m]; u_b grows with |theta|."""
+        _, u, _ = self.structure.path(np.array([self.max_rotation]))
+        return float(u[0])
+
+    @property
+    def storey_shears(self) -> NDArray[np.float64]:
+        """(n,) largest elastic shears k_i d_i at the samples [N], from the bottom."""
+        return self.history.storey_shears
+
+    @property
+    def floor_accelerations(self) -> NDArray[np.float64]:
+        """(n,) largest absolute accelerations at the samples [m/s2], from the bottom."""
+        return self.history.floor_accelerations
+
+    @property
+    def max_base_shear(self) -> float:
+        """Largest elastic shear of the first storey [N]; 0 without a superstructure."""
+        return float(self.storey_shears[0]) if len(self.storey_shears) else 0.0
+
+    @property
+    def base_shear_ratio(self) -> float | None:
+        """max_base_shear over V_st = M_tot g tan(alpha); None without a superstructure."""
+        static = self.structure.static_base_shear
+        return self.max_base_shear / static if static > 0.0 else None
+
+    @property
+    def max_drifts(self) -> NDArray[np.float64]:
+        """(n,) largest storey drifts [m]."""
+        building = self.structure.superstructure
+        return self.storey_shears / building.stiffnesses if building else self.storey_shears
+
+    @property
+    def drift_ratio(self) -> float | None:
+        """Largest drift over storey height; None where no heights are given."""
+        building = self.structure.superstructure
+        if building is None or building.storey_heights is None:
+            return None
+        return float(np.max(self.max_drifts / building.storey_heights))
+
+    @property
+    def friction_demand(self) -> float:
+        """Largest |F|/N at either end of the columns: the friction that no sliding needs."""
+        return float(max(self.history.friction))
+
+    @property
+    def uplifts(self) -> int:
+        """Number of uplifts from full contact."""
+        return int(self.history.counts[state.UPLIFT])
+
+    @property
+    def impacts(self) -> int:
+        """Number of impacts, those that end in re-contact included."""
+        return int(self.history.counts[state.IMPACT])
+
+    @property
+    def duration(self) -> float:
+        """Length of the history with its free vibration [s]."""
+        return self.history.time
+
+    @property
+    def energy_impact(self) -> float:
+        """Net energy lost at impacts and re-contacts [J]."""
+        return float(self.history.energies[2])
+
+    @property
+    def energy_created(self) -> float:
+        """Energy gained where the impact law sets floors in motion [J] (Theory, section 4)."""
+        return self.history.energy_created
+
+    @property
+    def creating_impacts(self) -> int:
+        """Number of impacts that gained energy."""
+        return self.history.creating_impacts
+
+    def scalars(self) -> dict[str, Any]:
+        """Outcome and scalar results, under their names in JSON and CSV.
+
+        A value that does not exist, or is infinite, is None.
+        """
+        return {"outcome": self.outcome, **values_of(self, HISTORY)}
+
+    def results(self) -> dict[str, Any]:
+        """What a study keeps of a history besides its outcome."""
+        return values_of(self, (*HISTORY, *IMPACTS, STOREY_SHEARS))

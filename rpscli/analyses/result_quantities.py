@@ -1,0 +1,190 @@
+"""The table of results: each quantity's name, unit, label and symbol, and what it is used for.
+
+A quantity has its value in the attribute of its name: those of histories in `Demand`, those of
+modes in `FixedBaseModes` and `UpliftedModes`, those of the static curves in `PushoverResult` and
+`StoreyCurve`. JSON documents, headers of CSV files, tables for the terminal, limits, reports and
+figures all read this table, which imports nothing, so that the schema of a case can.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+
+class ResultQuantity(NamedTuple):
+    """One quantity that an analysis finds.
+
+    Parameters
+    ----------
+    name
+        In the Python interface, JSON and CSV.
+    unit
+        SI unit; ``-`` for a plain number, nothing for one that needs no unit on an axis.
+    label
+        In words, for tables and figures.
+    symbol
+        The paper's letters as a formula for figures, where there are any.
+    limit
+        An example of a limit that `--fail-on` may set to it; empty where none makes sense.
+    demand
+        Whether it grows with the motion: an axis of an incremental dynamic analysis.
+    whole
+        Whether it is a count.
+    needs
+        What a structure must have to have it.
+    meaning
+        What a ratio is made of, for the schemas of limits.
+    """
+
+    name: str
+    unit: str
+    label: str
+    symbol: str = ""
+    limit: str = ""
+    demand: bool = False
+    whole: bool = False
+    needs: str = ""
+    meaning: str = ""
+
+    @property
+    def axis_label(self) -> str:
+        """Symbol or words, with the unit, for the axis of a figure.
+
+        >>> ResultQuantity("duration", "s", "duration").axis_label
+        'duration [s]'
+        """
+        words = self.symbol or self.label
+        return f"{words} [{self.unit}]" if self.unit else words
+
+
+def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:
+    """Values of quantities by name: numbers, lists of them, and None for what is not finite."""
+    return {quantity.name: plain(getattr(result, quantity.name)) for quantity in quantities}
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON knows it: arrays as lists, complex numbers as [re, im], NaN as null.
+
+    >>> plain({"a": (1.0, float("inf")), "z": 1 + 2j})
+    {'a': [1.0, None], 'z': [1.0, 2.0]}
+    """
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, complex):
+        return [plain(value.real), plain(value.imag)]
+    if isinstance(value, float):
+        return value + 0.0 if math.isfinite(value) else None  # no -0.0
+    return value
+
+
+HISTORY = (
+    ResultQuantity(
+        "max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1", demand=True
+    ),
+    ResultQuantity("max_rotation_time", "s", "largest rotation at"),
+    ResultQuantity(
+        "rotation_ratio", "-", "rotation ratio", r"$|\theta_{max}|/\theta_{cr}$", limit="0.5",
+        demand=True, meaning="largest rotation over critical rotation",
+    ),
+    ResultQuantity("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
+    ResultQuantity("critical_passage_time", "s", "first passage of the critical rotation"),
+    ResultQuantity(
+        "max_cap_beam_displacement", "m", "cap beam displacement", limit="0.3", demand=True
+    ),
+    ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6"),
+    ResultQuantity(
+        "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
+        needs="a superstructure", meaning="largest base shear over M_tot g tan(alpha)",
+    ),
+    ResultQuantity(
+        "drift_ratio", "-", "drift ratio", limit="0.005", demand=True,
+        needs="superstructure.storey_height in the case",
+        meaning="largest storey drift over storey height",
+    ),
+    ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
+    ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
+    ResultQuantity("duration", "s", "duration"),
+    ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3"),
+)  # fmt: skip
+"""Scalars of a time history."""
+
+IMPACTS = (
+    ResultQuantity("energy_impact", "J", "energy lost at impacts"),
+    ResultQuantity("energy_created", "J", "energy created at impacts"),
+    ResultQuantity("creating_impacts", "-", "impacts that created energy", whole=True),
+)
+"""What the impacts of a history did, in the table of a study."""
+
+INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s", "PGV"))
+"""Peaks of the scaled motion of a history, in the table of a study."""
+
+STOREY_SHEARS = ResultQuantity("storey_shears", "N", "storey shear", "$V_i$")
+
+LIMITED = tuple(quantity for quantity in HISTORY if quantity.limit)
+"""What `--fail-on` may limit."""
+
+DEMANDS = tuple(quantity for quantity in HISTORY if quantity.demand)
+"""What an incremental dynamic analysis may have on its axis."""
+
+RATIOS = tuple(quantity for quantity in DEMANDS if quantity.unit == "-")
+"""Demands over what the structure has to offer: what a case and a fragility set limits to."""
+
+_FREQUENCIES = ResultQuantity("frequencies", "rad/s", "frequency", r"$\omega$")
+_DAMPING = ResultQuantity("damping", "-", "damping", r"$\xi$")
+_SHAPES = ResultQuantity("shapes", "-", "mode shape")
+
+FIXED_BASE_MODES = (_FREQUENCIES, ResultQuantity("periods", "s", "period", "$T$"), _DAMPING)
+"""Lists by mode in full contact."""
+
+UPLIFTED_MODES = (_FREQUENCIES, _DAMPING)
+"""Lists by vibration mode of a linearised uplifted state."""
+
+UPLIFTED_RATIOS = (
+    ResultQuantity("frequency_ratio", "-", "frequency ratio", r"$\omega_u/\omega_0$"),
+    ResultQuantity("damping_ratio", "-", "damping ratio", r"$\xi_u/\xi_0$"),
+)
+"""The same lists over those of the fixed base."""
+
+FREQUENCY_PARAMETERS = (
+    ResultQuantity("frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$"),
+    ResultQuantity("frequency_parameter_rigid", "rad/s", "rigid estimate", r"$\hat{p}_{ext}$"),
+)
+"""Of the storey's own mode."""
+
+EIGENVALUES = ResultQuantity("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
+
+UPLIFTED = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS, EIGENVALUES)
+"""All results of an uplifted state besides its shapes."""
+
+FIXED_BASE_SHAPES = (_SHAPES,)
+UPLIFTED_SHAPES = (_SHAPES, ResultQuantity("elastic_shapes", "-", "elastic mode shape"))
+LEVEL = ResultQuantity("floor", "", "level (0 = cap beam)")
+"""What shapes are drawn over."""
+
+PUSHOVER = (
+    ResultQuantity("uplift_force", "N", "uplift force"),
+    ResultQuantity("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
+    ResultQuantity("critical_displacement", "m", "critical displacement"),
+    ResultQuantity("initial_stiffness", "N/m", "stiffness after uplift"),
+)
+"""Scalars of the static curves."""
+
+STOREY_CURVE = (
+    ResultQuantity("rotation", "rad", "rotation", r"$\theta$"),
+    ResultQuantity("displacement", "m", "cap beam displacement", "$u_b$"),
+    ResultQuantity("force", "N", "force at the cap beam"),
+    ResultQuantity("lift", "m", "lift", "$v_b$"),
+)
+"""Lists along the storey's curve."""
+
+STOREY_CURVE_RATIOS = (
+    ResultQuantity("rotation_ratio", "-", "rotation ratio", r"$\theta/\theta_{cr}$"),
+    ResultQuantity("force_over_weight", "-", "force over weight", "$F/W$"),
+)
+"""The same curve without units."""

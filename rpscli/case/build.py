@@ -1,0 +1,203 @@
+"""A validated case file -> the structure and the settings of its analysis."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.case.schema.case_file import (
+    AnalysisSection,
+    BearingSection,
+    CaseFile,
+    DimensionsSection,
+    PodiumMasses,
+    SuperstructureSection,
+)
+from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
+from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+
+
+class Shape(NamedTuple):
+    """Ratios of a column, whichever way the case describes it.
+
+    `wedge_slenderness` equals `slenderness` where flat ends leave it out.
+    """
+
+    semi_diagonal: float
+    slenderness: float
+    wedge_slenderness: float
+    curvature_ratio: float
+
+
+class Podium(NamedTuple):
+    """Columns and cap beam, and what they carry.
+
+    Parameters
+    ----------
+    bearing
+        Shape of every column.
+    columns_mass, cap_beam_mass, building_mass
+        N m_c of all columns together, m_b and M_tot [kg].
+    impact_law
+        Restitution at theta = 0.
+    """
+
+    bearing: Bearing
+    columns_mass: float
+    cap_beam_mass: float
+    building_mass: float
+    impact_law: ImpactLaw
+
+    @property
+    def gamma(self) -> float:
+        """m_b/(N m_c)."""
+        return self.cap_beam_mass / self.columns_mass
+
+    @property
+    def eta(self) -> float:
+        """M_tot/m_b; 0 without a cap beam."""
+        return self.building_mass / self.cap_beam_mass if self.cap_beam_mass else 0.0
+
+
+def shape_of(bearing: BearingSection) -> Shape | None:
+    """The shape, or None if the description is not complete."""
+    if bearing.dimensions is not None:
+        return _shape_of_dimensions(bearing.dimensions)
+    R, slenderness, wedge = bearing.semi_diagonal, bearing.slenderness, bearing.wedge_slenderness
+    rho = bearing.curvature_ratio
+    if R is None or slenderness is None or rho is None or (wedge is None and rho != 0.0):
+        return None
+    if wedge is None:
+        wedge = slenderness
+    if isinstance(rho, str):
+        rho = first_order_critical_curvature_ratio(slenderness, wedge)
+    return Shape(R, slenderness, wedge, rho)
+
+
+def _shape_of_dimensions(sizes: DimensionsSection) -> Shape | None:
+    if sizes.wedge_width is None and sizes.radius != 0.0:
+        return None
+    wedge = sizes.width if sizes.wedge_width is None else sizes.wedge_width
+    h = sizes.height
+    return Shape(0.5 * math.hypot(h, sizes.width), sizes.width / h, wedge / h, sizes.radius / h)
+
+
+def podium_of(file: CaseFile, shape: Shape) -> Podium:
+    """The podium that a validated case file describes, with columns of a given shape.
+
+    Raises
+    ------
+    ValueError
+        If a column cannot have this shape.
+    """
+    total = building_mass(file.superstructure)
+    columns, cap_beam = podium_masses(file.podium, total)
+    impact = file.podium.impact
+    return Podium(
+        Bearing(*shape, inertia_ratio=file.podium.bearing.inertia_ratio),
+        columns,
+        cap_beam,
+        total,
+        ImpactLaw(impact.law, impact.restitution, impact.factor),
+    )
+
+
+def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
+    """The whole structure: the podium with the building on it.
+
+    Raises
+    ------
+    ValueError
+        If the structure is outside the model (restitution <= 0, numbers that overflow).
+    """
+    return PodiumStructure(
+        bearing=podium.bearing,
+        columns_mass=podium.columns_mass,
+        cap_beam_mass=podium.cap_beam_mass,
+        superstructure=building(file.superstructure),
+        impact_law=podium.impact_law,
+        gravity=file.analysis.gravity,
+    )
+
+
+def building(section: SuperstructureSection) -> Superstructure | None:
+    """The shear building; None for no storeys."""
+    n = section.storeys
+    if n == 0:
+        return None
+    masses = _array(section.storey_mass, n)
+    if section.period is None:
+        stiffnesses = _array(section.stiffness, n)
+    else:
+        profile = section.profile or "sine"
+        stiffnesses = profile_stiffnesses(masses, section.period, profile)
+    heights = None if section.storey_height is None else _array(section.storey_height, n)
+    return Superstructure(masses, stiffnesses, damping(section), heights)
+
+
+def damping(section: SuperstructureSection) -> RayleighDamping | ModalDamping:
+    """Rayleigh damping if two modes are named, else the ratio in every mode."""
+    given = section.damping
+    assert given is not None, "the rules of the case make sure that damping is given"
+    if given.modes is None:
+        return ModalDamping(given.ratio)
+    return RayleighDamping(given.ratio, given.modes)
+
+
+def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[float]:
+    """One value for each storey from the bottom.
+
+    >>> each_storey(3.0, 2), each_storey((4.0, 3.0), 2)
+    ([3.0, 3.0], [4.0, 3.0])
+    """
+    assert value is not None, "the rules of the case make sure that the value is given"
+    return list(value) if isinstance(value, tuple) else [value] * storeys
+
+
+def _array(value: float | tuple[float, ...] | None, storeys: int) -> NDArray[np.float64]:
+    return np.array(each_storey(value, storeys))
+
+
+def building_mass(section: SuperstructureSection) -> float:
+    """M_tot [kg]; 0 without storeys."""
+    return sum(each_storey(section.storey_mass, section.storeys)) if section.storeys else 0.0
+
+
+def podium_masses(section: PodiumMasses, building_mass: float) -> tuple[float, float]:
+    """N m_c and m_b [kg] from the masses and ratios that are given (Theory, section 2)."""
+    gamma, eta = section.cap_beam_mass_ratio, section.superstructure_mass_ratio
+    columns, beam = None, section.cap_beam_mass
+    if section.column_mass is not None:
+        columns = section.column_mass * (section.columns or 1)
+    if section.without_cap_beam:
+        beam = 0.0
+    elif eta is not None:
+        beam = building_mass / eta
+    elif beam is None and gamma is not None and columns is not None:
+        beam = gamma * columns
+    if columns is None and gamma and beam is not None:
+        columns = beam / gamma
+    assert columns is not None, "the rules of the case make sure that the masses are complete"
+    assert beam is not None, "the rules of the case make sure that the masses are complete"
+    return columns, beam
+
+
+def time_history_settings(section: AnalysisSection) -> TimeHistorySettings:
+    """Settings of the time history; gravity belongs to the structure."""
+    auto = isinstance(section.free_vibration, str)
+    return TimeHistorySettings(
+        free_vibration=None if auto else float(section.free_vibration),
+        recontact_tolerance=section.recontact_tolerance,
+        recontact_rule=section.recontact_rule,
+        initial_rotation=section.initial_rotation,
+        overturning_limit=section.overturning_limit,
+        accuracy=section.accuracy,
+        max_events=section.max_events,
+    )

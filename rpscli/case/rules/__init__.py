@@ -1,0 +1,1 @@
+"""Rules that join several keys of a case."""

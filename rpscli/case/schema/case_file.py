@@ -1,0 +1,247 @@
+"""The case file as pydantic models: every key, its meaning, unit and bounds.
+
+Rules that join several keys stand in `case.rules`. Optional keys are None when absent.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
+
+from rpscli.analyses.result_quantities import RATIOS
+from rpscli.case.schema.fields import ModePair, Quantity, Text, Whole
+from rpscli.constants import STANDARD_GRAVITY
+
+FORMAT_VERSION = 1
+MOST_STOREYS = 200
+
+Ratio = Annotated[float, Quantity(at_least=0)]
+PositiveRatio = Annotated[float, Quantity(above=0)]
+Length = Annotated[float, Quantity("m", above=0)]
+Mass = Annotated[float, Quantity("kg", above=0)]
+Time = Annotated[float, Quantity("s", above=0)]
+Masses = Annotated[float | tuple[float, ...], Quantity("kg", above=0, per_storey=True)]
+Lengths = Annotated[float | tuple[float, ...], Quantity("m", above=0, per_storey=True)]
+Stiffnesses = Annotated[float | tuple[float, ...], Quantity("N/m", above=0, per_storey=True)]
+Profile = Literal["sine", "uniform", "linear", "flexural"]
+
+
+class Section(BaseModel):
+    """A mapping of the file: unknown keys are refused, and nothing changes later."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class DampingSection(Section):
+    """Damping of the building on a fixed base: Rayleigh if modes are named, else modal."""
+
+    ratio: Annotated[
+        float, Quantity(symbol="of critical damping", at_least=0, below=1, remedy="5 % is 0.05")
+    ] = Field(description="critical damping ratio")
+    modes: Annotated[tuple[int, int], ModePair()] | None = Field(
+        None,
+        description="the two modes of Rayleigh damping, counted from 1; left out: the same ratio"
+        " in every mode. One storey, or one mode named twice: stiffness-proportional",
+    )
+
+
+class SuperstructureSection(Section):
+    """The building on the cap beam: a shear building."""
+
+    storeys: Annotated[int, Whole(0, MOST_STOREYS, remedy="0 = no building, a rigid frame")] = (
+        Field(description="number of storeys; 0 = none, a rigid rolling or rocking frame")
+    )
+    storey_mass: Masses | None = Field(
+        None, description="floor mass: one value, or a list from the bottom"
+    )
+    storey_height: Lengths | None = Field(
+        None, description="storey height, for drift ratios and pictures: one value, or a list"
+    )
+    period: Time | None = Field(
+        None, description="first period on a fixed base; scales the profile"
+    )
+    profile: Profile | None = Field(
+        None,
+        description="what distributes the stiffness: a sine, linear or flexural first mode, or"
+        " uniform stiffness; sine if a period is given without it",
+    )
+    stiffness: Stiffnesses | None = Field(
+        None, description="storey stiffness in place of period and profile: one value, or a list"
+    )
+    damping: DampingSection | None = Field(None, description="on a fixed base")
+
+
+class DimensionsSection(Section):
+    """Full sizes of the column, in place of semi_diagonal and the ratios."""
+
+    height: Length = Field(description="2H, between the flat parts of the two ends")
+    width: Length = Field(description="2B, of the flat part")
+    wedge_width: Length | None = Field(
+        None, description="2B', across the outer edges of the arcs; ignored for flat ends"
+    )
+    radius: Annotated[
+        float, Quantity("m", symbol="r, of the arcs", at_least=0, remedy="use 0 for flat ends")
+    ] = Field(description="r of the arcs; 0 = flat ends")
+
+
+class BearingSection(Section):
+    """Shape of one column."""
+
+    semi_diagonal: Length | None = Field(
+        None, description="R = sqrt(H^2 + B^2), half height and half width of the flat part"
+    )
+    slenderness: PositiveRatio | None = Field(None, description="tan(alpha) = B/H")
+    wedge_slenderness: PositiveRatio | None = Field(
+        None, description="tan(alpha') = B'/H; ignored for flat ends"
+    )
+    curvature_ratio: (
+        Annotated[
+            float | Literal["critical"],
+            Quantity(
+                symbol="rho = r/2H",
+                at_least=0,
+                remedy="use 0 for flat ends",
+                words=("critical",),
+            ),
+        ]
+        | None
+    ) = Field(
+        None,
+        description="rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2",
+    )
+    dimensions: DimensionsSection | None = Field(
+        None, description="sizes in place of the four keys above"
+    )
+    inertia_ratio: Annotated[
+        float,
+        Quantity(
+            symbol="I_o/(m_c R^2), I_o about the edge",
+            at_least=1,
+            remedy="4/3 is a rectangular block",
+        ),
+    ] = Field(4.0 / 3.0, description="I_o/(m_c R^2), I_o about an edge of the flat part")
+
+
+class ImpactSection(Section):
+    """What happens when the columns fall back on their flat ends."""
+
+    law: Literal["rigid", "flexible", "value"] = Field(
+        "rigid",
+        description="rigid: floors jump with the cap beam; flexible: floors keep their velocity;"
+        " value: restitution is given",
+    )
+    restitution: (
+        Annotated[float, Quantity(symbol="velocity after over before", above=0, at_most=1)] | None
+    ) = Field(None, description="e of the law value")
+    factor: PositiveRatio = Field(1.0, description="multiplies the restitution of the law")
+
+
+def _law_alone(value: object) -> object:
+    return {"law": value} if isinstance(value, str) else value
+
+
+class PodiumMasses(Section):
+    """Masses of columns and cap beam, directly or as ratios."""
+
+    cap_beam_mass_ratio: Ratio | None = Field(
+        None, description="gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"
+    )
+    superstructure_mass_ratio: PositiveRatio | None = Field(
+        None, description="eta = M_tot/m_b, building over cap beam"
+    )
+    cap_beam_mass: Annotated[float, Quantity("kg", symbol="m_b", at_least=0)] | None = Field(
+        None, description="m_b; in place of a ratio"
+    )
+    column_mass: Mass | None = Field(
+        None, description="m_c of one column; in place of cap_beam_mass_ratio"
+    )
+    columns: Annotated[int, Whole(1)] | None = Field(None, description="number N of columns")
+
+    @property
+    def without_cap_beam(self) -> bool:
+        """Whether the columns stand free."""
+        return self.cap_beam_mass_ratio == 0.0 or self.cap_beam_mass == 0.0
+
+
+class PodiumSection(PodiumMasses):
+    """Columns and cap beam."""
+
+    bearing: BearingSection = Field(description="shape of one column")
+    impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = Field(
+        ImpactSection(), description="impact law; a law's name alone may stand here"
+    )
+
+
+class RecordSection(Section):
+    """The ground motion."""
+
+    source: Text = Field(description="a file, a member of a record set, or a pulse")
+    scale: Annotated[float, Quantity()] = Field(
+        1.0, description="factor on the horizontal and the vertical acceleration"
+    )
+    vertical: Text | None = Field(None, description="source of the vertical component")
+    dt: Time | None = Field(None, description="time step of a file that does not state it")
+    units: Text | None = Field(
+        None, description="unit of the values of a file that does not state it, such as g"
+    )
+
+
+class AnalysisSection(Section):
+    """How the time history is computed."""
+
+    free_vibration: Annotated[
+        float | Literal["auto"],
+        Quantity("s", symbol="after the record's end", at_least=0, words=("auto",)),
+    ] = Field(
+        "auto", description="time after the record; auto = until rest or no new maximum is possible"
+    )
+    recontact_tolerance: Annotated[float, Quantity(above=0, below=1)] = Field(
+        1e-6, description="an excursion below this part of alpha after an impact is contact"
+    )
+    recontact_rule: Literal["relative", "limit"] = Field(
+        "relative",
+        description="floors keep their velocity relative to the cap beam at re-contact, or get the"
+        " limit of ever smaller bounces (converges faster in the tolerance)",
+    )
+    initial_rotation: Annotated[float, Quantity(symbol="rad")] = Field(
+        0.0, description="rotation from which the structure is released at rest; 0 = full contact"
+    )
+    overturning_limit: Annotated[
+        float, Quantity(symbol="times the critical rotation", at_least=1)
+    ] = Field(2.0, description="rotation that counts as overturned, over theta_cr")
+    gravity: Annotated[float, Quantity("m/s2", above=0)] = Field(STANDARD_GRAVITY, description="g")
+    accuracy: PositiveRatio = Field(
+        1.0, description="time steps are 1/accuracy times the default size"
+    )
+    max_events: Annotated[int, Whole(1)] = Field(
+        100_000, description="uplifts, impacts and phase changes after which the analysis gives up"
+    )
+
+
+def limits_section(kind: Any) -> type[Section]:
+    """A section with an optional limit of this type for each ratio in the table of results."""
+    fields: Any = {
+        ratio.name: (kind | None, Field(None, description=ratio.meaning)) for ratio in RATIOS
+    }
+    return create_model("Limits", __base__=Section, **fields)
+
+
+class LimitsSection(limits_section(PositiveRatio)):  # type: ignore[misc]  # made from a table
+    """Acceptance limits."""
+
+
+class CaseFile(Section):
+    """A case of rps: one structure, its ground motion, and how to analyse it."""
+
+    rps: Annotated[
+        int, Whole(FORMAT_VERSION, FORMAT_VERSION, "this program reads version 1 of the format")
+    ] = Field(description="version of the format; write `rps: 1`")
+    title: Text | None = Field(None, description="heading of reports and plots")
+    superstructure: SuperstructureSection = Field(description="the building on the cap beam")
+    podium: PodiumSection = Field(description="columns and cap beam")
+    record: RecordSection | None = Field(None, description="the ground motion")
+    analysis: AnalysisSection = Field(AnalysisSection(), description="how to compute")
+    limits: LimitsSection = Field(
+        LimitsSection(), description="exceeding one of them ends with exit code 10"
+    )

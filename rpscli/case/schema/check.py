@@ -1,0 +1,130 @@
+"""Check a document against a pydantic model, and tell its faults in the user's words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any, Generic, NamedTuple, TypeVar
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from rpscli.case.schema.known_keys import field_at, section_at, unknown_key
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
+from rpscli.errors import nearest
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class SchemaCheck(NamedTuple, Generic[Model]):
+    """What a model makes of a document.
+
+    Parameters
+    ----------
+    faults
+        Everything wrong with single keys and values.
+    meant
+        Known keys for which unknown ones were taken: they count as given, so that one slip is
+        not reported twice.
+    sound
+        The content without its faulty values.
+    read
+        The content as the model reads it; None if something is wrong with it.
+    """
+
+    faults: list[Fault]
+    meant: set[Path]
+    sound: dict[str, Any]
+    read: Model | None
+
+
+def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
+    """Faults of a document in the eyes of a model, key by key."""
+    empty = list(_nulls(document.content, ()))
+    told = {fault.path for fault in document.faults}
+    check: SchemaCheck[Model] = SchemaCheck([*document.faults], set(), {}, None)
+    for path in empty:
+        if path not in told:
+            _empty_value(check, model, path)
+    content = document.pruned(empty)
+    read, errors = _read(model, content)
+    if not (errors or check.faults):
+        return check._replace(sound=content, read=read)
+    bad = [*empty]
+    for error in errors:
+        path = _path(error, document)
+        if error["type"] == "extra_forbidden":
+            _unknown(check, model, path)
+        elif error["type"] != "missing":
+            text = f"{dotted(path)} = {shown(document.at(path))} {_rule(error, path, model)}"
+            check.faults.append(Fault(path, text))
+        elif path not in empty:
+            field = field_at(model, path)
+            text = f"{dotted(path)} is missing: {field.description if field else 'write it'}"
+            check.faults.append(Fault(path, text, at_key=True, needs=(path,)))
+            continue
+        bad.append(path)
+    return check._replace(sound=document.pruned(bad))
+
+
+def _unknown(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
+    fault, guess = unknown_key(model, path)
+    check.faults.append(fault)
+    if guess:
+        check.meant.add(guess)
+
+
+def _empty_value(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
+    """A key with nothing behind it; its name may be wrong besides."""
+    named = tuple(part for part in path if isinstance(part, str))
+    known = [field_at(model, named[:length]) is not None for length in range(1, len(named) + 1)]
+    if all(known):
+        text = f"{dotted(path)} has no value; write one, or take the key out"
+        check.faults.append(Fault(path, text, at_key=isinstance(path[-1], str)))
+    elif all(known[:-1]):  # otherwise the unknown key further up is told of
+        _unknown(check, model, named)
+
+
+def _read(model: type[Model], content: dict[str, Any]) -> tuple[Model | None, list[ErrorDetails]]:
+    try:
+        return model.model_validate(content), []
+    except ValidationError as error:
+        return None, error.errors(include_url=False)
+
+
+def _nulls(value: object, path: Path) -> Iterator[Path]:
+    if value is None:
+        yield path
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            yield from _nulls(item, (*path, key))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            yield from _nulls(item, (*path, index))
+
+
+def _path(error: ErrorDetails, document: Document) -> Path:
+    """Where in the document: pydantic's location without its names for branches of a union."""
+    missing = error["type"] == "missing"
+    path: Path = ()
+    for part in error["loc"][:-1] if missing else error["loc"]:
+        if document.has((*path, part)):
+            path = (*path, part)
+    return (*path, error["loc"][-1]) if missing else path
+
+
+def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
+    kind = error["type"]
+    if kind == "literal_error":
+        words = re.findall(r"'([^']*)'", error["ctx"]["expected"])
+        guess = nearest(str(error["input"]), words)
+        return f"must be {listed(words)}" + (f"; did you mean {guess}?" if guess else "")
+    if kind in {"model_type", "model_attributes_type"}:
+        section = section_at(model, path)
+        names = listed(section.model_fields, "and") if section else ""
+        return f"must be a mapping with keys among {names}"
+    if kind == "too_short":
+        return "must not be an empty list"
+    message = error["msg"]
+    return message if kind == "rps" else message[0].lower() + message[1:]

@@ -1,0 +1,219 @@
+"""Kinds of field: what a value of the case file may be, and its JSON schema.
+
+Each is a mark inside `typing.Annotated` from which pydantic takes the check and the schema, so
+that bounds, unit and meaning stand once, beside the field.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import Annotated, Any, NoReturn
+
+from pydantic import PlainValidator, WithJsonSchema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from rpscli.case.schema.units import KINDS, si_value
+from rpscli.case.text.faults import listed
+from rpscli.errors import nearest
+
+SMALLEST, LARGEST = 1e-15, 1e15
+"""Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""
+PLAIN = "1"
+"""Unit of a plain number."""
+
+
+def refuse(reason: str) -> NoReturn:
+    """Refuse a value; `reason` continues `path = value ...`."""
+    raise PydanticCustomError("rps", "{reason}", {"reason": reason})
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number in SI, or text with a unit.
+
+    Parameters
+    ----------
+    unit
+        SI unit, a key of `units.KINDS`; "1" for a plain number.
+    symbol
+        What it is in the field's letters, for messages.
+    above, at_least, below, at_most
+        Bounds, the first and third exclusive.
+    remedy
+        What to write instead of an inadmissible value.
+    words
+        Words allowed in place of a number.
+    per_storey
+        Whether a list, from the bottom, may stand for the one value.
+    """
+
+    unit: str = PLAIN
+    symbol: str = ""
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+    remedy: str = ""
+    words: tuple[str, ...] = ()
+    per_storey: bool = False
+
+    @property
+    def rule(self) -> str:
+        """The bounds in words, such as ``> 0 and <= 1``."""
+        bounds = {">": self.above, ">=": self.at_least, "<": self.below, "<=": self.at_most}
+        return " and ".join(f"{sign} {b:g}" for sign, b in bounds.items() if b is not None)
+
+    def number(self, value: object) -> float | str:
+        """The SI value, or the word; raises pydantic's error if it is neither."""
+        if isinstance(value, str):
+            if value in self.words:
+                return value
+            value = self._with_unit(value)
+        if isinstance(value, bool) or not isinstance(value, Real):
+            refuse(self._not_a_number)
+        try:
+            x = float(value)
+        except OverflowError:
+            x = math.inf
+        if not math.isfinite(x):
+            refuse("must be a finite number")
+        if not self._within(x):
+            symbol = f" ({self.symbol})" if self.symbol else ""
+            remedy = f"; {self.remedy}" if self.remedy else ""
+            refuse(f"must be {self.rule}{self._unit_text}{symbol}{remedy}")
+        if x and not SMALLEST <= abs(x) <= LARGEST:
+            refuse(f"is outside {SMALLEST:g} ... {LARGEST:g}{self._unit_text}; check the unit")
+        return x
+
+    @property
+    def _unit_text(self) -> str:
+        return "" if self.unit == PLAIN else f" {self.unit}"
+
+    @property
+    def _not_a_number(self) -> str:
+        words = "".join(f", or the word {word}" for word in self.words)
+        kind = "a number" if self.unit == PLAIN else f"{KINDS[self.unit][0]} in {self.unit}"
+        return f"must be {kind}{words}"
+
+    def _with_unit(self, text: str) -> float:
+        guess = nearest(text, self.words)
+        if guess:
+            refuse(f"{self._not_a_number}; did you mean {guess}?")
+        if self.unit == PLAIN:
+            refuse(f"is text; it {self._not_a_number}, without unit and without quotes")
+        try:
+            return si_value(text, self.unit)
+        except ValueError as error:
+            refuse(str(error))
+
+    def _within(self, x: float) -> bool:
+        return (
+            (self.above is None or x > self.above)
+            and (self.at_least is None or x >= self.at_least)
+            and (self.below is None or x < self.below)
+            and (self.at_most is None or x <= self.at_most)
+        )
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        """The check, for pydantic."""
+        one = core_schema.no_info_plain_validator_function(self.number)
+        if not self.per_storey:
+            return one
+        each = core_schema.tuple_schema([one], variadic_item_index=0, min_length=1)
+        return core_schema.tagged_union_schema(
+            {"one": one, "each": each},
+            discriminator=lambda value: "each" if isinstance(value, list | tuple) else "one",
+        )
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        """The JSON schema; its ``unit`` is the SI unit of a bare number."""
+        names = ("exclusiveMinimum", "minimum", "exclusiveMaximum", "maximum")
+        bounds = zip(names, (self.above, self.at_least, self.below, self.at_most), strict=True)
+        one: dict[str, Any] = {"type": "number"}
+        one |= {name: bound for name, bound in bounds if bound is not None}
+        others: list[dict[str, Any]] = []
+        if self.unit != PLAIN:
+            pattern = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\d\s].*$"
+            units = listed(KINDS[self.unit][1])
+            others.append(
+                {"type": "string", "pattern": pattern, "description": f"with unit: {units}"}
+            )
+        if self.words:
+            others.append({"enum": list(self.words)})
+        if self.per_storey:
+            items = {"anyOf": [one, *others]} if others else one
+            others.append({"type": "array", "items": items, "minItems": 1})
+        extra = {"symbol": self.symbol} if self.symbol else {}
+        return ({"anyOf": [one, *others]} if others else one) | {"unit": self.unit} | extra
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number between bounds, both inclusive."""
+
+    at_least: int
+    at_most: int | None = None
+    remedy: str = ""
+
+    def number(self, value: object) -> int:
+        """The value; raises pydantic's error if it is not one."""
+        if isinstance(value, bool) or not isinstance(value, Integral):
+            whole = isinstance(value, float) and value.is_integer() and f"; write {value:.0f}"
+            refuse(f"must be a whole number{whole or ''}")
+        number = int(value)
+        if number < self.at_least or (self.at_most is not None and number > self.at_most):
+            remedy = f"; {self.remedy}" if self.remedy else ""
+            refuse(f"must be a whole number {self._range}{remedy}")
+        return number
+
+    @property
+    def _range(self) -> str:
+        if self.at_most is None:
+            return f">= {self.at_least}"
+        if self.at_most == self.at_least:
+            return f"equal to {self.at_least}"
+        return f"from {self.at_least} to {self.at_most}"
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        """The check, for pydantic."""
+        return core_schema.no_info_plain_validator_function(self.number)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        """The JSON schema."""
+        most = {} if self.at_most is None else {"maximum": self.at_most}
+        return {"type": "integer", "minimum": self.at_least} | most
+
+
+@dataclass(frozen=True)
+class ModePair:
+    """Two modes of vibration, counted from 1."""
+
+    def pair(self, value: object) -> tuple[int, int]:
+        """The two; raises pydantic's error if they are not."""
+        if not isinstance(value, list | tuple) or len(value) != 2:
+            refuse("must be two modes, as in [1, 2]; leave modes out to damp every mode alike")
+        first, second = (Whole(1, remedy="modes count from 1").number(mode) for mode in value)
+        return first, second
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        """The check, for pydantic."""
+        return core_schema.no_info_plain_validator_function(self.pair)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        """The JSON schema."""
+        mode = {"type": "integer", "minimum": 1}
+        return {"type": "array", "items": mode, "minItems": 2, "maxItems": 2}
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        refuse("must be text; put it in quotes")
+    if not value.strip():
+        refuse("must not be empty text; write something, or take the key out")
+    return value
+
+
+Text = Annotated[str, PlainValidator(_text), WithJsonSchema({"type": "string", "minLength": 1})]
+"""Text that says something."""

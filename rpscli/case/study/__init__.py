@@ -1,0 +1,1 @@
+"""Studies: what their files may say, checked."""

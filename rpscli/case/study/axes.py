@@ -1,0 +1,135 @@
+"""The axes of a study: which case keys vary together, and through which values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from rpscli.case.schema.check import schema_check
+from rpscli.case.study.fields import ValueRange, spaced
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault, Path, Place, dotted, listed, shown
+
+Values = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis of the product.
+
+    Parameters
+    ----------
+    keys
+        Dotted keys of the case that go together.
+    rows
+        Their values at each position along the axis, in the order of the keys.
+    places
+        Where the values of each key were written: one place for each row, or one for all.
+    """
+
+    keys: tuple[str, ...]
+    rows: tuple[Values, ...]
+    places: tuple[tuple[Place, ...], ...]
+
+    def place(self, key: int, row: int) -> Place:
+        """Where a value was written."""
+        places = self.places[key]
+        return places[row] if len(places) == len(self.rows) else places[0]
+
+
+class AxisCheck(NamedTuple):
+    """The axes as far as they can be read, and what is wrong with them."""
+
+    axes: list[Axis]
+    faults: list[Fault]
+
+
+def axes_of(document: Document) -> AxisCheck:
+    """Axes under the key `vary` of a study."""
+    written = document.content.get("vary", [])
+    check = AxisCheck([], [])
+    if not isinstance(written, list):
+        text = "vary must be a list of axes, each a mapping: `- dotted.key: [value, value]`"
+        return check._replace(faults=[Fault(("vary",), text)])
+    for index, item in enumerate(written):
+        path: Path = ("vary", index)
+        if not isinstance(item, dict) or not item:
+            text = f"{dotted(path)} = {shown(item)} must be a mapping `dotted.key: [value, value]`"
+            check.faults.append(Fault(path, text))
+            continue
+        values = {}
+        for key, row in item.items():
+            found = _values(document, (*path, key), row)
+            check.faults.extend(fault for fault in found if isinstance(fault, Fault))
+            values[key] = tuple(value for value in found if not isinstance(value, Fault))
+        if not any(fault.path[:2] == path for fault in check.faults):
+            check.faults.extend(_unequal(document, path, values))
+            if len({len(column) for column in values.values()}) == 1:
+                check.axes.append(_axis(document, path, values))
+    return check
+
+
+def _values(document: Document, path: Path, written: object) -> list[Any]:
+    """The values of one key, or the faults among them."""
+    key = dotted(path)
+    if isinstance(written, dict):
+        faults = part_faults(document, path)
+        if faults:
+            return list(faults)
+        try:
+            return list(spaced(ValueRange.model_validate(written)))
+        except ValueError as error:
+            return [Fault(path, f"{key}: {error}")]
+    if not isinstance(written, list) or not written:
+        text = f"{key} = {shown(written)} must be a list of values, or {{low, high, count}}"
+        return [Fault(path, text)]
+    empty = [i for i, value in enumerate(written) if value is None]
+    if empty:
+        return [Fault((*path, i), f"{key}.{i} has no value; write one") for i in empty]
+    return list(written)
+
+
+def part_faults(document: Document, path: Path) -> list[Fault]:
+    """Faults of a mapping that must be a range of values, with their whole paths."""
+    return [
+        Fault((*path, *f.path), f"{dotted(path)}.{f.text}", f.at_key)
+        for f in schema_check(ValueRange, document.part(*path)).faults
+    ]
+
+
+def _unequal(document: Document, path: Path, values: Mapping[str, Values]) -> Iterator[Fault]:
+    """The keys of one axis need equally many values."""
+    first, *others = values
+    for key in others:
+        if len(values[key]) != len(values[first]):
+            yield Fault(
+                (*path, key),
+                f"{key} has {len(values[key])} values, but"
+                f" {first}{document.where((*path, first))} has {len(values[first])}: the keys of"
+                " one axis go together; give equally many, or begin another axis with `-`",
+                at_key=True,
+            )
+
+
+def _axis(document: Document, path: Path, values: Mapping[str, Values]) -> Axis:
+    def places(key: str, count: int) -> tuple[Place, ...]:
+        if isinstance(document.at((*path, key)), dict):
+            return (document.value_place((*path, key)),)
+        return tuple(document.value_place((*path, key, row)) for row in range(count))
+
+    return Axis(
+        keys=tuple(values),
+        rows=tuple(zip(*values.values(), strict=True)),
+        places=tuple(places(key, len(column)) for key, column in values.items()),
+    )
+
+
+def clashes(keys: Mapping[str, Path]) -> Iterator[Fault]:
+    """A key that varies twice, or together with a part of itself."""
+    names = sorted(keys)
+    for name in names:
+        inside = [other for other in names if other.startswith(f"{name}.")]
+        if inside:
+            text = f"{name} varies as a whole; {listed(inside, 'and')} inside it must not vary too"
+            yield Fault(keys[name], text, at_key=True)

@@ -1,0 +1,188 @@
+"""Rules that join several keys of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rpscli.case.schema.case_file import CaseFile
+from rpscli.case.schema.check import schema_check
+from rpscli.case.schema.known_keys import field_at, unknown_key
+from rpscli.case.study.axes import Axis, clashes
+from rpscli.case.study.reports import ReportKinds, ReportOptions, ReportRequest
+from rpscli.case.study.schema import MeasureScale, RangeSection
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
+
+OF_HISTORIES = ("records", "scale", "perturb")
+"""Keys of a study that only time histories have."""
+
+OF_POINTS = ("record", "scale")
+"""Axes of the product that are no case keys; reports may name them."""
+
+
+def varied_paths(document: Document) -> dict[str, Path]:
+    """Every key that varies or is sampled, and where it stands."""
+    axes = document.content.get("vary", [])
+    ranges = document.at(("sample", "ranges"))
+    paths: dict[str, Path] = {}
+    for index, axis in enumerate(axes if isinstance(axes, list) else ()):
+        for key in axis if isinstance(axis, dict) else ():
+            paths[key] = ("vary", index, key)
+    for key in ranges if isinstance(ranges, dict) else ():
+        paths[key] = ("sample", "ranges", key)
+    return paths
+
+
+def unknown_keys(document: Document) -> Iterator[Fault]:
+    """Varied and sampled keys that the case format does not know."""
+    for key, place in varied_paths(document).items():
+        path: Path = tuple(part for part in key.split(".") if not part.isdecimal())
+        if not path or field_at(CaseFile, path) is None:
+            hint = unknown_key(CaseFile, path or (key,))[0].text
+            yield Fault(place, hint, at_key=True)
+
+
+def twice(document: Document, axes: list[Axis]) -> Iterator[Fault]:
+    """Keys that vary in two axes, or vary and are sampled."""
+    seen: dict[str, Path] = {}
+    for index, axis in enumerate(axes):
+        for key in axis.keys:
+            path: Path = ("vary", index, key)
+            if key in seen:
+                text = f"{key} varies already in another axis{document.where(seen[key])}"
+                yield Fault(path, f"{text}; take one of them out", at_key=True)
+            seen[key] = path
+    ranges = document.at(("sample", "ranges"))
+    for key in ranges if isinstance(ranges, dict) else ():
+        if key in seen:
+            path = ("sample", "ranges", key)
+            text = f"{key} varies already{document.where(seen[key])}; take one of them out"
+            yield Fault(path, text, at_key=True)
+    yield from clashes(varied_paths(document))
+
+
+def fixed_faults(document: Document, overrides: Sequence[str]) -> Iterator[Fault]:
+    """Overrides of the base that the study would put its own values over."""
+    for text in overrides:
+        key = text.partition("=")[0].strip()
+        for varied, path in varied_paths(document).items():
+            if key == varied or key.startswith(f"{varied}.") or varied.startswith(f"{key}."):
+                message = f"{varied} varies in the study; --set {text} cannot fix it"
+                yield Fault(path, message, at_key=True)
+
+
+def scale_faults(document: Document) -> Iterator[Fault]:
+    """`scale` with a measure; factors alone are checked with the schema."""
+    if not isinstance(scale := document.content.get("scale"), dict) or "measure" not in scale:
+        return
+    found = schema_check(MeasureScale, document.part("scale")).faults
+    for fault in found:
+        yield Fault(("scale", *fault.path), f"scale.{fault.text}", fault.at_key)
+    if "period" in scale and scale["measure"] != "Sa" and not found:
+        text = f"scale.period belongs to the measure Sa; {scale['measure']} has none, take it out"
+        yield Fault(("scale", "period"), text, at_key=True)
+
+
+def range_faults(document: Document) -> Iterator[Fault]:
+    """The ranges of a sample, one by one."""
+    ranges = document.at(("sample", "ranges"))
+    if not isinstance(ranges, dict):
+        return
+    if not ranges:
+        yield Fault(("sample", "ranges"), "sample.ranges is empty; name a key to be sampled")
+    for key, given in ranges.items():
+        yield from _range_faults(document, ("sample", "ranges", key), given)
+
+
+def _range_faults(document: Document, path: Path, given: object) -> Iterator[Fault]:
+    name = dotted(path)
+    if isinstance(given, list):
+        given = dict(zip(("low", "high"), given, strict=False)) if len(given) == 2 else None
+        part = Document(document.name, given or {})
+    else:
+        part = document.part(*path) if isinstance(given, dict) else Document(document.name, {})
+    if not isinstance(given, dict):
+        text = f"{name} must be [low, high], or {{distribution: normal, mean: ..., cov: ...}}"
+        yield Fault(path, text)
+        return
+    found = schema_check(RangeSection, part).faults
+    yield from (Fault((*path, *f.path), f"{name}.{f.text}", f.at_key) for f in found)
+    if not found:
+        reason = _incomplete(RangeSection.model_validate(given))
+        if reason:
+            yield Fault(path, f"{name} {reason}")
+
+
+def _incomplete(section: RangeSection) -> str | None:
+    """What keeps a range from being a distribution."""
+    bounds = (section.low, section.high)
+    moments = (section.mean, section.cov)
+    if None not in bounds and moments == (None, None) and section.distribution == "uniform":
+        low, high = bounds
+        ordered = low is not None and high is not None and low < high
+        return None if ordered else f"has low = {shown(low)}, which must be < high = {shown(high)}"
+    if None in moments or bounds != (None, None):
+        return "must have low and high alone (uniform), or distribution, mean and cov"
+    if section.distribution == "lognormal" and not (section.mean or 0.0) > 0.0:
+        return f"has mean = {shown(section.mean)}, which must be > 0 for a lognormal distribution"
+    return "has mean = 0, and cov is relative to it" if section.mean == 0.0 else None
+
+
+def analysis_rules(
+    document: Document, requests: tuple[ReportRequest, ...], kinds: ReportKinds
+) -> Iterator[Fault]:
+    """What has no meaning with a modal or pushover analysis."""
+    analysis = document.content.get("analysis", "timehistory")
+    if analysis not in ("modal", "pushover"):
+        return
+    for key in OF_HISTORIES:
+        if document.has((key,)):
+            text = f"{key} has no meaning with analysis: {analysis}; take it out"
+            yield Fault((key,), text, at_key=True)
+    suitable = listed(name for name, kind in kinds.items() if analysis in kind.analyses)
+    for request in requests:
+        if analysis not in (needed := kinds[request.kind].analyses):
+            text = f"the report {request.kind} needs analysis: {listed(needed)}"
+            yield Fault(request.path, f"{text}; {suitable} suits {analysis}")
+
+
+def record_rules(document: Document) -> Iterator[Fault]:
+    """The record is said once: by the study's list, or by the case and its varied keys."""
+    for key, path in varied_paths(document).items():
+        owner = None
+        if key == "record" or key.startswith("record."):
+            owner = "records" if document.has(("records",)) else None
+        if key in {"record", "record.scale"} and document.has(("scale",)):
+            owner = "scale"
+        if owner:
+            where = document.where((owner,))
+            text = f"{key} must not vary beside {owner}{where}; take one of them out"
+            yield Fault(path, text, at_key=True)
+
+
+def report_rules(
+    document: Document, axes: list[Axis], requests: tuple[ReportRequest, ...], kinds: ReportKinds
+) -> Iterator[Fault]:
+    """Keys that reports name must vary; each kind has rules of its own."""
+    known = [key for axis in axes for key in axis.keys]
+    for request in requests:
+        kind = kinds[request.kind]
+        faults = list(_key_faults([*known, *OF_POINTS], request))
+        if not faults and document.content.get("analysis", "timehistory") in kind.analyses:
+            faults.extend(kind.check(document, axes, request))
+        yield from faults
+
+
+def _key_faults(known: list[str], request: ReportRequest) -> Iterator[Fault]:
+    for option, key in _named_keys(request.options):
+        if key not in known:
+            path = (*request.path, request.kind, option)
+            text = f"{dotted(path)} = {key} does not vary in this study; use {listed(known)}"
+            yield Fault(path, text)
+
+
+def _named_keys(options: ReportOptions) -> Iterator[tuple[str, str]]:
+    for option in ("rows", "columns", "panels", "series", "key"):
+        named = getattr(options, option, None)
+        for key in (named,) if isinstance(named, str) else named or ():
+            yield option, key

@@ -1,0 +1,200 @@
+"""A study: what one file asks for, checked, and ready to be laid out as points."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rpscli.case.overrides import apply_overrides
+from rpscli.case.schema.check import schema_check
+from rpscli.case.study.axes import Axis, axes_of
+from rpscli.case.study.reports import ReportKinds, ReportRequest
+from rpscli.case.study.requests import requests_of
+from rpscli.case.study.rules import (
+    analysis_rules,
+    fixed_faults,
+    range_faults,
+    record_rules,
+    report_rules,
+    scale_faults,
+    twice,
+    unknown_keys,
+)
+from rpscli.case.study.schema import StudyFile
+from rpscli.case.study.sources import sources_of
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault
+from rpscli.case.text.files import read_text
+from rpscli.case.text.yaml_text import read_yaml
+from rpscli.errors import CaseError
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Many points from one case.
+
+    Parameters
+    ----------
+    name
+        Stem of the file's name; names folders of results.
+    source
+        The file as the user named it.
+    document
+        What is written, with positions and overrides.
+    file
+        The validated file.
+    base
+        The case from which every system is made, as written, with overrides.
+    base_file
+        Its file; None if the case stands in the study.
+    base_folder
+        Where relative file names inside the case start.
+    base_overrides
+        What was put over the case, as the user wrote it.
+    axes
+        The varied keys.
+    sources
+        Single record sources, seen from the study's folder; empty: the record of the case.
+    reports
+        What is drawn at the end.
+    digest
+        SHA-256 of the text.
+    """
+
+    name: str
+    source: str
+    folder: Path
+    document: Document
+    file: StudyFile
+    base: Document
+    base_file: Path | None
+    base_folder: Path
+    base_overrides: tuple[str, ...]
+    axes: tuple[Axis, ...]
+    sources: tuple[str, ...]
+    reports: tuple[ReportRequest, ...]
+    digest: str
+
+    @property
+    def title(self) -> str:
+        """Heading of reports; the name, if the file has no title."""
+        return self.file.title or self.name
+
+
+def parse_study(
+    text: str,
+    *,
+    name: str,
+    kinds: ReportKinds,
+    folder: Path | None = None,
+    overrides: Sequence[str] = (),
+) -> Study:
+    """A study from its text.
+
+    Parameters
+    ----------
+    text
+        YAML.
+    name
+        Of the file, for messages.
+    kinds
+        Of report.
+    folder
+        Where relative file names start; the working folder by default.
+    overrides
+        Texts ``key=value``. Keys of a study (``scale``, ``sample.size``) change the study; others
+        (``podium.bearing.slenderness``) the case at its base.
+
+    Raises
+    ------
+    CaseError
+        If the study is not valid: one line for each fault. Whether each of its systems is a valid
+        case is seen when its points are laid out.
+    """
+    folder = folder or Path()
+    of_study = [override for override in overrides if _is_of_study(override)]
+    of_base = [override for override in overrides if not _is_of_study(override)]
+    document = apply_overrides(read_yaml(text, name), of_study, model=StudyFile)
+    axes, sources, reports = _checked(document, folder, kinds)
+    file = StudyFile.model_validate(document.content)
+    document.refuse(fixed_faults(document, of_base))
+    base, base_file = _base(document, folder)
+    base = apply_overrides(base, of_base)
+    return Study(
+        name=Path(name.strip("<>")).stem or "study",
+        source=name,
+        folder=folder,
+        document=document,
+        file=file,
+        base=base,
+        base_file=base_file,
+        base_folder=base_file.parent if base_file else folder,
+        base_overrides=tuple(of_base),
+        axes=axes,
+        sources=sources,
+        reports=reports,
+        digest=hashlib.sha256(text.encode()).hexdigest(),
+    )
+
+
+def _is_of_study(override: str) -> bool:
+    """Whether an override belongs to the study; `analysis.gravity` is a key of the case."""
+    key = override.partition("=")[0].strip()
+    return key.split(".")[0] in StudyFile.model_fields and not key.startswith("analysis.")
+
+
+def _checked(
+    document: Document, folder: Path, kinds: ReportKinds
+) -> tuple[tuple[Axis, ...], tuple[str, ...], tuple[ReportRequest, ...]]:
+    """Axes, sources and reports; all faults of the study are raised together."""
+    axes, axis_faults = axes_of(document)
+    sources, source_faults = sources_of(document, folder)
+    requests, request_faults = requests_of(document, kinds)
+    faults = [
+        *_single_keys(document),
+        *axis_faults,
+        *source_faults,
+        *request_faults,
+        *scale_faults(document),
+        *range_faults(document),
+        *unknown_keys(document),
+        *twice(document, axes),
+        *record_rules(document),
+        *analysis_rules(document, requests, kinds),
+    ]
+    if not axis_faults:
+        faults += report_rules(document, axes, requests, kinds)
+    document.refuse(faults)
+    return tuple(axes), sources, requests
+
+
+def _single_keys(document: Document) -> Iterator[Fault]:
+    """Faults of the keys that stand alone; those with a structure of their own are left out."""
+    content = {key: value for key, value in document.content.items() if key not in _STRUCTURED}
+    if "base" in content and isinstance(content["base"], dict):
+        content["base"] = "written here"
+    if isinstance(content.get("scale"), dict) and "measure" in content["scale"]:
+        content["scale"] = 1.0
+    if isinstance(sample := content.get("sample"), dict) and "ranges" in sample:
+        content["sample"] = sample | {"ranges": {}}
+    plain = Document(document.name, content, document.keys, document.values, document.faults)
+    yield from schema_check(StudyFile, plain).faults
+
+
+_STRUCTURED = ("vary", "records", "reports")
+
+
+def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:
+    """The case at the base, and its file."""
+    written = document.content["base"]
+    if isinstance(written, dict):
+        return document.part("base"), None
+    path = folder / written
+    try:
+        return read_yaml(read_text(path), str(path)), path
+    except CaseError as error:
+        if path.is_file():
+            raise
+        raise CaseError(f"{document.value_place(('base',))}: base = {written!r}: {error}") from None

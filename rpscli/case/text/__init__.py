@@ -1,0 +1,1 @@
+"""Text files as plain values that know where they were written."""

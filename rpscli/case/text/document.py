@@ -1,0 +1,120 @@
+"""A document read from a file: plain values, and where each of them was written."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from rpscli.case.text.faults import Fault, Path, Place
+from rpscli.errors import CaseError
+
+MISSING = object()
+"""Stands for a value that a document does not hold (None is YAML's null)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Document:
+    """Mappings, lists and scalars with their positions.
+
+    Parameters
+    ----------
+    name
+        The source as the user named it; heads every message without a better place.
+    content
+        The values. Treated as unchangeable: an override makes a new document.
+    keys, values
+        Places of the keys and of the values, by path. Both may be empty, for a document made
+        in memory: messages then carry the name and the dotted path alone.
+    faults
+        What was found wrong while reading although reading could go on (duplicate keys).
+    """
+
+    name: str
+    content: dict[str, Any]
+    keys: dict[Path, Place] = field(default_factory=dict)
+    values: dict[Path, Place] = field(default_factory=dict)
+    faults: tuple[Fault, ...] = ()
+
+    def at(self, path: Path) -> Any:
+        """The value at a path, or MISSING."""
+        value: Any = self.content
+        for part in path:
+            inside = (isinstance(value, dict) and part in value) or (
+                isinstance(value, list) and isinstance(part, int) and -1 < part < len(value)
+            )
+            if not inside:
+                return MISSING
+            value = value[part]
+        return value
+
+    def has(self, path: Path) -> bool:
+        """Whether a value is written at a path."""
+        return self.at(path) is not MISSING
+
+    def key_place(self, path: Path) -> Place:
+        """Where the key of a path stands; its nearest parent's, if it has none itself."""
+        return self._place(path, self.keys)
+
+    def value_place(self, path: Path) -> Place:
+        """Where the value of a path stands; its nearest parent's, if it has none itself."""
+        return self._place(path, self.values)
+
+    def _place(self, path: Path, places: Mapping[Path, Place]) -> Place:
+        if path in places:
+            return places[path]
+        parents = (path[:length] for length in range(len(path) - 1, -1, -1))
+        known = (self.keys.get(parent) or self.values.get(parent) for parent in parents)
+        return next((place for place in known if place), Place(self.name))
+
+    def where(self, path: Path) -> str:
+        """A second place for a message, in brackets: `` (line 14)``; empty if unknown."""
+        return f" ({self.keys[path].short})" if path in self.keys else ""
+
+    def part(self, *path: str | int) -> Document:
+        """The mapping at a path as a document of its own, positions kept."""
+        depth = len(path)
+
+        def below(places: Mapping[Path, Place]) -> dict[Path, Place]:
+            return {p[depth:]: place for p, place in places.items() if p[:depth] == path}
+
+        faults = tuple(
+            Fault(f.path[depth:], f.text, f.at_key, f.needs, f.place)
+            for f in self.faults
+            if f.path[:depth] == path
+        )
+        return Document(self.name, self.at(path), below(self.keys), below(self.values), faults)
+
+    def pruned(self, paths: Iterable[Path]) -> dict[str, Any]:
+        """A copy of the content without the values at some paths."""
+        content = copy.deepcopy(self.content)
+        for path in paths:
+            owner, key = content, None
+            for part in path:  # a faulty element of a list takes the list with it
+                if not isinstance(owner, dict) or part not in owner:
+                    break
+                holder, key = owner, part
+                owner = owner[part]
+            if key is not None:
+                del holder[key]
+        return content
+
+    def refuse(self, faults: Iterable[Fault]) -> None:
+        """Raise all faults together, one a line, in the order of their places.
+
+        Raises
+        ------
+        CaseError
+            If there is any.
+        """
+        placed = [(self._fault_place(fault), fault.text) for fault in faults]
+        placed.sort(key=lambda item: (item[0].rank, item[0].line, item[0].column))
+        if placed:
+            lines = dict.fromkeys(f"{place}: {text}" for place, text in placed)
+            raise CaseError("\n".join(lines))
+
+    def _fault_place(self, fault: Fault) -> Place:
+        if fault.place:
+            return fault.place
+        return self.key_place(fault.path) if fault.at_key else self.value_place(fault.path)

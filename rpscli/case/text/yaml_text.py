@@ -1,0 +1,228 @@
+"""Strict YAML: text -> Document. Core-schema scalars, no duplicate keys, positions kept."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import yaml
+from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault, Path, Place, dotted, shown
+from rpscli.case.text.syntax_errors import syntax_error
+from rpscli.errors import CaseError
+
+DEEPEST = 40
+"""Levels of nesting; a case needs five."""
+LARGEST = 100_000
+"""Values in a document, aliases counted each time they are used."""
+
+
+Scalar = None | bool | int | float | str
+
+TAG = "tag:yaml.org,2002:"
+
+NULL = re.compile(r"(?:null|Null|NULL|~|)\Z")
+BOOL = re.compile(r"(?:true|True|TRUE|false|False|FALSE)\Z")
+INT = re.compile(r"(?:[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+)\Z")
+FLOAT = re.compile(
+    r"(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
+    r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z"
+)
+PATTERNS = {"null": NULL, "bool": BOOL, "int": INT, "float": FLOAT}
+"""Tried in this order; what matches none of them is text."""
+
+
+class CoreLoader(yaml.SafeLoader):
+    """PyYAML's loader with the scalars of YAML 1.2, reading nodes only."""
+
+    # Without this PyYAML would add to the YAML 1.1 table, in which `no` is false.
+    yaml_implicit_resolvers: dict[Any, Any] = {}  # noqa: RUF012 -- PyYAML's own class attribute
+
+    depth = 0
+
+    def compose_node(self, parent: Node | None, index: int) -> Node | None:
+        """Compose one node, unless it is nested deeper than anything sensible."""
+        self.depth += 1
+        if self.depth > DEEPEST:
+            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+            raise yaml.composer.ComposerError(None, None, f"nested over {DEEPEST} deep", mark)
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
+
+
+for _tag, _pattern in PATTERNS.items():
+    CoreLoader.add_implicit_resolver(TAG + _tag, _pattern, None)
+
+
+def read_yaml(text: str, name: str) -> Document:
+    r"""Read one YAML document whose root is a mapping.
+
+    Parameters
+    ----------
+    text
+        The whole file.
+    name
+        The source as the user named it, for messages.
+
+    Raises
+    ------
+    CaseError
+        If the text is not one YAML document, is empty, or is no mapping. Duplicate keys and
+        the like do not end the reading; they are in the document's `faults`.
+
+    Examples
+    --------
+    >>> document = read_yaml("analysis:\n  recontact_tolerance: 1e-6\n", "a.yaml")
+    >>> document.content, str(document.value_place(("analysis", "recontact_tolerance")))
+    ({'analysis': {'recontact_tolerance': 1e-06}}, 'a.yaml:2:24')
+    """
+    root = _root(text, name)
+    if root is None or (isinstance(root, ScalarNode) and not root.value):
+        raise CaseError(f"{name}: the file is empty; `rps init` writes a case to start from")
+    reader = _Reader(name)
+    content = reader.value(root, ())
+    if not isinstance(content, dict):
+        place = reader.place(root)
+        raise CaseError(
+            f"{place}: the file holds {shown(content)}, not a mapping; it must begin with keys,"
+            " as in `rps: 1`"
+        )
+    return Document(name, content, reader.keys, reader.values, tuple(reader.faults))
+
+
+def read_value(text: str, name: str) -> Any:
+    """Value of one YAML scalar or flow collection (``0.2``, ``[1, 2]``), without positions."""
+    root = _root(text, name)
+    if root is None:
+        raise CaseError(f"{name}: no value; write null to take the key out")
+    reader = _Reader(name)
+    value = reader.value(root, ())
+    if reader.faults:
+        raise CaseError("\n".join(f"{name}: {fault.text}" for fault in reader.faults))
+    return value
+
+
+def _root(text: str, name: str) -> Node | None:
+    try:
+        loader = CoreLoader(text)
+        root = loader.get_node() if loader.check_node() else None
+        second = loader.get_node() if loader.check_node() else None
+    except yaml.YAMLError as error:
+        raise CaseError(syntax_error(error, text, name)) from None
+    if second is not None:
+        raise CaseError(
+            f"{name}:{second.start_mark.line + 1}:1: a second document begins here; one file"
+            " holds one document: take the `---` line out, or split the file"
+        )
+    return root
+
+
+@dataclass
+class _Reader:
+    """Nodes -> values, gathering positions and faults on the way."""
+
+    name: str
+    keys: dict[Path, Place] = field(default_factory=dict)
+    values: dict[Path, Place] = field(default_factory=dict)
+    faults: list[Fault] = field(default_factory=list)
+    open_nodes: list[Node] = field(default_factory=list)
+    count: int = 0
+
+    def place(self, node: Node) -> Place:
+        return Place(self.name, node.start_mark.line + 1, node.start_mark.column + 1)
+
+    def value(self, node: Node, path: Path) -> Any:
+        place = self.values[path] = self.place(node)
+        self.count += 1
+        if self.count > LARGEST:
+            raise CaseError(f"{place}: more than {LARGEST} values; do aliases multiply them?")
+        if any(node is other for other in self.open_nodes):
+            raise CaseError(f"{place}: the anchor holds an alias of itself; write the value out")
+        self.open_nodes.append(node)
+        try:
+            return self._value(node, path)
+        finally:
+            self.open_nodes.pop()
+
+    def _value(self, node: Node, path: Path) -> Any:
+        if isinstance(node, MappingNode) and node.tag == TAG + "map":
+            return {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
+        if isinstance(node, SequenceNode) and node.tag == TAG + "seq":
+            return [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
+        tag = node.tag.removeprefix(TAG)
+        if isinstance(node, ScalarNode) and tag in {*PATTERNS, "str"}:
+            return self.scalar(node, tag, path)
+        self.fault(path, node, f"the YAML tag {node.tag} is not used here; take it out")
+        return None
+
+    def scalar(self, node: ScalarNode, tag: str, path: Path) -> Any:
+        try:
+            return _scalar(tag, node.value)
+        except ValueError as error:
+            self.fault(path, node, f"{dotted(path)}: {error}")
+            return None
+
+    def pairs(self, node: MappingNode, path: Path) -> Iterator[tuple[str, Node]]:
+        """Keys with their nodes, each key once."""
+        for key_node, value_node in node.value:
+            key = self.key(key_node, path)
+            if key is None:
+                continue
+            here = (*path, key)
+            if here in self.keys:
+                first = f"first at line {self.keys[here].line}, column {self.keys[here].column}"
+                text = f"{dotted(here)} is written twice, {first}; keep one of them"
+                self.fault(here, key_node, text)
+                continue
+            self.keys[here] = self.place(key_node)
+            yield key, value_node
+
+    def key(self, node: Node, path: Path) -> str | None:
+        if isinstance(node, ScalarNode) and node.value == "<<" and node.style is None:
+            text = "`<<` (merging a mapping) is not YAML 1.2; write the keys out"
+        elif not isinstance(node, ScalarNode):
+            text = "a key must be a word, not a list or a mapping; check braces and brackets"
+        elif node.tag != TAG + "str":
+            text = f"the key {node.value or 'null'} must be text, as in `storeys: 6`"
+        else:
+            return str(node.value)
+        self.fault(path, node, text)
+        return None
+
+    def fault(self, path: Path, node: Node, text: str) -> None:
+        self.faults.append(Fault(path, text, place=self.place(node)))
+
+
+def _scalar(tag: str, text: str) -> Scalar:
+    """Value of a scalar whose tag (``int``, ``float``, ...) is known.
+
+    Raises
+    ------
+    ValueError
+        If the text does not have the form of the tag (an explicit ``!!int abc``).
+    """
+    if tag == "str":
+        return text
+    if not PATTERNS[tag].match(text):
+        raise ValueError(f"{text!r} is not a YAML {tag}")
+    if tag == "null":
+        return None
+    if tag == "bool":
+        return text.lower() == "true"
+    return _integer(text) if tag == "int" else _real(text)
+
+
+def _integer(text: str) -> int:
+    base = {"0o": 8, "0x": 16}.get(text[:2], 10)
+    if len(text) > 400:  # far outside every quantity, and slow to convert
+        raise ValueError(f"a whole number of {len(text)} digits is too long")
+    return int(text, base)
+
+
+def _real(text: str) -> float:
+    return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))

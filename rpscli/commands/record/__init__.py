@@ -1,0 +1,1 @@
+"""`rps record`: one module a subcommand."""

@@ -1,0 +1,51 @@
+"""`rps record plot`: a ground motion at a glance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from rpscli.commands.case_input import write
+from rpscli.commands.record.info import record_tables
+from rpscli.commands.record.input import record_folder, source_options
+from rpscli.commands.shell.options import OutputRequest, output_options, terminal_options
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.report.documents import heading
+
+if TYPE_CHECKING:
+    from rpscli.records.ground_motion import GroundMotion
+
+DAMPING = 0.05
+
+
+@click.command("plot")
+@terminal_options
+@source_options
+@output_options
+def command(motion: GroundMotion, output: OutputRequest, terminal: Terminal) -> None:
+    """Draw SRC: acceleration, velocity, displacement and its response spectrum at 5 % damping.
+
+    Writes record.png, record.csv and spectrum.csv.
+    """
+    import numpy as np  # noqa: PLC0415 -- slow
+
+    from rpscli.records.measures.intensity import intensity_measures  # noqa: PLC0415
+    from rpscli.records.measures.spectrum import response_spectrum  # noqa: PLC0415
+    from rpscli.report.bundles import record_files  # noqa: PLC0415
+    from rpscli.report.tables.record import record_document  # noqa: PLC0415
+
+    folder = record_folder(motion, output, "plot")
+    periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
+    spectrum = response_spectrum(motion, periods, DAMPING)
+    for name, content in record_files(motion, spectrum):
+        folder.add(name, content)
+    write(folder, terminal)
+    measures = intensity_measures(motion)
+    document = {
+        **heading(),
+        "command": "record plot",
+        **record_document(motion, measures),
+        "files": folder.files,
+    }
+    terminal.result(document, record_tables(motion, measures))

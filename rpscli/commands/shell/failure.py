@@ -1,0 +1,95 @@
+"""The one place that turns errors into text, a JSON document and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NoReturn
+
+import click
+
+from rpscli.commands.shell.terminal import emit
+from rpscli.errors import LimitExceeded, RpsError
+from rpscli.report.documents import failure_document
+from rpscli.report.files.json_text import json_text
+
+INTERRUPTED = 130
+INTERNAL = 1
+TRACEBACK = "RPS_TRACEBACK"
+"""Environment variable that asks for the traceback of an internal error."""
+
+
+def exit_code_of(error: BaseException) -> int:
+    """The exit code that stands for an error."""
+    if isinstance(error, RpsError | click.ClickException):
+        return error.exit_code
+    return INTERRUPTED if isinstance(error, KeyboardInterrupt | click.Abort) else INTERNAL
+
+
+def report(error: BaseException, *, as_json: bool) -> int:
+    """Say on the streams what went wrong; returns the exit code."""
+    code = exit_code_of(error)
+    if as_json:
+        document = failure_document(kind(error), message(error), code)
+        emit(json_text(document), sys.stdout)
+    emit(_lines(error), sys.stderr)
+    return code
+
+
+def concluded(document: Mapping[str, Any], error: RpsError | None) -> dict[str, Any]:
+    """The document of a result, with the error that belongs to it.
+
+    A limit that is exceeded leaves a good result, of status ``ok``. After any other error the
+    document says so, beside the numbers that there are.
+    """
+    if error is None or isinstance(error, LimitExceeded):
+        return dict(document)
+    return {**document, **failure_document(kind(error), message(error), error.exit_code)}
+
+
+def leave(error: RpsError | None) -> None:
+    """End a command that has given its result, if an error belongs to it."""
+    if error is not None:
+        emit(_lines(error), sys.stderr)
+        _exit(error.exit_code)
+
+
+def _exit(code: int) -> NoReturn:
+    raise click.exceptions.Exit(code)
+
+
+def kind(error: BaseException) -> str:
+    """Name of an error in JSON: its class; all faults of the command line are one kind."""
+    if isinstance(error, click.ClickException):
+        return "UsageError"
+    return "Interrupted" if exit_code_of(error) == INTERRUPTED else type(error).__name__
+
+
+def message(error: BaseException) -> str:
+    """What an error says, without its kind."""
+    if isinstance(error, click.ClickException):
+        return error.format_message()
+    if exit_code_of(error) == INTERRUPTED:
+        return "interrupted; no file was changed"
+    if isinstance(error, RpsError):
+        return str(error)
+    place = traceback.extract_tb(error.__traceback__)[-1:]
+    where = f" ({Path(place[0].filename).name}:{place[0].lineno})" if place else ""
+    return (
+        f"internal error{where}: {type(error).__name__}: {error}; this is a fault of rps: please"
+        f" report it with the traceback that {TRACEBACK}=1 shows"
+    )
+
+
+def _lines(error: BaseException) -> str:
+    if exit_code_of(error) == INTERNAL and os.environ.get(TRACEBACK):
+        return "".join(traceback.format_exception(error))
+    if type(error).__name__ == "NoArgsIsHelpError":  # click >= 8.2: a group without a subcommand
+        return f"{message(error)}\n"
+    usage = ""
+    if isinstance(error, click.UsageError) and error.ctx is not None:
+        usage = f"{error.ctx.get_usage()}\ntry {error.ctx.command_path} --help\n"
+    return usage + "".join(f"error: {line}\n" for line in message(error).splitlines())

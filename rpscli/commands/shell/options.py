@@ -1,0 +1,86 @@
+"""Options that several commands share, each defined once.
+
+Every decorator here hands one object to the command in place of several values.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rpscli.commands.shell.terminal import Terminal
+
+Command = Callable[..., None]
+
+
+@dataclass(frozen=True)
+class CaseRequest:
+    """The case that a command works on: a file or ``-``, and values put over it."""
+
+    source: str
+    overrides: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class OutputRequest:
+    """Where results go; None is the default folder."""
+
+    place: Path | None
+    force: bool
+
+
+def terminal_options(function: Command) -> Command:
+    """--json and --quiet, as `terminal`."""
+
+    @click.option(
+        "--json", "as_json", is_flag=True, help="Print one JSON document in place of tables."
+    )
+    @click.option("-q", "--quiet", is_flag=True, help="Print errors only (and --json).")
+    @functools.wraps(function)
+    def command(*, as_json: bool, quiet: bool, **rest: Any) -> None:
+        function(terminal=Terminal(as_json=as_json, quiet=quiet), **rest)
+
+    return command
+
+
+def case_options(function: Command) -> Command:
+    """CASE and --set, as `request`."""
+
+    @click.argument("case", metavar="CASE")
+    @click.option(
+        "--set",
+        "overrides",
+        multiple=True,
+        metavar="KEY=VALUE",
+        help="Put a value over the case's own, such as"
+        " --set podium.bearing.curvature_ratio=1.5; repeatable.",
+    )
+    @functools.wraps(function)
+    def command(*, case: str, overrides: tuple[str, ...], **rest: Any) -> None:
+        function(request=CaseRequest(case, overrides), **rest)
+
+    return command
+
+
+def output_options(function: Command) -> Command:
+    """-o and --force, as `output`."""
+
+    @click.option(
+        "-o",
+        "--output",
+        "place",
+        type=click.Path(path_type=Path),
+        metavar="DIR",
+        help="Folder of the results; results/<name>/<command> by default.",
+    )
+    @click.option("--force", is_flag=True, help="Overwrite files that this command did not write.")
+    @functools.wraps(function)
+    def command(*, place: Path | None, force: bool, **rest: Any) -> None:
+        function(output=OutputRequest(place, force), **rest)
+
+    return command

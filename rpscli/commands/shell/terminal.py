@@ -1,0 +1,100 @@
+"""What a command says: results on the standard output, everything else on the standard error."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TextIO
+
+from rpscli.errors import OutputError
+from rpscli.report.files.json_text import json_text
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+PLAIN_WIDTH = 100
+"""Columns where the output is no terminal and COLUMNS is not set."""
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """How much is said, and in which form.
+
+    Parameters
+    ----------
+    as_json
+        One JSON document in place of tables.
+    quiet
+        No tables, no notes; errors are still reported.
+    """
+
+    as_json: bool = False
+    quiet: bool = False
+
+    def note(self, text: str) -> None:
+        """A line about what goes on, on the standard error."""
+        if not self.quiet:
+            emit(text + "\n", sys.stderr)
+
+    def warn(self, texts: Iterable[str]) -> None:
+        """Lines that should be read before the numbers are used."""
+        for text in texts:
+            self.note(f"warning: {text}")
+
+    def result(self, document: Mapping[str, Any], tables: Iterable[RenderableType] = ()) -> None:
+        """The result, as a document or as tables."""
+        if self.as_json:
+            emit(json_text(document), sys.stdout)
+        elif not self.quiet:
+            emit(rendered(tables), sys.stdout)
+
+
+def rendered(tables: Iterable[RenderableType]) -> str:
+    """Text of tables for the standard output: coloured and as wide as a terminal, if it is one."""
+    from rich.console import Console  # noqa: PLC0415 -- `rps --help` does without
+
+    screen = sys.stdout is not None and sys.stdout.isatty()
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    page = io.TextIOWrapper(io.BytesIO(), encoding, errors="replace", newline="\n")
+    console = Console(
+        file=page,
+        force_terminal=screen or None,  # None leaves it to FORCE_COLOR
+        width=None if screen or "COLUMNS" in os.environ else PLAIN_WIDTH,
+        highlight=False,
+        # Titles and file names may hold [brackets] and :colons:, which mean nothing here.
+        markup=False,
+        emoji=False,
+    )
+    for number, table in enumerate(tables):
+        if number:
+            console.print()
+        console.print(table, crop=False)  # too wide is better than cut off
+    page.seek(0)
+    return page.read()
+
+
+def emit(text: str, stream: TextIO | None) -> None:
+    """Write at once. What the stream cannot encode becomes ``?``; a reader that left is no error.
+
+    After `rps ... | head -1` there is nobody left to read. The command goes on, so that its files
+    and its exit code do not depend on who listens. The same holds for a stream that is closed.
+
+    Raises
+    ------
+    OutputError
+        If the standard output goes to a file that cannot be written.
+    """
+    if stream is None:
+        return
+    encoding = stream.encoding or "utf-8"
+    try:
+        stream.write(text.encode(encoding, "replace").decode(encoding))
+        stream.flush()
+    except OSError as error:
+        # What is still in the stream's buffer must not fail again when the program ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        if stream is sys.stdout and not isinstance(error, BrokenPipeError):
+            raise OutputError(f"standard output: cannot be written: {error.strerror}") from None

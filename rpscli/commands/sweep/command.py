@@ -1,0 +1,172 @@
+"""`rps sweep`: all points of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from rpscli.commands.shell.failure import INTERRUPTED, concluded, leave
+from rpscli.commands.shell.options import (
+    CaseRequest,
+    OutputRequest,
+    output_options,
+    terminal_options,
+)
+from rpscli.commands.shell.tables import listing, title
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.sweep.dry_run import show_dry_run
+from rpscli.commands.sweep.input import (
+    StudyInput,
+    SweepChoices,
+    read_study,
+    study_folder,
+    study_heading,
+)
+from rpscli.commands.sweep.points import begin, compute
+from rpscli.commands.sweep.results import Failure, collect, outcome_counts
+from rpscli.errors import StudyIncomplete
+from rpscli.report.documents import failure_document, heading
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.report.files.output_folder import OutputFolder
+    from rpscli.sweep.run.resume import Resume
+    from rpscli.sweep.run.runner import Finish
+    from rpscli.sweep.store import Store
+
+FAILURES_SHOWN = 10
+WARNINGS_SHOWN = 5
+
+
+@click.command("sweep")
+@click.argument("study", metavar="STUDY")
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Put a value over the study's own (--set 'scale=[1, 2]') or over its base case's"
+    " (--set podium.bearing.slenderness=0.2); repeatable.",
+)
+@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Threads; all cores by default.")
+@click.option("--scheduler", metavar="ADDRESS", help="Use a Dask cluster, as in tcp://head:8786.")
+@click.option("--dry-run", is_flag=True, help="Check the study; show its points and an estimate.")
+@click.option("--fresh", is_flag=True, help="Throw away what is stored, and begin anew.")
+@click.option("--retry-failed", is_flag=True, help="Compute points again that failed.")
+@click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
+@output_options
+@terminal_options
+def command(
+    study: str,
+    overrides: tuple[str, ...],
+    output: OutputRequest,
+    terminal: Terminal,
+    **choices: Any,
+) -> None:
+    """Compute all points of STUDY, and draw its reports.
+
+    Every point is stored as it ends: after an interruption the same command goes on. If points
+    failed the exit code is 5, and failed.csv has the command that computes each of them alone.
+    """
+    chosen = SweepChoices(**choices)
+    chosen.require_sense()
+    given = read_study(CaseRequest(study, overrides), terminal)
+    if chosen.dry_run:
+        show_dry_run(given, chosen, terminal)
+        return
+    from rpscli.sweep.store import Store  # noqa: PLC0415 -- sqlite is slow
+
+    folder = study_folder(given, output)
+    with Store(folder.folder, fresh=chosen.fresh) as store:
+        start = begin(given, store, chosen, terminal)
+        try:
+            finish = compute(given, start, store, chosen, terminal)
+        except KeyboardInterrupt:
+            finish = None
+        if finish is None or finish.interrupted:
+            _stop(given, store, start, terminal)
+        _conclude(given, store, start, finish, folder, terminal)
+
+
+def _stop(given: StudyInput, store: Store, start: Resume, terminal: Terminal) -> NoReturn:
+    """Say how to go on, and leave."""
+    known = store.outcomes()
+    done = sum(key in known for key in start.keys)
+    text = (
+        f"interrupted: {done} of {len(start.keys)} points are stored in {store.path}; the same"
+        " command goes on from there"
+    )
+    terminal.note(text)
+    document = {
+        **heading(),
+        "command": "sweep",
+        "study": study_heading(given),
+        "points": {"total": len(start.keys), "stored": done},
+        **failure_document("Interrupted", text, INTERRUPTED),
+    }
+    terminal.result(document)
+    raise click.exceptions.Exit(INTERRUPTED)
+
+
+def _conclude(
+    given: StudyInput,
+    store: Store,
+    start: Resume,
+    finish: Finish,
+    folder: OutputFolder,
+    terminal: Terminal,
+) -> None:
+    from rpscli.commands.case_input import write  # noqa: PLC0415
+    from rpscli.sweep.reports.study_results import StudyResults  # noqa: PLC0415 -- numpy is slow
+    from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
+    from rpscli.sweep.table import tabulate  # noqa: PLC0415
+
+    table = tabulate(given.design, store.stored(start.keys))
+    results = StudyResults(table, start.keys, store, given.context, available_cores())
+    failures, notes = collect(given, results, folder)
+    error = _incomplete(failures, len(table))
+    write(folder, terminal)
+    terminal.warn(notes[:WARNINGS_SHOWN])
+    if len(notes) > WARNINGS_SHOWN:
+        terminal.note(f"... and {len(notes) - WARNINGS_SHOWN} more in the reports")
+    document = {
+        **heading(),
+        "command": "sweep",
+        "study": study_heading(given),
+        "points": {
+            "total": len(table),
+            "computed": finish.computed,
+            "kept": start.kept,
+            "failed": len(failures),
+            "unused": start.unused,
+        },
+        "outcomes": outcome_counts(table),
+        "failures": [asdict(failure) for failure in failures],
+        "notes": list(start.notes),
+        "warnings": notes,
+        "files": [str(store.path), *folder.files],
+    }
+    terminal.result(concluded(document, error), _tables(document))
+    leave(error)
+
+
+def _incomplete(failures: list[Failure], total: int) -> StudyIncomplete | None:
+    if not failures:
+        return None
+    lines = [f"{len(failures)} of {total} points failed; they enter no statistic"]
+    for failure in failures[:FAILURES_SHOWN]:
+        lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
+    if len(failures) > FAILURES_SHOWN:
+        lines.append(f"... and {len(failures) - FAILURES_SHOWN} more, all in failed.csv")
+    return StudyIncomplete("\n".join(lines))
+
+
+def _tables(document: dict[str, Any]) -> Iterator[RenderableType]:
+    yield title(document["study"]["title"])
+    outcomes = document["outcomes"].items()
+    rows = [("points", str(document["points"]["total"]))]
+    yield listing([*rows, *((name, str(count)) for name, count in outcomes)])

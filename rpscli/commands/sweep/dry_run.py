@@ -1,0 +1,82 @@
+"""`rps sweep --dry-run`: what a study would do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from rpscli.commands.shell.tables import listing, title
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.sweep.input import StudyInput, SweepChoices, study_heading
+from rpscli.commands.sweep.progress import duration
+from rpscli.report.documents import heading
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+POINTS_SHOWN = 3
+"""At each end of the study."""
+
+GUESSED_POINT_SECONDS = 0.01
+"""Where trying would mean compiling first: some 40 s of motion of a few storeys."""
+
+
+def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -> None:
+    """Count, first and last points, and an estimate of the time."""
+    from rpscli.sweep.design.described import described  # noqa: PLC0415 -- numpy is slow
+    from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
+
+    design = given.design
+    jobs = choices.jobs or available_cores()
+    count = len(design)
+    first = range(min(POINTS_SHOWN, count))
+    last = range(max(0, count - POINTS_SHOWN), count)
+    points = {n: {"point": n + 1, **described(design, design[n])} for n in {*first, *last}}
+    seconds, source = _estimate(given, jobs)
+    document: dict[str, Any] = {
+        **heading(),
+        "command": "sweep",
+        "study": study_heading(given),
+        "dry_run": True,
+        "analysis": design.plan.analysis,
+        "points": count,
+        "systems": len(design.combinations),
+        "records": len(design.records),
+        "scales": len(design.scales),
+        "members": len(design.members),
+        "first_points": [points[n] for n in first],
+        "last_points": [points[n] for n in last],
+        "estimate": {"seconds": seconds, "jobs": jobs, "source": source},
+    }
+    shown = [points[n] for n in sorted(points)]
+    terminal.result(document, _tables(document, shown))
+
+
+def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
+    """Time of the whole study [s], and where the number comes from."""
+    from rpscli.analyses.kernels.compilation import is_ready  # noqa: PLC0415 -- numpy is slow
+    from rpscli.sweep.run.estimate import estimated_seconds  # noqa: PLC0415
+
+    if given.design.plan.analysis == "timehistory" and not all(
+        is_ready(system.storeys) for system in given.design.properties
+    ):
+        seconds = GUESSED_POINT_SECONDS * len(given.design) / jobs
+        return seconds, "a guess, since the kernels are not compiled yet"
+    return estimated_seconds(given.design, given.context, jobs), "trying some of the points"
+
+
+def _tables(document: dict[str, Any], points: list[dict[str, Any]]) -> Iterator[RenderableType]:
+    from rpscli.report.study.labels import plain  # noqa: PLC0415 -- pydantic is slow
+
+    yield title(document["study"]["title"])
+    counts = [(name, str(document[name])) for name in ("points", "systems", "records", "scales")]
+    counts.append(("members", str(document["members"])))
+    expected = document["estimate"]
+    text = f"about {duration(expected['seconds'])} on {expected['jobs']} cores"
+    yield listing([*counts, ("time", f"{text}, by {expected['source']}")])
+    rows = []
+    for point in points:
+        words = (f"{key.rpartition('.')[2]} {plain(value)}" for key, value in point.items())
+        number, *varied = words
+        rows.append((number, ", ".join(varied)))
+    yield listing(rows)

@@ -1,0 +1,108 @@
+"""From what stands on the command line to the points of a study, and to its folder."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rpscli.commands.case_input import RESULTS
+from rpscli.commands.shell.options import CaseRequest, OutputRequest
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import UsageError
+from rpscli.report.files.output_folder import OutputFolder, Run
+
+if TYPE_CHECKING:
+    from rpscli.case.study.study import Study
+    from rpscli.sweep.design.layout import Design
+    from rpscli.sweep.evaluation.context import StudyContext
+
+
+@dataclass(frozen=True)
+class SweepChoices:
+    """How a study is run."""
+
+    jobs: int | None
+    scheduler: str | None
+    dry_run: bool
+    fresh: bool
+    retry_failed: bool
+    report_only: bool
+
+    def require_sense(self) -> None:
+        """Refuse options that contradict each other."""
+        if self.report_only and (self.fresh or self.retry_failed or self.scheduler):
+            raise UsageError(
+                "--report-only computes no points; take --fresh, --retry-failed and --scheduler out"
+            )
+        if self.scheduler and self.jobs:
+            raise UsageError("--jobs counts threads of this machine; --scheduler has its own")
+
+
+@dataclass(frozen=True, eq=False)
+class StudyInput:
+    """A study, laid out."""
+
+    design: Design
+    context: StudyContext
+    request: CaseRequest
+
+    @property
+    def study(self) -> Study:
+        """The study."""
+        return self.design.study
+
+    @property
+    def file(self) -> Path | None:
+        """The study's file; None if it came through the standard input."""
+        return None if self.request.source == "-" else Path(self.request.source)
+
+
+def read_study(request: CaseRequest, terminal: Terminal) -> StudyInput:
+    """Read and check a study and all its systems."""
+    from rpscli.case.study.study import parse_study  # noqa: PLC0415
+    from rpscli.case.text.files import read_text  # noqa: PLC0415 -- pydantic and yaml are slow
+    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+    from rpscli.sweep.design.layout import lay_out  # noqa: PLC0415
+    from rpscli.sweep.design.sampling import balance_note  # noqa: PLC0415
+    from rpscli.sweep.evaluation.context import StudyContext  # noqa: PLC0415
+
+    piped = request.source == "-"
+    study = parse_study(
+        read_text(request.source),
+        name="<stdin>" if piped else request.source,
+        kinds=REPORTS,
+        folder=None if piped else Path(request.source).parent,
+        overrides=request.overrides,
+    )
+    if (section := study.file.sample) and (note := balance_note(section)):
+        terminal.warn([note])
+    design = lay_out(study)
+    return StudyInput(design, StudyContext(design.plan), request)
+
+
+def study_folder(given: StudyInput, output: OutputRequest) -> OutputFolder:
+    """The folder of a study's results.
+
+    A folder with a store belongs to its study, which the store itself looks after: after a kill
+    there may be files there that no `run.json` speaks of.
+    """
+    from rpscli.sweep.store import FILE  # noqa: PLC0415 -- sqlite is slow
+
+    study, plan = given.study, given.design.plan
+    inputs = {
+        "study": study.document.content,
+        "base": plan.base,
+        "overrides": list(given.request.overrides),
+        "points": len(given.design),
+        "solver": plan.solver,
+    }
+    place = output.place or RESULTS / study.name / "sweep"
+    run = Run("sweep", study.name, given.file, study.digest, inputs)
+    return OutputFolder(place, run, force=output.force or (place / FILE).exists())
+
+
+def study_heading(given: StudyInput) -> dict[str, str]:
+    """The study in a JSON document."""
+    study = given.study
+    return {"name": study.name, "title": study.title, "source": study.source}

@@ -1,0 +1,116 @@
+"""Compilation of the kernels, cached where the user may write.
+
+numba invalidates a cached function when its own file changes, not when a function that it inlines
+from another file does. The cache folder is therefore named after a digest of all kernel sources:
+what is found there always belongs to the program that runs.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+from numba.extending import register_jitable
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    # The only liberty that the compiler has: a product and a sum may be rounded once.
+    "fastmath": {"contract"},
+}
+
+SOURCES = Path(__file__).parent
+
+
+def sources_digest(folder: Path) -> str:
+    """Digest of all Python sources below a folder, their places included."""
+    digest = hashlib.sha256()
+    for source in sorted(folder.rglob("*.py")):
+        digest.update(str(source.relative_to(folder).as_posix()).encode())
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def cache_folder() -> Path | None:
+    """Folder of the compiled kernels; None if no place is writable.
+
+    ``RPS_CACHE_DIR`` wins, then the user's cache folder, then the system's temporary one.
+    """
+    name = f"kernels-{sources_digest(SOURCES)}"
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
+    places = [
+        os.environ.get("RPS_CACHE_DIR"),
+        Path(home) / "rps",
+        Path(tempfile.gettempdir()) / "rps",
+    ]
+    for place in places:
+        if place and _is_writable(folder := Path(place) / name):
+            return folder
+    return None
+
+
+def _is_writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def kernel(function: Function) -> Function:
+    """Compile at the first call from Python, without the GIL; keep the machine code on disk."""
+    folder, config = cache_folder(), cast("Any", numba.config)
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
+    try:
+        return cast("Function", numba.njit(function, cache=folder is not None, **OPTIONS))
+    finally:
+        config.CACHE_DIR = before
+
+
+def compiled(function: Function) -> Function:
+    """Compile with the kernels that call it; called from Python it runs as Python."""
+    return register_jitable(**OPTIONS)(function)
+
+
+def inlined(function: Function) -> Function:
+    """The same, merged into its callers: for what a loop over lanes is to be vectorised with."""
+    return register_jitable(forceinline=True, **OPTIONS)(function)
+
+
+def specialised(function: Function) -> Function:
+    """The same, anew for each constant that is handed to it.
+
+    For loops over lanes: of a known number of lanes the compiler makes vector instructions.
+    """
+    return cast("Function", numba.njit(function, **OPTIONS))
+
+
+_compiled_here: set[str] = set()
+
+
+def is_compiled(name: str) -> bool:
+    """Whether `remember_compiled` was told so by any process that uses the same cache folder."""
+    folder = cache_folder()
+    return name in _compiled_here or (folder is not None and (folder / _mark(name)).exists())
+
+
+def remember_compiled(name: str) -> None:
+    """Note that the machine code of a kernel is in memory and, if there is a cache, on disk."""
+    _compiled_here.add(name)
+    if (folder := cache_folder()) is not None:
+        (folder / _mark(name)).touch()
+
+
+def _mark(name: str) -> str:
+    return re.sub(r"\W+", "-", name) + ".compiled"

@@ -1,0 +1,1 @@
+"""Mathematics that knows no lane: contact geometry, oscillator, polynomials."""

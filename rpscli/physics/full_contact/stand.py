@@ -1,0 +1,206 @@
+"""A lane in full contact: over the record's intervals until it uplifts or the history ends."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.compile import compiled
+from rpscli.physics.full_contact.demands import (
+    clear_contacts,
+    hand_over_contacts,
+    mark_samples,
+    may_raise,
+    observe_contacts,
+    raise_floors_of_block,
+)
+from rpscli.physics.full_contact.modal_block import (
+    book_energy_of_block,
+    fill_map,
+    follow_modes,
+    keep_state,
+)
+from rpscli.physics.full_contact.rest import REST_EVERY, is_over
+from rpscli.physics.full_contact.uplift_search import (
+    Margin,
+    first_uplift,
+    locate_uplift,
+    margin_of,
+    raise_alarms,
+)
+from rpscli.physics.ground import set_ground_of_block
+from rpscli.physics.run import Output
+from rpscli.physics.samples import enter_interval, store_sample
+from rpscli.physics.state import (
+    FAILED_NOT_FINITE,
+    GOES_ON,
+    INSTANTS,
+    IS_OVER,
+    SHORT_STEP,
+    WHOLE_STEP,
+    Floats,
+    Record,
+)
+from rpscli.physics.transitions.phases import uplift
+from rpscli.physics.uplifted.demands import set_harmless
+
+
+@compiled
+def modes_to_block(s: Record, l: int, block: Record) -> None:
+    """Begin full contact with the modes as they are."""
+    for r in range(s.n):
+        block.q[r], block.dq[r] = s.q[r, l], s.dq[0, r, l]
+
+
+@compiled
+def modes_from_block(s: Record, l: int, block: Record) -> None:
+    """Take the modes over from full contact; the storey does not tilt."""
+    s.theta[l], s.theta_dot[l] = 0.0, 0.0
+    for r in range(s.n):
+        s.q[r, l], s.dq[0, r, l] = block.q[r], block.dq[r]
+
+
+class Plan(NamedTuple):
+    """Steps to take at once: how many, of which length [s]; `each` of them lead to a sample.
+
+    `which` says where their map stands: that of the lane's whole steps is known.
+    """
+
+    steps: int
+    h: float
+    each: int
+    which: int
+
+
+FINE = 4
+"""A step in which the margin comes near zero is taken again in so many: their interpolating quintic
+is 4^6 times as good."""
+
+NEAR = 1e-3
+"""What is near, over the limit: some forty times the largest error of the quintic of a step."""
+
+
+@compiled
+def plan_block(s: Record, l: int, system: Record, block: Record, finer: int) -> Plan:
+    """The next steps of a lane: even parts of the intervals, or of what is left of one.
+
+    A finer look, with steps divided by `finer`, goes no farther than the next sample.
+
+    They end where the ground acceleration may jump, the history ends, or is looked at to see
+    whether anything can still happen.
+    """
+    time, step, i = s.time[l], s.contact_step[l], s.interval[l]
+    if finer > 1 or time > 0.0:
+        left = max(s.dt[l] - time, 0.0)
+        each = int(max(math.ceil(finer * left / step - 1e-9), 1))
+        fill_map(block, system, SHORT_STEP, left / each)
+        return Plan(min(each, INSTANTS - 1), left / each, each, SHORT_STEP)
+    each = int(s.contact_steps[l])
+    free = i + 1 - s.npts[l]
+    ahead = min(s.intervals[l] - i, REST_EVERY - free % REST_EVERY) if free >= 0 else -free
+    most = max((INSTANTS - 1) // each, 1)
+    return Plan(min(each * min(ahead, most), INSTANTS - 1), step, each, WHOLE_STEP)
+
+
+@compiled
+def accept_block(
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    acceleration: Floats,
+    output: Output,
+    plan: Plan,
+    taken: int,
+    margin: Margin,
+) -> bool:
+    """Make the state after some steps of the block that of the lane; True if its history ends."""
+    first, time = s.interval[l], s.time[l]
+    passed = taken // plan.each
+    if output.samples.shape[0] > 0:
+        book_energy_of_block(block, system, plan.h)
+        for k in range(1, taken + 1):
+            s.energy_input[l] += block.input[k - 1]
+            s.energy_damped[l] += block.damped[k - 1]
+            if k % plan.each == 0:
+                keep_state(block, k)
+                modes_from_block(s, l, block)
+                s.interval[l] = first + k // plan.each
+                store_sample(s, l, system, output)
+    keep_state(block, taken)
+    if passed == 0:
+        s.time[l] = time + taken * plan.h
+        return False
+    over = enter_interval(s, l, acceleration, first + passed) or is_over(
+        s, l, system, block, margin
+    )
+    s.time[l] = (taken - passed * plan.each) * plan.h
+    return over
+
+
+@compiled
+def leave_contact(
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    output: Output,
+    at: int,
+    h: float,
+    side: float,
+) -> None:
+    """Leave full contact a time h into the step after `at` others of the block."""
+    block.a_g[0], block.a_g_slope[0] = block.a_g[at], block.a_g_slope[at]
+    fill_map(block, system, SHORT_STEP, h)
+    follow_modes(block, system, SHORT_STEP)
+    if output.samples.shape[0] > 0:
+        book_energy_of_block(block, system, h)
+        s.energy_input[l] += block.input[0]
+        s.energy_damped[l] += block.damped[0]
+    keep_state(block, 1)
+    s.time[l] += h
+    modes_from_block(s, l, block)
+    uplift(s, l, system, output.log, side)
+
+
+@compiled
+def stand(
+    s: Record, l: int, system: Record, block: Record, acceleration: Floats, output: Output
+) -> int:
+    """Follow a lane in full contact: GOES_ON when it uplifts, or IS_OVER."""
+    margin = margin_of(system)
+    modes_to_block(s, l, block)
+    fill_map(block, system, WHOLE_STEP, s.contact_step[l])
+    clear_contacts(block)
+    side, over, fine = 0.0, False, False
+    while side == 0.0 and not over:
+        plan = plan_block(s, l, system, block, FINE if fine else 1)
+        set_ground_of_block(s, l, block, acceleration, plan.h, plan.each, plan.steps)
+        follow_modes(block, system, plan.which)
+        alarms = raise_alarms(block, margin, plan.h, 0.0 if fine else NEAR)
+        taken, fraction, alarm = 0 if alarms else plan.steps, 0.0, False
+        while taken < plan.steps and not alarm:
+            alarm = block.alarm[taken] > 0.0
+            if alarm and fine:
+                fraction, side = first_uplift(block, margin, plan.h, taken)
+                alarm = side != 0.0
+            if not alarm:
+                taken += 1
+        mark_samples(block, plan.each, taken, plan.each)
+        if may_raise(block, s.shear_harmless[l], s.acceleration_harmless[l]):
+            raise_floors_of_block(block, system, s.storey_shear[l], s.floor_acceleration[l])
+            set_harmless(s, l, system)
+        observe_contacts(block, system)
+        if not math.isfinite(block.ddV[taken]):
+            s.outcome[l] = FAILED_NOT_FINITE
+            over = True
+            break
+        fine = alarm
+        over = accept_block(s, l, system, block, acceleration, output, plan, taken, margin)
+        if side != 0.0:
+            h = locate_uplift(block, system, margin, plan.h, taken, fraction * plan.h, side)
+            leave_contact(s, l, system, block, output, taken, h, side)
+    if over:
+        modes_from_block(s, l, block)
+    hand_over_contacts(s, l, block)
+    return IS_OVER if over else GOES_ON

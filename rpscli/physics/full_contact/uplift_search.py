@@ -1,0 +1,166 @@
+"""The instant at which a building in full contact uplifts.
+
+The storey uplifts to the side s when the margin
+
+    f(t) = (g + a_v) tan(alpha) (1 + 2 gamma + 2 gamma eta) - s q(t),
+    q(t) = -a_g (1 + 2 gamma) + 2 gamma eta V/M_tot
+
+leaves zero downwards (Theory, section 3): exactly where s theta'' of the uplifted equation would
+become positive. Steps that surely keep it positive are told by the quintic through the push q and
+its derivatives, for a whole block at once; the instant itself is found on the exact margin.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.compile import compiled
+from rpscli.physics.equation_of_motion import uplift_push
+from rpscli.physics.formulae.quintic import (
+    NO_PASSAGE,
+    SETTLED,
+    Quintic,
+    first_descent,
+    lower_hull,
+    quintic,
+)
+from rpscli.physics.full_contact.modal_block import fill_map, map_of, mapped
+from rpscli.physics.state import INSTANTS, SHORT_STEP, Record
+
+
+class Margin(NamedTuple):
+    """What the margin against uplift is made of.
+
+    `ground_factor` is 1 + 2 gamma, `shear_share` 2 gamma eta/M_tot [1/kg], `limit` tan(alpha)
+    (1 + 2 gamma + 2 gamma eta), and `ground_damping` sum Gamma^2 2 xi w [kg/s]: what the slope of
+    the ground's acceleration adds to V''.
+    """
+
+    ground_factor: float
+    shear_share: float
+    limit: float
+    ground_damping: float
+
+
+@compiled
+def margin_of(system: Record) -> Margin:
+    """What the margin of a structure is made of."""
+    ground_factor, carried = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
+    damping = 0.0
+    for r in range(system.n):
+        damping += system.Gamma[r] * system.Gamma[r] * system.two_xi_omega[r]
+    share = carried / system.floors_mass if system.n > 0 else 0.0
+    limit = math.tan(system.alpha) * (ground_factor + carried)
+    return Margin(ground_factor, share, limit, damping)
+
+
+@compiled
+def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
+    """What pushes the storey over, q(t) of this module, during the step after k others."""
+    factor, share, slope = margin.ground_factor, margin.shear_share, block.a_g_slope[k]
+    start = block.a_g[k]
+    curvature = -share * margin.ground_damping * slope
+    return quintic(
+        h,
+        uplift_push(factor, share, start, block.V[k]),
+        uplift_push(factor, share, slope, block.dV[k]),
+        share * block.ddV[k] + curvature,
+        uplift_push(factor, share, start + slope * h, block.V[k + 1]),
+        uplift_push(factor, share, slope, block.dV[k + 1]),
+        share * block.ddV[k + 1] + curvature,
+    )
+
+
+@compiled
+def margin_path(path: Quintic, limit: float, rise: float, side: float) -> Quintic:
+    """The margin against uplift to a side: the limit is linear, its coefficients rise evenly."""
+    return (
+        limit - side * path[0],
+        limit + 0.2 * rise - side * path[1],
+        limit + 0.4 * rise - side * path[2],
+        limit + 0.6 * rise - side * path[3],
+        limit + 0.8 * rise - side * path[4],
+        limit + rise - side * path[5],
+    )
+
+
+@compiled
+def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
+    """Write `alarm`: 0 for steps in which the margin surely stays positive to both sides.
+
+    `least` is the share of the limit that has to be left for that. Returns whether any is not 0.
+    """
+    alarms = 0
+    for k in range(INSTANTS):
+        path = push_path(block, margin, h, k)
+        limit = margin.limit * block.g_up[k]
+        rise = margin.limit * (block.g_up_slope[k] * h)
+        right = margin_path(path, limit, rise, 1.0)
+        left = margin_path(path, limit, rise, -1.0)
+        lowest = min(lower_hull(right), right[0], lower_hull(left), left[0])
+        safe = lowest >= least * limit
+        block.alarm[k] = 0.0 if safe else 1.0
+        alarms |= 0 if safe else 1
+    return alarms > 0
+
+
+@compiled
+def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float, float]:
+    """Fraction of the step after k others at which the storey uplifts, and the side (0: none)."""
+    path = push_path(block, margin, h, k)
+    limit = margin.limit * block.g_up[k]
+    rise = margin.limit * (block.g_up_slope[k] * h)
+    first, side = NO_PASSAGE, 0.0
+    for sign in (1.0, -1.0):
+        t = first_descent(margin_path(path, limit, rise, sign), SETTLED, block.piece)
+        if t < first:
+            first, side = t, sign
+    return first, side
+
+
+@compiled
+def margin_after(
+    block: Record, system: Record, margin: Margin, h: float, k: int, side: float
+) -> tuple[float, float]:
+    """Margin f against uplift to `side` and its slope, a time h into the step after k, exactly.
+
+    The state at the start of that step is the present one of the block.
+    """
+    fill_map(block, system, SHORT_STEP, h)
+    start, slope, step = block.a_g[k], block.a_g_slope[k], block.step_maps[SHORT_STEP]
+    a_g = start + slope * h
+    V, dV = 0.0, 0.0
+    for r in range(block.n):
+        still = step[r, 2] * start + step[r, 3] * slope
+        moving = step[r, 6] * start + step[r, 7] * slope
+        q, dq = mapped(map_of(step, r), block.q[r], block.dq[r], still, moving)
+        force = system.omega2[r] * q + system.two_xi_omega[r] * dq
+        ddq = -system.Gamma[r] * a_g - force
+        V += system.Gamma[r] * force
+        dV += system.Gamma[r] * (system.omega2[r] * dq + system.two_xi_omega[r] * ddq)
+    push = uplift_push(margin.ground_factor, margin.shear_share, a_g, V)
+    push_slope = uplift_push(margin.ground_factor, margin.shear_share, slope, dV)
+    limit = margin.limit * (block.g_up[k] + block.g_up_slope[k] * h)
+    return limit - side * push, margin.limit * block.g_up_slope[k] - side * push_slope
+
+
+@compiled
+def locate_uplift(
+    block: Record, system: Record, margin: Margin, h: float, k: int, guess: float, side: float
+) -> float:
+    """Time into the step after k others, near guess in [0, h], where the margin is zero [s].
+
+    Newton's method on the exact margin. A margin that only grazes zero has no steep root; the
+    interpolant's own root then stands.
+    """
+    t = guess
+    for _ in range(6):
+        f, slope = margin_after(block, system, margin, t, k, side)
+        if slope >= 0.0:
+            break
+        change = -f / slope
+        if not 0.0 <= t + change <= h or abs(change) < 1e-15 * h:
+            break
+        t += change
+    return t

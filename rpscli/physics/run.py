@@ -1,0 +1,71 @@
+"""What histories need while they run, and where their results go."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.physics.state import BLOCK, LANES, STATE, Floats, Record, records
+
+
+class Output(NamedTuple):
+    """Samples and events of a history that is run by itself; of many, give no rows to keep none.
+
+    Without room for samples no energy is audited; events beyond the log's rows are only counted.
+
+    Parameters
+    ----------
+    samples
+        (rows,) `state.SAMPLE`.
+    floors
+        (rows, 2, n) displacements and velocities of the floors [m, m/s], relative to the ground.
+    log
+        (rows,) `state.EVENT`.
+    """
+
+    samples: Record
+    floors: NDArray[np.float64]
+    log: Record
+
+
+class Run(NamedTuple):
+    """Histories to run, and what they leave behind; all arrays of records but the floats.
+
+    Parameters
+    ----------
+    systems
+        (S,) `state.SYSTEM`, all of the same number of storeys n.
+    requests
+        (P,) `state.REQUEST`: the histories.
+    acceleration
+        Records of the ground end to end [m/s2], linear between their samples.
+    results
+        (P,) `state.RESULT`: written.
+    output
+        Samples and events, where there is one history: written.
+    block
+        (1,) `state.BLOCK`: scratch of full contact.
+    """
+
+    systems: Record
+    requests: Record
+    acceleration: Floats
+    results: Record
+    output: Output
+    block: Record
+
+
+def empty_state(storeys: int, lanes: int = LANES) -> Record:
+    """Lanes with nothing to do, an array of one record; all of them are used, or one."""
+    state = records(STATE, storeys)
+    state.n, state.lanes = storeys, lanes
+    return state
+
+
+def empty_block(storeys: int) -> Record:
+    """Room for a block of steps in full contact, an array of one record."""
+    block = records(BLOCK, storeys)
+    block.n = storeys
+    return block

@@ -1,0 +1,48 @@
+"""From one sample of the record to the next: store, and see whether the history is over."""
+
+from __future__ import annotations
+
+from rpscli.physics.compile import compiled
+from rpscli.physics.equation_of_motion import (
+    cap_beam_displacement,
+    contact_height,
+    phase_constants,
+)
+from rpscli.physics.formulae.trigonometry import sine_cosine
+from rpscli.physics.ground import set_ground
+from rpscli.physics.run import Output
+from rpscli.physics.state import FULL_CONTACT, Floats, Record
+
+
+@compiled
+def store_sample(s: Record, l: int, system: Record, output: Output) -> None:
+    """Keep the state at the start of the present interval, if there is room."""
+    at = s.interval[l]
+    if at >= output.samples.shape[0]:
+        return
+    sample, side = output.samples[at], s.side[l]
+    stands = s.phase[l] == FULL_CONTACT
+    sample.theta, sample.theta_dot = side * s.theta[l], side * s.theta_dot[l]
+    sample.theta_ddot = 0.0 if stands else side * s.theta_ddot[l]
+    sample.phase = s.phase[l]
+    sample.energy_input, sample.energy_damped = s.energy_input[l], s.energy_damped[l]
+    sample.energy_lost = s.energy_lost[l]
+    u_b, du_b = 0.0, 0.0
+    if not stands:
+        phase, (sine, cosine) = phase_constants(s, l), sine_cosine(s.theta[l])
+        u_b = side * s.diameter[l] * cap_beam_displacement(phase, s.theta[l], cosine, sine)
+        du_b = side * s.diameter[l] * contact_height(phase, cosine, sine) * s.theta_dot[l]
+    for i in range(s.n):
+        u, du = u_b, du_b
+        for r in range(s.n):
+            u += system.phi[r, i] * s.q[r, l]
+            du += system.phi[r, i] * s.dq[0, r, l]
+        output.floors[at, 0, i], output.floors[at, 1, i] = u, du
+
+
+@compiled
+def enter_interval(s: Record, l: int, acceleration: Floats, interval: int) -> bool:
+    """Begin an interval of the record; True if it is beyond the history's end."""
+    s.interval[l] = interval
+    set_ground(s, l, acceleration)
+    return bool(interval >= s.intervals[l])

@@ -1,0 +1,435 @@
+"""What the kernels read and write: structured records, every field named once, here.
+
+Five records, each with an owner:
+
+* ``system``: a structure and how it is followed; filled by `rpscli.analyses`, read only;
+* ``request``: a history to run, a system under a record; likewise;
+* ``state``: all lanes side by side; field ``theta`` has one entry a lane, ``q`` one row a mode;
+* ``block``: steps in full contact, of one lane at a time, entry k after k steps;
+* ``result``: what a history leaves behind.
+
+Lanes come last, so that a loop over them is one vector instruction; one record, so that the
+compiler sees that its fields never overlap. Sizes are part of a record's type: a number of lanes,
+and a capacity of modes of which the first ``n`` are used. There are two capacities, so that one
+compilation serves every building up to the first of them.
+
+Letters are those of Theory: x = |theta|, s its side, B and C the arms of contact over R. *By* says
+who writes a field: a module of this package, or a function in it.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Record: TypeAlias = Any
+"""One entry of an array of records: its fields are attributes, in Python as in machine code."""
+
+ORDER = 7
+"""Highest term of the Taylor series of the velocities; those of the positions have one more."""
+
+TERMS = ORDER + 1
+INSTANTS = 32
+"""Instants of a block of steps in full contact, its start included."""
+
+LANES = 32
+"""Histories that one core follows at once. Loops over fewer are unrolled by the compiler before it
+looks for vector instructions; more do not fit into the processor's first cache."""
+
+CAPACITIES = (32, 200)
+"""Modes that there is room for: most buildings, and the most that a case may have."""
+
+SPREAD = 3
+PADDING = 8
+"""Rows that no mode uses, and entries that no lane uses. Without them the rows of one lane would
+all fall into a few lines of the processor's cache, and drive each other out."""
+
+# Phases of motion.
+FULL_CONTACT, ROLLING, ROCKING = range(3)
+
+# Kinds of event, in the log and in the counts.
+(
+    UPLIFT,
+    IMPACT,
+    RECONTACT,
+    ROLLING_TO_ROCKING,
+    ROCKING_TO_ROLLING,
+    CRITICAL_PASSAGE,
+    OVERTURNING,
+) = range(7)
+EVENT_KINDS = 7
+NO_EVENT = -1
+
+# How a history ended; it has not while RUNNING.
+RUNNING = -1
+(
+    AT_REST,
+    SURVIVED,
+    OVERTURNED_ROLLING,
+    OVERTURNED_ROCKING,
+    FAILED_NOT_FINITE,
+    FAILED_TOO_MANY_EVENTS,
+    FAILED_STEP_TOO_SMALL,
+) = range(7)
+
+# After what the accelerations of a lane must be computed anew.
+(
+    NOTHING_NEW,
+    AFTER_PHASE_CHANGE,  # or a jump of the ground's acceleration
+    AFTER_UPLIFT,
+    AFTER_IMPACT,
+    AFTER_RELEASE,
+) = range(5)
+
+# What becomes of a lane.
+GOES_ON, STANDS, IS_OVER = range(3)
+
+# Steps in full contact whose maps are kept.
+WHOLE_STEP, SHORT_STEP = range(2)
+
+NO_HISTORY = -1
+"""`history` of a lane that has nothing left to do."""
+
+NO_RECORD = -1
+"""`vertical` of a history without vertical ground motion."""
+
+
+class Field(NamedTuple):
+    """A field of a record: a number, or an array of the named sizes."""
+
+    name: str
+    sizes: str
+    unit: str
+    meaning: str
+    by: str = ""
+
+    def __str__(self) -> str:
+        """One line, as `describe` prints it."""
+        sizes = f"({self.sizes})" if self.sizes else "number"
+        writer = f"; by {self.by}" if self.by else ""
+        return f"{self.name:22} {sizes:18} [{self.unit}] {self.meaning}{writer}"
+
+
+WHOLE = "integer"
+"""Unit of what is counted: such fields are integers."""
+
+SYSTEM = (
+    Field("n", "", WHOLE, "storeys, and modes"),
+    Field("R", "", "m", "semi-diagonal of a column"),
+    Field("alpha", "", "rad", "slenderness angle of its flat part"),
+    Field("beta", "", "rad", "rotation at which the arc ends; 0 for flat ends"),
+    Field("theta_cr", "", "rad", "static limit: B = 0"),
+    Field("theta_limit", "", "rad", "counts as overturned"),
+    Field("rolling", "constants", "-", "p, q, c, u0, v0 of `formulae.geometry.Phase`"),
+    Field("rocking", "constants", "-", "the same beyond beta"),
+    Field("Io", "", "-", "I_o/(m_c R^2)"),
+    Field("gamma", "", "-", "m_b/(N m_c)"),
+    Field("eta", "", "-", "M_tot/m_b"),
+    Field("columns_mass", "", "kg", "N m_c"),
+    Field("cap_beam_mass", "", "kg", "m_b"),
+    Field("floors_mass", "", "kg", "M_tot"),
+    Field("gravity", "", "m/s2", "g"),
+    Field("restitution", "", "-", "e"),
+    Field("floors_jump", "", WHOLE, "1 if the floors jump with the cap beam at an impact"),
+    Field("omega", "modes", "rad/s", "frequencies of the fixed base"),
+    Field("xi", "modes", "-", "damping ratios"),
+    Field("omega2", "modes", "1/s2", "w^2"),
+    Field("two_xi_omega", "modes", "1/s", "2 xi w"),
+    Field("Gamma", "modes", "sqrt(kg)", "participation Phi^T M 1, shapes mass-normalised"),
+    Field("phi", "modes modes", "1/sqrt(kg)", "shapes: mode, floor"),
+    Field("storey_shear_of", "modes modes", "N/(m sqrt(kg))", "k_i (phi_i - phi_(i-1))"),
+    Field("shear_weight", "modes", "1", "g_r of `demands`, for storey shears"),
+    Field("acceleration_weight", "modes", "1", "g_r for floor accelerations"),
+    Field("shear_bound_of", "modes", "1", "of a storey: its squared shear times this <= sum g q^2"),
+    Field("acceleration_bound_of", "modes", "1", "of a floor: likewise"),
+    Field("uplifted_rate", "", "1/s", "least number of Taylor steps a second"),
+    Field("contact_rate", "", "1/s", "least number of steps a second in full contact"),
+    Field("last_term", "", "-", "largest last term of a series, over its first three"),
+    Field("recontact_tolerance", "", "-", "of alpha: a lower excursion is not followed"),
+    Field("bounces", "", "-", "what bounces left out add to the floors' velocity, over u_b'"),
+    Field("max_events", "", WHOLE, "more of them are a failure"),
+    Field("initial_rotation", "", "rad", "theta at the start, released from rest"),
+    Field("free_vibration", "", "s", "time after the record, at most"),
+    Field("until_rest", "", WHOLE, "1 if it may end earlier, with nothing new to come"),
+)
+
+REQUEST = (
+    Field("system", "", WHOLE, "number of the structure"),
+    Field("record", "", WHOLE, "offset of the record among all"),
+    Field("npts", "", WHOLE, "its samples"),
+    Field("vertical", "", WHOLE, "offset of the vertical record, or NO_RECORD"),
+    Field("scale", "", "-", "factor on both"),
+    Field("dt", "", "s", "sampling interval"),
+)
+
+STATE = (
+    # The structure, folded as the equation of motion wants it.
+    Field("diameter", "lanes", "m", "2 R", "driver.begin_history, like all to `last_term`"),
+    Field("io_1", "lanes", "-", "Io - 1"),
+    Field("one_4gamma", "lanes", "-", "1 + 4 gamma"),
+    Field("four_gamma_eta", "lanes", "-", "4 gamma eta"),
+    Field("weight_over_R", "lanes", "1/m", "(1 + 2 gamma + 2 gamma eta)/R"),
+    Field("ground_over_R", "lanes", "1/m", "(1 + 2 gamma)/R"),
+    Field("shear_factor", "lanes", "1/(kg m)", "2/(N m_c R)"),
+    Field("columns_mass", "lanes", "kg", "N m_c"),
+    Field("cap_beam_mass", "lanes", "kg", "m_b"),
+    Field("floors_mass", "lanes", "kg", "M_tot"),
+    Field("gravity", "lanes", "m/s2", "g"),
+    Field("theta_cr", "lanes", "rad", "static limit"),
+    Field("omega2", "modes lanes", "1/s2", "w^2"),
+    Field("two_xi_omega", "modes lanes", "1/s", "2 xi w"),
+    Field("Gamma", "modes lanes", "sqrt(kg)", "participation"),
+    Field("shear_weight", "modes lanes", "1", "see `system`"),
+    Field("acceleration_weight", "modes lanes", "1", "see `system`"),
+    Field("last_term", "lanes", "-", "see `system`"),
+    # The history and its record.
+    Field("scale", "lanes", "-", "factor on the record", "driver.begin_history"),
+    Field("history", "lanes", WHOLE, "number of the request, or NO_HISTORY", "driver"),
+    Field("system", "lanes", WHOLE, "number of its structure", "driver.begin_history"),
+    Field("record", "lanes", WHOLE, "offset of its record", "driver.begin_history"),
+    Field("npts", "lanes", WHOLE, "samples of the record", "driver.begin_history"),
+    Field("vertical", "lanes", WHOLE, "offset of the vertical one", "driver.begin_history"),
+    Field("interval", "lanes", WHOLE, "present sampling interval", "samples.enter_interval"),
+    Field("intervals", "lanes", WHOLE, "of the history, at most", "driver.begin_history"),
+    Field("outcome", "lanes", WHOLE, "how it ended, or RUNNING", "driver, where it ends"),
+    # The phase of motion and the range of the tilt in it.
+    Field("phase", "lanes", WHOLE, "FULL_CONTACT, ROLLING or ROCKING", "transitions"),
+    Field("phase_p", "lanes", "-", "B = p cos x + q sin x", "transitions.phases.enter_phase"),
+    Field("phase_q", "lanes", "-", "C = c + p sin x - q cos x", "transitions.phases.enter_phase"),
+    Field("phase_c", "lanes", "-", "k while rolling, 0 rocking", "transitions.phases.enter_phase"),
+    Field("phase_u0", "lanes", "-", "of u_b", "transitions.phases.enter_phase"),
+    Field("phase_v0", "lanes", "-", "of v_b", "transitions.phases.enter_phase"),
+    Field("side", "lanes", "-", "s = sign(theta)", "transitions"),
+    Field("theta_low", "lanes", "rad", "the phase ends below", "transitions.phases.enter_phase"),
+    Field("theta_high", "lanes", "rad", "and above", "transitions.phases.enter_phase"),
+    # The ground, linear over the interval; and time.
+    Field("a_g", "lanes", "m/s2", "at the interval's start", "ground.set_ground"),
+    Field("a_g_slope", "lanes", "m/s3", "over it", "ground.set_ground"),
+    Field("g_up", "lanes", "m/s2", "g + a_v at the interval's start", "ground.set_ground"),
+    Field("g_up_slope", "lanes", "m/s3", "over it", "ground.set_ground"),
+    Field("interval_start", "lanes", "s", "since the record's start", "ground.set_ground"),
+    Field("time", "lanes", "s", "since the interval's start", "whoever moves on"),
+    Field("step", "lanes", "s", "h, length of the step", "uplifted.steps"),
+    Field("steps_left", "lanes", "-", "in the interval, this one included", "uplifted"),
+    Field("dt", "lanes", "s", "sampling interval", "driver.begin_history"),
+    Field("sampling_rate", "lanes", "1/s", "1/dt", "driver.begin_history"),
+    Field("uplifted_step", "lanes", "s", "in a whole interval", "driver.begin_history"),
+    Field("uplifted_steps", "lanes", "-", "in a whole interval", "driver.begin_history"),
+    Field("contact_step", "lanes", "s", "in full contact", "driver.begin_history"),
+    Field("contact_steps", "lanes", "-", "in a whole interval", "driver.begin_history"),
+    # The motion at the start of the step.
+    Field("theta", "lanes", "rad", "x = |theta|", "uplifted.accept_steps, transitions"),
+    Field("theta_dot", "lanes", "rad/s", "x'", "likewise"),
+    Field("theta_ddot", "lanes", "rad/s2", "x''", "likewise"),
+    Field("B", "lanes", "-", "contact arm B(x)", "likewise"),
+    Field("C", "lanes", "-", "contact height C(x)", "likewise"),
+    Field("per_A", "lanes", "-", "1/A(x)", "likewise"),
+    Field("V", "lanes", "N", "base shear, springs and dampers", "likewise"),
+    Field("q", "modes lanes", "m sqrt(kg)", "modal displacements over the beam", "likewise"),
+    # The motion at its end.
+    Field("next_theta", "lanes", "rad", "", "uplifted.taylor_step, like all to `next_dq`"),
+    Field("next_theta_dot", "lanes", "rad/s", ""),
+    Field("next_theta_ddot", "lanes", "rad/s2", "", "equation_of_motion"),
+    Field("next_B", "lanes", "-", "", "equation_of_motion"),
+    Field("next_C", "lanes", "-", "", "equation_of_motion"),
+    Field("next_per_A", "lanes", "-", "", "equation_of_motion"),
+    Field("next_V", "lanes", "N", "", "equation_of_motion"),
+    Field("next_a_g", "lanes", "m/s2", "ground acceleration", "equation_of_motion"),
+    Field("next_g_up", "lanes", "m/s2", "g + a_v", "equation_of_motion"),
+    Field("next_q", "modes lanes", "m sqrt(kg)", ""),
+    Field("next_dq", "modes lanes", "m sqrt(kg)/s", ""),
+    # Taylor coefficients over the step, as powers of t/h.
+    Field("dtheta_terms", "terms lanes", "rad/s", "of x'", "equation_of_motion, like all here"),
+    Field("B_terms", "terms lanes", "-", "of B"),
+    Field("C_terms", "terms lanes", "-", "of C"),
+    Field("A_terms", "terms lanes", "-", "of A, from order 1"),
+    Field("action_terms", "terms lanes", "1/s2", "of s (a_g (1 + 2 gamma)/R - 2 V/(N m_c R))"),
+    Field("dq", "terms modes lanes", "m sqrt(kg)/s", "of q'; dq[0] is q' at the start"),
+    Field("modal_force", "modes lanes", "m sqrt(kg)/s2", "w^2 q + 2 xi w q' of the last order"),
+    Field("beam_velocity_term", "lanes", "m/s", "what the last order adds to u_b' and the ground"),
+    # What is known of the step: 1 or 0, numbers so that lanes go together.
+    Field("too_long", "lanes", "-", "1: for its series", "uplifted.check_steps"),
+    Field("accepted", "lanes", "-", "1: no event, not too long", "uplifted.check_steps"),
+    Field("at_sample", "lanes", "-", "1: accepted, ends at a sample", "uplifted.check_steps"),
+    Field("peak_inside", "lanes", "-", "1: may hold the largest x", "uplifted.check_steps"),
+    Field("no_event", "lanes", "-", "1: a closer look found none", "uplifted.locate_event"),
+    Field("demands_rise", "lanes", "-", "1: a floor's may be raised", "uplifted.demands"),
+    Field("waits", "lanes", "-", "1: must be looked at alone", "uplifted.accept_steps"),
+    Field("renew", "lanes", WHOLE, "after what accelerations are old", "transitions, driver"),
+    # Maxima so far; times that never came are negative.
+    Field("max_theta", "lanes", "rad", "largest x", "uplifted.peak, uplifted.demands"),
+    Field("max_theta_time", "lanes", "s", "when", "uplifted.peak, uplifted.demands"),
+    Field("critical_time", "lanes", "s", "when theta_cr was first passed", "uplifted.peak"),
+    Field("friction_top", "lanes", "-", "largest |F|/N at the upper ends", "demands"),
+    Field("friction_bottom", "lanes", "-", "at the lower ends", "demands"),
+    Field("normal_top", "lanes", "-", "least N over the weight on it, upper ends", "demands"),
+    Field("normal_bottom", "lanes", "-", "lower ends", "demands"),
+    Field("storey_shear", "lanes modes", "N", "largest |k_i d_i|", "demands"),
+    Field("floor_acceleration", "lanes modes", "m/s2", "largest absolute one", "demands"),
+    Field("shear_bound", "lanes", "1", "sum g q^2 at the end of the step", "uplifted.demands"),
+    Field("shear_harmless", "lanes", "1", "no storey's shear rises up to this", "demands"),
+    Field("acceleration_bound", "lanes", "1", "sum g force^2", "uplifted.demands"),
+    Field("acceleration_harmless", "lanes", "1", "likewise", "demands"),
+    # Energy and counts.
+    Field("energy_input", "lanes", "J", "by the ground, if audited", "energy, full_contact"),
+    Field("energy_damped", "lanes", "J", "in the building, if audited", "energy, full_contact"),
+    Field("energy_lost", "lanes", "J", "at impacts and re-contacts", "transitions.impact"),
+    Field("energy_created", "lanes", "J", "at impacts that create it", "transitions.impact"),
+    Field("steps", "lanes", "-", "taken", "uplifted.accept_steps"),
+    Field("stalled", "lanes", WHOLE, "events in a row at one instant", "uplifted.locate_event"),
+    Field("creating_impacts", "lanes", WHOLE, "impacts that created energy", "transitions.impact"),
+    Field("events", "lanes kinds", WHOLE, "of each kind", "transitions.log_event"),
+    Field("n", "", WHOLE, "storeys, and modes: the same in all lanes", "run.empty_state"),
+    Field("lanes", "", WHOLE, "lanes in use: 1 or all", "run.empty_state"),
+    Field("audited", "", WHOLE, "1 where energy flows are integrated", "driver"),
+)
+
+BLOCK = (
+    Field("n", "", WHOLE, "modes", "run.empty_block"),
+    # The modes, now and over a step: q1 = a q + b q' + c p + d p', q1' = e q + f q' + g p + i p'.
+    Field("q", "modes", "m sqrt(kg)", "displacements", "full_contact.modal_block.keep_state"),
+    Field("dq", "modes", "m sqrt(kg)/s", "velocities", "full_contact.modal_block.keep_state"),
+    Field("step_maps", "steps modes map", "1", "of a WHOLE_STEP, a SHORT_STEP", "modal_block"),
+    Field("qs", "modes instants", "m sqrt(kg)", "displacements", "full_contact.modal_block"),
+    Field("dqs", "modes instants", "m sqrt(kg)/s", "velocities", "full_contact.modal_block"),
+    Field("forces", "modes instants", "m sqrt(kg)/s2", "w^2 q + 2 xi w q'", "modal_block"),
+    # The ground and the building. A step looks at the next instant as well, the last one ahead of
+    # the block.
+    Field("a_g", "instants", "m/s2", "ground acceleration", "ground.set_ground_of_block"),
+    Field("a_g_slope", "instants", "m/s3", "over the step that begins", "ground"),
+    Field("g_up", "instants", "m/s2", "g + a_v", "ground.set_ground_of_block"),
+    Field("g_up_slope", "instants", "m/s3", "over the step that begins", "ground"),
+    Field("V", "ahead", "N", "base shear", "full_contact.modal_block.follow_modes"),
+    Field("dV", "ahead", "N/s", "V'", "full_contact.modal_block.follow_modes"),
+    Field("ddV", "ahead", "N/s2", "V'' but for the ground's slope", "follow_modes"),
+    Field("at_sample", "instants", "-", "1: before any uplift", "full_contact.demands"),
+    Field("alarm", "instants", "-", "1: uplift is near", "full_contact.uplift_search"),
+    Field("input", "instants", "J", "over the step that begins", "full_contact.modal_block"),
+    Field("damped", "instants", "J", "over the step that begins", "full_contact.modal_block"),
+    Field("shear_bound", "instants", "1", "sum g q^2", "full_contact.modal_block"),
+    Field("acceleration_bound", "instants", "1", "sum g force^2", "full_contact.modal_block"),
+    Field("shear", "instants", "N", "of one storey", "full_contact.demands"),
+    Field("acceleration", "instants", "m/s2", "of one floor", "full_contact.demands"),
+    Field("friction_top", "instants", "-", "largest so far", "full_contact.demands"),
+    Field("friction_bottom", "instants", "-", "largest so far", "full_contact.demands"),
+    Field("normal_top", "instants", "-", "least so far", "full_contact.demands"),
+    Field("normal_bottom", "instants", "-", "least so far", "full_contact.demands"),
+    Field("piece", "map", "1", "scratch of the search for roots", "formulae.quintic"),
+)
+
+RESULT = (
+    Field("outcome", "", WHOLE, "how the history ended"),
+    Field("phase", "", WHOLE, "phase of motion at its end"),
+    Field("intervals", "", WHOLE, "sampling intervals that it lasted"),
+    Field("steps", "", WHOLE, "Taylor steps taken"),
+    Field("creating_impacts", "", WHOLE, "impacts that created energy"),
+    Field("events", "kinds", WHOLE, "of each kind"),
+    Field("time", "", "s", "of its end"),
+    Field("rotation", "", "rad", "theta at its end"),
+    Field("max_theta", "", "rad", "largest |theta|"),
+    Field("max_theta_time", "", "s", "when"),
+    Field("critical_time", "", "s", "first passage of theta_cr; negative if never"),
+    Field("friction_top", "", "-", "largest |F|/N at the upper ends"),
+    Field("friction_bottom", "", "-", "at the lower ends"),
+    Field("normal_top", "", "-", "least N over the weight on it, upper ends"),
+    Field("normal_bottom", "", "-", "lower ends"),
+    Field("energy_input", "", "J", "by the ground, if audited"),
+    Field("energy_damped", "", "J", "in the building, if audited"),
+    Field("energy_lost", "", "J", "at impacts and re-contacts, net"),
+    Field("energy_created", "", "J", "at impacts that create it"),
+    Field("energy_stored", "", "J", "at the end"),
+    Field("storey_shear", "modes", "N", "largest |k_i d_i|"),
+    Field("floor_acceleration", "modes", "m/s2", "largest absolute one"),
+)
+
+SAMPLE = (
+    Field("theta", "", "rad", "", "samples.store_sample, like all"),
+    Field("theta_dot", "", "rad/s", ""),
+    Field("theta_ddot", "", "rad/s2", "0 in full contact"),
+    Field("phase", "", WHOLE, ""),
+    Field("energy_input", "", "J", ""),
+    Field("energy_damped", "", "J", ""),
+    Field("energy_lost", "", "J", ""),
+)
+"""The floors' displacements and velocities stand in an array of their own, as long as they are."""
+
+EVENT = (
+    Field("time", "", "s", "", "transitions.log_event, like all"),
+    Field("kind", "", WHOLE, ""),
+    Field("theta", "", "rad", ""),
+    Field("theta_dot_before", "", "rad/s", ""),
+    Field("theta_dot_after", "", "rad/s", ""),
+    Field("energy_lost", "", "J", ""),
+)
+
+
+def capacity(storeys: int) -> int:
+    """Modes that records for so many storeys have room for."""
+    return next((size for size in CAPACITIES if storeys <= size), storeys)
+
+
+def _place(field: Field) -> tuple[bool, bool, int, str]:
+    """Rows of lanes or instants first: each begins with a line of the cache."""
+    names = field.sizes.split()
+    return names in ([], ["modes"]), "modes" in names, len(names), field.sizes
+
+
+@cache
+def record_type(fields: tuple[Field, ...], storeys: int) -> np.dtype[Any]:
+    """The type of a record of one of the tables of this module, with room for so many storeys.
+
+    Fields of one shape stand together, those of modes behind the others: a loop over a mode's lanes
+    then writes either before or behind what it reads, which the compiler can check at once.
+    """
+    sizes = {
+        "lanes": LANES + PADDING,
+        "modes": capacity(storeys) + SPREAD,
+        "terms": TERMS,
+        "instants": INSTANTS,
+        "ahead": INSTANTS + PADDING,
+        "kinds": EVENT_KINDS,
+        "constants": 5,
+        "steps": 2,
+        "map": 8,
+    }
+    return np.dtype(
+        [
+            (
+                field.name,
+                np.int64 if field.unit == WHOLE else np.float64,
+                tuple(sizes[name] for name in field.sizes.split()),
+            )
+            for field in sorted(fields, key=_place)
+        ]
+    )
+
+
+CACHE_LINE = 64
+"""Bytes that the processor fetches at once. A vector of eight numbers fills a line; numpy begins
+an array anywhere, and then each vector would be fetched twice."""
+
+
+def records(fields: tuple[Field, ...], storeys: int, count: int = 1) -> Record:
+    """An array (count,) of records of zeros that begins with a line of the cache.
+
+    Parameters
+    ----------
+    fields, storeys
+        As of `record_type`.
+    count
+        Number of records.
+    """
+    kind = record_type(fields, storeys)
+    size = kind.itemsize * count
+    room = np.zeros(size + CACHE_LINE, np.uint8)
+    first = -room.ctypes.data % CACHE_LINE
+    return room[first : first + size].view(kind).view(np.recarray)
+
+
+def describe(fields: tuple[Field, ...]) -> str:
+    """A table of a record, for reading: ``print(describe(STATE))``."""
+    return "\n".join(map(str, fields))

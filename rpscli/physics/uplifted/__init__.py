@@ -1,0 +1,1 @@
+"""The uplifted storey: Taylor steps of all lanes together, and what is decided lane by lane."""

@@ -1,0 +1,170 @@
+"""What a lane does after each uplifted step: go on, switch at an event, or end.
+
+A step is taken as if its phase of motion went on for ever. If the tilt then leaves the range of
+the phase, the step ends where it does: a root of its own polynomial, found from that of the
+interpolating quintic by Newton's method. No step is taken again.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.compile import compiled
+from rpscli.physics.energy import book_energy
+from rpscli.physics.formulae.quintic import NEAR, NO_PASSAGE, first_descent, offset
+from rpscli.physics.formulae.taylor import end_step_at, fraction_at
+from rpscli.physics.run import Output
+from rpscli.physics.samples import enter_interval, store_sample
+from rpscli.physics.state import (
+    AFTER_IMPACT,
+    AFTER_PHASE_CHANGE,
+    AFTER_RELEASE,
+    AFTER_UPLIFT,
+    EVENT_KINDS,
+    FAILED_NOT_FINITE,
+    FAILED_STEP_TOO_SMALL,
+    FAILED_TOO_MANY_EVENTS,
+    GOES_ON,
+    IMPACT,
+    IS_OVER,
+    NO_EVENT,
+    NOTHING_NEW,
+    OVERTURNED_ROCKING,
+    OVERTURNED_ROLLING,
+    OVERTURNING,
+    ROCKING,
+    ROLLING,
+    ROLLING_TO_ROCKING,
+    STANDS,
+    Floats,
+    Record,
+)
+from rpscli.physics.transitions.impact import apply_impact, comes_to_rest
+from rpscli.physics.transitions.log_event import log_event, time_of
+from rpscli.physics.transitions.phases import enter_phase, event_above, event_below
+from rpscli.physics.uplifted.peak import raise_peak
+from rpscli.physics.uplifted.steps import path_of, plan_steps
+
+STALL = 100
+"""So many events in a row without time passing: the step cannot be made small enough."""
+
+
+@compiled
+def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[float, float, int]:
+    """Fraction of the step just taken at which its first event happens, and which.
+
+    Returns
+    -------
+    Fraction, level of the tilt, and kind of the event, or NO_EVENT: then the alarm was false.
+    """
+    path, piece = path_of(s, l), block.piece
+    first, level, kind = NO_PASSAGE, 0.0, NO_EVENT
+    t = first_descent(offset(path, 1.0, s.theta_low[l]), NEAR, piece)
+    if t < first:
+        first, level, kind = t, s.theta_low[l], event_below(s, l, system)
+    t = first_descent(offset(path, -1.0, s.theta_high[l]), NEAR, piece)
+    if t < first:
+        first, level, kind = t, s.theta_high[l], event_above(s, l, system)
+    if kind != NO_EVENT:
+        first = fraction_at(s, l, level, first)
+    return first, level, kind
+
+
+@compiled
+def end_on_event(
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    log: Record,
+    fraction: float,
+    level: float,
+    kind: int,
+) -> None:
+    """End the step on an event, and switch."""
+    if s.audited > 0:
+        book_energy(s, l, fraction)
+    end_step_at(s, l, fraction, level)
+    turned = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
+    if s.next_theta[l] > s.max_theta[l] or turned:
+        raise_peak(s, l, block, log)
+    s.theta[l], s.theta_dot[l] = s.next_theta[l], s.next_theta_dot[l]
+    for r in range(s.n):
+        s.q[r, l], s.dq[0, r, l] = s.next_q[r, l], s.next_dq[r, l]
+    before = s.time[l]
+    s.time[l] += s.step[l]
+    s.stalled[l] = s.stalled[l] + 1 if s.time[l] == before else 0
+    if kind == IMPACT:
+        apply_impact(s, l, system, log)
+        return
+    rotation, rate = s.side[l] * s.theta[l], s.side[l] * s.theta_dot[l]
+    log_event(s, l, log, time_of(s, l), kind, rotation, rate, rate, 0.0)
+    if kind == OVERTURNING:
+        rolls = s.theta_cr[l] < system.beta
+        s.outcome[l] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
+        return
+    enter_phase(s, l, system, ROCKING if kind == ROLLING_TO_ROCKING else ROLLING)
+    s.renew[l] = AFTER_PHASE_CHANGE
+
+
+@compiled
+def too_many_events(s: Record, l: int, system: Record) -> bool:
+    """Whether events pile up; sets the outcome."""
+    events = 0
+    for i in range(EVENT_KINDS):
+        events += s.events[l, i]
+    if events > system.max_events:
+        s.outcome[l] = FAILED_TOO_MANY_EVENTS
+        return True
+    if s.stalled[l] > STALL:
+        s.outcome[l] = FAILED_STEP_TOO_SMALL
+        return True
+    return False
+
+
+@compiled
+def next_interval(s: Record, l: int, acceleration: Floats) -> int:
+    """Enter the record's next interval: GOES_ON, or IS_OVER at the history's end."""
+    if enter_interval(s, l, acceleration, s.interval[l] + 1):
+        return IS_OVER
+    if s.interval[l] + 1 == s.npts[l]:
+        s.renew[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
+    s.step[l], s.steps_left[l] = s.uplifted_step[l], s.uplifted_steps[l]
+    return GOES_ON
+
+
+@compiled
+def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) -> int:
+    """Deal with a step that was not accepted: GOES_ON or IS_OVER.
+
+    After a false alarm the same step is taken once more, and passes. A step that is too long for
+    its series is taken again at half the length, as are those after it up to the next sample.
+    """
+    if s.too_long[l] > 0.0:
+        s.step[l], s.steps_left[l] = 0.5 * s.step[l], 2.0 * s.steps_left[l]
+        return GOES_ON
+    if not math.isfinite(s.next_theta[l] + s.next_theta_dot[l] + s.next_theta_ddot[l]):
+        s.outcome[l] = FAILED_NOT_FINITE
+        return IS_OVER
+    fraction, level, kind = locate_event(s, l, system, block)
+    if kind == NO_EVENT:
+        s.no_event[l] = 1.0
+        return GOES_ON
+    end_on_event(s, l, system, block, log, fraction, level, kind)
+    plan_steps(s, l)
+    return IS_OVER if s.outcome[l] >= 0 or too_many_events(s, l, system) else GOES_ON
+
+
+@compiled
+def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
+    """After accelerations were computed anew: GOES_ON, or STANDS if an impact was the last."""
+    after = s.renew[l]
+    s.renew[l] = NOTHING_NEW
+    if after == AFTER_UPLIFT:
+        # At the threshold theta'' is zero but for rounding, and about to grow.
+        s.theta_ddot[l] = max(s.theta_ddot[l], 0.0)
+    elif after == AFTER_RELEASE:
+        store_sample(s, l, system, output)
+    elif after == AFTER_IMPACT and comes_to_rest(s, l, system, output.log):
+        return STANDS
+    return GOES_ON

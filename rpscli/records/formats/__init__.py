@@ -1,0 +1,1 @@
+"""Record files: one module a format, and the registry that recognises them."""

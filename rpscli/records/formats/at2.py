@@ -1,0 +1,198 @@
+"""PEER AT2 acceleration records, in the spellings that are really found.
+
+A header of three to seven lines says who recorded what, in which units, how many values (NPTS)
+and how far apart (DT); then follow the values, one to eight on a line. NPTS and DT may stand
+before or after their numbers, with or without "=", on one line or on two.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from rpscli.errors import RecordError
+from rpscli.records.formats.record_text import RecordText
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.quantities import (
+    KNOWN_UNITS,
+    NUMBER_PATTERN,
+    UNIT_PATTERN,
+    canonical_unit,
+    last_digit,
+    numbers_in,
+    to_float,
+)
+
+FORMAT = "PEER AT2"
+
+_HEADER_LINES = 40
+_COUNT = re.compile(r"\bNPTS\s*=?\s*([0-9]+)\b", re.IGNORECASE)
+_STEP = re.compile(rf"\bDT\s*=?\s*({NUMBER_PATTERN})", re.IGNORECASE)
+_NUMBERS_FIRST = re.compile(
+    rf"^\s*([0-9]+)[\s,]+({NUMBER_PATTERN})[\s,]+NPTS\b[\s,]*(?:AND\s+)?DT\b", re.IGNORECASE
+)
+_NUMBERS_LAST = re.compile(
+    rf"\bNPTS[\s,]+DT\b\s*[=:]?\s*([0-9]+)[\s,]+({NUMBER_PATTERN})", re.IGNORECASE
+)
+# What begins a row of values, spoilt ones (overflow, not a number) included.
+_VALUE = re.compile(rf"\s*(?:{NUMBER_PATTERN}(?=[\s,+-]|$)|\*+|[+-]?(?:nan|inf))", re.IGNORECASE)
+_OTHER_SERIES = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME\b", re.IGNORECASE)
+_UNITS_LINE = re.compile(r"\bUNITS?\s*(?:OF\b|IN\b|[=:])", re.IGNORECASE)
+_UNITS = re.compile(
+    rf"\b(?:UNITS?\s*(?:OF\b|IN\b|[=:])|ACCELERATION\b.*\bIN\b)[\s(\[]*({UNIT_PATTERN})",
+    re.IGNORECASE,
+)
+
+
+@dataclass(frozen=True)
+class _Header:
+    count: int
+    step: str
+    line: int  # of NPTS
+    start: int  # first line of values
+
+
+def recognises_at2(text: RecordText) -> bool:
+    """Whether the text has a line that announces NPTS, with DT on it or beside it."""
+    return _find_header(text) is not None
+
+
+def read_at2(text: RecordText) -> GroundMotion:
+    """Read a PEER AT2 file.
+
+    Raises
+    ------
+    RecordError
+        If the header is not that of an acceleration record, states no units that are known, or
+        the values are not exactly NPTS finite numbers.
+    """
+    text.single_channel()
+    header = _find_header(text)
+    if header is None:
+        raise text.fault(
+            "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain columns "
+            "of numbers rename it to .txt and give ?dt= and ?units="
+        )
+    _refuse_other_series(text, header)
+    unit, factor = text.agreed_factor(_stated_units(text, header))
+    dt, doubts = _step(text, header.step)
+    values, warnings = _values(text, header)
+    title = [
+        line.strip()
+        for line in text.lines[: header.line]
+        if line.strip() and not _UNITS.search(line)
+    ]
+    return GroundMotion(
+        np.array(values) * factor,
+        dt,
+        text.name,
+        text.source,
+        FORMAT,
+        f"{'; '.join(title) or 'no title'}; values in {unit}",
+        (*doubts, *warnings),
+    )
+
+
+def _find_header(text: RecordText) -> _Header | None:
+    for index, line in enumerate(text.lines[:_HEADER_LINES]):
+        # A comment that gives npts belongs to a file of plain columns.
+        if line.lstrip().startswith("#") or not re.search(r"\bNPTS\b", line, re.IGNORECASE):
+            continue
+        start = _first_numeric(text, index + 1)
+        both = _NUMBERS_FIRST.search(line) or _NUMBERS_LAST.search(line)
+        if both:
+            return _Header(int(both[1]), both[2], index, start)
+        count = _COUNT.search(line)
+        step = _STEP.search("\n".join([line, *text.lines[index + 1 : start], *text.lines[:index]]))
+        if count and step:
+            return _Header(int(count[1]), step[1], index, start)
+    return None
+
+
+def _first_numeric(text: RecordText, start: int) -> int:
+    for index in range(start, len(text.lines)):
+        if _VALUE.match(text.lines[index]):
+            return index
+    return len(text.lines)
+
+
+def _refuse_other_series(text: RecordText, header: _Header) -> None:
+    for index, line in enumerate(text.lines[: header.start]):
+        other = _OTHER_SERIES.search(line)
+        if other:
+            raise text.fault(
+                f"this is a {other[1].lower()} record ({line.strip()[:60]!r}); give the "
+                f"acceleration record of the same station, usually the file ending in .AT2",
+                index,
+            )
+
+
+def _stated_units(text: RecordText, header: _Header) -> str | None:
+    # The line of the units stands next to that of NPTS: titles above may mention other units.
+    for index in range(header.start - 1, -1, -1):
+        line = text.lines[index]
+        if spelling := _UNITS.search(line):
+            return canonical_unit(spelling[1])
+        if _UNITS_LINE.search(line):
+            raise text.fault(
+                f"{line.strip()[:60]!r} names no unit of acceleration that is known "
+                f"({KNOWN_UNITS}); correct the line",
+                index,
+            )
+    return None
+
+
+def _values(text: RecordText, header: _Header) -> tuple[list[float], tuple[str, ...]]:
+    values: list[float] = []
+    stop = header.start
+    while stop < len(text.lines) and (row := numbers_in(text.lines[stop])) is not None:
+        values.extend(row)
+        stop += 1
+    if len(values) != header.count:
+        raise _count_fault(text, header, len(values), stop)
+    rest = [line.strip() for line in text.lines[stop:] if line.strip()]
+    if any(numbers_in(line) for line in rest):
+        raise text.fault(
+            f"more numbers follow after the {header.count} values and the text {rest[0][:40]!r}; "
+            f"keep one record in a file",
+            stop,
+        )
+    if rest:
+        return values, (f"{len(rest)} line(s) of text after the values, first {rest[0][:40]!r}",)
+    return values, ()
+
+
+def _count_fault(text: RecordText, header: _Header, found: int, stop: int) -> RecordError:
+    if found < header.count and stop < len(text.lines):
+        return text.fault(
+            f"NPTS = {header.count}, but after {found} values comes "
+            f"{text.lines[stop].strip()[:40]!r}, which is not a row of finite numbers; "
+            f"fetch the file again",
+            stop,
+        )
+    cause = "cut short" if found < header.count else "longer than it says"
+    return text.fault(
+        f"NPTS = {header.count}, but the file holds {found} values: it is {cause}; fetch it "
+        f"again, or write NPTS={found} in the header if all its values belong to the record",
+        header.line,
+    )
+
+
+def _step(text: RecordText, numeral: str) -> tuple[float, tuple[str, ...]]:
+    # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not the same.
+    printed = to_float(numeral)
+    if printed <= 0.0:
+        raise text.fault(f"DT = {numeral} s must be positive; correct the header")
+    resolution = last_digit(numeral)
+    dt = text.agreed_dt(printed, 0.51 * resolution / printed)
+    rate = max(1, round(1.0 / dt))
+    if abs(rate * dt - 1.0) < 1e-9 or abs(1.0 / rate - dt) > 0.5 * resolution:
+        return dt, ()
+    note = (
+        f"DT = {printed:g} s is no whole number of samples a second and may be rounded; taken as "
+        f"printed, times may be off by {50.0 * resolution / printed:.1g} %; if it is 1/{rate} s, "
+        f"say ?dt={1.0 / rate:.9g}"
+    )
+    return dt, (note,)

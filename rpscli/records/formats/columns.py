@@ -1,0 +1,245 @@
+"""Plain columns of numbers: time and acceleration, or acceleration alone.
+
+Read are `dt: 0.005` or `time step = 0.005 s`, `units: g`, `npts: 4000`, and titles of columns such
+as `Time (s), Acceleration (m/s2)`, in any line before the first number. What they leave out (units;
+for one column also the sampling interval) the user has to give.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rpscli.records.formats.record_text import RecordText
+from rpscli.records.formats.time_axis import printed_resolution, uniform_step
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.quantities import (
+    KNOWN_UNITS,
+    NUMBER_PATTERN,
+    UNIT_PATTERN,
+    canonical_unit,
+    numbers_in,
+    numerals_in,
+    to_float,
+)
+
+_STEP = re.compile(rf"\b(?:dt|time\s*step)\b\s*[=:]\s*({NUMBER_PATTERN})", re.IGNORECASE)
+_COUNT = re.compile(r"\b(?:npts|ndata)\b\s*[=:]\s*([0-9]+)", re.IGNORECASE)
+_UNITS_KEY = re.compile(r"\bunits?\b\s*(?:[=:]|of\b)\s*([^,;]+)", re.IGNORECASE)
+_COLUMN_TITLE = re.compile(
+    rf"\b(?:acc|accel|acceleration|ag|a)[\s_]*(?:[\[(]|\bin\b)\s*({UNIT_PATTERN})", re.IGNORECASE
+)
+
+
+@dataclass(frozen=True)
+class _Table:
+    header: tuple[str, ...]  # text lines before the first number
+    rows: tuple[list[float], ...]
+    lines: tuple[int, ...]  # of the rows
+
+
+def recognises_columns(text: RecordText) -> bool:
+    """Whether most lines, and the last that is no comment, hold nothing but numbers."""
+    body = [line for line in text.lines if line.strip() and not _is_comment(line)]
+    numeric = sum(1 for line in body if numbers_in(line))
+    return numeric >= 2 and 2 * numeric > len(body) and bool(numbers_in(body[-1]))
+
+
+def read_columns(text: RecordText) -> GroundMotion:
+    """Read one or two columns, or rows of a bare AT2 body when `dt` and `units` are known.
+
+    Raises
+    ------
+    RecordError
+        If units or sampling interval are unknown, times are not uniform, the first numbers look
+        like a header, or the shape of the table fits none of these.
+    """
+    text.single_channel()
+    table = _table(text)
+    _check_count(text, table)
+    widths = {len(row) for row in table.rows}
+    if widths == {2}:
+        return _two_columns(text, table)
+    if widths == {1}:
+        return _sequence(text, table)
+    return _wrapped_rows(text, table)
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(("#", "%", "!", "//", "*", "|"))
+
+
+def _table(text: RecordText) -> _Table:
+    header: list[str] = []
+    rows: list[list[float]] = []
+    lines: list[int] = []
+    for index, line in enumerate(text.lines):
+        row = numbers_in(line)
+        if row:
+            rows.append(row)
+            lines.append(index)
+        elif not rows:
+            header.append(line.strip().lstrip("#%!/*|").strip())
+        elif row is None and not _is_comment(line):
+            raise text.fault(
+                f"{line.strip()[:40]!r} stands among the values and is not a row of finite "
+                f"numbers; begin comments with #",
+                index,
+            )
+    if len(rows) < 2:
+        raise text.fault(
+            f"no known format of ground motions: {len(rows)} row(s) of numbers; export the record "
+            f"as PEER AT2, or as columns of time and acceleration"
+        )
+    return _Table(tuple(line for line in header if line), tuple(rows), tuple(lines))
+
+
+def _check_count(text: RecordText, table: _Table) -> None:
+    count = _stated_count(table.header)
+    found = sum(len(row) for row in table.rows)
+    if count is not None and count not in (found, len(table.rows)):
+        raise text.fault(
+            f"the header announces {count} values and the file holds {len(table.rows)} row(s); "
+            f"fetch it again, or correct the header"
+        )
+
+
+def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
+    unit, factor = text.agreed_factor(_stated_units(text, table.header))
+    values = np.array(table.rows)
+    resolution = printed_resolution([numerals_in(text.lines[line])[0] for line in table.lines])
+    try:
+        step = uniform_step(values[:, 0], resolution)
+    except ValueError as error:
+        raise text.fault(
+            f"two columns should be time and acceleration at a uniform step, but {error}; "
+            f"resample the record to a uniform step first"
+        ) from error
+    header_step = _stated_step(text, table.header)
+    # Rounded times know the step to one unit of their last digit over the whole record.
+    coarsest = float(resolution.max())
+    known_to = max(1e-6, 2.0 * coarsest / (step * len(table.rows)))
+    if header_step is not None and abs(header_step - step) > known_to * step:
+        raise text.fault(
+            f"the header says dt = {header_step:g} s and the times advance by {step:g} s"
+        )
+    dt = text.agreed_dt(step, known_to)
+    warnings: tuple[str, ...] = ()
+    if abs(values[0, 0]) > 0.5 * coarsest:
+        warnings = (f"times begin at {values[0, 0]:g} s; taken as the record's zero",)
+    return GroundMotion(
+        values[:, 1] * factor,
+        dt,
+        text.name,
+        text.source,
+        "two-column text",
+        _description(table, unit),
+        warnings,
+    )
+
+
+def _sequence(text: RecordText, table: _Table, *warnings: str) -> GroundMotion:
+    unit, factor = text.agreed_factor(_stated_units(text, table.header))
+    dt = text.agreed_dt(_stated_step(text, table.header))
+    values = [value for row in table.rows for value in row]
+    _refuse_leading_header(text, table, values)
+    if values[0] == dt:
+        warnings = (*warnings, f"the first value, {dt:g}, equals dt: see that it is no header")
+    return GroundMotion(
+        np.array(values) * factor,
+        dt,
+        text.name,
+        text.source,
+        "one-column text",
+        _description(table, unit),
+        warnings,
+    )
+
+
+def _refuse_leading_header(text: RecordText, table: _Table, values: list[float]) -> None:
+    # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
+    numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]
+    flagged = values[0] != 0.0 and numerals[0].isdigit() and not numerals[1].isdigit()
+    if flagged or values[0] == len(values) - 1 or values[1] == len(values) - 2 > 0:
+        raise text.fault(
+            f"the first numbers, {numerals[0]} and {numerals[1]}, look like a header (a count or "
+            f"the time step), not like accelerations; remove them or begin their lines with #",
+            table.lines[0],
+        )
+
+
+def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
+    width = len(table.rows[0])
+    ragged = next((i for i, row in enumerate(table.rows[:-1]) if len(row) != width), None)
+    if ragged is not None or len(table.rows[-1]) > width:
+        bad = len(table.rows) - 1 if ragged is None else ragged
+        raise text.fault(
+            f"a row of {len(table.rows[bad])} numbers among rows of {width}", table.lines[bad]
+        )
+    first = np.array([row[0] for row in table.rows])
+    if width == 2 or (first.size > 2 and bool(np.all(np.diff(first) > 0.0))):
+        raise text.fault(
+            f"rows of {width} numbers whose first one increases look like time and several "
+            f"quantities; keep time and acceleration"
+        )
+    note = f"rows of {width} numbers were read one after the other"
+    return _sequence(text, table, note)
+
+
+def _description(table: _Table, unit: str) -> str:
+    return f"{table.header[0][:100] if table.header else 'no header'}; values in {unit}"
+
+
+def _stated_count(header: Sequence[str]) -> int | None:
+    """The number of values that the header announces."""
+    count = _COUNT.search("\n".join(header))
+    return int(count[1]) if count else None
+
+
+def _stated_step(text: RecordText, header: Sequence[str]) -> float | None:
+    """The time step that the header states [s].
+
+    Raises
+    ------
+    RecordError
+        If it states two different ones.
+    """
+    steps = {to_float(numeral) for numeral in _STEP.findall("\n".join(header))}
+    if len(steps) > 1:
+        raise text.fault(f"the header states different time steps: {sorted(steps)}")
+    return steps.pop() if steps else None
+
+
+def _stated_units(text: RecordText, header: Sequence[str]) -> str | None:
+    """The canonical unit of acceleration that the header states.
+
+    Raises
+    ------
+    RecordError
+        If it states two different ones, or one that is not known.
+    """
+    units: set[str] = set()
+    for line in header:
+        key = _UNITS_KEY.search(line)
+        if key:
+            units.add(_unit_after_key(text, key[0], key[1]))
+        title = _COLUMN_TITLE.search(line)
+        if title and (unit := canonical_unit(title[1])):
+            units.add(unit)
+    if len(units) > 1:
+        raise text.fault(f"the header states different units: {', '.join(sorted(units))}")
+    return units.pop() if units else None
+
+
+def _unit_after_key(text: RecordText, statement: str, spelling: str) -> str:
+    word = re.match(rf"[\s(\[]*({UNIT_PATTERN})", spelling, re.IGNORECASE)
+    unit = canonical_unit(word[1]) if word else None
+    if unit is None:
+        raise text.fault(
+            f"the header says {statement.strip()!r}, which is no unit of acceleration that is "
+            f"known ({KNOWN_UNITS})"
+        )
+    return unit

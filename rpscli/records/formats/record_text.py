@@ -1,0 +1,222 @@
+"""The text of a record file, with what the user said about it, before a format reads it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from rpscli.errors import RecordError
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, numbers_in, unit_factor
+
+_BINARY_KINDS = {
+    b"PK\x03\x04": "a ZIP archive; unpack it first",
+    b"\x1f\x8b": "a gzip archive; unpack it first",
+    b"\x89HDF": "an HDF5 file; export the record as text",
+    b"%PDF": "a PDF document",
+    b"\x89PNG": "a picture",
+}
+_MARKUP = re.compile(rb"\s*<(?:!doctype|html|head|\?xml)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class RecordText:
+    """Lines of a record file, and the options that came with its source.
+
+    Parameters
+    ----------
+    path : Path
+        Where the lines were read.
+    source : str
+        The source as the user wrote it.
+    lines : tuple of str
+        Without line ends; a stray carriage return counts as part of a line end.
+    dt : float, optional [s]
+        Sampling interval that the user gave.
+    units : str, optional
+        Canonical unit of acceleration that the user gave.
+    channel : int, optional
+        The channel wanted from a file that holds several, from 1.
+    """
+
+    path: Path
+    source: str
+    lines: tuple[str, ...]
+    dt: float | None = None
+    units: str | None = None
+    channel: int | None = None
+
+    @property
+    def name(self) -> str:
+        """File name without its extension, and the channel if one was asked for."""
+        return self.path.stem + ("" if self.channel is None else f"_ch{self.channel}")
+
+    def fault(self, message: str, line: int | None = None) -> RecordError:
+        """An error that names this file and, if given, the line (counted from zero).
+
+        Parameters
+        ----------
+        message : str
+            What is wrong, the rule and a remedy.
+        line : int, optional
+            Counted from zero.
+        """
+        place = f"{self.path}" if line is None else f"{self.path}:{line + 1}"
+        return RecordError(f"{place}: {message}")
+
+    def agreed_factor(self, stated: str | None) -> tuple[str, float]:
+        """The unit of the values and its size in m/s2, from the file or from the user.
+
+        Raises
+        ------
+        RecordError
+            If neither names a unit, or both do and they differ: nothing is scaled silently.
+        """
+        if stated is None and self.units is None:
+            raise self.fault(
+                f"the file does not state the units of its values and none were given; say "
+                f"?units=g (or another of {KNOWN_UNITS}) after the file name, "
+                f"or write a header line 'units: g'"
+            )
+        unit = stated or self.units
+        assert unit is not None
+        if self.units is not None and unit_factor(self.units) != unit_factor(unit):
+            raise self.fault(
+                f"units = {self.units} contradicts the file, which says {unit}; leave the units "
+                f"out, or correct the file if its header is wrong"
+            )
+        return unit, unit_factor(unit)
+
+    def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
+        """The sampling interval [s], from the file or from the user.
+
+        A contradiction is refused. Within the tolerance the user may know the interval better than
+        the file.
+
+        Parameters
+        ----------
+        stated : float or None [s]
+            What the file says.
+        tolerance : float
+            Relative; covers the digits that the file prints.
+        """
+        if stated is None and self.dt is None:
+            raise self.fault(
+                "the file does not state its sampling interval and none was given; say "
+                "?dt=0.005 after the file name, or write a header line 'dt: 0.005'"
+            )
+        dt = stated if self.dt is None else self.dt
+        assert dt is not None
+        if dt <= 0.0:
+            raise self.fault(f"dt = {dt} s must be positive")
+        if stated is not None and abs(dt - stated) > tolerance * dt:
+            raise self.fault(
+                f"dt = {dt} s contradicts the file, which says {stated} s; leave dt out, "
+                f"or correct the file if its header is wrong"
+            )
+        return dt
+
+    def single_channel(self) -> None:
+        """Refuse a channel number: the format holds one channel."""
+        if self.channel is not None:
+            raise self.fault(f"channel = {self.channel}: this file holds one channel; leave it out")
+
+    def values(self, start: int, count: int) -> list[float]:
+        """The numbers of consecutive lines; blank lines are skipped.
+
+        Parameters
+        ----------
+        start : int
+            First line, counted from zero.
+        count : int
+            How many numbers there must be, exactly.
+
+        Raises
+        ------
+        RecordError
+            If text comes before the last of them, or the line of the last one holds more.
+        """
+        found: list[float] = []
+        for index in range(start, len(self.lines)):
+            if len(found) >= count:
+                break
+            row = numbers_in(self.lines[index])
+            if row is None:
+                raise self.fault(
+                    f"found {len(found)} of the {count} values that the header announces, then "
+                    f"{self.lines[index].strip()[:40]!r}; the file is damaged or cut short",
+                    index,
+                )
+            found.extend(row)
+        if len(found) != count:
+            raise self.fault(
+                f"the header announces {count} values, but there are {len(found)} up to "
+                f"{'the end of the line of the last one' if len(found) > count else 'the end'}; "
+                f"the file is damaged, fetch it again"
+            )
+        return found
+
+
+def read_text(
+    path: Path,
+    source: str,
+    *,
+    dt: float | None = None,
+    units: str | None = None,
+    channel: int | None = None,
+) -> RecordText:
+    """Read a record file as text.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    source : str
+        The source as the user wrote it.
+    dt : float, optional [s]
+        Sampling interval that the user gave.
+    units : str, optional
+        Unit of acceleration that the user gave, in any spelling.
+    channel : int, optional
+        The channel wanted from a file that holds several, from 1.
+
+    Raises
+    ------
+    RecordError
+        If it cannot be read, is empty, is not text (a picture, an archive), is a web page saved
+        under a record's name, or `units` is not a unit of acceleration.
+    """
+    unit = None if units is None else canonical_unit(units)
+    if units is not None and unit is None:
+        raise RecordError(f"{source}: units = {units!r} is not known; use one of {KNOWN_UNITS}")
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise RecordError(f"{path}: cannot be read: {error.strerror}") from error
+    _refuse_foreign(path, data)
+    text = re.sub(r"\r+\n?", "\n", _decoded(data)).rstrip("\x1a\n")
+    if not text.strip():
+        raise RecordError(f"{path}: the file is empty")
+    return RecordText(path, source, tuple(text.split("\n")), dt, unit, channel)
+
+
+def _refuse_foreign(path: Path, data: bytes) -> None:
+    for magic, kind in _BINARY_KINDS.items():
+        if data.startswith(magic):
+            raise RecordError(f"{path}: not a record but {kind}")
+    if _MARKUP.match(data.removeprefix(b"\xef\xbb\xbf")):
+        raise RecordError(
+            f"{path}: not a record but a web page, perhaps the log-in page of the database; "
+            f"download the record itself"
+        )
+    if b"\x00" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise RecordError(f"{path}: not a text file; export the record as text")
+
+
+def _decoded(data: bytes) -> str:
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16", errors="replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:  # station names of older files; every byte is a Latin-1 letter
+        return data.decode("latin-1")

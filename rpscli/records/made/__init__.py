@@ -1,0 +1,1 @@
+"""Ground motions that nobody recorded: pulses and seeded noise."""

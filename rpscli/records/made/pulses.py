@@ -1,0 +1,156 @@
+"""Mathematical pulses: `pulse:sine?amplitude=0.4g&period=1.2`.
+
+Every pulse starts at t = 0. One that starts with a jump (cosine) jumps: its first sample is the
+amplitude; the ground acceleration is zero after the last sample.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import RecordError
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.made.pulse_shapes import (
+    LEAD,
+    cosine,
+    mavroeidis_papageorgiou,
+    ricker,
+    ricker_antisymmetric,
+    sine,
+)
+from rpscli.records.query import Query, hint, parse_query
+
+SCHEME = "pulse"
+
+_STEPS_PER_PERIOD = 2000
+_MAVROEIDIS = "mavroeidis_papageorgiou"
+
+Shape = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class _Pulse:
+    """A shape of unit amplitude over time in periods, from zero."""
+
+    shape: Shape
+    periods: float  # length
+    fits: bool  # the end is part of the definition, so it has to fall on a sample
+
+
+_PULSES = {
+    "sine": _Pulse(sine, 1.0, fits=True),
+    "cosine": _Pulse(cosine, 1.0, fits=True),
+    "half_sine": _Pulse(sine, 0.5, fits=True),
+    "ricker": _Pulse(ricker, 2.0 * LEAD, fits=False),
+    "ricker_antisymmetric": _Pulse(ricker_antisymmetric, 2.0 * LEAD, fits=False),
+}
+PULSES = (*_PULSES, _MAVROEIDIS)
+"""The names of the pulses."""
+
+
+def load_pulse(rest: str, source: str) -> GroundMotion:
+    """Make a pulse.
+
+    Parameters
+    ----------
+    rest : str
+        The source without `pulse:`, such as `sine?amplitude=0.4g&period=1.2`.
+    source : str
+        The whole source, for messages.
+
+    Raises
+    ------
+    RecordError
+        If the name or an option is unknown, missing or out of range.
+
+    Notes
+    -----
+    `amplitude` is the peak acceleration (for the Mavroeidis-Papageorgiou pulse that of the whole
+    wave), `period` that of the oscillation. `dt` defaults to a 2000th of the period and has to
+    divide pulses of one period. The Mavroeidis-Papageorgiou pulse takes `cycles` (default 2) and
+    `phase` (default 0), and `velocity_amplitude` in place of `amplitude`.
+    """
+    name, _, options = rest.partition("?")
+    if name not in PULSES:
+        raise RecordError(f"{source}: pulse {name!r} is not known; {hint(name, PULSES)}")
+    own = ("velocity_amplitude", "cycles", "phase") if name == _MAVROEIDIS else ()
+    query = parse_query(options, source, ("amplitude", "period", "dt", *own))
+    period = query.quantity("period", "time")
+    if period <= 0.0:
+        raise RecordError(f"{source}: period = {period} s must be positive")
+    pulse, amplitude = _bell_of_waves(query, period) if own else _simple(query, name)
+    dt, steps = _sampling(query, pulse, period)
+    # The last sample of a pulse that fits is its end exactly, whatever the rounding of dt.
+    tau = np.arange(steps + 1, dtype=np.float64) * (
+        pulse.periods / steps if pulse.fits else dt / period
+    )
+    peak = abs(amplitude) / STANDARD_GRAVITY
+    return GroundMotion(
+        amplitude * pulse.shape(tau),
+        dt,
+        f"{name}_T{period:g}s_a{peak:.4g}g",
+        source,
+        "pulse",
+        f"{name.replace('_', ' ')} pulse, period {period:g} s, peak {peak:.4g} g",
+    )
+
+
+def _simple(query: Query, name: str) -> tuple[_Pulse, float]:
+    return _PULSES[name], _nonzero(query, "amplitude", query.acceleration("amplitude"))
+
+
+def _bell_of_waves(query: Query, period: float) -> tuple[_Pulse, float]:
+    cycles = query.quantity("cycles", "ratio", 2.0)
+    phase = query.quantity("phase", "angle", 0.0)
+    if not 1.0 < cycles <= 100.0:
+        raise RecordError(f"{query.source}: cycles = {cycles:g} must lie between 1 and 100")
+    dense = np.linspace(0.0, cycles, 1 + 2 * _STEPS_PER_PERIOD * math.ceil(cycles))
+    peak = float(np.max(np.abs(mavroeidis_papageorgiou(dense, cycles, phase))))
+
+    def shape(tau: NDArray[np.float64]) -> NDArray[np.float64]:
+        return mavroeidis_papageorgiou(tau, cycles, phase) / peak
+
+    given = [key for key in ("amplitude", "velocity_amplitude") if key in query.values]
+    if len(given) != 1:
+        raise RecordError(
+            f"{query.source}: give either amplitude (peak acceleration) or velocity_amplitude"
+        )
+    if given == ["amplitude"]:
+        amplitude = query.acceleration("amplitude")
+    else:
+        amplitude = query.quantity("velocity_amplitude", "velocity") * peak / period
+    return _Pulse(shape, cycles, fits=False), _nonzero(query, given[0], amplitude)
+
+
+def _nonzero(query: Query, key: str, amplitude: float) -> float:
+    if amplitude == 0.0:
+        raise RecordError(f"{query.source}: {key} = 0 makes no pulse")
+    return amplitude
+
+
+def _sampling(query: Query, pulse: _Pulse, period: float) -> tuple[float, int]:
+    length = pulse.periods * period
+    dt = query.quantity("dt", "time", period / _STEPS_PER_PERIOD)
+    if not 0.0 < dt <= 0.25 * period:
+        raise RecordError(
+            f"{query.source}: dt = {dt:g} s must be positive and at most a quarter of the period"
+        )
+    if length / dt > 1e7:
+        raise RecordError(
+            f"{query.source}: dt = {dt:g} s makes {length / dt:.3g} samples; raise it"
+        )
+    steps = round(length / dt)
+    if not pulse.fits:
+        return dt, math.ceil(length / dt - 1e-6)
+    if abs(length / dt - steps) > 1e-6:
+        raise RecordError(
+            f"{query.source}: dt = {dt:g} s does not divide the pulse of {length:g} s, which has "
+            f"to end on a sample; the nearest that does is dt={length / steps:.10g}"
+        )
+    return dt, steps

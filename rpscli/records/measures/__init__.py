@@ -1,0 +1,1 @@
+"""What a ground motion measures: integrals, intensities, spectra."""

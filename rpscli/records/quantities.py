@@ -1,0 +1,120 @@
+"""Numbers and units of acceleration as record files and users spell them.
+
+Fortran and its heirs print numbers ragged, glued together, with D exponents.
+"""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+
+from rpscli.constants import STANDARD_GRAVITY
+
+_UNSIGNED = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?"
+_NUMBER = re.compile(rf"[+-]?{_UNSIGNED}")
+# Fixed columns leave no blank before a minus sign; digits glued without one stay unreadable.
+_GLUED = re.compile(rf"[+-]?{_UNSIGNED}(?:[+-]{_UNSIGNED})*")
+# `float` alone would also take nan, inf, 1_000 and the digits of other scripts.
+_NUMERIC_LINE = re.compile(r"[-+.0-9EeDd,\s]*")
+
+NUMBER_PATTERN = rf"[+-]?{_UNSIGNED}"
+"""A regular expression for one number."""
+
+_FACTORS = {
+    "g": STANDARD_GRAVITY,
+    "m/s2": 1.0,
+    "cm/s2": 0.01,
+    "mm/s2": 0.001,
+    "gal": 0.01,
+    "in/s2": 0.0254,
+    "ft/s2": 0.3048,
+}
+
+KNOWN_UNITS = ", ".join(_FACTORS)
+"""The canonical names, for messages."""
+
+UNIT_PATTERN = (
+    r"(?:[cm]?m|in|ft)\s*/\s*s(?:ec)?\s*(?:/\s*s(?:ec)?|\^\s*2|\*\*\s*2|2|²)(?![A-Za-z0-9])"
+    r"|gals?(?![A-Za-z0-9])"
+    r"|g(?![A-Za-z0-9/])"
+)
+"""A regular expression (ignoring case) for the spellings of `canonical_unit` in running text."""
+
+
+def to_float(numeral: str) -> float:
+    """The value of one numeral, exponents written with D included."""
+    return float(numeral.replace("D", "E").replace("d", "e"))
+
+
+def numbers_in(line: str) -> list[float] | None:
+    """The numbers of a line that holds nothing else, or None.
+
+    Blanks separate; so do commas when each field holds one number, which keeps decimal commas
+    from being read as separators.
+
+    Examples
+    --------
+    >>> numbers_in("-.1234E-02-.5678E-03  .5D-1")
+    [-0.001234, -0.0005678, 0.05]
+    >>> numbers_in("0,005 0,123") is None, numbers_in("0.005, 0.123"), numbers_in("nan") is None
+    (True, [0.005, 0.123], True)
+    """
+    if not _NUMERIC_LINE.fullmatch(line):
+        return None
+    fields = line.split()
+    if "," in line:
+        fields = [field.strip() for field in line.strip().removesuffix(",").split(",")]
+    try:
+        return [float(field) for field in fields]
+    except ValueError:
+        return _glued(fields)
+
+
+def numerals_in(line: str) -> list[str]:
+    """The numbers of a line of numbers, as they are printed."""
+    return _NUMBER.findall(line)
+
+
+def last_digit(numeral: str) -> float:
+    """The unit of the last digit that is printed.
+
+    Examples
+    --------
+    >>> last_digit(".0050"), last_digit("2.50E-02")
+    (0.0001, 0.0001)
+    """
+    exponent = Decimal(re.sub("[dD]", "E", numeral)).as_tuple().exponent
+    assert isinstance(exponent, int)
+    return 10.0**exponent
+
+
+def _glued(fields: list[str]) -> list[float] | None:
+    if not all(_GLUED.fullmatch(field) for field in fields):
+        return None
+    return [to_float(numeral) for field in fields for numeral in _NUMBER.findall(field)]
+
+
+def canonical_unit(text: str) -> str | None:
+    """One of the known names for a unit of acceleration, or None if it is not one.
+
+    Examples
+    --------
+    >>> canonical_unit("CM/SEC/SEC"), canonical_unit("m/s^2"), canonical_unit("cm/s")
+    ('cm/s2', 'm/s2', None)
+    """
+    unit = re.sub(r"[\s()\[\]]", "", text.lower())
+    unit = unit.replace("sec", "s").replace("²", "2").replace("**", "^").replace("^", "")
+    unit = re.sub(r"/s/s$", "/s2", unit)
+    unit = "gal" if unit == "gals" else unit
+    return unit if unit in _FACTORS else None
+
+
+def unit_factor(unit: str) -> float:
+    """The size of a canonical unit in m/s2.
+
+    Examples
+    --------
+    >>> unit_factor("g"), unit_factor("gal")
+    (9.80665, 0.01)
+    """
+    return _FACTORS[unit]

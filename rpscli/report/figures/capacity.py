@@ -1,0 +1,49 @@
+"""Capacity curves of the whole structure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rpscli.report.figures import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rpscli.analyses.pushover import PushoverResult
+
+LOOKS = ((style.BLUE, "-"), (style.RED, "--"), (style.GREEN, "-."), (style.PINK, ":"))
+
+
+def capacity_figure(result: PushoverResult, title: str) -> bytes:
+    """Base shear against roof displacement, whole and close to the uplift."""
+    factor, prefix = style.engineering(max(c.base_shear.max() for c in result.capacity))
+    uplift = max(c.roof_displacement_at_uplift for c in result.capacity)
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, "floor forces pushed to the critical rotation")
+        whole, close = figure.subplots(1, 2, sharey=True, width_ratios=[1.6, 1.0])
+        for k, curve in enumerate(result.capacity):
+            colour, line = LOOKS[k % len(LOOKS)]
+            name = curve.pattern.replace("_", " ")
+            for axes in (whole, close):
+                axes.plot(
+                    curve.roof_displacement, factor * curve.base_shear,
+                    color=colour, ls=line, lw=1.5, label=name,
+                )  # fmt: skip
+            close.plot(
+                curve.roof_displacement_at_uplift, factor * result.uplift_force, "o",
+                color=colour, ms=4.5, clip_on=False,
+            )  # fmt: skip
+        close.plot([], [], "o", color=style.GREY, ms=4.5, label="uplift")
+        whole.set_xlim(left=0.0)
+        whole.set_ylim(bottom=min(0.0, *(factor * np.min(c.base_shear) for c in result.capacity)))
+        close.set_xlim(0.0, 3.0 * uplift)
+        close.locator_params(axis="x", nbins=5)
+        whole.set_ylabel(f"sum of the floor forces [{prefix}N]")
+        whole.set_xlabel("roof displacement [m]")
+        close.set_xlabel("roof displacement, near uplift [m]")
+        figure.legend(*close.get_legend_handles_labels(), loc="outside lower center", ncols=5)
+
+    return style.png(draw, 3.6)

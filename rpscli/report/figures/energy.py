@@ -1,0 +1,44 @@
+"""Where the energy of the ground motion goes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rpscli.report.figures import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rpscli.analyses.results import TimeHistoryResult
+
+
+def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
+    """Input against what was damped, lost at impacts and is stored, one on top of the other."""
+    trace = result.trace
+    factor, prefix = style.engineering(
+        float(np.nanmax(np.abs([trace.energy_input, trace.energy_stored])))
+    )
+    parts = [
+        (trace.energy_impact, "lost at impacts (net)", style.ORANGE),
+        (trace.energy_stored, "kinetic, elastic and of lift", style.GREEN),
+    ]
+    if result.structure.storeys:
+        parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, result.record.name)
+        axes = figure.subplots()
+        below = np.zeros_like(trace.time)
+        for part, name, colour in parts:
+            above = below + factor * part
+            axes.fill_between(trace.time, below, above, color=colour, lw=0.0, label=name, alpha=0.8)
+            below = above
+        axes.plot(trace.time, factor * trace.energy_input, color=style.BLACK, label="input")
+        axes.set_xlim(0.0, trace.time[-1])
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel(f"energy [{prefix}J]")
+        style.legend_above(axes, 4)
+
+    return style.png(draw, 3.4)

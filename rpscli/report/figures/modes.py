@@ -1,0 +1,73 @@
+"""Mode shapes of each state, laid out like Figure 6 of the paper."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.report.figures import style
+from rpscli.report.figures.levels import level_heights
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rpscli.analyses.modal import ModalResult, UpliftedModes
+
+MOST_MODES = 3
+"""Vibration modes that are drawn, at most."""
+
+Array = NDArray[np.float64]
+
+
+def modes_figure(result: ModalResult, title: str) -> bytes:
+    """The storey's own mode and the first vibration modes: one column a mode, one row a state."""
+    states = list(result.uplifted.items())
+    vibrations = min(MOST_MODES, result.structure.storeys)
+    levels = np.concatenate([[0.0], level_heights(result.structure)])
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title)
+        panels = figure.subplots(
+            len(states), 1 + vibrations, sharex=True, sharey=True, squeeze=False
+        )
+        for row, (name, modes) in zip(panels, states, strict=True):
+            row[0].set_ylabel(f"{name}\nheight [m]")
+            for mode, axes in enumerate(row):
+                _draw_mode(axes, result, modes, mode, levels)
+        for axes in panels[-1]:
+            axes.set_xlabel("shape [-]")
+        reach = 1.05 * max(abs(limit) for limit in panels[0, 0].get_xlim())
+        panels[0, 0].set_xlim(-reach, reach)
+        handles, names = panels[0, -1].get_legend_handles_labels()
+        figure.legend(handles, names, loc="outside lower center", ncols=3)
+
+    width = 1.0 + 1.5 * (1 + vibrations)
+    return style.png(draw, 0.9 + 2.1 * len(states), max(width, 4.0))
+
+
+def _draw_mode(
+    axes: Axes, result: ModalResult, modes: UpliftedModes, mode: int, levels: Array
+) -> None:
+    shape = modes.shapes[:, mode]
+    if mode and result.fixed_base is not None:
+        full = np.concatenate([[0.0, 0.0], result.fixed_base.shapes[:, mode - 1]])
+        axes.plot(
+            full, levels, color=style.BLACK, ls="--", marker="o", ms=2.5, label="full contact"
+        )
+    axes.plot(
+        [0.0, *shape], levels, color=style.BLACK, marker="o", ms=2.5, label="uplifted, horizontal"
+    )
+    if len(shape) > 1:
+        elastic = [0.0, *(shape[1:] - shape[0])]
+        axes.plot(
+            elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label="uplifted, elastic part"
+        )
+    axes.axvline(0.0, color=style.GREY, lw=0.5)
+    axes.set_ylim(-0.02 * levels[-1], 1.03 * levels[-1])
+    if mode == 0:
+        axes.set_title(f"storey: $p$ = {modes.frequency_parameter:#.3g} rad/s")
+    else:
+        axes.set_title(f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s")

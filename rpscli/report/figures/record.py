@@ -1,0 +1,59 @@
+"""A ground motion at a glance: acceleration, velocity, displacement, response spectrum."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rpscli.records.measures.integration import displacement, velocity
+from rpscli.report.figures import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.measures.spectrum import ResponseSpectrum
+
+
+def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
+    """Time histories on the left, the spectrum on the right."""
+    a, dt = motion.acceleration, motion.dt
+    histories = (
+        (a, "acceleration\n[m/s²]", style.BLACK),
+        (velocity(a, dt), "velocity\n[m/s]", style.BLUE),
+        (displacement(a, dt), "displacement\n[m]", style.GREEN),
+    )
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, motion.name, motion.description[:90])
+        left, right = figure.subfigures(1, 2, width_ratios=[1.45, 1.0], squeeze=False)[0]
+        panels = left.subplots(3, 1, sharex=True)
+        for axes, (values, label, colour) in zip(panels, histories, strict=True):
+            _draw_history(axes, motion.time, values, label, colour)
+        panels[-1].set_xlim(0.0, motion.duration)
+        panels[-1].set_xlabel("time [s]")
+        left.align_ylabels()
+        _draw_spectrum(right.subplots(), spectrum)
+
+    return style.png(draw, 4.2, 8.0)
+
+
+def _draw_history(
+    axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], label: str, colour: str
+) -> None:
+    peak = int(np.argmax(np.abs(values)))
+    axes.plot(time, values, color=colour, lw=0.7)
+    axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
+    axes.set_ylabel(label)
+    axes.set_title(f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s", loc="right", fontsize=7.5)
+
+
+def _draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
+    axes.plot(spectrum.periods, spectrum.pseudo_acceleration, color=style.RED, lw=1.3)
+    axes.set_xlabel("period [s]")
+    axes.set_ylabel(f"pseudo-acceleration, {spectrum.damping:.0%} damping [m/s²]")
+    axes.set_xlim(0.0, spectrum.periods[-1])
+    axes.set_ylim(bottom=0.0)

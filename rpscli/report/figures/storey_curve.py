@@ -1,0 +1,66 @@
+"""Restoring force of the storey against its displacement, as in Figure 1c of the paper."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rpscli.report.figures import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rpscli.analyses.pushover import PushoverResult
+
+
+def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
+    """Force and lift of the cap beam against its displacement, to the critical rotation."""
+    curve, beta = result.curve, result.structure.bearing.beta
+    factor, prefix = style.engineering(float(np.max(curve.force)))
+    rolling = curve.rotation <= beta
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, "rocking storey alone")
+        force, lift = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, 1.0])
+        u, F = curve.displacement, factor * curve.force
+        force.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
+        for inside, colour, name in (
+            (rolling, style.BLUE, "rolling"),
+            (~rolling | (curve.rotation == beta), style.RED, "rocking"),
+        ):
+            if np.count_nonzero(inside) > 1:
+                force.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
+                lift.plot(u[inside], 1e3 * curve.lift[inside], color=colour, lw=2.0)
+        _mark(force, 0.0, F[0], "uplift", (8.0, -4.0 if F[1] > F[0] else 6.0))
+        if 0.0 < beta < result.critical_rotation:
+            at = int(np.searchsorted(curve.rotation, beta))
+            _mark(force, u[at], F[at], f"$\\beta$ = {beta:.3f} rad", (7.0, 6.0))
+        critical = f"$\\theta_{{cr}}$ = {result.critical_rotation:.3f} rad"
+        _mark(force, u[-1], F[-1], critical, (-32.0, 4.0))
+        _limits(force, u[-1], F.max())
+        force.set_ylabel(f"force at the cap beam [{prefix}N]")
+        ratio = force.secondary_yaxis("right", functions=style.over(float(F[0])))
+        ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
+        lift.set_ylim(bottom=0.0)
+        lift.set_ylabel("lift [mm]")
+        lift.set_xlabel("displacement of the cap beam $u_b$ [m]")
+        style.legend_above(force, 3)
+        figure.align_ylabels()
+
+    return style.png(draw, 4.8, 5.8)
+
+
+def _mark(axes: Axes, x: float, y: float, text: str, offset: tuple[float, float]) -> None:
+    """A point with its name, offset [pt] to the side on which no curve runs."""
+    axes.plot(x, y, "o", color=style.BLACK, ms=5.0, zorder=5, clip_on=False)
+    axes.annotate(
+        text, (x, y), offset, textcoords="offset points", fontsize=8.0,
+        ha="left" if offset[0] > 0.0 else "right", va="bottom" if offset[1] > 0.0 else "top",
+    )  # fmt: skip
+
+
+def _limits(axes: Axes, end: float, top: float) -> None:
+    axes.set_xlim(-0.02 * end, 1.04 * end)
+    axes.set_ylim(0.0, 1.18 * top)

@@ -1,0 +1,53 @@
+"""Tables as CSV: a header of names with units, and one row a line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
+
+
+class Column(NamedTuple):
+    """One column of a table; a value that does not exist is None, and an empty cell."""
+
+    name: str
+    unit: str
+    values: Iterable[float | int | str | None] | NDArray[Any]
+
+    @property
+    def title(self) -> str:
+        """Name and unit, ``-`` for a number without one."""
+        return f"{self.name} [{self.unit}]"
+
+
+def columns_of(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[Column]:
+    """Columns with these names and units from the rows of a table."""
+    cells = list(zip(*rows, strict=True)) or [()] * len(heads)
+    return [Column(*head, values) for head, values in zip(heads.items(), cells, strict=True)]
+
+
+def csv_text(columns: Sequence[Column]) -> str:
+    """The table; numbers with ten significant digits.
+
+    >>> print(csv_text([Column("time", "s", [0.0, 0.5]), Column("kind", "-", ["impact", None])]))
+    time [s],kind [-]
+    0,impact
+    0.5,
+    <BLANKLINE>
+    """
+    cells = ([_cell(value) for value in _listed(column.values)] for column in columns)
+    lines = [",".join(column.title for column in columns)]
+    lines += [",".join(row) for row in zip(*cells, strict=True)]
+    return "\n".join(lines) + "\n"
+
+
+def _listed(values: Iterable[object]) -> Iterable[object]:
+    return values.tolist() if hasattr(values, "tolist") else values
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return format(value + 0.0, ".10g") if math.isfinite(value) else ""
+    return "" if value is None else str(value)

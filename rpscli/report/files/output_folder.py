@@ -1,0 +1,169 @@
+"""A folder of results: written at once, and never over what is not the command's own.
+
+Contents are collected in memory and appear together: first every file under a temporary name,
+then the renaming. An interruption or a full disk leaves the folder as it was.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rpscli.errors import Refused
+from rpscli.report.files.json_text import SCHEMA_VERSION, json_text
+from rpscli.report.files.versions import versions
+from rpscli.report.files.whole_files import require_writable, write_whole
+
+RUN_FILE = "run.json"
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a command was run on.
+
+    Parameters
+    ----------
+    command
+        Such as ``timehistory``.
+    name
+        Of the case or the record.
+    file
+        Where the input was read from; None for the standard input and for made records.
+    digest
+        SHA-256 (hexadecimal) of the input's text.
+    inputs
+        Everything else that decides about the result, resolved.
+    """
+
+    command: str
+    name: str
+    file: Path | None
+    digest: str
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+
+
+class OutputFolder:
+    """The files that one run leaves behind.
+
+    Parameters
+    ----------
+    folder
+        Made when the files are written.
+    run
+        Identifies the owner. A later run of the same command on the same file may replace the
+        files, though the file's content or the options have changed.
+    force
+        Overwrite whatever is in the way.
+
+    Raises
+    ------
+    Refused
+        If the folder holds the results of another command or another case.
+    OutputError
+        If nothing can be written there.
+    """
+
+    def __init__(self, folder: Path, run: Run, *, force: bool = False) -> None:
+        self.folder = folder
+        self.run = run
+        self.force = force
+        self._contents: dict[Path, bytes] = {}
+        self._earlier = self._claimed()
+
+    @property
+    def files(self) -> list[str]:
+        """What will be, or was, written: paths as the user would type them."""
+        return [str(path) for path in (*self._contents, self.folder / RUN_FILE)]
+
+    @property
+    def replaces_other_inputs(self) -> bool:
+        """Whether earlier results are there, and come from other inputs."""
+        earlier = {key: self._earlier.get(key) for key in ("sha256", "inputs")}
+        return bool(self._earlier) and earlier != json.loads(
+            json_text({"sha256": self.run.digest, "inputs": self.run.inputs})
+        )
+
+    def add(self, name: str, content: str | bytes) -> None:
+        """Collect a file of the folder."""
+        self.add_at(self.folder / name, content)
+
+    def add_at(self, path: Path, content: str | bytes) -> None:
+        """Collect a file that stands elsewhere; it is guarded like those of the folder."""
+        self._contents[path] = content.encode() if isinstance(content, str) else content
+
+    def write(self) -> None:
+        """Write all files, `run.json` with them.
+
+        Raises
+        ------
+        Refused
+            If a file is in the way that is not the command's own earlier output.
+        OutputError
+            If the files cannot be written; none is then.
+        """
+        self._refuse_strangers()
+        contents = {**self._contents, self.folder / RUN_FILE: self._run_text().encode()}
+        write_whole(contents)
+        for stale in self._own - {self._known_as(path) for path in contents}:
+            if Path(stale).name == stale:  # never outside the folder
+                (self.folder / stale).unlink(missing_ok=True)
+
+    def _run_text(self) -> str:
+        document = {
+            "schema_version": SCHEMA_VERSION,
+            "command": self.run.command,
+            "name": self.run.name,
+            "file": self._subject,
+            "sha256": self.run.digest,
+            "inputs": self.run.inputs,
+            "versions": versions(),
+            "files": [self._known_as(path) for path in self._contents],
+        }
+        return json_text(document)
+
+    @property
+    def _subject(self) -> str | None:
+        return None if self.run.file is None else self._known_as(self.run.file)
+
+    def _known_as(self, path: Path) -> str:
+        # Relative to the folder: a project that is moved as a whole keeps knowing its results.
+        try:
+            return Path(os.path.relpath(path, self.folder)).as_posix()
+        except ValueError:  # another drive
+            return str(path.absolute())
+
+    @property
+    def _own(self) -> set[str]:
+        return {*self._earlier.get("files", ()), RUN_FILE} if self._earlier else set()
+
+    def _claimed(self) -> dict[str, Any]:
+        """The earlier `run.json` if it is this run's own; empty if there is none."""
+        require_writable(self.folder)
+        place = self.folder / RUN_FILE
+        try:
+            earlier = json.loads(place.read_text(encoding="utf-8"))
+            owner = f"`rps {earlier['command']}` on {earlier['name']} ({earlier['file']})"
+        except FileNotFoundError:
+            return {}
+        except (OSError, ValueError, TypeError, KeyError):
+            return self._refuse(f"{place} is no description of a run of rps")
+        same = earlier["command"] == self.run.command and earlier["file"] == self._subject
+        if same and self.run.file is None:  # what has no file is known by what it says
+            same = earlier.get("sha256") == self.run.digest
+        if same:
+            return dict(earlier)
+        return self._refuse(f"{self.folder} holds the results of {owner}")
+
+    def _refuse_strangers(self) -> None:
+        for path in self._contents:
+            if path.exists() and self._known_as(path) not in self._own:
+                self._refuse(f"{path} exists and is no earlier output of this command")
+
+    def _refuse(self, reason: str) -> dict[str, Any]:
+        if not self.force:
+            raise Refused(f"{reason}; name another place with -o, or overwrite with --force")
+        return {}

@@ -1,0 +1,79 @@
+"""Varied keys and their values, as figures and tables name them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+
+from rpscli.case.schema.key_units import unit
+from rpscli.report.files.csv_text import Column
+
+SYMBOLS = {
+    "superstructure.storeys": "n",
+    "superstructure.period": "T₁",
+    "superstructure.damping.ratio": "ξ",
+    "podium.bearing.semi_diagonal": "R",
+    "podium.bearing.slenderness": "tan α",
+    "podium.bearing.wedge_slenderness": "tan α′",
+    "podium.bearing.curvature_ratio": "ρ",
+    "podium.cap_beam_mass_ratio": "γ",
+    "podium.superstructure_mass_ratio": "η",
+}
+"""The paper's letters; other keys go by their last word. Plain text: matplotlib takes ten times as
+long over formulae, and there is a title on every panel."""
+
+CURVATURES = {"critical": "critical ρ", 0: "flat ends"}
+
+Values = Sequence[object]
+
+
+def symbol(key: str) -> str:
+    """A key's letter or its last word.
+
+    >>> symbol("superstructure.storeys"), symbol("podium.impact.law")
+    ('n', 'law')
+    """
+    return SYMBOLS.get(key, key.rpartition(".")[2])
+
+
+def label(key: str, value: object) -> str:
+    """A key with its value.
+
+    >>> label("superstructure.storeys", 3), label("podium.bearing.curvature_ratio", 0)
+    ('n = 3', 'flat ends')
+    """
+    if key.endswith("curvature_ratio") and not isinstance(value, list | dict | bool):
+        known = CURVATURES.get(value) if isinstance(value, str | int | float) else None
+        if known:
+            return known
+    return f"{symbol(key)} = {plain(value)}"
+
+
+def labels(keys: Iterable[str], values: Values) -> str:
+    """Several keys with their values; empty without any."""
+    return ", ".join(label(key, value) for key, value in zip(keys, values, strict=True))
+
+
+def plain(value: object) -> str:
+    """A value as text: numbers short, lists as the study has them."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
+    """One column a key, from its values in each row."""
+    return [
+        Column(key, unit(key), [quoted(row[place]) for row in rows])
+        for place, key in enumerate(keys)
+    ]
+
+
+def quoted(value: object) -> float | int | str | None:
+    """A value for a cell of a CSV file; text with commas in quotes."""
+    if value is None or isinstance(value, int | float):
+        return value
+    text = value if isinstance(value, str) else json.dumps(value)
+    if any(sign in text for sign in ',"\n'):
+        return '"' + text.replace('"', '""') + '"'
+    return text

@@ -1,0 +1,169 @@
+"""Figures of studies: panels side by side, one for each group of systems."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rpscli.report.figures import style
+from rpscli.report.study.labels import labels
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MOST_PANELS = 36
+"""More would be illegible; the CSV has them all."""
+
+COLOURS = (
+    style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PINK, style.SKY,
+    style.BLACK, style.GREY,
+)  # fmt: skip
+MARKERS = "osD^vP*X"
+MOST_TICKS = 5
+"""On each axis of a panel: ticks take most of the time of drawing."""
+LETTERS_AN_INCH = 16.0
+"""Of the legend's font."""
+LINE = 0.17
+"""Height of a line of text [in]."""
+
+
+def colour(place: int, count: int = 0) -> str:
+    """A colour for each of so many series: distinct ones, or shades of a scale beyond eight."""
+    if count <= len(COLOURS):
+        return COLOURS[place % len(COLOURS)]
+    from matplotlib import colormaps, colors  # noqa: PLC0415
+
+    return colors.to_hex(colormaps["viridis"](place / (count - 1)))
+
+
+def marker(place: int) -> str:
+    """A marker for each series."""
+    return MARKERS[place % len(MARKERS)]
+
+
+class Layout(NamedTuple):
+    """Titles of the panels, and how many stand side by side."""
+
+    names: Sequence[str]
+    columns: int
+
+
+def by_values(keys: Sequence[str], panels: Sequence[Any]) -> Layout:
+    """Panels that have `values` of some keys.
+
+    As many stand side by side as the last key has values, if the panels fill such a table.
+    """
+    across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
+    fills = 1 < across <= 5 and len(panels) % across == 0
+    columns = across if fills else max(1, min(4, len(panels)))
+    return Layout([labels(keys, panel.values) for panel in panels], columns)
+
+
+def panel_figure(
+    layout: Layout,
+    panels: Sequence[Any],
+    draw: Callable[[Axes, Any], None],
+    *,
+    title: str,
+    x_label: str,
+    y_label: str,
+    share_axes: bool = True,
+    limits: Callable[[Axes], object] | None = None,
+    note: str = "",
+) -> bytes:
+    """A figure with one panel for each group.
+
+    Parameters
+    ----------
+    draw
+        Fills the axes of a panel.
+    limits
+        Sets the limits that shared axes have in common; each panel would set them for all others.
+    note
+        A remark after the title: what was left out.
+    """
+    shown, columns = panels[:MOST_PANELS], layout.columns
+    names = _wrapped(layout.names, columns)
+    rows = max(1, math.ceil(len(shown) / columns))
+    if len(panels) > len(shown):
+        note = f"{note}; " * bool(note) + f"the first {len(shown)} of {len(panels)} panels"
+
+    def fill(figure: Figure) -> None:
+        style.heading(figure, title, note)
+        grid = figure.subplots(rows, columns, squeeze=False, sharex=share_axes, sharey=share_axes)
+        for place, axes in enumerate(grid.flat):
+            if place >= len(shown):
+                axes.set_axis_off()
+                continue
+            axes.locator_params(nbins=MOST_TICKS)
+            draw(axes, shown[place])
+            # Without a height matplotlib would look for ticks under the title, at great length.
+            axes.set_title(names[place], y=1.0)
+            if place + columns >= len(shown):
+                axes.set_xlabel(x_label)
+                axes.tick_params(labelbottom=True)
+            if place % columns == 0:
+                axes.set_ylabel(y_label)
+        if limits is not None:
+            limits(grid.flat[0])
+        _arrange(figure, grid, _legend_lines(figure, grid), share_axes=share_axes)
+
+    width = style.WIDTH if columns > 1 else 0.72 * style.WIDTH
+    height = 3.8 if rows == 1 and columns == 1 else 1.0 + (2.6 if columns < 3 else 2.1) * rows
+    return style.png(fill, height, width, None)
+
+
+def _legend_lines(figure: Figure, grid: Any) -> int:
+    """One legend for all panels, below them; returns its number of lines."""
+    found: dict[str, Any] = {}
+    for axes in grid.flat:
+        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
+            found.setdefault(name, handle)
+    if not found:
+        return 0
+    widest = max(len(name) for name in found)
+    room = figure.get_figwidth() * LETTERS_AN_INCH
+    columns = max(1, min(len(found), 5, int(room / (widest + 7))))
+    figure.legend(found.values(), found.keys(), loc="lower center", ncols=columns)
+    return math.ceil(len(found) / columns)
+
+
+def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_axes: bool) -> None:
+    """Place the axes by hand: the automatic layout would take longer than the drawing."""
+    rows, columns = grid.shape
+    titles = [axes.get_title() for axes in grid.flat]
+    title_lines = max(title.count("\n") for title in titles) + any(titles)
+    width, height = figure.get_size_inches()
+    height += LINE * max(legend_lines - 1, 0)
+    figure.set_size_inches(width, height)
+    left, right = 0.62, 0.14
+    bottom = 0.52 + LINE * legend_lines + (0.06 if legend_lines else 0.0)
+    top = 0.32 + LINE * title_lines
+    # Where axes are shared, room for half of the last number of one and of the first of the next.
+    across = 0.32 if share_axes else 0.36
+    down = 0.14 + LINE * title_lines + (0.0 if share_axes else 0.2)
+    figure.suptitle(figure.get_suptitle(), y=1.0 - 0.08 / height, fontsize=8.0, color=style.GREY)
+    figure.subplots_adjust(
+        left=left / width,
+        right=1.0 - right / width,
+        bottom=bottom / height,
+        top=1.0 - top / height,
+        # Gaps are wanted in parts of the mean size of the axes.
+        wspace=across / ((width - left - right - across * (columns - 1)) / columns),
+        hspace=down / ((height - bottom - top - down * (rows - 1)) / rows),
+    )
+
+
+def _wrapped(names: Sequence[str], columns: int) -> list[str]:
+    """Titles on two lines where panels are narrow: the last key below the others."""
+    widest = max((len(name) for name in names), default=0)
+    if widest * columns <= style.WIDTH * LETTERS_AN_INCH * 0.7:
+        return list(names)
+    return ["\n".join(name.rsplit(", ", 1)) for name in names]
+
+
+def left_out(failed: int) -> str:
+    """A remark on points that failed."""
+    return f"{failed} failed points left out" if failed else ""

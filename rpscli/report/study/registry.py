@@ -1,0 +1,28 @@
+"""All kinds of report by the names that studies call them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rpscli.report.study import (
+    demand,
+    fragility,
+    ida,
+    lines,
+    overturning,
+    overturning_spectrum,
+    rotation,
+    storey_shear,
+)
+from rpscli.report.study.report import Report
+
+REPORTS: dict[str, Report[Any, Any]] = {
+    "overturning": overturning.REPORT,
+    "rotation": rotation.REPORT,
+    "demand": demand.REPORT,
+    "storey_shear": storey_shear.REPORT,
+    "fragility": fragility.REPORT,
+    "ida": ida.REPORT,
+    "overturning_spectrum": overturning_spectrum.REPORT,
+    "lines": lines.REPORT,
+}

@@ -1,0 +1,52 @@
+"""A report of a study as one object: what may be asked, its numbers, tables and figure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from rpscli.case.study.reports import Check, ReportOptions
+from rpscli.case.study.schema import Analysis
+from rpscli.report.files.csv_text import Column, csv_text
+from rpscli.sweep.reports.study_results import StudyResults
+
+Options = TypeVar("Options", bound=ReportOptions)
+Numbers = TypeVar("Numbers")
+
+
+@dataclass(frozen=True)
+class Report(Generic[Options, Numbers]):
+    """One kind of report.
+
+    Parameters
+    ----------
+    options
+        What a study may say about it.
+    numbers
+        What it computes; it takes from the results what it needs.
+    tables
+        Columns of each CSV file, by what follows the report's name in the file's.
+    figure
+        The PNG file under a title.
+    notes
+        What the user should know about the numbers.
+    check
+        Rules that join the options with the rest of the study; seen before anything is computed.
+    analyses
+        Analyses whose results it shows.
+    """
+
+    options: type[Options]
+    numbers: Callable[[StudyResults, Options], Numbers]
+    tables: Mapping[str, Callable[[Numbers], list[Column]]]
+    figure: Callable[[Numbers, str], bytes]
+    notes: Callable[[Numbers], Iterable[str]] = lambda _: ()
+    check: Check = lambda *_: ()
+    analyses: tuple[Analysis, ...] = ("timehistory",)
+
+    def files(self, numbers: Numbers, stem: str, title: str) -> Iterator[tuple[str, str | bytes]]:
+        """Names and contents of its files."""
+        for suffix, columns in self.tables.items():
+            yield f"{stem}{suffix}.csv", csv_text(columns(numbers))
+        yield f"{stem}.png", self.figure(numbers, title)

@@ -1,0 +1,80 @@
+"""Storey shears over the height, isolated and on a fixed base, as in Figure 9 of the paper."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rpscli.report.figures import style
+from rpscli.report.files.csv_text import Column
+from rpscli.report.study.labels import key_columns
+from rpscli.report.study.panels import by_values, left_out, panel_figure
+from rpscli.report.study.report import Report
+from rpscli.sweep.reports.storey_shear import (
+    StoreyProfile,
+    StoreyShearOptions,
+    StoreyShearReport,
+    storey_shear_report,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LOOKS = (
+    ("mean", "mean", style.BLACK, "-"),
+    ("largest", "largest", style.RED, "-"),
+    ("fixed_mean", "mean, fixed base", style.BLACK, "--"),
+    ("fixed_largest", "largest, fixed base", style.RED, "--"),
+)
+
+
+def storey_shear_columns(report: StoreyShearReport) -> list[Column]:
+    """One row a storey of each system, from the bottom."""
+    rows = [(p, storey) for p in report.profiles for storey in range(len(p.mean))]
+    columns = key_columns(report.panel_keys, [p.values for p, _ in rows])
+    columns.append(Column("storey", "-", [storey + 1 for _, storey in rows]))
+    for attribute, *_ in LOOKS:
+        ratios = [float(getattr(p, attribute)[storey]) for p, storey in rows]
+        columns.append(Column(f"{attribute}_shear_ratio", "-", ratios))
+    for attribute, *_ in LOOKS:
+        shears = [float(getattr(p, attribute)[storey] * p.static_base_shear) for p, storey in rows]
+        columns.append(Column(f"{attribute}_shear", "N", shears))
+    for name in ("counted", "overturned", "failed"):
+        columns.append(Column(name, "-", [getattr(p, name) for p, _ in rows]))
+    return columns
+
+
+def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
+    """Mean and largest V_i/V_st; overturned points are left out."""
+
+    def draw(axes: Axes, profile: StoreyProfile) -> None:
+        edges = np.arange(len(profile.mean) + 1)
+        for attribute, name, colour, line in LOOKS:
+            values = getattr(profile, attribute)
+            # The shear is the same all the way up a storey.
+            axes.stairs(
+                values, edges, orientation="horizontal", color=colour, ls=line, lw=1.3, label=name
+            )
+        axes.set_ylim(0.0, len(profile.mean))
+        axes.locator_params(axis="y", integer=True)
+        axes.set_xlim(left=0.0)
+
+    return panel_figure(
+        by_values(report.panel_keys, report.profiles),
+        report.profiles,
+        draw,
+        title=title,
+        x_label="$V_i/V_{st}$ [-]",
+        y_label="level (0 = cap beam)",
+        share_axes=False,
+        note=left_out(sum(p.failed for p in report.profiles)),
+    )
+
+
+REPORT = Report(
+    options=StoreyShearOptions,
+    numbers=lambda study, options: storey_shear_report(study.table, study.fixed_base(), options),
+    tables={"": storey_shear_columns},
+    figure=storey_shear_figure,
+)

@@ -1,0 +1,105 @@
+"""What follows from a case before any analysis: the quantities of `rps check`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from rpscli.model.podium import PodiumStructure
+
+
+class Derived(NamedTuple):
+    """One quantity: its name in JSON, words, symbol, SI unit, and value for a structure."""
+
+    name: str
+    label: str
+    symbol: str
+    unit: str
+    value: Callable[[PodiumStructure], Any]
+
+
+GEOMETRY = (
+    Derived("semi_diagonal", "semi-diagonal", "R", "m", lambda s: s.bearing.semi_diagonal),
+    Derived("column_height", "column height", "2H", "m", lambda s: 2.0 * s.bearing.half_height),
+    Derived(
+        "flat_width", "width of the flat part", "2B", "m", lambda s: 2.0 * s.bearing.half_width
+    ),
+    Derived("arc_radius", "radius of the arcs", "r", "m", lambda s: s.bearing.radius),
+    Derived("alpha", "slenderness angle", "alpha", "rad", lambda s: s.bearing.alpha),
+    Derived(
+        "alpha_wedge", "slenderness angle of the wedge", "alpha'", "rad",
+        lambda s: s.bearing.alpha_wedge,
+    ),
+    Derived("beta", "rolling ends at", "beta", "rad", lambda s: s.bearing.beta),
+    Derived("curvature_ratio", "curvature ratio", "rho", "-", lambda s: s.bearing.curvature_ratio),
+    Derived(
+        "rho_cr_paper", "critical curvature ratio, first order", "rho_cr", "-",
+        lambda s: s.bearing.critical_curvature_ratio_of_paper,
+    ),
+    Derived(
+        "rho_cr_exact", "critical curvature ratio, exact", "rho_cr", "-",
+        lambda s: s.bearing.critical_curvature_ratio,
+    ),
+    Derived(
+        "critical_rotation", "critical rotation", "theta_cr", "rad", lambda s: s.critical_rotation
+    ),
+    Derived(
+        "critical_rotation_paper", "critical rotation, first order", "theta_cr", "rad",
+        lambda s: s.bearing.critical_rotation_of_paper,
+    ),
+    Derived(
+        "overturns", "overturns", "", "-",
+        lambda s: "rolling" if s.bearing.overturns_rolling else "rocking",
+    ),
+)  # fmt: skip
+"""Shape of the columns. `rho_cr_paper` is the first-order formula of the paper, `rho_cr_exact` the
+curvature ratio at which theta_cr = beta (Theory, section 9)."""
+
+DYNAMICS = (
+    Derived("columns_mass", "all columns", "N m_c", "kg", lambda s: s.columns_mass),
+    Derived("cap_beam_mass", "cap beam", "m_b", "kg", lambda s: s.cap_beam_mass),
+    Derived(
+        "superstructure_mass", "superstructure", "M_tot", "kg", lambda s: s.superstructure_mass
+    ),
+    Derived("gamma", "cap beam over columns", "gamma", "-", lambda s: s.gamma),
+    Derived("eta", "superstructure over cap beam", "eta", "-", lambda s: s.eta),
+    Derived("gamma_total", "both over columns", "gamma (1 + eta)", "-", lambda s: s.gamma_total),
+    Derived("restitution", "restitution at impact", "e", "-", lambda s: s.restitution),
+    Derived(
+        "uplift_acceleration", "quasi-static uplift at", "g tan(alpha)", "m/s2",
+        lambda s: s.uplift_acceleration,
+    ),
+    Derived(
+        "uplift_force", "uplift force at the cap beam", "W tan(alpha)", "N",
+        lambda s: s.uplift_force,
+    ),
+    Derived(
+        "static_base_shear", "base shear at uplift", "V_st", "N", lambda s: s.static_base_shear
+    ),
+    Derived(
+        "initial_stiffness", "stiffness after uplift", "", "N/m", lambda s: s.initial_stiffness
+    ),
+    Derived(
+        "p_hat", "frequency parameter, rigid", "p_hat", "rad/s",
+        lambda s: s.rigid_frequency_parameter,
+    ),
+)  # fmt: skip
+"""Masses and statics."""
+
+FIRST_PERIOD = Derived(
+    "T1", "first period on a fixed base", "T1", "s",
+    lambda s: float(s.superstructure.periods[0]) if s.superstructure else None,
+)  # fmt: skip
+
+
+def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
+    """All of them under their names; lists by mode or storey are empty without a building."""
+    building = structure.superstructure
+    lists = ("periods", "damping_ratios", "stiffnesses")
+    return {
+        **{row.name: row.value(structure) for row in (*GEOMETRY, *DYNAMICS)},
+        "storeys": structure.storeys,
+        FIRST_PERIOD.name: FIRST_PERIOD.value(structure),
+        **{name: getattr(building, name) if building else [] for name in lists},
+    }

@@ -1,0 +1,51 @@
+"""CSV tables of a time history."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.trace import Event
+from rpscli.report.files.csv_text import Column, columns_of
+
+
+def history_columns(result: TimeHistoryResult) -> list[Column]:
+    """`timehistory.csv`: one row a sample; floors and storeys are counted from the bottom.
+
+    `phase` is 0 in full contact, 1 rolling, 2 rocking. Displacements are relative to the ground,
+    floor accelerations absolute.
+    """
+    t = result.trace
+    return [
+        Column("time", "s", t.time),
+        Column("ground_acceleration", "m/s2", t.ground_acceleration),
+        Column("rotation", "rad", t.rotation),
+        Column("rotation_rate", "rad/s", t.rotation_rate),
+        Column("cap_beam_displacement", "m", t.cap_beam_displacement),
+        Column("lift", "m", t.lift),
+        *_each("floor_{}_displacement", "m", t.floor_displacements),
+        *_each("storey_{}_drift", "m", t.drifts),
+        *_each("storey_{}_shear", "N", t.storey_shears),
+        *_each("floor_{}_acceleration", "m/s2", t.floor_accelerations),
+        Column("driving_moment", "N m", t.driving_moment),
+        Column("energy_input", "J", t.energy_input),
+        Column("energy_damped", "J", t.energy_damped),
+        Column("energy_impact", "J", t.energy_impact),
+        Column("energy_stored", "J", t.energy_stored),
+        Column("phase", "-", t.phase),
+    ]
+
+
+def event_columns(events: tuple[Event, ...]) -> list[Column]:
+    """`events.csv`: one row an event, in the order of time."""
+    heads = {"time": "s", "kind": "-", "rotation": "rad"}
+    heads |= {"rotation_rate_before": "rad/s", "rotation_rate_after": "rad/s", "energy_lost": "J"}
+    return columns_of(heads, [[getattr(event, name) for name in heads] for event in events])
+
+
+def _each(name: str, unit: str, values: NDArray[np.float64]) -> Iterator[Column]:
+    for index, column in enumerate(values.T, start=1):
+        yield Column(name.format(index), unit, column)

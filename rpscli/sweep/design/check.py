@@ -1,0 +1,138 @@
+"""Every system of a study is examined before anything runs."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path as Folder
+from typing import NamedTuple
+
+from rpscli.case.case import Case, case_from_mapping
+from rpscli.case.overrides import Override
+from rpscli.case.study.axes import Values
+from rpscli.case.study.study import Study
+from rpscli.case.text.faults import Fault, Path, Place
+from rpscli.errors import CaseError
+from rpscli.model.superstructure import Superstructure
+from rpscli.sweep.design.combinations import Combinations
+from rpscli.sweep.design.perturbation import Change
+from rpscli.sweep.evaluation.points import Plan, RecordRequest
+from rpscli.sweep.evaluation.systems import digest_of, record_request, resolved
+
+MOST_FAULTY = 8
+"""Inadmissible systems after which the search for more gives up."""
+
+
+class SystemProperties(NamedTuple):
+    """What the layout of points and statistics must know of a system, SI units.
+
+    `period` is T1 on a fixed base, `frequency_parameter` that of the rigid frame, p_hat;
+    `building` is a digest of the superstructure, empty without one.
+    """
+
+    digest: bytes
+    storeys: int
+    period: float | None
+    alpha: float
+    uplift_acceleration: float
+    frequency_parameter: float
+    static_base_shear: float
+    building: bytes
+    record: RecordRequest | None
+    scale: float
+
+
+def check_systems(
+    study: Study, plan: Plan, combinations: Combinations, members: Sequence[Change]
+) -> tuple[SystemProperties, ...]:
+    """SystemProperties of all systems, in order.
+
+    Raises
+    ------
+    CaseError
+        If one is no valid case, at the places of its values. Unknown keys are among them.
+    """
+    properties: list[SystemProperties] = []
+    known: dict[RecordRequest, RecordRequest] = {}
+    complaints: dict[str, None] = {}
+    faulty = 0
+    for system in range(len(combinations)):
+        values = combinations.values(system)
+        try:
+            case = resolved(plan, values)
+            properties.append(_properties(case, known))
+            _refuse_restitution(study, case, members)
+            _refuse_missing(study, plan, case)
+        except CaseError as error:
+            places = combinations.places(system)
+            complaints |= dict.fromkeys(_placed(study, plan, values, places, error))
+            faulty += 1
+            if faulty >= MOST_FAULTY:
+                break
+    if complaints:
+        raise CaseError("\n".join(complaints))
+    return tuple(properties)
+
+
+def _properties(case: Case, known: dict[RecordRequest, RecordRequest]) -> SystemProperties:
+    structure, building = case.structure, case.structure.superstructure
+    request = record_request(case)
+    if request is not None:
+        request = known.setdefault(request, request)
+    return SystemProperties(
+        digest=digest_of(case.document),
+        storeys=structure.storeys,
+        period=None if building is None else float(building.periods[0]),
+        alpha=structure.bearing.alpha,
+        uplift_acceleration=structure.uplift_acceleration,
+        frequency_parameter=structure.rigid_frequency_parameter,
+        static_base_shear=structure.static_base_shear,
+        building=b"" if building is None else _digest(building),
+        record=request,
+        scale=1.0 if case.record is None else case.record.scale,
+    )
+
+
+def _digest(building: Superstructure) -> bytes:
+    digest = hashlib.sha256(repr(building.damping).encode())
+    for array in (building.masses, building.stiffnesses):
+        digest.update(array.tobytes())
+    return digest.digest()
+
+
+def _placed(
+    study: Study, plan: Plan, values: Values, places: Sequence[Place], error: CaseError
+) -> list[str]:
+    """The lines of a message, at the places where the study wrote the values."""
+    given = [Override(*item) for item in zip(plan.keys, values, places, strict=True)]
+    try:
+        case_from_mapping(study.base, plan.base_name, Folder(plan.base_folder), given)
+    except CaseError as placed:
+        return str(placed).splitlines()
+    return str(error).splitlines()
+
+
+def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> None:
+    """A perturbed impact must not gain energy by itself."""
+    largest = max(change.restitution for change in members)
+    if (e := case.structure.restitution) * largest > 1.0:
+        path: Path = ("perturb", "restitution")
+        text = (
+            f"perturb.restitution raises the restitution {e:.4g} of a system above 1; use less"
+            f" than {1.0 / e - 1.0:.3g}"
+        )
+        study.document.refuse([Fault(path, text)])
+
+
+def _refuse_missing(study: Study, plan: Plan, case: Case) -> None:
+    """What a point needs besides a valid case."""
+    if plan.analysis != "timehistory":
+        return
+    if not study.sources and case.record is None:
+        text = "no record: give the study `records`, or the case at its base a `record`"
+        study.document.refuse([Fault((), text)])
+    measure = plan.measure
+    needs_period = measure is not None and measure.measure == "Sa" and measure.period is None
+    if needs_period and case.structure.superstructure is None:
+        text = "scale.period is missing: without storeys there is no T1 at which to take Sa"
+        study.document.refuse([Fault(("scale",), text, at_key=True)])

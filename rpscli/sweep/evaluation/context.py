@@ -1,0 +1,60 @@
+"""What the points of a study share: its systems and ground motions, and how these are scaled."""
+
+from __future__ import annotations
+
+from rpscli.analyses.demand import Request
+from rpscli.errors import AnalysisError
+from rpscli.sweep.evaluation.points import Plan, Point
+from rpscli.sweep.evaluation.record_cache import RecordCache
+from rpscli.sweep.evaluation.results import Results
+from rpscli.sweep.evaluation.systems import Systems
+
+
+class StudyContext:
+    """Systems and ground motions of a plan, shared by all batches of a process."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.records = RecordCache()
+        self.systems = Systems(plan)
+
+    def factor(self, point: Point) -> float:
+        """Factor on the record of a point.
+
+        Raises
+        ------
+        RpsError
+            If the record cannot be read, or cannot be scaled to the measure.
+        """
+        measure = self.plan.measure
+        if measure is None:
+            return point.scale * point.scale_change
+        assert point.record is not None, "points of histories have a record"
+        unscaled = self.records.intensity(
+            point.record, measure.measure, point.period, measure.damping
+        )
+        if unscaled <= 0.0:
+            raise AnalysisError(f"{measure.measure} of {point.record.source} is 0: cannot scale it")
+        ratio = point.scale / unscaled
+        return (ratio**0.5 if measure.measure == "Arias" else ratio) * point.scale_change
+
+    def history(self, point: Point) -> Request:
+        """The history of a point; its motion is shared, and scaled while it is used."""
+        assert point.record is not None, "points of histories have a record"
+        system, motion = self.systems[point], self.records.motion(point.record)
+        return Request(
+            structure=system.perturbed(point.restitution_change),
+            record=motion.horizontal,
+            settings=system.settings,
+            scale=self.factor(point),
+            vertical=motion.vertical,
+        )
+
+    def intensities(self, point: Point) -> Results:
+        """Peaks of the scaled motion."""
+        assert point.record is not None, "points of histories have a record"
+        size = abs(self.factor(point))
+        return {
+            "pga": size * self.records.intensity(point.record, "PGA"),
+            "pgv": size * self.records.intensity(point.record, "PGV"),
+        }

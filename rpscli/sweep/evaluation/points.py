@@ -1,0 +1,67 @@
+"""What a point of a study is, small enough to be made when it is needed and sent anywhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from rpscli.case.study.schema import Analysis, MeasureScale
+
+
+class RecordRequest(NamedTuple):
+    """A ground motion to be loaded, and where its relative names start."""
+
+    source: str
+    folder: str
+    vertical: str | None = None
+    dt: float | None = None
+    units: str | None = None
+
+
+class Point(NamedTuple):
+    """One point.
+
+    `number` is its place in the order of the study, from 0. `values` are those of the varied keys,
+    in their order. `scale` is the factor on the record, or
+    the value of the measure to scale it to; `period` is then the one of Sa. The changes are
+    factors of the perturbation, 1 where there is none.
+    """
+
+    number: int
+    system: int
+    values: tuple[Any, ...]
+    record: RecordRequest | None
+    scale: float
+    member: int
+    scale_change: float
+    restitution_change: float
+    period: float | None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything besides the points that a process needs to evaluate them.
+
+    Parameters
+    ----------
+    analysis
+        What is done at every point.
+    keys
+        Dotted keys of the values of a point.
+    base
+        The case at the base, as plain values.
+    base_name, base_folder
+        Where it comes from, for messages and relative file names.
+    measure
+        What the records are scaled to, if not by factors.
+    solver
+        Version of the solver that all results must come from.
+    """
+
+    analysis: Analysis
+    keys: tuple[str, ...]
+    base: dict[str, Any]
+    base_name: str
+    base_folder: str
+    measure: MeasureScale | None
+    solver: str

@@ -1,0 +1,1 @@
+"""Curves through data, each by one published method."""

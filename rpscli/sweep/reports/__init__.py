@@ -1,0 +1,1 @@
+"""The numbers of each kind of report."""

@@ -1,0 +1,80 @@
+"""The buildings of a study on a fixed base, as a reference for storey shears.
+
+The response is linear: one run at scale 1 serves every scale, and systems that differ in their
+bearings alone share it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+
+from rpscli.errors import RecordError
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.evaluation.fixed_base import fixed_base_shears
+from rpscli.sweep.evaluation.points import RecordRequest
+from rpscli.sweep.store import Store
+from rpscli.sweep.table import Array
+
+FixedBaseReferences = dict[tuple[int, RecordRequest], Array]
+"""Largest storey shears (n,) [N] of a system on a fixed base, under an unscaled record."""
+
+
+class Run(NamedTuple):
+    """One building under one record."""
+
+    key: bytes
+    structure: PodiumStructure
+    motion: GroundMotion
+
+
+def fixed_base_references(
+    design: Design, context: StudyContext, store: Store, jobs: int
+) -> FixedBaseReferences:
+    """All of a study; those that are not in the store are computed and stored.
+
+    Systems without a building have none, nor have records that cannot be read.
+    """
+    known = {key: np.array(shears) for key, shears in store.fixed_base().items()}
+    keys: dict[tuple[int, RecordRequest], bytes] = {}
+    runs: dict[bytes, Run] = {}
+    for system, properties in enumerate(design.properties):
+        if not properties.building:
+            continue
+        for request in dict.fromkeys(request or properties.record for request in design.records):
+            assert request is not None, "points of histories have a record"
+            key = _key(design, context, properties.building, request)
+            try:
+                if key not in known and key not in runs:
+                    motion = context.records.motion(request).horizontal
+                    runs[key] = Run(key, design.system(system).structure, motion)
+            except RecordError:
+                continue
+            keys[system, request] = key
+    new = _computed(runs.values(), jobs)
+    store.add_fixed_base({key: shears.tolist() for key, shears in new.items()})
+    known |= new
+    return {place: known[key] for place, key in keys.items()}
+
+
+def _key(design: Design, context: StudyContext, building: bytes, request: RecordRequest) -> bytes:
+    digest = hashlib.sha256(design.plan.solver.encode())
+    digest.update(building)
+    digest.update(context.records.digest(request))
+    return digest.digest()
+
+
+def _computed(runs: Iterable[Run], jobs: int) -> dict[bytes, Array]:
+    with ThreadPoolExecutor(jobs) as pool:
+        return dict(pool.map(_response, runs))
+
+
+def _response(run: Run) -> tuple[bytes, Array]:
+    return run.key, fixed_base_shears(run.structure, run.motion)

@@ -1,0 +1,193 @@
+"""Fragility: probability of exceeding a limit state against the intensity of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, StrictBool
+
+from rpscli.analyses.result_quantities import RATIOS
+from rpscli.case.schema.case_file import limits_section
+from rpscli.case.schema.fields import Quantity, Whole
+from rpscli.case.study.fields import Keys, PositiveNumbers, Seed
+from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
+from rpscli.sweep.reports.intensities import Intensity, MeasureOptions
+from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
+
+CURVE_POINTS = 101
+MOST_BINS = 10
+
+
+class LimitStates(limits_section(PositiveNumbers)):  # type: ignore[misc]  # made from a table
+    """Limit states of a fragility; overturning exceeds every one of them."""
+
+    overturning: StrictBool = Field(
+        default=True, description="whether overturning is a limit state itself"
+    )
+
+
+class FragilityOptions(MeasureOptions):
+    """Probability of exceeding a limit state against an intensity measure."""
+
+    limits: LimitStates = Field(LimitStates(), description="limit states")
+    series: Keys | None = Field(None, description="varied keys, one curve for each value")
+    resamples: Annotated[int, Whole(0, 10_000)] = Field(
+        200, description="bootstrap samples of the records for the bands; 0 = none"
+    )
+    confidence: Annotated[float, Quantity(above=0, below=1)] = Field(
+        0.9, description="probability inside the bands"
+    )
+    seed: Seed = Field(1, description="of the bootstrap")
+
+
+class LimitState(NamedTuple):
+    """Exceeded where a result is larger than a threshold; every overturned point exceeds it."""
+
+    result: str
+    threshold: float | None
+
+    @property
+    def label(self) -> str:
+        """Such as ``rotation_ratio > 0.5``."""
+        return self.result if self.threshold is None else f"{self.result} > {self.threshold:g}"
+
+
+class Observed(NamedTuple):
+    """Share of the points that exceed the limit within a bin of intensities, each (bins,)."""
+
+    intensity: Array
+    share: Array
+    points: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fragility:
+    """Data and fit of one limit state of one group of systems; `failed` points are left out."""
+
+    values: tuple[object, ...]
+    limit: LimitState
+    fit: Lognormal
+    grid: Array
+    observed: Observed
+    counted: int
+    exceeded: int
+    failed: int
+
+
+@dataclass(frozen=True)
+class FragilityReport:
+    """All curves."""
+
+    intensity: Intensity
+    confidence: float
+    series_keys: tuple[str, ...]
+    limits: tuple[LimitState, ...]
+    curves: tuple[Fragility, ...]
+
+    @property
+    def notes(self) -> list[str]:
+        """What keeps fits from being ordinary ones."""
+        named = ((c, zip(self.series_keys, c.values, strict=True)) for c in self.curves)
+        return [
+            f"{c.limit.label}{''.join(f', {key} = {value}' for key, value in keys)}: {c.fit.note}"
+            for c, keys in named
+            if c.fit.note
+        ]
+
+
+def fragility_report(
+    table: Table, measured: Intensity, options: FragilityOptions
+) -> FragilityReport:
+    """Fit every limit state of every group of systems; samples and records are pooled."""
+    keys = options.series if options.series is not None else leading_keys(table.design)
+    limits = tuple(_limit_states(options))
+    systems = groups(table.design, keys)
+    curves = (
+        _fragility(table, measured, options, group.values, group.points, limit)
+        for limit in limits
+        for group in systems
+    )
+    return FragilityReport(measured, options.confidence, keys, limits, tuple(curves))
+
+
+def _limit_states(options: FragilityOptions) -> Iterator[LimitState]:
+    limits = options.limits
+    for ratio in RATIOS:
+        for threshold in getattr(limits, ratio.name) or ():
+            yield LimitState(ratio.name, threshold)
+    if limits.overturning:
+        yield LimitState("overturning", None)
+
+
+def exceeded(table: Table, limit: LimitState) -> NDArray[np.bool_]:
+    """(points,) which exceed a limit state."""
+    if limit.threshold is None:
+        return table.overturned
+    return np.asarray(table.overturned | (table.columns[limit.result] > limit.threshold))
+
+
+def _fragility(
+    table: Table,
+    measured: Intensity,
+    options: FragilityOptions,
+    values: tuple[object, ...],
+    points: Indices,
+    limit: LimitState,
+) -> Fragility:
+    kept = points[~table.failed[points] & (measured.values[points] > 0.0)]
+    intensity, beyond = measured.values[kept], exceeded(table, limit)[kept]
+    grid = _grid(intensity)
+    return Fragility(
+        values=values,
+        limit=limit,
+        fit=lognormal_fit(
+            intensity,
+            beyond,
+            _cluster(table, kept),
+            _weight(table, kept),
+            grid,
+            Bootstrap(options.resamples, options.confidence, options.seed),
+        ),
+        grid=grid,
+        observed=_observed(intensity, beyond),
+        counted=len(kept),
+        exceeded=int(beyond.sum()),
+        failed=len(points) - len(kept),
+    )
+
+
+def _cluster(table: Table, points: Indices) -> Indices:
+    """What hangs together: points of one record; each point alone if there is one record only."""
+    if len(table.design.records) == 1:
+        return points
+    of_system = table.design.points_of_system
+    return points % of_system // (of_system // len(table.design.records))
+
+
+def _weight(table: Table, points: Indices) -> float:
+    """Motions over points: samples and members of an ensemble share a motion."""
+    design = table.design
+    shaken = points % design.points_of_system // len(design.members)
+    return len(np.unique(shaken)) / max(len(points), 1)
+
+
+def _grid(intensities: Array) -> Array:
+    """Intensities at which curves are drawn: some way beyond the data on both sides."""
+    if not len(intensities):
+        return np.ones(CURVE_POINTS)
+    return np.geomspace(intensities.min() / 1.5, intensities.max() * 1.5, CURVE_POINTS)
+
+
+def _observed(intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
+    """Shares at each intensity, or in bins of equal numbers of points if there are too many."""
+    levels, place = np.unique(intensity, return_inverse=True)
+    if len(levels) > 2 * MOST_BINS:
+        order = np.argsort(np.argsort(intensity, kind="stable"), kind="stable")
+        place = order * MOST_BINS // len(intensity)
+        levels = np.exp([np.log(intensity[place == i]).mean() for i in range(MOST_BINS)])
+    points = np.bincount(place, minlength=len(levels))
+    return Observed(levels, np.bincount(place, beyond, minlength=len(levels)) / points, points)

@@ -1,0 +1,91 @@
+"""The intensity of the ground motion at every point of a study."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from rpscli.case.schema.case_file import Time
+from rpscli.case.study.fields import DampingRatio
+from rpscli.case.study.reports import ReportOptions
+from rpscli.case.study.schema import Measure
+from rpscli.errors import CaseError, RecordError
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.table import Array, Table
+
+UNITS: dict[Measure, str] = {
+    "PGA": "m/s2",
+    "PGV": "m/s",
+    "PGD": "m",
+    "Sa": "m/s2",
+    "Arias": "m/s",
+    "CAV": "m/s",
+}
+
+
+class MeasureOptions(ReportOptions):
+    """Options of reports that need an intensity measure."""
+
+    measure: Measure | None = Field(
+        None, description="the one that the study scales to by default, else PGV"
+    )
+    period: Time | None = Field(None, description="of Sa; T1 of each system by default")
+    damping: DampingRatio = Field(0.05, description="of Sa")
+
+
+class Intensity(NamedTuple):
+    """A measure of the scaled records.
+
+    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa, None for T1
+    of each system.
+    """
+
+    measure: Measure
+    unit: str
+    period: float | None
+    values: Array
+
+
+def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> Intensity:
+    """The measure that a report asks for; by default the one that the study scales to, else PGV.
+
+    Raises
+    ------
+    CaseError
+        If it is Sa at T1 and a system has no storeys.
+    """
+    scaled = table.design.plan.measure
+    measure, period, damping = options.measure, options.period, options.damping
+    if measure is None and scaled is not None:
+        measure, period, damping = scaled.measure, scaled.period, scaled.damping
+    measure = measure or "PGV"
+    target = scaled is not None and (measure, period, damping) == (
+        scaled.measure,
+        scaled.period,
+        scaled.damping,
+    )
+    values = np.full(len(table), np.nan)
+    for point in table.design:
+        assert point.record is not None, "points of histories have a record"
+        if target:
+            # Not by way of the factor, whose rounding would blur equal intensities.
+            values[point.number] = point.scale * _effect(measure, point.scale_change)
+            continue
+        at = None
+        if measure == "Sa":
+            at = period or table.design.properties[point.system].period
+            if at is None:
+                raise CaseError("Sa at T1 needs storeys; give the report a `period`")
+        try:
+            unscaled = context.records.intensity(point.record, measure, at, damping)
+        except RecordError:
+            continue
+        values[point.number] = unscaled * _effect(measure, table.scale[point.number])
+    return Intensity(measure, UNITS[measure], period, values)
+
+
+def _effect(measure: Measure, factor: float) -> float:
+    """What a factor on the record does to the measure."""
+    return factor**2 if measure == "Arias" else abs(factor)

@@ -1,0 +1,166 @@
+"""Any result against a varied key, or one list of results against another."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from pydantic import Field, StrictBool
+
+from rpscli.case.schema.fields import Text
+from rpscli.case.study.axes import Axis
+from rpscli.case.study.fields import Keys
+from rpscli.case.study.reports import ReportOptions, ReportRequest
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault, Path, dotted, listed
+from rpscli.errors import nearest
+from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
+from rpscli.sweep.store import Stored
+from rpscli.sweep.table import Indices, Table, groups, leading_keys
+
+Values = dict[str, list[Any]]
+"""Some results of all points, by name; None where a point has none."""
+
+
+class LinesOptions(ReportOptions):
+    """Any result against a varied key, or one list of results against another."""
+
+    x: Text = Field(description="a varied key, or a result that is a list")
+    y: Keys = Field(description="results, such as rolling.frequency_ratio.0")
+    dashed: Keys = Field((), description="results drawn dashed, as a comparison")
+    series: Keys | None = Field(None, description="varied keys, one line for each value")
+    panels: Keys | None = Field(None, description="varied keys, one panel for each value")
+    upright: StrictBool = Field(default=False, description="draw x upwards, as floors are")
+    x_label: Text | None = Field(None, description="in place of the name of x")
+    y_label: Text | None = Field(None, description="in place of the name of y")
+
+
+class Line(NamedTuple):
+    """One line: a result of the points of one series.
+
+    `x` holds numbers, or words if the varied key has any.
+    """
+
+    values: tuple[object, ...]
+    result: str
+    dashed: bool
+    x: tuple[Any, ...]
+    y: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class LinesPanel:
+    """Lines of one group of systems."""
+
+    values: tuple[object, ...]
+    lines: tuple[Line, ...]
+
+
+@dataclass(frozen=True)
+class LinesReport:
+    """All panels. `failed` points are left out."""
+
+    options: LinesOptions
+    series_keys: tuple[str, ...]
+    panel_keys: tuple[str, ...]
+    panels: tuple[LinesPanel, ...]
+    failed: int
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """Names of all results, the dashed ones last."""
+        return (*self.options.y, *self.options.dashed)
+
+
+def lines_report(
+    table: Table, stored: Iterable[Stored | None], options: LinesOptions
+) -> LinesReport:
+    """The lines of every series of every panel.
+
+    Where several points share an abscissa (the records of a study) the line is their mean;
+    overturned and failed points are left out.
+    """
+    design = table.design
+    panels, series = options.panels or (), options.series
+    if series is None:
+        taken = {*panels, *_together(table, options.x)}
+        series = tuple(key for key in leading_keys(design) if key not in taken)
+    names = (*options.y, *options.dashed)
+    varied = bool(_together(table, options.x))
+    values = _collected(stored, names if varied else (*names, options.x))
+    found = []
+    for panel in groups(design, panels):
+        lines = [
+            line
+            for name in names
+            for group in groups(design, series, panel.points)
+            for line in _lines(table, values, options, group.values, group.points, name)
+        ]
+        found.append(LinesPanel(panel.values, tuple(lines)))
+    return LinesReport(options, series, panels, tuple(found), int(table.failed.sum()))
+
+
+def _together(table: Table, key: str) -> tuple[str, ...]:
+    """The keys of the axis in which a key varies; none if it is a result."""
+    if key in {"record", "scale"}:
+        return (key,)
+    axes = (axis.keys for axis in table.design.study.axes)
+    return next((keys for keys in axes if key in keys), ())
+
+
+def _collected(stored: Iterable[Stored | None], names: Iterable[str]) -> Values:
+    values: Values = {name: [] for name in names}
+    for row in stored:
+        for name, column in values.items():
+            usable = row is not None and row.outcome != FAILED
+            column.append(value_at(row.results, name) if row and usable else None)
+    return values
+
+
+def _lines(
+    table: Table,
+    values: Values,
+    options: LinesOptions,
+    of_series: tuple[object, ...],
+    points: Indices,
+    name: str,
+) -> list[Line]:
+    """Lines of one result of one series: one, or one for each point if results are lists."""
+    dashed = name in options.dashed
+    usable = [n for n in points.tolist() if values[name][n] is not None]
+    if options.x in values:
+        curves = [(values[options.x][n], values[name][n]) for n in usable]
+        whole = [c for c in curves if isinstance(c[0], list) and isinstance(c[1], list)]
+        if whole:
+            return [Line(of_series, name, dashed, tuple(x), tuple(y)) for x, y in whole]
+        pairs = sorted(c for c in curves if c[0] is not None)
+        x, y = ([pair[side] for pair in pairs] for side in (0, 1))
+        return [Line(of_series, name, dashed, tuple(x), tuple(y))] if pairs else []
+    xs, ys = [], []
+    for group in groups(table.design, [options.x], points):
+        kept = group.points[~table.overturned[group.points]].tolist()
+        known = [values[name][n] for n in kept if isinstance(values[name][n], int | float)]
+        if known:
+            xs.append(group.values[0])
+            ys.append(math.fsum(known) / len(known))
+    return [Line(of_series, name, dashed, tuple(xs), tuple(ys))] if xs else []
+
+
+def unknown_results(
+    document: Document, axes: Sequence[Axis], request: ReportRequest
+) -> Iterator[Fault]:
+    """Results that the analysis does not have."""
+    options, analysis = request.options, document.content.get("analysis", "timehistory")
+    assert isinstance(options, LinesOptions), "requests have the options of their kind"
+    varied = {key for axis in axes for key in axis.keys} | {"record", "scale"}
+    named = [("x", options.x)] if options.x not in varied else []
+    named += [("y", name) for name in options.y] + [("dashed", name) for name in options.dashed]
+    for option, name in named:
+        if quantity(analysis, name) is None:
+            path: Path = (*request.path, request.kind, option)
+            guess = nearest(name, KNOWN[analysis])
+            hint = f"did you mean {guess}?" if guess else f"known are {listed(KNOWN[analysis])}"
+            text = f"{dotted(path)} = {name} is no result of {analysis}"
+            yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {hint}")

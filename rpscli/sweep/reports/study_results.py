@@ -1,0 +1,35 @@
+"""A computed study, and what else reports take from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.reports.fixed_base import FixedBaseReferences, fixed_base_references
+from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, intensity
+from rpscli.sweep.store import Store, Stored
+from rpscli.sweep.table import Table
+
+
+@dataclass(frozen=True, eq=False)
+class StudyResults:
+    """Results of all points as a table, and the ways to what is not in it."""
+
+    table: Table
+    keys: list[bytes]
+    store: Store
+    context: StudyContext
+    jobs: int
+
+    def stored(self) -> Iterator[Stored | None]:
+        """Everything that is stored of each point, lists too."""
+        return self.store.stored(self.keys)
+
+    def fixed_base(self) -> FixedBaseReferences:
+        """Storey shears on a fixed base; computed if they are not stored."""
+        return fixed_base_references(self.table.design, self.context, self.store, self.jobs)
+
+    def intensity(self, options: MeasureOptions) -> Intensity:
+        """The intensity of the ground motion at every point."""
+        return intensity(self.table, self.context, options)

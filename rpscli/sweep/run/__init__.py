@@ -1,0 +1,1 @@
+"""Who computes the points of a study, in which order, and where a run begins."""

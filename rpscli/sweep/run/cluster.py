@@ -1,0 +1,154 @@
+"""The engine of many machines: a Dask cluster whose workers compute batches.
+
+Workers get the plan and the points, and read records themselves; all of them must see the files
+of the study under the same names, and run the same version of rps.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from rpscli.errors import RpsError, UsageError
+from rpscli.sweep.evaluation.batch import Row, run_batch
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.evaluation.points import Plan, Point
+from rpscli.sweep.evaluation.results import FAILED
+from rpscli.sweep.evaluation.solver import solver_version
+
+WAITING = 2
+"""Batches that are kept ready for each thread of the cluster."""
+
+PATIENCE = 10.0
+"""Time to wait for a scheduler, and for its first worker [s]."""
+
+_contexts: dict[str, StudyContext] = {}
+_lock = Lock()
+
+
+def compute(digest: str, plan: Plan, points: list[Point]) -> list[Row]:
+    """Rows of a batch; runs on a worker, which keeps what it has read for the next one.
+
+    Raises
+    ------
+    RpsError
+        If the worker would compute other numbers.
+    """
+    if plan.solver != solver_version():
+        raise RpsError(
+            f"a worker runs rps {solver_version()}, but the study was laid out by {plan.solver};"
+            " install the same version on all machines"
+        )
+    with _lock:
+        if digest not in _contexts:
+            _contexts.clear()
+            _contexts[digest] = StudyContext(plan)
+        context = _contexts[digest]
+    return run_batch(context, points)
+
+
+class Cluster:
+    """Computes batches on a Dask cluster.
+
+    Parameters
+    ----------
+    address
+        Of the scheduler, such as ``tcp://head:8786``.
+    plan
+        Of the study.
+
+    Raises
+    ------
+    UsageError
+        If Dask is not installed, or there is no scheduler with a worker at the address.
+    """
+
+    def __init__(self, address: str, plan: Plan) -> None:
+        try:
+            import distributed  # noqa: PLC0415 -- an optional extra
+        except ModuleNotFoundError:
+            raise UsageError('--scheduler needs Dask; run: pip install "rpscli[cluster]"') from None
+        self._dask: Any = distributed
+        self._plan = replace(plan, base_folder=str(Path(plan.base_folder).absolute()))
+        self._digest = hashlib.sha256(pickle.dumps(self._plan)).hexdigest()
+        try:
+            self._client = self._dask.Client(address, timeout=PATIENCE, set_as_default=False)
+            self._client.wait_for_workers(1, timeout=PATIENCE)
+        except (OSError, ValueError) as error:  # a TimeoutError is an OSError
+            raise UsageError(
+                f"--scheduler {address}: no Dask scheduler with a worker answers there ({error})"
+            ) from None
+        self.jobs = max(1, sum(self._client.nthreads().values()))
+
+    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[list[Row]]:
+        """Rows of the batches, as they come.
+
+        A batch whose worker dies is computed by another one; points that take every worker with
+        them come back as failed.
+        """
+        source = iter(batches)
+        given: dict[Any, list[Point]] = {}
+        finished = self._dask.as_completed(
+            loop=self._client.loop, with_results=True, raise_errors=False
+        )
+        try:
+            while True:
+                self._hand_out(source, given, finished)
+                if not given:
+                    return
+                future, result = next(finished)
+                yield self._rows(future, result, given, finished)
+        finally:
+            self._client.close()
+
+    def _hand_out(
+        self, source: Iterator[list[Point]], given: dict[Any, list[Point]], finished: Any
+    ) -> None:
+        while len(given) < WAITING * self.jobs:
+            points = next(source, None)
+            if points is None:
+                return
+            self._submit(points, given, finished)
+
+    def _submit(self, points: list[Point], given: dict[Any, list[Point]], finished: Any) -> None:
+        placed = [_placed(point) for point in points]
+        future = self._client.submit(
+            compute, self._digest, self._plan, placed, pure=False, retries=2
+        )
+        given[future] = points
+        finished.add(future)
+
+    def _rows(
+        self, future: Any, result: Any, given: dict[Any, list[Point]], finished: Any
+    ) -> list[Row]:
+        """Rows of a finished batch; points of a deadly one are tried one by one."""
+        points = given.pop(future)
+        if future.status == "finished":
+            return list(result)
+        error = result[1] if isinstance(result, tuple) else result
+        if isinstance(error, self._dask.KilledWorker):
+            if len(points) == 1:
+                message = "the workers that computed this point died, one after the other"
+                return [Row(points[0].number, FAILED, message, {})]
+            for point in points:
+                self._submit([point], given, finished)
+            return []
+        if isinstance(error, RpsError):
+            raise error
+        raise RpsError(
+            f"the cluster gave up ({type(error).__name__}: {error}); what was stored is safe, the"
+            " same command goes on"
+        )
+
+
+def _placed(point: Point) -> Point:
+    """The point with its record's folder as every machine sees it."""
+    if point.record is None:
+        return point
+    folder = str(Path(point.record.folder).absolute())
+    return point._replace(record=point.record._replace(folder=folder))

@@ -1,0 +1,24 @@
+"""Engines: who computes the batches of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Protocol
+
+from rpscli.sweep.evaluation.batch import Row
+from rpscli.sweep.evaluation.points import Point
+
+
+class Engine(Protocol):
+    """Computes batches somewhere, several at a time."""
+
+    @property
+    def jobs(self) -> int:
+        """How many batches are computed at a time."""
+
+    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[list[Row]]:
+        """Rows of the batches, as they come.
+
+        A batch is taken from the iterable only when somebody is there to compute it. When the
+        iterable ends, the batches under way are waited for; every batch comes back once.
+        """

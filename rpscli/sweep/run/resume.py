@@ -1,0 +1,136 @@
+"""What of a study is in its store already, and what a changed study keeps, adds and drops."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rpscli.case.text.faults import shown
+from rpscli.errors import Refused
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.store import Store
+
+
+@dataclass(frozen=True, eq=False)
+class Resume:
+    """Where a run begins.
+
+    Parameters
+    ----------
+    keys
+        Of all points, in the order of the study.
+    pending
+        Points to be computed, in the order of the study; equal points are computed once.
+    kept, failed
+        Points that are stored, and those of them that failed and are not tried again.
+    unused
+        Stored points that are not in the study any more. They stay in the file, for the case
+        that the study is changed back.
+    notes
+        What changed since the last run, for the user.
+    """
+
+    keys: list[bytes]
+    pending: list[int]
+    kept: int
+    failed: int
+    unused: int
+    notes: tuple[str, ...]
+
+
+def resume(design: Design, keys: list[bytes], store: Store, *, retry_failed: bool) -> Resume:
+    """Compare a study with its store.
+
+    Raises
+    ------
+    Refused
+        If the store holds the results of another study.
+    """
+    known = store.outcomes()
+    wanted = set(keys)
+    done = {key for key, failed in known.items() if not (failed and retry_failed)}
+    pending: list[int] = []
+    seen = wanted & done
+    kept = sum(key in seen for key in keys)
+    failed = sum(known[key] for key in keys if key in seen)
+    for number, key in enumerate(keys):
+        if key not in seen:
+            seen.add(key)
+            pending.append(number)
+    unused = len(known.keys() - wanted)
+    before = store.meta("study")
+    if before is not None and known and not wanted & known.keys():
+        _refuse_other_study(design, store)
+    notes = tuple(_notes(design, store, before, kept, unused, len(keys) - kept))
+    return Resume(keys, pending, kept, failed, unused, notes)
+
+
+def remember(design: Design, store: Store) -> None:
+    """Write into the store which study its results belong to."""
+    store.note(study=written(design), name=design.study.name, solver=design.plan.solver)
+
+
+def written(design: Design) -> str:
+    """The study and its case as they are written, with overrides."""
+    content = {**design.study.document.content, "base": design.plan.base}
+    return json.dumps(content, sort_keys=True)
+
+
+def _refuse_other_study(design: Design, store: Store) -> None:
+    name = store.meta("name")
+    if name != design.study.name:
+        raise Refused(
+            f"{store.path} holds the results of another study ({name}); name another folder with"
+            " -o, or throw them away with --fresh"
+        )
+
+
+def _notes(
+    design: Design, store: Store, before: str | None, kept: int, unused: int, added: int
+) -> Iterator[str]:
+    if before is None:
+        return
+    if (solver := store.meta("solver")) != design.plan.solver:
+        yield f"the solver changed from {solver} to {design.plan.solver}: nothing of it applies"
+    old, new = json.loads(before), json.loads(written(design))
+    changed = list(_differences(old, new, ""))
+    if changed:
+        yield "the study changed: " + "; ".join(changed[:6]) + ("; ..." if changed[6:] else "")
+    if changed or unused:
+        yield f"{kept} points still apply, {added} are to be computed"
+    if unused:
+        yield f"{unused} stored points are not in the study any more; they stay in {store.path}"
+
+
+def _differences(old: Any, new: Any, path: str) -> Iterator[str]:
+    """Where two documents differ, in words."""
+    if isinstance(old, Mapping) and isinstance(new, Mapping):
+        for key in dict.fromkeys((*old, *new)):
+            inner = f"{path}.{key}" if path else str(key)
+            if key not in new:
+                yield f"{inner} dropped"
+            elif key not in old:
+                yield f"{inner} = {shown(new[key])} added"
+            else:
+                yield from _differences(old[key], new[key], inner)
+    elif isinstance(old, list) and isinstance(new, list):
+        yield from _list_differences(old, new, path)
+    elif old != new:
+        yield f"{path}: {shown(old)} -> {shown(new)}"
+
+
+def _list_differences(old: list[Any], new: list[Any], path: str) -> Iterator[str]:
+    if len(old) == len(new) and any(isinstance(item, dict | list) for item in (*old, *new)):
+        for index, (before, after) in enumerate(zip(old, new, strict=True)):
+            yield from _differences(before, after, f"{path}.{index}")
+        return
+    dropped = [item for item in old if item not in new]
+    added = [item for item in new if item not in old]
+    if dropped:
+        yield f"{path} drops {shown(dropped)}"
+    if added:
+        yield f"{path} adds {shown(added)}"
+    if not dropped and not added and old != new:
+        yield f"{path}: another order"

@@ -1,0 +1,122 @@
+"""Running a study: batches to an engine, their rows to the one writer, progress to the caller."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import FrameType
+
+from rpscli.sweep.design.described import described
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.evaluation.results import FAILED
+from rpscli.sweep.run.engine import Engine
+from rpscli.sweep.run.resume import Resume
+from rpscli.sweep.run.schedule import batches
+from rpscli.sweep.store import Entry, Store
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a study is."""
+
+    total: int
+    kept: int
+    computed: int
+    failed: int
+    seconds: float
+
+    @property
+    def done(self) -> int:
+        """Points in the store."""
+        return self.kept + self.computed
+
+    @property
+    def rate(self) -> float:
+        """Points a second in this run; 0 before the first."""
+        return self.computed / self.seconds if self.seconds > 0.0 else 0.0
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Time to the end at this rate; None before the first point."""
+        return (self.total - self.done) / self.rate if self.rate > 0.0 else None
+
+
+@dataclass(frozen=True)
+class Finish:
+    """How a run ended."""
+
+    computed: int
+    failed: int
+    seconds: float
+    interrupted: bool
+
+
+def run(
+    design: Design,
+    start: Resume,
+    store: Store,
+    engine: Engine,
+    report: Callable[[Progress], None] = lambda _: None,
+    announce: Callable[[], None] = lambda: None,
+) -> Finish:
+    """Compute the pending points and store each as it ends.
+
+    The first Ctrl-C calls `announce` and lets the points under way end and be stored; the second
+    one raises `KeyboardInterrupt` at once, and what is stored stays.
+    """
+    began = time.monotonic()
+    computed = failed = 0
+    with first_interrupt(announce) as interrupted:
+        work = batches(design, start.pending, engine.jobs)
+        for rows in engine.outcomes(_until(interrupted, work)):
+            store.add(
+                Entry(
+                    start.keys[row.number],
+                    described(design, design[row.number]),
+                    row.outcome,
+                    row.message,
+                    row.results,
+                )
+                for row in rows
+            )
+            computed += len(rows)
+            failed += sum(row.outcome == FAILED for row in rows)
+            seconds = time.monotonic() - began
+            total = start.kept + len(start.pending)
+            report(Progress(total, start.kept, computed, failed, seconds))
+    seconds = time.monotonic() - began
+    return Finish(computed, failed, seconds, computed < len(start.pending))
+
+
+def _until(stop: threading.Event, work: Iterable[list[Point]]) -> Iterator[list[Point]]:
+    """Batches until somebody wants to stop."""
+    for batch in work:
+        if stop.is_set():
+            return
+        yield batch
+
+
+@contextmanager
+def first_interrupt(announce: Callable[[], None]) -> Iterator[threading.Event]:
+    """An event that the first Ctrl-C sets; the second one interrupts as usual."""
+    event = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield event
+        return
+    before = signal.getsignal(signal.SIGINT)
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        event.set()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        announce()
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        yield event
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,56 @@
+"""In which order points are computed: batches that share sizes of building and records.
+
+The order of computation is not the order of the study. Points with one number of storeys stand
+together, and among them those of one record, because the kernels run fastest on them; systems come
+in blocks, so that all the systems of a block can be held in memory while the records pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.evaluation.systems import SYSTEMS_KEPT
+
+LARGEST_BATCH = 480
+"""Points; a batch takes about a second at most with common buildings, and keeps all lanes of the
+kernel busy but at its end."""
+
+SMALLEST_BATCH = 8
+
+LARGEST_BLOCK = 100_000
+"""Points that are put in order at a time."""
+
+
+def batches(design: Design, pending: Sequence[int], jobs: int) -> Iterator[list[Point]]:
+    """Batches of the pending points, which are given in the order of the study."""
+    # Small enough that all threads have something to do until the end.
+    size = min(LARGEST_BATCH, max(SMALLEST_BATCH, len(pending) // (4 * jobs)))
+    for block in _blocks(design, pending):
+        for _, alike in groupby(block, key=lambda number: _storeys(design, number)):
+            numbers = list(alike)
+            for first in range(0, len(numbers), size):
+                yield [design[number] for number in numbers[first : first + size]]
+
+
+def _blocks(design: Design, pending: Sequence[int]) -> Iterator[list[int]]:
+    """Pending points of some systems each, sorted by number of storeys and record."""
+    of_system = design.points_of_system
+    systems = max(1, min(SYSTEMS_KEPT // 2, LARGEST_BLOCK // of_system))
+
+    def order(number: int) -> tuple[int, int, int]:
+        return _storeys(design, number), _record(design, number), number
+
+    for _, block in groupby(pending, key=lambda number: number // (of_system * systems)):
+        yield sorted(block, key=order)
+
+
+def _storeys(design: Design, number: int) -> int:
+    return design.properties[number // design.points_of_system].storeys
+
+
+def _record(design: Design, number: int) -> int:
+    of_system = design.points_of_system
+    return number % of_system // (of_system // len(design.records))

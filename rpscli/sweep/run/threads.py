@@ -1,0 +1,83 @@
+"""The engine of one machine: threads that share records and systems.
+
+The kernels let go of the interpreter while they compute, so threads use all cores without a copy
+of a record, and start at once.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from queue import SimpleQueue
+from threading import Lock, Thread
+
+from rpscli.sweep.evaluation.batch import Row, run_batch
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.evaluation.points import Point
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class _End:
+    """What a thread says last; `error` is what ended it before its time."""
+
+    def __init__(self, error: BaseException | None = None) -> None:
+        self.error = error
+
+
+class Threads:
+    """Computes batches in threads of this process.
+
+    Each thread takes its next batch when it is done with the last one, so that nothing is under
+    way but what is being computed. The threads are daemons: after a second Ctrl-C the process
+    need not wait for them.
+    """
+
+    def __init__(self, context: StudyContext, jobs: int) -> None:
+        self._context = context
+        self.jobs = jobs
+        self._done: SimpleQueue[list[Row] | _End] = SimpleQueue()
+        self._taking = Lock()
+
+    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[list[Row]]:
+        """Rows of the batches, as they come."""
+        source = iter(batches)
+        for _ in range(self.jobs):
+            Thread(target=self._compute, args=(source,), daemon=True).start()
+        computing = self.jobs
+        while computing:
+            rows: list[Row] = []
+            for item in self._waiting():
+                if isinstance(item, _End):
+                    if item.error is not None:
+                        raise item.error
+                    computing -= 1
+                else:
+                    rows += item
+            if rows:
+                yield rows
+
+    def _waiting(self) -> list[list[Row] | _End]:
+        """Everything that has been said: if the writer is slow it gets more at a time."""
+        said = [self._done.get()]
+        while not self._done.empty():
+            said.append(self._done.get())
+        return said
+
+    def _compute(self, source: Iterator[list[Point]]) -> None:
+        try:
+            while (batch := self._next(source)) is not None:
+                self._done.put(run_batch(self._context, batch))
+        except BaseException as error:  # noqa: BLE001 -- raised again where it can be told
+            self._done.put(_End(error))
+        else:
+            self._done.put(_End())
+
+    def _next(self, source: Iterator[list[Point]]) -> list[Point] | None:
+        with self._taking:
+            return next(source, None)

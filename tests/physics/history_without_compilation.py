@@ -1,0 +1,74 @@
+"""Run as a program: short histories, one after the other and side by side, as JSON."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+import numpy as np
+from paper_structures import FLAT, podium, waves
+
+from rpscli.analyses.kernels.history import Request, run_of
+from rpscli.analyses.kernels.systems import stacked_systems
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.impact import ImpactLaw
+from rpscli.physics.driver import integrate
+from rpscli.physics.run import Run
+from rpscli.physics.state import LANES
+
+STOREYS = 2
+DT = 0.02
+RECORDS = [waves(0.7, DT, 6.0, seed=5), waves(0.7, DT, 4.0, seed=8)]
+SETTINGS = TimeHistorySettings(free_vibration=0.5, recontact_tolerance=1e-3)
+STRUCTURES = [
+    podium(STOREYS, 0.10, 0.5, R=0.4),
+    podium(STOREYS, 0.15, FLAT, R=0.4, law=ImpactLaw("flexible")),
+]
+REQUESTS = [
+    Request(0, 0),
+    Request(0, 0, vertical=1),
+    Request(1, 0, scale=0.25),
+    Request(0, 1, scale=0.35),
+    Request(1, 1, vertical=0, scale=0.3),
+    Request(1, 1, scale=0.01),
+]
+ROWS = 256
+
+
+def integrated(requests: list[Request], lanes: int, rows: int = 0) -> Run:
+    """Follow histories."""
+    systems = stacked_systems([(structure, SETTINGS) for structure in STRUCTURES])
+    run = run_of(systems, RECORDS, requests, rows=rows, events=rows)
+    # lanes without a history make empty steps, of zeros
+    with np.errstate(all="ignore"):
+        integrate(run, lanes)
+    return run
+
+
+def demands_of_all(lanes: int) -> list[dict[str, Any]]:
+    """What every history leaves behind."""
+    return [
+        {name: np.ravel(result[name]).tolist() for name in result.dtype.names}
+        for result in integrated(REQUESTS, lanes).results
+    ]
+
+
+def sampled_history() -> dict[str, Any]:
+    """The first one with its samples and events."""
+    run = integrated(REQUESTS[:1], lanes=1, rows=ROWS)
+    kept = int(run.results.intervals[0]) + 1
+    samples, log = run.output.samples[:kept], run.output.log[: int(run.results.events[0].sum())]
+    found = {f"sampled {name}": samples[name].tolist() for name in samples.dtype.names}
+    found |= {f"event {name}": log[name].tolist() for name in log.dtype.names}
+    return found | {"floors": run.output.floors[:kept].ravel().tolist()}
+
+
+def everything() -> dict[str, list[dict[str, Any]]]:
+    """By the number of lanes; the sampled history counts as one more of a single lane."""
+    found = {str(lanes): demands_of_all(lanes) for lanes in (1, LANES)}
+    return found | {"sampled": [sampled_history()]}
+
+
+if __name__ == "__main__":
+    json.dump(everything(), sys.stdout)

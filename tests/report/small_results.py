@@ -1,0 +1,93 @@
+"""Small results of every kind, and what matplotlib has drawn of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.bearing import Bearing
+from rpscli.model.damping import ModalDamping
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.records.source import load_record
+
+Array = NDArray[np.float64]
+
+CURVED = Bearing(1.5, 0.15, 0.30, 0.5)
+ROLLER = Bearing(1.5, 0.15, 0.30, 0.25)  # overturns rolling
+FLAT = Bearing(1.5, 0.15, 0.15, 0.0)
+
+PREFIXES = {"": 1.0, "k": 1e-3, "M": 1e-6}
+
+
+def building(storeys: int, *, heights: bool = True) -> Superstructure:
+    masses = np.full(storeys, 2e5)
+    stiffnesses = profile_stiffnesses(masses, 0.1 * storeys)
+    return Superstructure(
+        masses, stiffnesses, ModalDamping(0.05), np.full(storeys, 3.0) if heights else None
+    )
+
+
+def structure(
+    bearing: Bearing = CURVED, storeys: int = 2, *, heights: bool = True
+) -> PodiumStructure:
+    return PodiumStructure(
+        bearing, 2e4, 2e5, building(storeys, heights=heights) if storeys else None
+    )
+
+
+def history(made: PodiumStructure, pulse: str, free: float | None = 0.5) -> TimeHistoryResult:
+    return time_history(made, load_record(pulse), TimeHistorySettings(free_vibration=free))
+
+
+KINDS: dict[str, Callable[[], TimeHistoryResult]] = {
+    "rolls": lambda: history(structure(), "pulse:half_sine?amplitude=0.3g&period=0.6"),
+    "at rest": lambda: history(structure(), "pulse:half_sine?amplitude=0.01g&period=0.6"),
+    "overturns": lambda: history(structure(), "pulse:half_sine?amplitude=1.5g&period=1.5", None),
+    "flat, one storey, no heights": lambda: history(
+        structure(FLAT, 1, heights=False), "pulse:half_sine?amplitude=0.4g&period=0.6"
+    ),
+    "frame": lambda: history(structure(FLAT, 0), "pulse:half_sine?amplitude=0.4g&period=0.6"),
+}
+
+
+def curve(axes: Axes, label: str) -> tuple[Array, Array]:
+    """Abscissae and ordinates of the line with a label."""
+    (line,) = [line for line in axes.lines if line.get_label() == label]
+    return np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)
+
+
+def is_drawn(found: tuple[Array, Array], x: ArrayLike, y: ArrayLike) -> None:
+    """Require that a line goes through points."""
+    for drawn, wanted in zip(found, (x, y), strict=True):
+        # but for the order of a product
+        np.testing.assert_allclose(drawn, np.asarray(wanted, float), rtol=1e-13)
+
+
+def legend(of: Axes | Figure) -> list[str]:
+    """Entries of the legend of axes or of a figure."""
+    found = of.legends[0] if isinstance(of, Figure) else of.get_legend()
+    assert found is not None
+    return [text.get_text() for text in found.get_texts()]
+
+
+def prefix(label: str, unit: str) -> float:
+    """Factor of a prefixed unit in the brackets of an axis label."""
+    name = label[label.rindex("[") + 1 : label.rindex("]")]
+    assert name.endswith(unit)
+    return PREFIXES[name.removesuffix(unit)]
+
+
+def second_axis(axes: Axes) -> Any:
+    """The axis on the other side, with the limits that it is drawn with."""
+    axes.get_figure(root=True).draw_without_rendering()  # type: ignore[union-attr]
+    (second,) = axes.child_axes
+    return second

@@ -1,0 +1,408 @@
+"""What the figures of one analysis draw: every line, limit, label and unit against its result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import StepPatch
+
+from report.small_results import (
+    CURVED,
+    FLAT,
+    KINDS,
+    ROLLER,
+    curve,
+    is_drawn,
+    legend,
+    prefix,
+    second_axis,
+    structure,
+)
+from rpscli.analyses.modal import modal
+from rpscli.analyses.pushover import PushoverResult, pushover
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.model.bearing import Bearing
+from rpscli.records.measures import integration
+from rpscli.records.measures.spectrum import response_spectrum
+from rpscli.records.source import load_record
+from rpscli.report.figures.animation import animation_gif, frame_plan
+from rpscli.report.figures.capacity import capacity_figure
+from rpscli.report.figures.displacement import displacement_figure
+from rpscli.report.figures.energy import energy_figure
+from rpscli.report.figures.levels import level_heights
+from rpscli.report.figures.modes import modes_figure
+from rpscli.report.figures.moment import moment_figure
+from rpscli.report.figures.profile import profile_figure
+from rpscli.report.figures.record import record_figure
+from rpscli.report.figures.rotation import rotation_figure
+from rpscli.report.figures.scene import Scene
+from rpscli.report.figures.storey_curve import storey_curve_figure
+
+Drawn = Callable[..., Figure]
+
+
+@pytest.fixture
+def drawn(figures: list[Figure]) -> Drawn:
+    """The figure that a function draws."""
+
+    def draw(function: Callable[..., bytes], *arguments: Any) -> Figure:
+        function(*arguments)
+        (figure,) = figures
+        return figure
+
+    return draw
+
+
+@pytest.fixture(params=KINDS)
+def result(request: pytest.FixtureRequest) -> TimeHistoryResult:
+    return KINDS[request.param]()
+
+
+def reach(axes: Axes, label: str) -> tuple[float, float]:
+    """Lowest and highest ordinate of a filled area."""
+    (area,) = [c for c in axes.collections if c.get_label() == label]
+    assert isinstance(area, PolyCollection)
+    y = np.concatenate([path.vertices[:, 1] for path in area.get_paths()])  # type: ignore[index]
+    return float(np.nanmin(y)), float(np.nanmax(y))
+
+
+def steps(axes: Axes, label: str) -> StepPatch:
+    (patch,) = [p for p in axes.patches if p.get_label() == label]
+    assert isinstance(patch, StepPatch)
+    assert patch.orientation == "horizontal"
+    return patch
+
+
+def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
+    trace, made = result.trace, result.structure
+    figure = drawn(rotation_figure, result, "a title")
+    assert figure.get_suptitle() == f"a title   |   {result.record.name}"
+    ground, rotation, events = figure.axes
+
+    is_drawn(curve(ground, "_child0"), trace.time, trace.ground_acceleration)
+    assert ground.get_ylabel() == "ground\nacceleration [m/s²]"
+    assert legend(ground) == ["$g\\,\\tan\\alpha$ (uplift)"]
+    for place, sign in ((1, 1.0), (2, -1.0)):
+        limit = sign * made.uplift_acceleration
+        assert curve(ground, f"_child{place}")[1].tolist() == [limit, limit]
+
+    blue = next(line for line in rotation.lines if len(np.asarray(line.get_xdata())) > 2)
+    is_drawn(curve(rotation, str(blue.get_label())), trace.time, trace.rotation)
+    assert rotation.get_ylabel() == "rotation $\\theta$ [rad]"
+    low, high = rotation.get_ylim()
+    assert -low == high
+    assert high > result.max_rotation
+    ratio = second_axis(rotation)
+    assert ratio.get_ylabel() == "$\\theta/\\theta_{cr}$ [-]"
+    assert ratio.get_ylim()[1] == pytest.approx(high / made.critical_rotation, rel=1e-12)
+
+    names = legend(rotation)
+    for code, name in ((1, "rolling"), (2, "rocking")):
+        assert (name in names) == bool((trace.phase == code).any())
+    for symbol, value in (("\\theta_{cr}", made.critical_rotation), ("\\beta", made.bearing.beta)):
+        if value > 0.0:
+            label = f"${symbol}$ = {value:.3f} rad"
+            assert (label if value <= high else f"{label} (outside)") in names
+            if value <= high:
+                assert curve(rotation, label)[1].tolist() == [value, value]
+
+    assert events.get_xlabel() == "time [s]"
+    assert events.get_xlim() == (0.0, trace.time[-1])
+    marks = {
+        text.get_text(): np.asarray(line.get_xdata()).tolist()
+        for text, line in zip(events.get_yticklabels(), events.lines, strict=True)
+    }
+    for name, kinds in (
+        ("uplift", {"uplift"}),
+        ("impact", {"impact"}),
+        ("roll - rock", {"rolling_to_rocking", "rocking_to_rolling"}),
+        ("critical", {"critical_rotation_passed", "overturning"}),
+    ):
+        assert marks.get(name, []) == [e.time for e in result.events if e.kind in kinds]
+
+
+def test_the_shades_of_the_phases_begin_and_end_with_them(drawn: Drawn) -> None:
+    result = KINDS["overturns"]()
+    time, phase = result.trace.time, result.trace.phase
+    axes = drawn(rotation_figure, result, "").axes[1]
+    for code, name in ((1, "rolling"), (2, "rocking")):
+        (shade,) = [c for c in axes.collections if c.get_label() == name]
+        x = np.concatenate([path.vertices[:, 0] for path in shade.get_paths()])  # type: ignore[index]
+        inside = np.flatnonzero(phase == code)
+        assert x.min() == time[inside[0]]
+        # the last sample of a phase is shaded up to itself or to the next one
+        assert x.max() in time[inside[-1] :][:2]
+
+
+def test_displacements(drawn: Drawn, result: TimeHistoryResult) -> None:
+    trace, storeys = result.trace, result.structure.storeys
+    whole, *elastic = drawn(displacement_figure, result, "").axes
+    is_drawn(curve(whole, "cap beam"), trace.time, trace.cap_beam_displacement)
+    assert whole.get_ylabel() == "displacement relative\nto the ground [m]"
+    assert "cap beam" in legend(whole)
+    last = [whole, *elastic][-1]
+    assert last.get_xlabel() == "time [s]"
+    assert last.get_xlim() == (0.0, trace.time[-1])
+    assert len(elastic) == (storeys > 0)
+    for axes in elastic:
+        assert axes.get_ylabel() == "displacement relative\nto the cap beam [m]"
+        for floor in range(1, storeys + 1):
+            name = "roof" if floor == storeys else f"floor {floor}"
+            displacement = trace.floor_displacements[:, floor - 1]
+            is_drawn(curve(whole, name), trace.time, displacement)
+            is_drawn(curve(axes, name), trace.time, displacement - trace.cap_beam_displacement)
+            assert name in legend(whole)
+
+
+def test_energy(drawn: Drawn, result: TimeHistoryResult) -> None:
+    trace = result.trace
+    (axes,) = drawn(energy_figure, result, "").axes
+    factor = prefix(axes.get_ylabel(), "J")
+    assert axes.get_ylabel().startswith("energy [")
+    assert axes.get_xlabel() == "time [s]"
+    assert axes.get_xlim() == (0.0, trace.time[-1])
+    is_drawn(curve(axes, "input"), trace.time, factor * trace.energy_input)
+    below = np.zeros_like(trace.time)
+    parts = [
+        ("damped in the building", trace.energy_damped),
+        ("lost at impacts (net)", trace.energy_impact),
+        ("kinetic, elastic and of lift", trace.energy_stored),
+    ][result.structure.storeys == 0 :]
+    for name, part in parts:
+        above = below + factor * part
+        both = np.concatenate([below, above])
+        assert reach(axes, name) == pytest.approx((np.nanmin(both), np.nanmax(both)), rel=1e-12)
+        below = above
+    assert legend(axes) == [*(name for name, _ in parts), "input"]
+
+
+def test_moment(drawn: Drawn, result: TimeHistoryResult) -> None:
+    trace = result.trace
+    (axes,) = drawn(moment_figure, result, "").axes
+    factor = prefix(axes.get_ylabel(), "N m")
+    assert axes.get_ylabel().startswith("moment about the contact points [")
+    assert axes.get_xlabel() == "rotation $\\theta$ [rad]"
+    driving, restoring = legend(axes)
+    assert driving == "driving moment (ground and building)"
+    assert restoring == "static restoring moment $2RWB$"
+    is_drawn(curve(axes, driving), trace.rotation, factor * trace.driving_moment)
+    left = curve(axes, restoring)
+    is_drawn(left, left[0], factor * result.restoring_moment(left[0]))
+    low, high = axes.get_xlim()
+    assert left[0].min() == low == -high
+    assert high > result.max_rotation
+
+
+@pytest.mark.parametrize("kind", ["rolls", "overturns", "flat, one storey, no heights"])
+def test_profiles(drawn: Drawn, kind: str) -> None:
+    result = KINDS[kind]()
+    made, fixed = result.structure, result.fixed_base
+    assert made.superstructure is not None
+    assert fixed is not None
+    heights, storeys = made.superstructure.storey_heights, made.storeys
+    figure = drawn(profile_figure, result, "")
+    shear, drift, acceleration = figure.axes
+    assert shear.get_xlabel() == "storey shear [kN]"
+    assert shear.get_ylabel() == "level (0 = cap beam)"
+    assert acceleration.get_xlabel() == "floor acceleration [m/s²]"
+    ratio = "storey drift [mm]" if heights is None else "storey drift ratio [%]"
+    assert drift.get_xlabel() == ratio
+    unit = 1e-3 if heights is None else heights * 1e-2
+    for name, shears, drifts, accelerations in (
+        ("on bearings", result.storey_shears, result.max_drifts, result.floor_accelerations),
+        ("fixed base", fixed.storey_shears, fixed.drifts, fixed.floor_accelerations),
+    ):
+        values, edges, _ = steps(shear, name).get_data()
+        is_drawn((values, edges), shears / 1e3, np.arange(storeys + 1))
+        values, edges, _ = steps(drift, name).get_data()
+        is_drawn((values, edges), drifts / unit, np.arange(storeys + 1))
+        is_drawn(curve(acceleration, name), accelerations, np.arange(1, storeys + 1))
+    assert curve(acceleration, "PGA")[0].tolist() == [result.record.pga] * 2
+    assert legend(figure) == ["on bearings", "fixed base", "PGA"]
+    top = second_axis(shear)
+    assert top.get_xlabel() == "$V_i/V_{st}$ [-]"
+    static = made.static_base_shear * 1e-3
+    assert top.get_xlim()[1] == pytest.approx(shear.get_xlim()[1] / static, rel=1e-12)
+    assert all(axes.get_xlim()[0] == 0.0 for axes in (shear, drift, acceleration))
+
+
+@pytest.mark.parametrize(("bearing", "storeys"), [(CURVED, 4), (FLAT, 1), (ROLLER, 0)])
+def test_modes(drawn: Drawn, bearing: Bearing, storeys: int) -> None:
+    result = modal(structure(bearing, storeys))
+    states = {"rolling": result.rolling, "rocking": result.rocking}
+    figure = drawn(modes_figure, result, "")
+    columns = 1 + min(storeys, 3)
+    levels = np.concatenate([[0.0], level_heights(result.structure)])
+    rows = [modes for modes in states.values() if modes is not None]
+    names = [name for name, modes in states.items() if modes is not None]
+    panels = np.array(figure.axes).reshape(len(rows), columns)
+    for name, modes, row in zip(names, rows, panels, strict=True):
+        assert row[0].get_ylabel() == f"{name}\nheight [m]"
+        for mode, axes in enumerate(row):
+            shape = modes.shapes[:, mode]
+            is_drawn(curve(axes, "uplifted, horizontal"), [0.0, *shape], levels)
+            if storeys:
+                elastic = [0.0, *(shape[1:] - shape[0])]
+                is_drawn(curve(axes, "uplifted, elastic part"), elastic, levels[1:])
+            if mode == 0:
+                title = f"storey: $p$ = {modes.frequency_parameter:#.3g} rad/s"
+            else:
+                title = f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s"
+                assert result.fixed_base is not None
+                fixed = [0.0, 0.0, *result.fixed_base.shapes[:, mode - 1]]
+                is_drawn(curve(axes, "full contact"), fixed, levels)
+            assert axes.get_title() == title
+    assert all(axes.get_xlabel() == "shape [-]" for axes in panels[-1])
+    contact = ["full contact"] if storeys else []
+    elastic_part = ["uplifted, elastic part"] if storeys else []
+    assert legend(figure) == [*contact, "uplifted, horizontal", *elastic_part]
+    low, high = panels[0, 0].get_xlim()
+    assert -low == high
+    assert high > max(np.abs(modes.shapes[:, :columns]).max() for modes in rows)
+
+
+@pytest.fixture
+def pushed() -> PushoverResult:
+    return pushover(structure(CURVED, 3))
+
+
+def test_storey_curve(drawn: Drawn, pushed: PushoverResult) -> None:
+    found, beta = pushed.curve, pushed.structure.bearing.beta
+    force, lift = drawn(storey_curve_figure, pushed, "").axes
+    factor = prefix(force.get_ylabel(), "N")
+    assert force.get_ylabel().startswith("force at the cap beam [")
+    assert lift.get_ylabel() == "lift [mm]"
+    assert lift.get_xlabel() == "displacement of the cap beam $u_b$ [m]"
+    assert legend(force) == ["full contact", "rolling", "rocking"]
+    for name, inside in (("rolling", found.rotation <= beta), ("rocking", found.rotation >= beta)):
+        assert 1 < np.count_nonzero(inside) < len(inside)
+        is_drawn(curve(force, name), found.displacement[inside], factor * found.force[inside])
+    is_drawn(curve(force, "full contact"), [0.0, 0.0], [0.0, factor * found.force[0]])
+    x, y = (
+        np.concatenate([np.asarray(line.get_data()[place], float) for line in lift.lines])
+        for place in (0, 1)
+    )
+    at = np.unique(x)
+    np.testing.assert_array_equal(at, found.displacement)
+    np.testing.assert_allclose(y[np.unique(x, return_index=True)[1]], 1e3 * found.lift, rtol=1e-13)
+    where = {text.get_text(): text.xy for text in force.texts}  # type: ignore[attr-defined]
+    assert where["uplift"] == pytest.approx((0.0, factor * pushed.uplift_force), rel=1e-13)
+    end = where[f"$\\theta_{{cr}}$ = {pushed.critical_rotation:.3f} rad"]
+    assert end == (pushed.critical_displacement, factor * found.force[-1])
+    assert f"$\\beta$ = {beta:.3f} rad" in where
+    assert force.get_xlim()[1] > pushed.critical_displacement
+    assert force.get_ylim()[0] == lift.get_ylim()[0] == 0.0
+    ratio = second_axis(force)
+    assert ratio.get_ylabel() == "$F/(W \\tan\\alpha)$ [-]"
+    top = force.get_ylim()[1] / (factor * pushed.uplift_force)
+    assert ratio.get_ylim()[1] == pytest.approx(top, rel=1e-12)
+
+
+def test_capacity(drawn: Drawn, pushed: PushoverResult) -> None:
+    figure = drawn(capacity_figure, pushed, "")
+    whole, close = figure.axes
+    factor = prefix(whole.get_ylabel(), "N")
+    assert whole.get_ylabel().startswith("sum of the floor forces [")
+    assert whole.get_xlabel() == "roof displacement [m]"
+    assert close.get_xlabel() == "roof displacement, near uplift [m]"
+    assert legend(figure) == ["uniform", "triangular", "first mode", "uplift"]
+    marks = [line.get_data() for line in close.lines if line.get_marker() == "o"]
+    for capacity, (at, force) in zip(pushed.capacity, marks[:-1], strict=True):
+        name = capacity.pattern.replace("_", " ")
+        for axes in (whole, close):
+            shears = factor * capacity.base_shear
+            is_drawn(curve(axes, name), capacity.roof_displacement, shears)
+        assert at == [capacity.roof_displacement_at_uplift]
+        assert force == [factor * pushed.uplift_force]
+    assert whole.get_xlim()[0] == 0.0
+    # the force is back at zero at the critical rotation, but for rounding
+    assert whole.get_ylim()[0] == pytest.approx(0.0, abs=1e-12)
+    uplift = max(c.roof_displacement_at_uplift for c in pushed.capacity)
+    assert close.get_xlim() == (0.0, 3.0 * uplift)
+
+
+def test_record(drawn: Drawn) -> None:
+    motion = load_record("pulse:sine?amplitude=0.3g&period=0.8")
+    spectrum = response_spectrum(motion, np.linspace(0.1, 2.0, 20))
+    figure = drawn(record_figure, motion, spectrum)
+    *panels, right = figure.axes
+    a, dt = motion.acceleration, motion.dt
+    for axes, label, values in zip(
+        panels,
+        ("acceleration\n[m/s²]", "velocity\n[m/s]", "displacement\n[m]"),
+        (a, integration.velocity(a, dt), integration.displacement(a, dt)),
+        strict=True,
+    ):
+        assert axes.get_ylabel() == label
+        is_drawn(curve(axes, "_child0"), motion.time, values)
+        at = int(np.argmax(np.abs(values)))
+        is_drawn(curve(axes, "_child1"), [motion.time[at]], [values[at]])
+        peak = f"peak {abs(values[at]):.3g} at {motion.time[at]:.2f} s"
+        assert axes.get_title(loc="right") == peak
+    assert panels[-1].get_xlabel() == "time [s]"
+    assert panels[-1].get_xlim() == (0.0, motion.duration)
+    is_drawn(curve(right, "_child0"), spectrum.periods, spectrum.pseudo_acceleration)
+    assert right.get_xlabel() == "period [s]"
+    assert right.get_ylabel() == "pseudo-acceleration, 5% damping [m/s²]"
+    assert right.get_xlim() == (0.0, spectrum.periods[-1])
+    assert right.get_ylim()[0] == 0.0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
+    result = KINDS[kind]()
+    trace, storeys = result.trace, result.structure.storeys
+    axes = Figure().subplots()
+    scene = Scene(axes, result, "a title", 0.5)
+    levels = level_heights(result.structure)
+    for sample in (0, len(trace.time) // 2, len(trace.time) - 1):
+        scene.show(sample)
+        u, lift = trace.cap_beam_displacement[sample], trace.lift[sample]
+        corners = scene.beam.get_xy()[:4]
+        assert corners[:, 0].mean() == pytest.approx(u, abs=1e-12)
+        assert corners[:, 1].min() == pytest.approx(levels[0] + lift, rel=1e-12)
+        assert scene.clock.get_text() == f"t = {trace.time[sample]:.2f} s"
+        assert len(scene.floors) == storeys
+        for floor, line in enumerate(scene.floors):
+            drift = trace.floor_displacements[sample, floor] - u
+            x, y = line.get_data()
+            assert np.asarray(x, float).mean() == pytest.approx(
+                u + scene.magnification * drift, abs=1e-12
+            )
+            height = levels[floor + 1] + lift + scene.thickness
+            assert np.asarray(y).tolist() == pytest.approx([height, height], rel=1e-12)
+    drifts = f"; storey drifts x {scene.magnification:g}" if storeys else ""
+    assert axes.get_xlabel() == f"bearings to scale{drifts}; 0.5 x real time"
+    # a metre is as high as it is wide
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    assert (high - low) / (right - left) == pytest.approx(axes.get_box_aspect(), rel=1e-12)
+
+
+def test_an_animation_runs_along_the_record(monkeypatch: pytest.MonkeyPatch) -> None:
+    cursors: list[float] = []
+    seen: list[Axes] = []
+    draw = FigureCanvasAgg.draw
+
+    def watched(canvas: FigureCanvasAgg) -> None:
+        record = canvas.figure.axes[1]
+        seen[:] = [record]
+        cursors.append(float(np.asarray(record.lines[1].get_xdata())[0]))
+        draw(canvas)  # type: ignore[no-untyped-call]
+
+    monkeypatch.setattr(FigureCanvasAgg, "draw", watched)
+    result = KINDS["rolls"]()
+    trace, plan = result.trace, frame_plan(result)
+    animation_gif(result, "a title")
+    assert cursors == trace.time[plan.samples].tolist()
+    (record,) = seen
+    is_drawn(curve(record, "_child0"), trace.time, trace.ground_acceleration)
+    assert record.get_xlim() == (cursors[0], cursors[-1])
+    assert record.get_ylabel() == "$a_g$ [m/s²]"
+    assert record.get_xlabel() == "time [s]"

@@ -1,0 +1,379 @@
+"""What the figures of studies draw, against the CSV files that the same studies leave."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import StepPatch
+from numpy.typing import NDArray
+from paper_structures import needs_compiled_kernels
+from sweep.small_studies import BASE, STUDY
+
+from report.small_results import curve, legend
+from rpscli.cli import program
+
+Array = NDArray[np.float64]
+Row = dict[str, str]
+Open = Callable[[str], tuple[Figure, list[Row]]]
+"""Of a report: its figure, and the rows of a CSV file of the same name."""
+
+RHO, ALPHA = "podium.bearing.curvature_ratio", "podium.bearing.slenderness"
+NAMES = {"critical": "critical ρ", "0.5": "ρ = 0.5", "0": "flat ends"}
+SCALES = (0.5, 1.0, 2.0, 4.0)
+
+HISTORIES = (
+    STUDY.replace("scale: [0.5, 1.0]", f"scale: {list(SCALES)}")
+    + f"""\
+reports:
+  - overturning: {{title: overturning}}
+  - rotation: {{title: rotation, panels: [{ALPHA}]}}
+  - demand: {{title: demand, panels: [{ALPHA}], series: [{RHO}]}}
+  - storey_shear: {{title: storey_shear}}
+  - ida: {{title: ida}}
+  - fragility: {{title: fragility, measure: PGA, series: [{RHO}], limits: {{rotation_ratio: 0.25}}}}
+"""
+)
+PULSES = f"""\
+rps: 1
+base: base.yaml
+vary:
+  - {RHO}: [0.5, 0]
+records:
+  - {{source: "pulse:sine?amplitude=1g", period: [0.6, 1.0, 2.0]}}
+scale: [0.1, 0.3, 0.6, 1.0, 2.0]
+reports:
+  - overturning_spectrum: {{title: overturning_spectrum}}
+"""
+MODES = f"""\
+rps: 1
+base: base.yaml
+analysis: modal
+vary:
+  - {RHO}: [critical, 0.5]
+  - superstructure.storeys: [1, 2, 3]
+    superstructure.period: [0.1, 0.2, 0.3]
+    podium.superstructure_mass_ratio: [1, 2, 3]
+reports:
+  - lines:
+      title: lines
+      x: superstructure.storeys
+      y: rolling.frequency_ratio.0
+      dashed: rocking.frequency_ratio.0
+      panels: [{RHO}]
+"""
+CURVES = f"""\
+rps: 1
+base: base.yaml
+analysis: pushover
+vary:
+  - {RHO}: [critical, 0.5, 0]
+reports:
+  - lines: {{title: lines, x: curve.displacement, y: curve.force_over_weight}}
+  - lines: {{name: upright, title: upright, upright: true, x: curve.displacement, y: curve.force,
+            x_label: "way [m]"}}
+"""
+
+
+def opened(text: str, folder: Path) -> Open:
+    """Run a study; figures are kept as objects, by their titles."""
+    (folder / "base.yaml").write_text(BASE, encoding="utf-8")
+    (folder / "study.yaml").write_text(text, encoding="utf-8")
+    kept: dict[str, Figure] = {}
+
+    def keep(figure: Figure, *_: object, **__: object) -> None:
+        kept[figure.get_suptitle().split("   |   ")[0]] = figure
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Figure, "savefig", keep)
+        made = CliRunner().invoke(
+            program, ["sweep", str(folder / "study.yaml"), "-o", str(folder / "made"), "--quiet"]
+        )
+    assert made.exit_code == 0, made.stderr
+
+    def open_(name: str) -> tuple[Figure, list[Row]]:
+        return kept.get(name, Figure()), rows(folder / "made" / f"{name}.csv")
+
+    return open_
+
+
+def rows(path: Path) -> list[Row]:
+    """Cells by the names of their columns, units left out."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return [
+            {name.split(" [")[0]: cell for name, cell in row.items()}
+            for row in csv.DictReader(file)
+        ]
+
+
+@pytest.fixture(scope="module")
+def histories(tmp_path_factory: pytest.TempPathFactory) -> Open:
+    return opened(HISTORIES, tmp_path_factory.mktemp("histories"))
+
+
+def numbers(of: Sequence[Row], name: str) -> Array:
+    """A column; empty cells are no numbers."""
+    return np.array([float(row[name]) if row[name] else np.nan for row in of])
+
+
+def chosen(of: Sequence[Row], rho: str, slenderness: str | None = None) -> list[Row]:
+    """Rows of one curvature ratio, and of one slenderness."""
+    return [
+        row for row in of if row[RHO] == rho and (slenderness is None or row[ALPHA] == slenderness)
+    ]
+
+
+def panels(figure: Figure) -> dict[str, Axes]:
+    return {axes.get_title(): axes for axes in figure.axes if axes.axison}
+
+
+def same(found: object, wanted: object) -> None:
+    """Require equal numbers, to the ten digits of a CSV file."""
+    np.testing.assert_allclose(
+        np.asarray(found, float), np.asarray(wanted, float), rtol=1e-9, atol=1e-12
+    )
+
+
+def labelled(figure: Figure, x_label: str, y_label: str) -> None:
+    """Require the labels on all panels at the edges, and on no others."""
+    shown = list(panels(figure).values())
+    assert {axes.get_xlabel() for axes in shown} - {""} == {x_label}
+    assert {axes.get_ylabel() for axes in shown} - {""} == {y_label}
+    assert shown[0].get_ylabel() == y_label
+    assert shown[-1].get_xlabel() == x_label
+
+
+def markers(axes: Axes, *, hollow: bool) -> Iterator[Line2D]:
+    for line in axes.lines:
+        filled = line.get_markerfacecolor() != "none"
+        if line.get_marker() not in {"None", ""} and filled != hollow:
+            yield line
+
+
+@needs_compiled_kernels
+def test_the_table_of_overturning(histories: Open) -> None:
+    figure, table = histories("overturning")
+    (axes,) = figure.axes
+    heads = [name for name in table[0] if "=" in name]
+    shares = np.array([[float(row[name]) for name in heads] for row in table])
+    assert 0.0 < shares.max() < 1.0
+    (image,) = axes.images
+    same(image.get_array(), shares)
+    assert image.get_clim() == (0.0, 1.0)
+    written = {text.get_position(): text.get_text() for text in axes.texts}
+    assert written == {(x, y): f"{share:.2f}" for (y, x), share in np.ndenumerate(shares)}
+    across = [text.get_text() for text in axes.get_xticklabels()]
+    assert across == [NAMES[name.partition("=")[2]] for name in heads]
+    assert [t.get_text() for t in axes.get_yticklabels()] == [f"tan α = {r[ALPHA]}" for r in table]
+
+
+@needs_compiled_kernels
+def test_rotations_against_the_reference(histories: Open) -> None:
+    figure, table = histories("rotation")
+    labelled(figure, r"$|\theta_{max}|/\alpha$, flat ends", r"$|\theta_{max}|/\alpha$, the others")
+    mine, reference = "rotation_over_alpha", "reference_rotation_over_alpha"
+    x_top, y_top = (1.08 * np.nanmax(numbers(table, name)) for name in (reference, mine))
+    for slenderness in ("0.1", "0.15"):
+        axes = panels(figure)[f"tan α = {slenderness}"]
+        same(axes.get_xlim(), (0.0, x_top))
+        same(axes.get_ylim(), (0.0, y_top))
+        for rho, hollow in zip(("critical", "0.5"), markers(axes, hollow=True), strict=True):
+            pairs = chosen(table, rho, slenderness)
+            x, y = numbers(pairs, reference), numbers(pairs, mine)
+            stood = np.isfinite(x) & np.isfinite(y)
+            same(curve(axes, NAMES[rho]), (x[stood], y[stood]))
+            on_frame = np.where(np.isnan(x), x_top, x), np.where(np.isnan(y), y_top, y)
+            same(hollow.get_data(), [values[~stood] for values in on_frame])
+    assert np.isnan(numbers(table, reference)).any()
+    assert legend(figure) == [NAMES["critical"], NAMES["0.5"]]
+    assert "open markers: overturned" in figure.get_suptitle()
+
+
+@needs_compiled_kernels
+def test_base_shear_against_rotation(histories: Open) -> None:
+    figure, fits = histories("demand")
+    _, points = histories("points")
+    labelled(figure, r"$|\theta_{max}|/\theta_{cr}$ [-]", "$V_b/V_{st}$ [-]")
+    stood = [row for row in points if row["outcome"] == "survived"]
+    highest = numbers(stood, "rotation_ratio").max()
+    for fit in fits:
+        axes = panels(figure)[f"tan α = {fit[ALPHA]}"]
+        for rho, name in NAMES.items():
+            series = chosen(stood, rho, fit[ALPHA])
+            wanted = [numbers(series, name) for name in ("rotation_ratio", "base_shear_ratio")]
+            same(curve(axes, name), wanted)
+        x, y = (float(fit[f"saturation_{name}_ratio"]) for name in ("rotation", "base_shear"))
+        end = max(highest, x)
+        heights = (float(fit["base_shear_ratio_at_uplift"]), y, y + float(fit["k_s"]) * (end - x))
+        same(curve(axes, "bilinear fit"), ((0.0, x, end), heights))
+        (text,) = axes.texts
+        assert text.get_text().startswith(f"saturation at {x:.3f}, {y:.2f}\n")
+        same(axes.get_xlim(), (0.0, 1.04 * highest))
+        assert axes.get_ylim()[0] == 0.0
+    assert legend(figure) == [*NAMES.values(), "bilinear fit"]
+
+
+@needs_compiled_kernels
+def test_storey_shears_over_the_height(histories: Open) -> None:
+    figure, table = histories("storey_shear")
+    labelled(figure, "$V_i/V_{st}$ [-]", "level (0 = cap beam)")
+    looks = {
+        "mean": "mean_shear_ratio",
+        "largest": "largest_shear_ratio",
+        "mean, fixed base": "fixed_mean_shear_ratio",
+        "largest, fixed base": "fixed_largest_shear_ratio",
+    }
+    assert legend(figure) == list(looks)
+    assert len(panels(figure)) == 6
+    for title, axes in panels(figure).items():
+        slenderness, name = title.removeprefix("tan α = ").replace("\n", " ").split(", ")
+        rho = next(value for value, known in NAMES.items() if known == name)
+        profile = chosen(table, rho, slenderness)
+        assert [row["storey"] for row in profile] == ["1", "2", "3"]
+        for label, column in looks.items():
+            (patch,) = [p for p in axes.patches if p.get_label() == label]
+            assert isinstance(patch, StepPatch)
+            assert patch.orientation == "horizontal"
+            values, edges, _ = patch.get_data()
+            same(values, numbers(profile, column))
+            same(edges, range(4))
+        assert axes.get_ylim() == (0.0, 3.0)
+        assert axes.get_xlim()[0] == 0.0
+
+
+@needs_compiled_kernels
+def test_incremental_dynamic_analysis(histories: Open) -> None:
+    figure, table = histories("ida")
+    _, points = histories("points")
+    labelled(figure, r"$|\theta_{max}|/\theta_{cr}$ [-]", "scale [-]")
+    stood = [row for row in points if not row["outcome"].startswith("overturned")]
+    edge = 1.15 * numbers(stood, "rotation_ratio").max()
+    cut = False
+    for title, axes in panels(figure).items():
+        slenderness, name = title.removeprefix("tan α = ").split(", ")
+        rho = next(value for value, known in NAMES.items() if known == name)
+        levels = chosen(table, rho, slenderness)
+        system = chosen(points, rho, slenderness)
+        records = list(dict.fromkeys(row["record"] for row in system))
+        single = [[row for row in system if row["record"] == record] for record in records]
+        wanted = [[row["rotation_ratio"] if row in stood else "" for row in one] for one in single]
+        wanted += [[row[f"rotation_ratio_{share}"] for row in levels] for share in (16, 50, 84)]
+        for line, cells in zip(axes.lines, wanted, strict=True):
+            up = cells.index("") if "" in cells else len(cells)
+            x, y = [0.0, *map(float, cells[:up])], [0.0, *SCALES[:up]]
+            if up < len(cells):
+                x, y, cut = [*x, edge], [*y, y[-1]], True
+            same(line.get_data(), (x, y))
+        labels = [str(line.get_label()) for line in axes.lines[-3:]]
+        assert labels == legend(figure) == [f"{share}% fractile" for share in (16, 50, 84)]
+        same(axes.get_xlim(), (0.0, 0.97 * edge))
+        same(axes.get_ylim(), (0.0, 1.04 * SCALES[-1]))
+    assert cut, "no curve that runs out of the frame was looked at"
+
+
+@needs_compiled_kernels
+def test_fragilities(histories: Open) -> None:
+    figure, fits = histories("fragility")
+    _, table = histories("fragility_curves")
+    _, points = histories("points")
+    labelled(figure, "PGA [m/s2]", "probability of exceeding")
+    assert list(panels(figure)) == ["rotation_ratio > 0.25", "overturning"]
+    assert legend(figure) == list(NAMES.values())
+    assert {row["method"] for row in fits} >= {"maximum likelihood", "none"}
+    for title, axes in panels(figure).items():
+        bands = [c for c in axes.collections if isinstance(c, PolyCollection)]
+        for place, (rho, name) in enumerate(NAMES.items()):
+            fragility = [row for row in chosen(table, rho) if row["limit"] == title]
+            same(curve(axes, name), [numbers(fragility, c) for c in ("PGA", "probability")])
+            (line,) = [line for line in axes.lines if line.get_label() == name]
+            (fit,) = [row for row in chosen(fits, rho) if row["limit"] == title]
+            assert line.get_linestyle() == ("--" if fit["method"] == "penalised" else "-")
+            # where nothing exceeded there is nothing to fit, and no band
+            paths = [np.asarray(path.vertices) for path in bands[place].get_paths()]
+            assert bool(paths) == (fit["method"] != "none")
+            for column in ("low", "high") if paths else ():
+                edge = np.column_stack([numbers(fragility, c) for c in ("PGA", column)])
+                apart = np.abs(np.vstack(paths)[:, None] - edge).sum(axis=2).min(axis=0)
+                assert apart.max() < 1e-8
+            system = chosen(points, rho)
+            beyond = np.array([row["outcome"].startswith("overturned") for row in system])
+            if title != "overturning":
+                beyond |= numbers(system, "rotation_ratio") > 0.25
+            pga = numbers(system, "pga")
+            levels = np.unique(pga)
+            observed = list(markers(axes, hollow=False))[place]
+            same(observed.get_data(), (levels, [beyond[pga == each].mean() for each in levels]))
+        assert axes.get_ylim() == (-0.02, 1.02)
+        assert axes.get_xlim()[0] == 0.0
+    assert "bands: 90%" in figure.get_suptitle()
+
+
+@needs_compiled_kernels
+def test_the_spectrum_of_pulses(tmp_path: Path) -> None:
+    figure, table = opened(PULSES, tmp_path)("overturning_spectrum")
+    labelled(figure, r"$\omega/p$ [-]", r"$a_p/(g\,\tan\alpha)$ [-]")
+    words = {"no uplift": "at_rest", "stands": "survived", "overturns": "overturned"}
+    assert legend(figure) == [*words, "least that overturns"]
+    frequency, amplitude = "frequency_over_p", "amplitude_over_g_tan_alpha"
+    for rho in ("0.5", "0"):
+        axes = panels(figure)[NAMES[rho]]
+        panel = chosen(table, rho)
+        for label, word in words.items():
+            some = [row for row in panel if row["outcome"].startswith(word)]
+            assert some
+            same(curve(axes, label), [numbers(some, column) for column in (frequency, amplitude)])
+        ratios = np.unique(numbers(panel, frequency))
+        fell = [row for row in panel if row["outcome"].startswith("overturned")]
+        least = [
+            min(
+                (float(row[amplitude]) for row in fell if float(row[frequency]) == ratio),
+                default=np.nan,
+            )
+            for ratio in ratios
+        ]
+        same(curve(axes, "least that overturns"), (ratios, least))
+        assert axes.get_xlim()[0] == axes.get_ylim()[0] == 0.0
+
+
+def test_modes_against_a_varied_key(tmp_path: Path) -> None:
+    figure, table = opened(MODES, tmp_path)("lines")
+    labelled(figure, "n [-]", r"$\omega_u/\omega_0$ [-]")
+    assert legend(figure) == ["rolling", "rocking"]
+    for rho in ("critical", "0.5"):
+        axes = panels(figure)[NAMES[rho]]
+        for name, dashes in (("rolling", "-"), ("rocking", "--")):
+            line = [
+                row for row in chosen(table, rho) if row["result"] == f"{name}.frequency_ratio.0"
+            ]
+            assert len(line) == 3
+            wanted = [numbers(line, c) for c in ("superstructure.storeys", "value")]
+            same(curve(axes, name), wanted)
+            (drawn,) = [line for line in axes.lines if line.get_label() == name]
+            assert drawn.get_linestyle() == dashes
+
+
+def test_curves_of_lists(tmp_path: Path) -> None:
+    study: Any = opened(CURVES, tmp_path)
+    figure, table = study("lines")
+    turned, forces = study("upright")
+    labelled(figure, "$u_b$ [m]", "$F/W$ [-]")
+    labelled(turned, "force at the cap beam [N]", "way [m]")
+    for drawn, of, names in (
+        (figure, table, ("curve.displacement", "value")),
+        (turned, forces, ("value", "curve.displacement")),
+    ):
+        (axes,) = drawn.axes
+        assert legend(drawn) == list(NAMES.values())
+        for rho, label in NAMES.items():
+            points = chosen(of, rho)
+            assert len(points) > 100
+            same(curve(axes, label), [numbers(points, name) for name in names])

@@ -1,0 +1,84 @@
+"""The digest that guards stored results covers every source that makes them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import rpscli
+from rpscli.sweep.evaluation.solver import SOLVING, digest_of_sources
+
+PACKAGE = Path(rpscli.__file__).parent
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the sources."""
+    copy = tmp_path_factory.mktemp("sources") / "rpscli"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    return copy
+
+
+def test_a_copy_has_the_same_digest(package: Path) -> None:
+    assert digest_of_sources(package) == digest_of_sources(PACKAGE)
+
+
+@pytest.mark.parametrize("name", SOLVING)
+def test_a_changed_source_changes_the_digest(package: Path, name: str) -> None:
+    place = package / name
+    sources = [place] if place.is_file() else sorted(place.rglob("*.py"))
+    assert sources, "every name stands for a source"
+    before = digest_of_sources(package)
+    for source in sources:
+        text = source.read_text()
+        source.write_text(f"{text}\n")
+        assert digest_of_sources(package) != before, source
+        source.write_text(text)
+    assert digest_of_sources(package) == before
+
+
+@pytest.mark.parametrize("folder", [name for name in SOLVING if not name.endswith(".py")])
+def test_a_source_in_a_sub_folder_counts(package: Path, folder: str) -> None:
+    inner = package / folder / "inner" / "part.py"
+    inner.parent.mkdir(parents=True)
+    digests = {digest_of_sources(package)}
+    for text in ("x = 1\n", "x = 2\n"):
+        inner.write_text(text)
+        digests.add(digest_of_sources(package))
+    assert len(digests) == 3
+    # The same text under another name is another program.
+    inner.rename(inner.with_name("other.py"))
+    assert digest_of_sources(package) not in digests
+    shutil.rmtree(inner.parent)
+
+
+def test_every_module_behind_a_stored_number_counts() -> None:
+    script = """
+import sys
+import rpscli.sweep.evaluation.batch, rpscli.sweep.evaluation.fixed_base
+print(*(m.__file__ for n, m in sys.modules.items() if n.startswith("rpscli.")), sep=chr(10))
+"""
+    paths = [str(PACKAGE.parent), *sys.path]
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    modules = {Path(line).relative_to(PACKAGE).as_posix() for line in done.stdout.split()}
+    counted = {name for name in modules if name.startswith(tuple(SOLVING))}
+    assert "analyses/demand.py" in counted
+    assert modules - counted == {"errors.py", "sweep/__init__.py"}
+
+
+def test_what_only_draws_does_not_count(package: Path) -> None:
+    before = digest_of_sources(package)
+    figure = package / "report" / "figures" / "style.py"
+    figure.write_text(figure.read_text() + "\n")
+    assert digest_of_sources(package) == before

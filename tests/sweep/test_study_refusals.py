@@ -1,0 +1,87 @@
+"""Rarer mistakes in a study file: each is refused with its place and what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import Result
+
+from sweep.small_studies import STUDY
+
+SCALE = "scale: [0.5, 1.0]"
+SAMPLED = "sample: {size: 4, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\n"
+SEEDS = "seed: [1, 2, 3]"
+RECORD = "  - {source:"
+BASE = "base: base.yaml"
+
+
+def sampled(distribution: str) -> tuple[str, str]:
+    return SCALE, SAMPLED.replace("[5, 10]", distribution) + SCALE
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "parts"),
+    [
+        # vary
+        ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary must be a list of axes")),
+        ("  - podium.bearing.curv", "  - 3\n  - podium.bearing.curv", ("vary.1 = 3", "mapping")),
+        ("[critical, 0.5, 0]", "[]", ("study.yaml:7:37", "list of values", "{low, high, count}")),
+        (
+            "[critical, 0.5, 0]",
+            "{low: 0, high: 1, count: 3, spacing: log}",
+            ("equal ratios", "spacing: linear"),
+        ),
+        (
+            "  - podium.bearing.curv",
+            "  - podium.bearing: [{}]\n  - podium.bearing.curv",
+            ("podium.bearing varies as a whole", "must not vary too"),
+        ),
+        (
+            "  - podium.bearing.curv",
+            "  - podium.bearing.slenderness: [0.1]\n  - podium.bearing.curv",
+            ("varies already in another axis", "line 5", "take one of them out"),
+        ),
+        (
+            "  - podium.bearing.curv",
+            "  - record.scale: [1, 2]\n  - podium.bearing.curv",
+            ("record.scale must not vary beside", "take one of them out"),
+        ),
+        # scale
+        (SCALE, "scale: {measure: PGV, values: [one]}", ("numbers", "one")),
+        (SCALE, "scale: {low: 1, high: 2, cnt: 3}", ("study.yaml:10", "cnt")),
+        (SCALE, "scale: {low: 0, high: 2, count: 3, spacing: log}", ("equal ratios",)),
+        # reports
+        (SCALE, f"reports: demand\n{SCALE}", ("study.yaml:10:10", "must be a list")),
+        (SCALE, f"reports: [3]\n{SCALE}", ("reports.0 = 3", "must be a name")),
+        (SCALE, f"reports: [xyzzy]\n{SCALE}", ("no report 'xyzzy'", "known are", "fragility")),
+        (SCALE, f"reports: [lines]\n{SCALE}", ("reports.0.x is missing", "reports.0.y is missing")),
+        (SCALE, f"reports: [demand: 3]\n{SCALE}", ("demand = 3", "mapping of options")),
+        (SCALE, f"reports: [demand: {{panels: [3]}}]\n{SCALE}", ("a key or a list of keys",)),
+        # sample
+        (*sampled("7"), ("cap_beam_mass_ratio must be [low, high]", "distribution")),
+        (*sampled("[5]"), ("must be [low, high]",)),
+        (*sampled("{low: 5, mean: 6, cov: 0.1}"), ("low and high alone",)),
+        (*sampled("{distribution: lognormal, mean: -1, cov: 0.1}"), ("> 0 for a lognormal",)),
+        (*sampled("{distribution: normal, mean: 0, cov: 0.1}"), ("mean = 0", "cov is relative")),
+        (SCALE, "sample: {size: 4, ranges: {}}\n" + SCALE, ("sample.ranges is empty",)),
+        # records
+        ("records:\n", "records: 3\nrecord_:\n", ("study.yaml:8:10", "must be a list of sources")),
+        (RECORD, "  - 3\n" + RECORD, ("study.yaml:9:5", "records.0 = 3", "must be a source")),
+        (SEEDS, "seed: []", ("records.0.seed = []", "a value or a list of values")),
+        (SEEDS, "seed: {low: 1, high: 3}", ("records.0.seed", "is no range")),
+        # base
+        (BASE, "base: broken.yaml", ("broken.yaml:3:1", "line 2, column 16")),
+    ],
+)
+def test_a_mistake_is_refused(
+    workplace: Path, sweep: Callable[..., Result], old: str, new: str, parts: tuple[str, ...]
+) -> None:
+    assert old in STUDY
+    (workplace / "broken.yaml").write_text("rps: 1\nsemi_diagonal: [1\n", encoding="utf-8")
+    (workplace / "study.yaml").write_text(STUDY.replace(old, new), encoding="utf-8")
+    result = sweep("study.yaml", "--dry-run")
+    assert result.exit_code == 3, result.stdout
+    for part in parts:
+        assert part in result.stderr, result.stderr
