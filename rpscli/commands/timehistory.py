@@ -72,7 +72,7 @@ def command(
     ground = load_motion(given.case, MotionRequest(**motion))
     folder = case_folder(given, output, "timehistory", record=motion_inputs(ground))
     with artists() as drawing:
-        announce_compilation(terminal)
+        announce_compilation(terminal, moving=True)
         from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
         from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
 

@@ -36,7 +36,7 @@ def command(terminal: Terminal) -> None:
     """
     from rpscli.analyses.verification.suite import verification  # noqa: PLC0415 -- numpy is slow
 
-    announce_compilation(terminal)
+    announce_compilation(terminal, moving=True)
     found = list(verification())
     error = _mismatch(found)
     document = {

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from threading import Lock
 
-Listener = Callable[[str], None]
+Listener = Callable[[str], AbstractContextManager[None]]
+"""Told the name of a kernel; open while it is compiled."""
 
 _listeners: list[Listener] = []
 _announced: set[str] = set()
@@ -49,7 +50,10 @@ def compiled(storeys: int) -> Iterator[None]:
         new = name not in _announced
         _announced.add(name)
     if new:
-        for listener in _listeners:
-            listener(name)
-    yield
+        with ExitStack() as told:
+            for listener in _listeners:
+                told.enter_context(listener(name))
+            yield
+    else:
+        yield
     remember_compiled(name)

@@ -2,15 +2,44 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from rpscli.commands.shell.terminal import Terminal
 
 
-def announce_compilation(terminal: Terminal) -> None:
-    """Say so whenever a kernel has to be compiled from now on."""
+def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
+    """Say so whenever a kernel has to be compiled from now on.
+
+    Parameters
+    ----------
+    terminal
+        Where to say it.
+    moving
+        Show on a terminal that something goes on; not where a bar shows it already.
+    """
     from rpscli.analyses.kernels.compilation import announce_to  # noqa: PLC0415 -- numpy is slow
 
-    announce_to(
-        lambda name: terminal.note(
-            f"compiling the kernel for {name}, once for this version: half a minute at most"
-        )
-    )
+    @contextmanager
+    def told(name: str) -> Iterator[None]:
+        terminal.note(f"compiling the kernel for {name}, once for this version: half a minute")
+        if moving and not terminal.quiet and sys.stderr is not None and sys.stderr.isatty():
+            with _seconds():
+                yield
+        else:
+            yield
+
+    announce_to(told)
+
+
+@contextmanager
+def _seconds() -> Iterator[None]:
+    """A line with the time that has passed, gone when the work is done."""
+    from rich.console import Console  # noqa: PLC0415 -- other commands do without
+    from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn  # noqa: PLC0415
+
+    columns = (SpinnerColumn(), "compiling", TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        progress.add_task("", total=None)
+        yield
