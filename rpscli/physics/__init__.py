@@ -1,8 +1,8 @@
 """Compiled kernels on records with named fields; no strings, no exceptions, no files.
 
 `state` names every number once. `equation_of_motion` is the method: what moves, with its Taylor
-terms; `formulae` is the mathematics below it. `uplifted` takes Taylor steps of all lanes together and
-finds what happens in them, `full_contact` follows a building on a fixed base exactly until it
+terms; `formulae` is the mathematics below it. `uplifted` takes Taylor steps of all lanes together
+and finds what happens in them, `full_contact` follows a building on a fixed base exactly until it
 uplifts, `transitions` go from one phase of motion to the next, `energy` audits. `driver` strings
 them together. How all this becomes machine code stands in `compile`.
 """
