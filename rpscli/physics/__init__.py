@@ -5,4 +5,8 @@ terms; `formulae` is the mathematics below it. `uplifted` takes Taylor steps of 
 and finds what happens in them, `full_contact` follows a building on a fixed base exactly until it
 uplifts, `transitions` go from one phase of motion to the next, `energy` audits. `driver` strings
 them together. How all this becomes machine code stands in `compile`.
+
+Everywhere `s` is the record of all lanes (`state.STATE`), `l` a lane, `r` a mode, `i` a storey or
+floor, `m` the order of a Taylor term; `system` is the record of a lane's structure, and `block`
+that of steps in full contact.
 """

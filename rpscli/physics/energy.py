@@ -54,7 +54,15 @@ def uplifted_energy(s: Record, l: int) -> float:
 
 @compiled
 def powers_within(s: Record, l: int, t: float) -> tuple[float, float]:
-    """Power of the ground and of the dampers [W], a fraction t of the step after its start."""
+    """Power of the ground and of the dampers [W], a fraction t of the step after its start.
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them: its Taylor terms are read.
+    t
+        Fraction of the step.
+    """
     terms = rotation_terms(s, l)
     theta, theta_dot = s.theta[l] + s.step[l] * integral(terms, t), value(terms, t)
     sine, cosine = sine_cosine(theta)
@@ -79,6 +87,13 @@ def book_energy(s: Record, l: int, fraction: float) -> None:
 
     The flows are integrated by a rule of their own, so that the audit can show something: it does
     not know that the motion balances them.
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them.
+    fraction
+        How much of the step is booked.
     """
     for i in range(len(NODES)):
         supplied, damped = powers_within(s, l, fraction * NODES[i])

@@ -55,7 +55,17 @@ def phase_constants(s: Record, l: int) -> Phase:
 def inertia(
     io_1: float, one_4gamma: float, four_gamma_eta: float, phase: Phase, B: float, C: float
 ) -> float:
-    """A(x) = Io - 1 + (1 + 4 gamma) S + 4 gamma eta B^2 (paper, Table 1)."""
+    """A(x) = Io - 1 + (1 + 4 gamma) S + 4 gamma eta B^2 (paper, Table 1).
+
+    Parameters
+    ----------
+    io_1, one_4gamma, four_gamma_eta
+        Io - 1, 1 + 4 gamma, 4 gamma eta.
+    phase
+        Constants of the phase of motion.
+    B, C
+        Contact arm and contact height over R.
+    """
     return io_1 + one_4gamma * squared_distance(phase, C) + four_gamma_eta * (B * B)
 
 
@@ -66,13 +76,32 @@ def inertia_slope(
     """D(x) = A'(x)/2, with S' = 2 c B and B' = c - C.
 
     The paper's Table 1 lacks the factor 4 gamma eta in the rocking phase (c = 0).
+
+    Parameters
+    ----------
+    one_4gamma, four_gamma_eta
+        1 + 4 gamma, 4 gamma eta.
+    phase
+        Constants of the phase of motion.
+    B, C
+        Contact arm and contact height over R.
     """
     return B * (one_4gamma * phase.c + four_gamma_eta * (phase.c - C))
 
 
 @compiled
 def horizontal_action(s: Record, l: int, a_g: float, V: float) -> float:
-    """What acts horizontally on the storey, towards smaller x [1/s2]."""
+    """What acts horizontally on the storey, towards smaller x [1/s2].
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them: its side and masses are read.
+    a_g
+        Ground acceleration, positive to the right [m/s2].
+    V
+        Base shear of the building, positive to the right on the cap beam [N].
+    """
     return float(s.side[l] * (a_g * s.ground_over_R[l] - V * s.shear_factor[l]))
 
 
@@ -82,7 +111,18 @@ def rotation_acceleration(
 ) -> float:
     """x'' of the equation of motion (paper, Eq. 2) [rad/s2].
 
-    `per_A` is 1/A, `weight` (g + a_v)(1 + 2 gamma + 2 gamma eta)/R [1/s2].
+    Parameters
+    ----------
+    per_A
+        1/A.
+    B, C, D
+        Contact arm and contact height over R, and A'/2.
+    theta_dot
+        x' [rad/s].
+    weight
+        (g + a_v)(1 + 2 gamma + 2 gamma eta)/R [1/s2].
+    action
+        See `horizontal_action` [1/s2].
     """
     return -((B * weight + D * (theta_dot * theta_dot)) + C * action) * per_A
 
@@ -91,7 +131,17 @@ def rotation_acceleration(
 def cap_beam_acceleration(
     s: Record, l: int, B: float, C: float, theta_dot: float, theta_ddot: float
 ) -> tuple[float, float]:
-    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8)."""
+    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8).
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them.
+    B, C
+        Contact arm and contact height over R.
+    theta_dot, theta_ddot
+        x' and x'' [rad/s, rad/s2].
+    """
     square = theta_dot * theta_dot
     across = s.side[l] * s.diameter[l] * (C * theta_ddot + B * square)
     return across, s.diameter[l] * (B * theta_ddot + (s.phase_c[l] - C) * square)
@@ -110,7 +160,15 @@ def add_modal_force(s: Record, r: int, l: int) -> None:
 
 @inlined
 def accelerate_rotation(s: Record, l: int, elapsed: float) -> None:
-    """x'' and what it is made of, where V is known; see `accelerate`."""
+    """x'' and what it is made of, where V is known; see `accelerate`.
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them.
+    elapsed
+        Share of the step that has passed: 1 at its end, 0 at its start.
+    """
     theta_dot = s.next_theta_dot[l]
     sine, cosine = sine_cosine(s.next_theta[l])
     phase = phase_constants(s, l)
@@ -239,7 +297,17 @@ def extend_modes(s: Record, lanes: int, m: int) -> None:
 
 @compiled
 def action_term(s: Record, l: int, m: int, V_m: float) -> float:
-    """Term of order m > 0 of `horizontal_action`."""
+    """Term of order m > 0 of `horizontal_action`.
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them.
+    m
+        Order of the term.
+    V_m
+        Term of order m of the base shear V [N].
+    """
     ground = s.step[l] * s.a_g_slope[l] * s.ground_over_R[l] if m == 1 else 0.0
     side = s.side[l]
     return float(side * ground - (side * s.shear_factor[l]) * V_m)
@@ -250,7 +318,17 @@ def action_term(s: Record, l: int, m: int, V_m: float) -> float:
 
 @compiled
 def tilting_energy(s: Record, l: int, B: float, C: float, theta_dot: float) -> float:
-    """Kinetic energy of columns and cap beam, and of the floors' vertical motion [J]."""
+    """Kinetic energy of columns and cap beam, and of the floors' vertical motion [J].
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them.
+    B, C
+        Contact arm and contact height over R.
+    theta_dot
+        x' [rad/s].
+    """
     phase = phase_constants(s, l)
     A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], phase, B, C)
     square = s.diameter[l] * s.diameter[l]
@@ -269,6 +347,15 @@ def uplift_push(ground_factor: float, shear_share: float, a_g: float, V: float) 
 
     It is -R times `horizontal_action` of the side to the right, at x = 0 (Theory, section 3);
     linear in a_g and V, so that it serves their derivatives too.
+
+    Parameters
+    ----------
+    ground_factor
+        1 + 2 gamma.
+    shear_share
+        2 gamma eta/M_tot [1/kg].
+    a_g, V
+        Ground acceleration [m/s2] and base shear [N], or a derivative of both.
     """
     return shear_share * V - ground_factor * a_g
 

@@ -60,8 +60,20 @@ def set_ground_of_block(
 ) -> None:
     """Write the ground's motion at the instants of a block of steps of length h.
 
-    `each` steps lead to the next sample, and from one to the next. The last instant belongs to the
-    step before it: the ground acceleration may jump there.
+    The last instant belongs to the step before it: the ground acceleration may jump there.
+
+    Parameters
+    ----------
+    s, l, block
+        The lanes, which of them, and the block: written.
+    acceleration
+        Records of the ground end to end [m/s2].
+    h
+        Length of a step [s].
+    each
+        Steps from the present instant to the next sample, and from one to the next.
+    steps
+        Steps that will be taken.
     """
     i = s.interval[l]
     if each == 1 and s.time[l] == 0.0 and i + 1 < s.npts[l]:
@@ -90,7 +102,23 @@ def copy_samples(
     steps: int,
     rest: float,
 ) -> None:
-    """Write `rest` plus a record to values and slopes: a step is an interval."""
+    """Write `rest` plus a record to values and slopes: a step is an interval.
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them.
+    acceleration
+        Records of the ground end to end [m/s2].
+    values, slopes
+        (INSTANTS,) [m/s2, m/s3]: written.
+    start
+        Offset of the present sample among all.
+    steps
+        Steps that will be taken.
+    rest
+        What the record is added to [m/s2].
+    """
     scale, rate = s.scale[l], s.sampling_rate[l]
     for k in range(steps + 1):
         values[k] = rest + scale * acceleration[start + k]

@@ -72,9 +72,9 @@ def ensemble(
     rng = np.random.default_rng(7)
     requests = []
     for storeys, modal in groups:
-        shelf = structures(storeys, modal)
+        choices = structures(storeys, modal)
         for i in range(each):
-            structure, motion = shelf[int(rng.integers(len(shelf)))], int(rng.integers(2))
+            structure, motion = choices[int(rng.integers(len(choices)))], int(rng.integers(2))
             requests.append(
                 Request(
                     structure,

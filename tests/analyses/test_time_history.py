@@ -97,7 +97,7 @@ def test_the_energy_audit_closes_at_every_sample(result: TimeHistoryResult) -> N
     trace, energy = result.trace, result.energy
     assert result.impacts > 0
     gap = trace.energy_input - trace.energy_damped - trace.energy_impact - trace.energy_stored
-    # order 7 in flight, 6 for damping in full contact, w h = 1/2: (1/2)^7/7! of the largest flow
+    # order 7 uplifted, 6 for damping in full contact, w h = 1/2: (1/2)^7/7! of the largest flow
     assert np.max(np.abs(gap)) < 1.5e-6 * energy.input
     assert energy.residual == pytest.approx(gap[-1], abs=1e-9 * energy.input)
     assert energy.stored == pytest.approx(trace.energy_stored[-1], rel=1e-9, abs=1e-6)

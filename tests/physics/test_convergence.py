@@ -1,4 +1,4 @@
-"""Observed orders of the steps: in smooth flight, and through events that have to be located."""
+"""Observed orders of the steps: in smooth motion, and through events that have to be located."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def test_the_passage_does_not_depend_on_the_samples(storeys: int, rho: float) ->
         x = np.abs(result.trace.rotation)
         assert np.all(x[: before + 1] <= structure.critical_rotation)
         assert x[before + 1] > structure.critical_rotation
-    # order 6 in flight, w h = 1/8: what differs is the steps' own error
+    # order 6 while uplifted, w h = 1/8: what differs is the steps' own error
     assert times == pytest.approx([times[-1]] * 3, rel=1e-8)
 
 

@@ -56,7 +56,17 @@ def rolling_phase(alpha: float, rho: float) -> Phase:
 
 
 def rocking_phase(alpha: float, rho: float, beta: float) -> Phase:
-    """Constants while the column pivots about the end of the arc (x >= beta)."""
+    """Constants while the column pivots about the end of the arc (x >= beta).
+
+    Parameters
+    ----------
+    alpha
+        Slenderness angle of the flat part [rad].
+    rho
+        r/(2 H), radius of the arcs over the height.
+    beta
+        Rotation at which the arc ends [rad].
+    """
     k = 2.0 * rho * math.cos(alpha)
     return Phase(
         p=math.sin(alpha) + k * math.sin(beta),
@@ -102,6 +112,13 @@ def critical_rotation(rolling: Phase, rocking: Phase, beta: float) -> float:
 
     The column rolls up to beta and rocks beyond; B is continuous at beta, so a root of the rolling
     branch counts only if it lies before beta.
+
+    Parameters
+    ----------
+    rolling, rocking
+        Constants of the phases before and beyond beta.
+    beta
+        Rotation at which the arc ends [rad].
     """
     root = arm_root(rolling)
     return root if root <= beta else arm_root(rocking)
@@ -110,7 +127,17 @@ def critical_rotation(rolling: Phase, rocking: Phase, beta: float) -> float:
 def path_along(
     rolling: Phase, rocking: Phase, beta: float, x: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], ...]:
-    """B, C, u_b/2R and v_b/2R along an array of x >= 0, each in its own phase."""
+    """B, C, u_b/2R and v_b/2R along an array of x >= 0, each in its own phase.
+
+    Parameters
+    ----------
+    rolling, rocking
+        Constants of the phases before and beyond beta.
+    beta
+        Rotation at which the arc ends [rad].
+    x
+        Rotations |theta|, of any shape [rad].
+    """
     cos_x, sin_x = np.cos(x), np.sin(x)
     rolls = x < beta
     one, two = (

@@ -17,7 +17,17 @@ from rpscli.physics.compile import compiled
 
 @compiled
 def decay(omega: float, xi: float, h: float) -> tuple[float, float]:
-    """c(h) and s(h) [1, s]; under-, over- and critically damped."""
+    """c(h) and s(h) [1, s]; under-, over- and critically damped.
+
+    Parameters
+    ----------
+    omega
+        w [rad/s].
+    xi
+        Damping ratio.
+    h
+        Time [s].
+    """
     rate = xi * omega
     square = omega**2 - rate**2
     if abs(square) * h**2 < 1e-16:
@@ -40,6 +50,15 @@ def transition(
     omega: float, xi: float, h: float
 ) -> tuple[float, float, float, float, float, float, float, float]:
     """The exact map over a step h.
+
+    Parameters
+    ----------
+    omega
+        w [rad/s].
+    xi
+        Damping ratio.
+    h
+        Length of the step [s].
 
     Returns
     -------

@@ -43,7 +43,17 @@ DEEPEST_HALVING = 40
 def quintic(
     h: float, f0: float, df0: float, ddf0: float, f1: float, df1: float, ddf1: float
 ) -> Quintic:
-    """Bernstein coefficients of the Hermite quintic over a step of length h."""
+    """Bernstein coefficients of the Hermite quintic over a step of length h.
+
+    Parameters
+    ----------
+    h
+        Length of the step [s].
+    f0, df0, ddf0
+        Value, first and second time derivative at its start.
+    f1, df1, ddf1
+        The same at its end.
+    """
     d0, d1 = 0.2 * h * df0, 0.2 * h * df1
     c0, c1 = 0.05 * h**2 * ddf0, 0.05 * h**2 * ddf1
     return (f0, f0 + d0, f0 + 2.0 * d0 + c0, f1 - 2.0 * d1 + c1, f1 - d1, f1)
@@ -89,7 +99,14 @@ def value(b: Quintic, t: float) -> float:
 def first_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
     """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE`.
 
-    Corrections of it end below `settled`; `piece` (6,) is scratch.
+    Parameters
+    ----------
+    b
+        Bernstein coefficients of f over [0, 1].
+    settled
+        Corrections of t end below this.
+    piece
+        (6,) scratch.
     """
     stays = min(lower_hull(b), b[0]) >= 0.0
     return NO_PASSAGE if stays else search_descent(b, settled, piece)
@@ -120,7 +137,17 @@ def search_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> fl
 
 @compiled
 def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -> None:
-    """Coefficients over [start, end], by de Casteljau's scheme from either end; writes `piece`."""
+    """Coefficients over [start, end], by de Casteljau's scheme from either end; writes `piece`.
+
+    Parameters
+    ----------
+    b
+        Bernstein coefficients over [0, 1].
+    start, end
+        The interval within [0, 1].
+    piece
+        (6,) coefficients over it: written.
+    """
     for i in range(6):
         piece[i] = b[i]
     if start == 0.0 and end == 1.0:

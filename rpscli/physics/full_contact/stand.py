@@ -114,7 +114,23 @@ def accept_block(
     taken: int,
     margin: Margin,
 ) -> bool:
-    """Make the state after some steps of the block that of the lane; True if its history ends."""
+    """Make the state after some steps of the block that of the lane; True if its history ends.
+
+    Parameters
+    ----------
+    s, l, system
+        The lanes, which of them, and its structure.
+    block, plan
+        The steps in full contact, and how they were planned.
+    acceleration
+        Records of the ground end to end [m/s2].
+    output
+        Where samples and events go.
+    taken
+        Steps that are accepted.
+    margin
+        See `uplift_search.margin_of`.
+    """
     first, time = s.interval[l], s.time[l]
     passed = taken // plan.each
     if output.samples.shape[0] > 0:
@@ -149,7 +165,23 @@ def leave_contact(
     h: float,
     side: float,
 ) -> None:
-    """Leave full contact a time h into the step after `at` others of the block."""
+    """Leave full contact a time h into the step after `at` others of the block.
+
+    Parameters
+    ----------
+    s, l, system
+        The lanes, which of them, and its structure.
+    block
+        The steps in full contact.
+    output
+        Where samples and events go.
+    at
+        Accepted steps of the block.
+    h
+        Time after them [s].
+    side
+        1 to the right, -1 to the left.
+    """
     block.a_g[0], block.a_g_slope[0] = block.a_g[at], block.a_g_slope[at]
     fill_map(block, system, SHORT_STEP, h)
     follow_modes(block, system, SHORT_STEP)

@@ -57,7 +57,19 @@ def margin_of(system: Record) -> Margin:
 
 @compiled
 def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
-    """What pushes the storey over, q(t) of this module, during the step after k others."""
+    """What pushes the storey over, q(t) of this module, during the step after k others.
+
+    Parameters
+    ----------
+    block
+        Steps in full contact.
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    k
+        Steps before the one looked at.
+    """
     factor, share, slope = margin.ground_factor, margin.shear_share, block.a_g_slope[k]
     start = block.a_g[k]
     curvature = -share * margin.ground_damping * slope
@@ -74,7 +86,17 @@ def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
 
 @compiled
 def margin_path(path: Quintic, limit: float, rise: float, side: float) -> Quintic:
-    """The margin against uplift to a side: the limit is linear, its coefficients rise evenly."""
+    """The margin against uplift to a side: the limit is linear, its coefficients rise evenly.
+
+    Parameters
+    ----------
+    path
+        Of q, see `push_path` [m/s2].
+    limit, rise
+        What q must exceed at the start of the step, and its change over it [m/s2].
+    side
+        1 to the right, -1 to the left.
+    """
     return (
         limit - side * path[0],
         limit + 0.2 * rise - side * path[1],
@@ -126,6 +148,19 @@ def margin_after(
     """Margin f against uplift to `side` and its slope, a time h into the step after k, exactly.
 
     The state at the start of that step is the present one of the block.
+
+    Parameters
+    ----------
+    block, system
+        Steps in full contact, and the structure.
+    margin
+        See `margin_of`.
+    h
+        Time into the step [s].
+    k
+        Steps before it.
+    side
+        1 to the right, -1 to the left.
     """
     fill_map(block, system, SHORT_STEP, h)
     start, slope, step = block.a_g[k], block.a_g_slope[k], block.step_maps[SHORT_STEP]
@@ -153,6 +188,21 @@ def locate_uplift(
 
     Newton's method on the exact margin. A margin that only grazes zero has no steep root; the
     interpolant's own root then stands.
+
+    Parameters
+    ----------
+    block, system
+        Steps in full contact, and the structure.
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    k
+        Steps before the one looked at.
+    guess
+        Time into the step from which the search starts [s].
+    side
+        1 to the right, -1 to the left.
     """
     t = guess
     for _ in range(6):

@@ -10,7 +10,7 @@ whatever the weights g_r > 0: while the last sum, which costs n, stays below the
     (largest shear so far of storey i)^2/(sum_r s_ir^2/g_r),
 
 no storey's shear is raised. The same holds for floor accelerations, sums over the modal forces.
-`rpscli.analyses.kernel_tables` says which weights.
+`rpscli.analyses.kernels.systems` says which weights.
 """
 
 from __future__ import annotations
@@ -68,7 +68,19 @@ def observe_ends(s: Record) -> None:
 
 @compiled
 def raise_contacts(s: Record, l: int, look: float, across: float, upwards: float, V: float) -> None:
-    """Raise friction demands and lower least normal forces of a lane, where look > 0."""
+    """Raise friction demands and lower least normal forces of a lane, where look > 0.
+
+    Parameters
+    ----------
+    s, l
+        The lanes, and which of them.
+    look
+        Nothing is raised where this is 0.
+    across, upwards
+        u_b'' and v_b'' relative to the ground [m/s2].
+    V
+        Base shear of the building [N].
+    """
     top, bottom, light_top, light_bottom = contact_measures(
         s.cap_beam_mass[l],
         s.floors_mass[l],

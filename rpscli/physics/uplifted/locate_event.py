@@ -81,7 +81,23 @@ def end_on_event(
     level: float,
     kind: int,
 ) -> None:
-    """End the step on an event, and switch."""
+    """End the step on an event, and switch.
+
+    Parameters
+    ----------
+    s, l, system
+        The lanes, which of them, and its structure.
+    block
+        Lends scratch to the search of the largest tilt.
+    log
+        (rows,) `state.EVENT`.
+    fraction
+        Fraction of the step at which the event happens.
+    level
+        The tilt there [rad].
+    kind
+        Kind of event, see `state`.
+    """
     if s.audited > 0:
         book_energy(s, l, fraction)
     end_step_at(s, l, fraction, level)

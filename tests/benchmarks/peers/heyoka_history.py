@@ -23,7 +23,7 @@ ACROSS, SLOPE, P, Q, CURVE, SHIFT, SQUARE, LEVEL = range(8)  # parameters
 IMPACT, ARC_END = -1, -2
 """What a step returns where it ended at a terminal event: -1 less the event's number."""
 ASIDE = 1e-14
-"""Where a flight begins: of a root at the start and one behind it, heyoka sees only the first."""
+"""Where rocking begins: of a root at the start and one behind it, heyoka sees only the first."""
 GOOD = (-4294967297, -4294967299)
 """What it returns else: the step of its own choice, or cut at the sample."""
 
