@@ -10,7 +10,8 @@ from decimal import Decimal
 
 from rpscli.constants import STANDARD_GRAVITY
 
-_UNSIGNED = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?"
+# Digits are matched in one way only: otherwise a long word of them is tried at every division.
+_UNSIGNED = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[+-]?{_UNSIGNED}")
 # Fixed columns leave no blank before a minus sign; digits glued without one stay unreadable.
 _GLUED = re.compile(rf"[+-]?{_UNSIGNED}(?:[+-]{_UNSIGNED})*")

@@ -93,3 +93,19 @@ def test_numbers_in_a_line(line: str, numbers: list[float] | None) -> None:
 )
 def test_units(spelling: str, unit: str | None) -> None:
     assert canonical_unit(spelling) == unit
+
+
+@pytest.mark.parametrize("ending", ["v1", "v1c", "V2", "V2c", "V2A"])
+@pytest.mark.parametrize("query", ["", "?channel=1"])
+def test_a_file_without_the_series_its_ending_promises(
+    tmp_path: Path, ending: str, query: str
+) -> None:
+    path = tmp_path / f"another.{ending}"
+    path.write_text("0.1\n0.2\nabc\n")
+    with pytest.raises(RecordError, match=r"no series of accelerations begins.*another ending"):
+        load_record(f"{path}{query}")
+
+
+def test_a_long_word_of_digits_is_looked_at_once() -> None:
+    """Were it tried at every division, this would take hours."""
+    assert numbers_in("1" * 200_000 + "E") is None

@@ -33,8 +33,13 @@ def chosen_channel(text: RecordText, channels: Sequence[Channel]) -> Channel:
     Raises
     ------
     RecordError
-        If there are several and none was chosen, or the one chosen is not there.
+        If there is none, several and none was chosen, or the one chosen is not there.
     """
+    if not channels:
+        raise text.fault(
+            "no series of accelerations begins in this file; if it is of another format than its"
+            " name says, give it another ending (.txt for columns of numbers)"
+        )
     listing = "; ".join(f"{channel.number}: {channel.label}" for channel in channels)
     if text.channel is None:
         if len(channels) == 1:
