@@ -63,3 +63,5 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch, building: str) -> None:
     assert (case.name, case.title, case.folder) == ("stdin", "From a pipe", Path())
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"rps: 2\n")))
     assert refusal("-").startswith("<stdin>:1:1: superstructure is missing")
+    monkeypatch.setattr("sys.stdin", None)
+    assert refusal("-").startswith("<stdin>: the standard input is closed; name a file")

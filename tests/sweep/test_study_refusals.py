@@ -24,6 +24,11 @@ def sampled(distribution: str) -> tuple[str, str]:
 @pytest.mark.parametrize(
     ("old", "new", "parts"),
     [
+        (
+            SCALE,
+            "sample: {size: 4, ranges: text}\n" + SCALE,
+            ("sample.ranges = 'text'", "keys with their ranges"),
+        ),
         # vary
         ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary must be a list of axes")),
         ("  - podium.bearing.curv", "  - 3\n  - podium.bearing.curv", ("vary.1 = 3", "mapping")),

@@ -10,7 +10,7 @@ from rpscli.case.schema.known_keys import field_at, unknown_key
 from rpscli.case.study.axes import Axis, clashes
 from rpscli.case.study.reports import ReportKinds, ReportOptions, ReportRequest
 from rpscli.case.study.schema import MeasureScale, RangeSection
-from rpscli.case.text.document import Document
+from rpscli.case.text.document import MISSING, Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
 
 OF_HISTORIES = ("records", "scale", "perturb")
@@ -87,6 +87,9 @@ def range_faults(document: Document) -> Iterator[Fault]:
     """The ranges of a sample, one by one."""
     ranges = document.at(("sample", "ranges"))
     if not isinstance(ranges, dict):
+        if ranges is not MISSING:
+            text = f"sample.ranges = {shown(ranges)} must be keys with their ranges"
+            yield Fault(("sample", "ranges"), f"{text}, as in {{podium.impact.factor: [0.9, 1]}}")
         return
     if not ranges:
         yield Fault(("sample", "ranges"), "sample.ranges is empty; name a key to be sampled")

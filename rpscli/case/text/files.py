@@ -20,6 +20,8 @@ def read_text(source: str | Path) -> str:
         If there is no such file, it is a folder, it cannot be read, or it is not UTF-8.
     """
     if str(source) == STDIN:
+        if sys.stdin is None:
+            raise CaseError("<stdin>: the standard input is closed; name a file, or pipe a case in")
         return decoded(sys.stdin.buffer.read(), "<stdin>")
     path = Path(source)
     if path.is_dir():
