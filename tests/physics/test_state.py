@@ -9,13 +9,13 @@ from rpscli.physics import state
 from rpscli.physics.run import empty_block, empty_state
 from rpscli.physics.state import (
     BLOCK,
-    CACHE_LINE,
     CAPACITIES,
     EVENT,
     EVENT_KINDS,
     INSTANTS,
     LANES,
     ORDER,
+    PAGE,
     REQUEST,
     RESULT,
     SAMPLE,
@@ -87,12 +87,10 @@ def test_a_capacity_serves_all_buildings_up_to_it() -> None:
 
 @every_table
 @pytest.mark.parametrize("count", [1, 3])
-def test_records_are_zero_and_begin_with_a_line_of_the_cache(
-    fields: tuple[Field, ...], count: int
-) -> None:
+def test_records_are_zero_and_begin_with_a_page(fields: tuple[Field, ...], count: int) -> None:
     made = records(fields, 3, count=count)
     assert made.shape == (count,)
-    assert made.ctypes.data % CACHE_LINE == 0
+    assert made.ctypes.data % PAGE == 0
     assert not any(made.tobytes())
 
 
