@@ -409,8 +409,8 @@ def record_type(fields: tuple[Field, ...], storeys: int) -> np.dtype[Any]:
 
 
 PAGE = 4096
-"""Bytes of a page of memory. numpy begins an array anywhere; begun within a page, the same lane may
-take half as long again, as rows fall across lines of the processor's cache or behind one another."""
+"""Bytes of a page of memory. numpy begins an array anywhere; begun within a page, a lane may take
+half as long again, as its rows fall on other lines of the processor's cache in each process."""
 
 
 def records(fields: tuple[Field, ...], storeys: int, count: int = 1) -> Record:
