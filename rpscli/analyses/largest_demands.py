@@ -70,6 +70,23 @@ class Demand:
         return float(u[0])
 
     @property
+    def max_lift(self) -> float:
+        """Largest v_b, by which the building is lifted [m]; it grows up to theta_cr."""
+        _, _, v = self.structure.path(np.array([min(self.max_rotation, self.critical_rotation)]))
+        return float(v[0])
+
+    @property
+    def residual_rotation(self) -> float:
+        """|theta| at the end of the history [rad]; 0 in full contact."""
+        return abs(self.history.rotation)
+
+    @property
+    def residual_displacement(self) -> float:
+        """|u_b| at the end of the history [m]; 0 in full contact."""
+        _, u, _ = self.structure.path(np.array([self.residual_rotation]))
+        return float(u[0])
+
+    @property
     def storey_shears(self) -> NDArray[np.float64]:
         """(n,) largest elastic shears k_i d_i at the samples [N], from the bottom."""
         return self.history.storey_shears
@@ -78,6 +95,11 @@ class Demand:
     def floor_accelerations(self) -> NDArray[np.float64]:
         """(n,) largest absolute accelerations at the samples [m/s2], from the bottom."""
         return self.history.floor_accelerations
+
+    @property
+    def max_floor_acceleration(self) -> float | None:
+        """Largest of `floor_accelerations` [m/s2]; None without a superstructure."""
+        return _largest(self.floor_accelerations)
 
     @property
     def max_base_shear(self) -> float:
@@ -149,3 +171,8 @@ class Demand:
     def results(self) -> dict[str, Any]:
         """What a study keeps of a history besides its outcome."""
         return values_of(self, (*HISTORY, *IMPACTS, STOREY_SHEARS))
+
+
+def _largest(values: NDArray[np.float64]) -> float | None:
+    """The largest of some values; None if there are none."""
+    return float(np.max(values)) if len(values) else None

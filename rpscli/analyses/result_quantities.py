@@ -97,6 +97,7 @@ HISTORY = (
     ResultQuantity(
         "max_cap_beam_displacement", "m", "cap beam displacement", limit="0.3", demand=True
     ),
+    ResultQuantity("max_lift", "m", "lift of the building", "$v_b$", limit="0.03"),
     ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6"),
     ResultQuantity(
         "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
@@ -107,6 +108,12 @@ HISTORY = (
         needs="superstructure.storey_height in the case",
         meaning="largest storey drift over storey height",
     ),
+    ResultQuantity(
+        "max_floor_acceleration", "m/s2", "floor acceleration", limit="5", demand=True,
+        needs="a superstructure",
+    ),
+    ResultQuantity("residual_rotation", "rad", "residual rotation", limit="0.001"),
+    ResultQuantity("residual_displacement", "m", "residual displacement", limit="0.01"),
     ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
     ResultQuantity("duration", "s", "duration"),

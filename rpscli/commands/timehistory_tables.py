@@ -51,7 +51,12 @@ def outcome_table(result: TimeHistoryResult) -> Table:
         _row(result, "max_rotation", f"{shown(result.rotation_ratio)} theta_cr"),
         _row(result, "max_rotation_time"),
         _row(result, "max_cap_beam_displacement"),
+        _row(result, "max_lift"),
     ]
+    if result.residual_rotation > 0.0:
+        residual = f"{shown(result.residual_rotation / result.critical_rotation)} theta_cr"
+        rows.append(_row(result, "residual_rotation", residual))
+        rows.append(_row(result, "residual_displacement"))
     if result.fixed_base is not None:
         ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
         rows.append(_row(result, "max_base_shear", ratio, shear))
