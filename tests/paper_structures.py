@@ -61,10 +61,11 @@ def podium(
     superstructure: Superstructure | None = None,
     gravity: float = STANDARD_GRAVITY,
 ) -> PodiumStructure:
-    """gamma = 10, eta = n, tan alpha' = 2 tan alpha; a rigid frame for n = 0."""
+    """gamma = 10, eta = n, tan alpha' = 2 tan alpha; a rigid frame for n = 0;
+    the paper's impact law."""
     above = superstructure or (building(storeys) if storeys else None)
     bearing = Bearing(R, tan_alpha, 2.0 * tan_alpha, rho)
-    return PodiumStructure(bearing, 2e4, 2e5, above, law or ImpactLaw(), gravity)
+    return PodiumStructure(bearing, 2e4, 2e5, above, law or ImpactLaw("rigid"), gravity)
 
 
 def block(

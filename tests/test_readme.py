@@ -121,7 +121,7 @@ def test_the_python_example_runs(here: Path, capsys: pytest.CaptureFixture[str])
     exec(compile(example, str(README), "exec"), {})  # noqa: S102 -- it is ours
     first = capsys.readouterr().out.split()
     assert first[0] == "survived"
-    assert float(first[2]) == pytest.approx(0.3565, abs=5e-5)  # as in the table above it
+    assert float(first[2]) == pytest.approx(0.3613, abs=5e-5)  # as in the table above it
 
 
 @pytest.mark.parametrize("line", SET_UP)

@@ -18,9 +18,10 @@ class TimeHistorySettings:
     recontact_tolerance
         After an impact the storey locks when the next excursion stays below this times alpha.
     recontact_rule
-        What the floors keep at re-contact: ``relative``, their velocity relative to the cap beam,
-        so that maxima approach their limit as the square root of the tolerance; ``limit``, what
-        the bounces left out would have made of it, so that they approach it in proportion.
+        What the floors keep at re-contact: ``limit``, what the bounces left out would have made of
+        their velocity, so that maxima approach their limit in proportion to the tolerance;
+        ``relative``, their velocity relative to the cap beam, so that they approach it as the
+        square root.
     overturning_limit
         The structure counts as overturned at this times theta_cr.
     accuracy
@@ -33,7 +34,7 @@ class TimeHistorySettings:
 
     free_vibration: float | None = None
     recontact_tolerance: float = 1e-6
-    recontact_rule: Literal["relative", "limit"] = "relative"
+    recontact_rule: Literal["relative", "limit"] = "limit"
     overturning_limit: float = 2.0
     accuracy: float = 1.0
     max_events: int = 100_000

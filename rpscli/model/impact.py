@@ -8,7 +8,7 @@ from typing import Literal
 
 from rpscli.model.bearing import Bearing
 
-ImpactKind = Literal["rigid", "flexible", "value"]
+ImpactKind = Literal["flexible", "rigid", "value"]
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,9 @@ class ImpactLaw:
     Parameters
     ----------
     kind
-        ``rigid``: all floors jump with the cap beam (paper, Eq. 6). ``flexible``: storey springs
-        carry no impulse, so the floors keep their absolute velocities. ``value``: e is measured;
-        the floors jump as in ``rigid``.
+        ``flexible``: storey springs carry no impulse, so the floors keep their absolute velocities.
+        ``rigid``: all floors jump with the cap beam (paper, Eq. 6). ``value``: e is measured; the
+        floors jump as in ``rigid``.
     restitution
         e of the law ``value``.
     factor
@@ -31,7 +31,7 @@ class ImpactLaw:
     Theory, section 4. The paper's coefficient c is e^2.
     """
 
-    kind: ImpactKind = "rigid"
+    kind: ImpactKind = "flexible"
     restitution: float | None = None
     factor: float = 1.0
 
@@ -57,7 +57,7 @@ class ImpactLaw:
 
         Examples
         --------
-        >>> round(ImpactLaw().ratio(Bearing(1.5, 0.15, 0.3, 0.5), 10.0, 6.0), 5)
+        >>> round(ImpactLaw("rigid").ratio(Bearing(1.5, 0.15, 0.3, 0.5), 10.0, 6.0), 5)
         0.95604
         """
         law = {"rigid": rigid_restitution, "flexible": flexible_restitution}.get(self.kind)

@@ -29,11 +29,11 @@ RECORDS = [waves(2.5, 0.02, 4.0, seed=41), waves(1.7, 0.01, 4.0, seed=42)]
 
 UPWARDS = [waves(2.5, 0.02, 2.0, seed=43), waves(0.9, 0.01, 2.0, seed=44)]
 
-LAWS = [ImpactLaw(), ImpactLaw("flexible"), ImpactLaw("value", 0.85)]
+LAWS = [ImpactLaw("rigid"), ImpactLaw("flexible"), ImpactLaw("value", 0.85)]
 
 SETTINGS = [
     TimeHistorySettings(free_vibration=0.5),
-    TimeHistorySettings(free_vibration=0.3, accuracy=2.0, recontact_rule="limit"),
+    TimeHistorySettings(free_vibration=0.3, accuracy=2.0, recontact_rule="relative"),
     TimeHistorySettings(free_vibration=1.0, recontact_tolerance=1e-4),
     TimeHistorySettings(),
     TimeHistorySettings(free_vibration=0.5, initial_rotation=-0.03),

@@ -6,6 +6,7 @@ import numpy as np
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.damping import RayleighDamping
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import GroundMotion
@@ -17,11 +18,11 @@ PEAK = "0.5g"
 
 
 def structure(storeys: int, rho: float = 0.5, period: float | None = None) -> PodiumStructure:
-    """The paper's building: T_1 = n/10 s or `period`, gamma = 10, eta = n, tan(alpha) = 0.15."""
+    """The paper's building: T_1 = n/10 s or `period`, gamma = 10, eta = n, tan(alpha) = 0.15, rigid law."""
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, period or storeys / 10, "sine")
     building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
-    return PodiumStructure(Bearing(1.5, 0.15, 0.30, rho), 2e4, 2e5, building)
+    return PodiumStructure(Bearing(1.5, 0.15, 0.30, rho), 2e4, 2e5, building, ImpactLaw("rigid"))
 
 
 def motion(seed: int, *, duration: float = SECONDS, peak: str = PEAK) -> GroundMotion:

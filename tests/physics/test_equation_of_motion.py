@@ -14,6 +14,7 @@ from paper_structures import Array, oracle_system
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.equation_of_motion import inertia, inertia_slope
@@ -71,7 +72,8 @@ def states(draw: st.DrawFn) -> State:
     tan_alpha = draw(st.floats(0.05, 0.3))
     rho = draw(st.sampled_from([0.0, 0.3, 0.5, 1.5]))
     bearing = Bearing(draw(positive), tan_alpha, 2.0 * tan_alpha, rho)
-    structure = PodiumStructure(bearing, 1e4 * draw(positive), 1e5 * draw(positive), above)
+    rigid = ImpactLaw("rigid")  # of which any of these shapes goes over
+    structure = PodiumStructure(bearing, 1e4 * draw(positive), 1e5 * draw(positive), above, rigid)
     motion = draw(st.sampled_from([ROLLING, ROCKING])) if rho else ROCKING
     x = draw(st.floats(0.0, bearing.beta) if motion == ROLLING else st.floats(bearing.beta, 0.6))
     floors = st.lists(st.floats(-0.5, 0.5), min_size=n, max_size=n)

@@ -36,7 +36,7 @@ def paper_podium(
     stiffnesses = profile_stiffnesses(masses, storeys / 10.0, "sine")
     building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
     bearing = Bearing(semi_diagonal, tan_alpha, 2.0 * tan_alpha if rho else tan_alpha, rho)
-    return PodiumStructure(bearing, 2e4, 2e5, building)
+    return PodiumStructure(bearing, 2e4, 2e5, building, ImpactLaw("rigid"))
 
 
 def block(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 from rpscli.case.build import Shape
 from rpscli.case.rules.partial_case import BEARING, IMPACT, PartialCase
-from rpscli.case.schema.case_file import BearingSection
+from rpscli.case.schema.case_file import BearingSection, ImpactSection
 from rpscli.case.text.faults import Fault, Path
 
 RATIOS = ("semi_diagonal", "slenderness", "wedge_slenderness", "curvature_ratio")
@@ -114,7 +114,7 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
             text = "podium.impact.restitution is missing: law value needs one, as in 0.92"
             yield Fault(path, text, at_key=True, needs=(path,))
     elif case.document.has(path):
-        law = law if isinstance(law, str) else "rigid"
+        law = law if isinstance(law, str) else ImpactSection().law
         yield Fault(
             path,
             f"podium.impact.restitution does not go with law {law}{case.where((*IMPACT, 'law'))},"

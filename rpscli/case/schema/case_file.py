@@ -126,9 +126,9 @@ class BearingSection(Section):
 class ImpactSection(Section):
     """What happens when the columns fall back on their flat ends."""
 
-    law: Literal["rigid", "flexible", "value"] = Field(
-        "rigid",
-        description="rigid: floors jump with the cap beam; flexible: floors keep their velocity;"
+    law: Literal["flexible", "rigid", "value"] = Field(
+        "flexible",
+        description="flexible: floors keep their velocity; rigid: floors jump with the cap beam;"
         " value: restitution is given",
     )
     restitution: (
@@ -199,10 +199,10 @@ class AnalysisSection(Section):
     recontact_tolerance: Annotated[float, Quantity(above=0, below=1)] = Field(
         1e-6, description="an excursion below this part of alpha after an impact is contact"
     )
-    recontact_rule: Literal["relative", "limit"] = Field(
-        "relative",
-        description="floors keep their velocity relative to the cap beam at re-contact, or get the"
-        " limit of ever smaller bounces (converges faster in the tolerance)",
+    recontact_rule: Literal["limit", "relative"] = Field(
+        "limit",
+        description="limit: floors get at re-contact what ever smaller bounces would have given"
+        " them; relative: they keep their velocity relative to the cap beam (converges slower)",
     )
     initial_rotation: Annotated[float, Quantity(symbol="rad")] = Field(
         0.0, description="rotation from which the structure is released at rest; 0 = full contact"
