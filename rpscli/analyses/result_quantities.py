@@ -27,9 +27,10 @@ class ResultQuantity(NamedTuple):
     symbol
         The paper's letters as a formula for figures, where there are any.
     limit
-        An example of a limit that `--fail-on` may set to it; empty where none makes sense.
+        An example of a limit; empty where none makes sense. What has one may be limited in a case,
+        a study, a fragility and by `--fail-on`, and be an axis of an incremental dynamic analysis.
     demand
-        Whether it grows with the motion: an axis of an incremental dynamic analysis.
+        Whether it is among the main demands, which tables of studies show in the terminal.
     whole
         Whether it is a count.
     needs
@@ -85,7 +86,7 @@ def plain(value: Any) -> Any:
 
 HISTORY = (
     ResultQuantity(
-        "max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1", demand=True
+        "max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1"
     ),
     ResultQuantity("max_rotation_time", "s", "largest rotation at"),
     ResultQuantity(
@@ -98,7 +99,7 @@ HISTORY = (
         "max_cap_beam_displacement", "m", "cap beam displacement", limit="0.3", demand=True
     ),
     ResultQuantity("max_lift", "m", "lift of the building", "$v_b$", limit="0.03"),
-    ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6"),
+    ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6", demand=True),
     ResultQuantity(
         "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
         needs="a superstructure", meaning="largest base shear over M_tot g tan(alpha)",
@@ -117,7 +118,7 @@ HISTORY = (
     ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
     ResultQuantity("duration", "s", "duration"),
-    ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3"),
+    ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
 )  # fmt: skip
 """Scalars of a time history."""
 
@@ -134,13 +135,7 @@ INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s"
 STOREY_SHEARS = ResultQuantity("storey_shears", "N", "storey shear", "$V_i$")
 
 LIMITED = tuple(quantity for quantity in HISTORY if quantity.limit)
-"""What `--fail-on` may limit."""
-
-DEMANDS = tuple(quantity for quantity in HISTORY if quantity.demand)
-"""What an incremental dynamic analysis may have on its axis."""
-
-RATIOS = tuple(quantity for quantity in DEMANDS if quantity.unit == "-")
-"""Demands over what the structure has to offer: what a case and a fragility set limits to."""
+"""What limits, `--fail-on`, fragilities and axes of incremental dynamic analyses may name."""
 
 _FREQUENCIES = ResultQuantity("frequencies", "rad/s", "frequency", r"$\omega$")
 _DAMPING = ResultQuantity("damping", "-", "damping", r"$\xi$")

@@ -22,8 +22,9 @@ from rpscli.case.rules.superstructure import (
     limits_rules,
     superstructure_rules,
 )
-from rpscli.case.schema.case_file import CaseFile, LimitsSection, RecordSection
+from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import schema_check
+from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.text.document import Document
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml

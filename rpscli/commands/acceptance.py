@@ -7,30 +7,18 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rpscli.analyses.result_quantities import LIMITED
+from rpscli.case.conditions import EVENTS, LIMITS, Condition, conditions_of
 from rpscli.errors import LimitExceeded, UsageError, nearest
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.case.schema.case_file import LimitsSection
+    from rpscli.case.schema.limits import LimitsSection
 
-EVENTS: dict[str, Callable[[TimeHistoryResult], float]] = {
+HAPPENED: dict[str, Callable[[TimeHistoryResult], float]] = {
     "overturning": lambda result: float(result.overturned),
     "uplift": lambda result: float(result.uplifts),
 }
-"""Conditions that name something that must not happen."""
-
-LIMITS = {quantity.name: quantity for quantity in LIMITED}
-"""Conditions of the form NAME=VALUE, by their names in JSON, in SI units."""
-
-
-@dataclass(frozen=True)
-class Condition:
-    """One limit: exceeded by a larger value."""
-
-    name: str
-    limit: float
-    source: str
+"""How often each event happened."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +40,8 @@ class Verdict:
 def parse_condition(text: str) -> Condition:
     """A condition as `--fail-on` gives it: ``overturning``, ``uplift`` or ``NAME=VALUE``.
 
+    An event may have the share of the records of a study that is admissible: ``overturning=0.1``.
+
     Raises
     ------
     UsageError
@@ -60,12 +50,12 @@ def parse_condition(text: str) -> Condition:
     Examples
     --------
     >>> parse_condition("rotation_ratio=0.5")
-    Condition(name='rotation_ratio', limit=0.5, source='--fail-on')
+    Condition(name='rotation_ratio', limit=0.5, source='--fail-on', share=0.0, fractile=None)
     """
     name, sign, value = (part.strip() for part in text.partition("="))
     if name in EVENTS and not sign:
         return Condition(name, 0.0, "--fail-on")
-    if name not in LIMITS:
+    if name not in LIMITS and name not in EVENTS:
         known = [*EVENTS, *(f"{limited}=VALUE" for limited in LIMITS)]
         close = nearest(name, [*EVENTS, *LIMITS], 0.6)
         hint = f"did you mean {close}?" if close else f"known are {', '.join(known)}"
@@ -74,6 +64,10 @@ def parse_condition(text: str) -> Condition:
         limit = float(value)
     except ValueError:
         limit = math.nan
+    if name in EVENTS:
+        if not 0.0 <= limit < 1.0:
+            raise UsageError(f"--fail-on {text}: write {name}=SHARE from 0 to 1, as in {name}=0.1")
+        return Condition(name, 0.0, "--fail-on", share=limit)
     if not math.isfinite(limit):
         raise UsageError(f"--fail-on {text}: write {name}=NUMBER, as in {name}=0.5")
     return Condition(name, limit, "--fail-on")
@@ -84,9 +78,10 @@ def case_conditions(limits: LimitsSection) -> list[Condition]:
 
     A structure that overturns meets none of them, whatever the numbers were until then.
     """
-    given = limits.model_dump(exclude_none=True)
-    found = [Condition(name, float(limit), "limits of the case") for name, limit in given.items()]
-    return [Condition("overturning", 0.0, "limits of the case"), *found] if found else []
+    found = conditions_of(limits, "limits of the case")
+    if not found or any(condition.name == "overturning" for condition in found):
+        return list(found)
+    return [Condition("overturning", 0.0, "limits of the case"), *found]
 
 
 def judge(result: TimeHistoryResult, conditions: Iterable[Condition]) -> list[Verdict]:
@@ -102,7 +97,7 @@ def judge(result: TimeHistoryResult, conditions: Iterable[Condition]) -> list[Ve
 
 def _verdict(result: TimeHistoryResult, condition: Condition) -> Verdict:
     name = condition.name
-    value = EVENTS[name](result) if name in EVENTS else getattr(result, name)
+    value = HAPPENED[name](result) if name in HAPPENED else getattr(result, name)
     if value is None:
         raise UsageError(f"{condition.source}: {name} needs {LIMITS[name].needs}")
     return Verdict(name, float(value), condition.limit, value > condition.limit, condition.source)

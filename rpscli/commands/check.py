@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from rpscli.case.conditions import conditions_of
 from rpscli.commands.case_input import case_heading, read_case
 from rpscli.commands.check_tables import check_tables
 from rpscli.commands.motion import MotionRequest, load_motion
@@ -43,7 +44,8 @@ def command(request: CaseRequest, terminal: Terminal) -> None:
         "warnings": [*given.case.warnings, *(record or {}).get("warnings", ())],
     }
     terminal.warn((record or {}).get("warnings", ()))
-    terminal.result(concluded(document, error), check_tables(document))
+    limits = conditions_of(given.case.limits, "limits of the case")
+    terminal.result(concluded(document, error), check_tables(document, limits))
     leave(error)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rpscli.case.conditions import Condition, condition_text
 from rpscli.commands.shell.numbers import large, shown
 from rpscli.commands.shell.tables import listing, table, title
 from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
@@ -13,7 +14,9 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
-def check_tables(document: Mapping[str, Any]) -> Iterator[RenderableType]:
+def check_tables(
+    document: Mapping[str, Any], limits: Sequence[Condition]
+) -> Iterator[RenderableType]:
     """Geometry; masses, statics and periods; the record; the limits."""
     heads = ("", "symbol", "value", "unit")
     yield title(document["case"]["title"])
@@ -25,8 +28,8 @@ def check_tables(document: Mapping[str, Any]) -> Iterator[RenderableType]:
         yield table(heads, texts, words=2)
     if record := document["record"]:
         yield _record_table(record)
-    if limits := document["limits"]:
-        yield table(("limit", "at most"), [(name, f"{value:g}") for name, value in limits.items()])
+    if limits:
+        yield table(("limit", ""), [(c.name, condition_text(c)) for c in limits], words=2)
 
 
 def _record_table(record: Mapping[str, Any]) -> RenderableType:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import HISTORY
-from rpscli.commands.acceptance import EVENTS, Verdict
+from rpscli.case.conditions import EVENTS
+from rpscli.commands.acceptance import Verdict
 from rpscli.commands.shell.numbers import measured, percent, shown
 from rpscli.commands.shell.tables import table
 from rpscli.commands.shell.tables import title as heading_line

@@ -29,6 +29,8 @@ def failure_document(kind: str, message: str, exit_code: int) -> Document:
     """The keys by which a document says that its command failed."""
     return {
         **heading("error"),
+        "passed": False,
+        "exit_code": exit_code,
         "error": {"type": kind, "message": message, "exit_code": exit_code},
     }
 

@@ -18,7 +18,7 @@ PEAK = "0.5g"
 
 
 def structure(storeys: int, rho: float = 0.5, period: float | None = None) -> PodiumStructure:
-    """The paper's building: T_1 = n/10 s or `period`, gamma = 10, eta = n, tan(alpha) = 0.15, rigid law."""
+    """The paper's building: T_1 = n/10 s or `period`, gamma = 10, eta = n, the rigid law."""
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, period or storeys / 10, "sine")
     building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.json_schema import case_json_schema
 from rpscli.case.schema.known_keys import field_at, known_paths, section_of
@@ -35,10 +36,16 @@ def resolved(schema: dict[str, Any]) -> dict[str, Any]:
     return {**SCHEMA["$defs"][reference.rsplit("/", 1)[1]], **schema}
 
 
+def mapping(schema: dict[str, Any]) -> dict[str, Any]:
+    """The form of a value that is a mapping, where it may be a plain number as well."""
+    forms = [resolved(form) for form in resolved(schema).get("oneOf", (schema,))]
+    return next(form for form in forms if "properties" in form)
+
+
 def key(path: tuple[str | int, ...]) -> dict[str, Any]:
     schema = SCHEMA
     for part in path:
-        schema = resolved(schema)["properties"][part]
+        schema = mapping(schema)["properties"][part]
     return resolved(schema)
 
 
@@ -60,7 +67,7 @@ def test_every_key_is_described(path: tuple[str | int, ...]) -> None:
     assert found["description"]
     field = field_at(CaseFile, path)
     assert field is not None
-    bounded = {"type", "anyOf", "enum", "const"} & found.keys()
+    bounded = {"type", "anyOf", "oneOf", "enum", "const"} & found.keys()
     assert bounded or section_of(field.annotation)
 
 
@@ -78,7 +85,7 @@ def test_bounds_words_lists_and_defaults() -> None:
 
 def test_closed_and_without_null() -> None:
     sections = [item for item in walk(SCHEMA) if isinstance(item, dict) and "properties" in item]
-    assert len(sections) == 10
+    assert len(sections) == 10 + len(LIMITED)  # a limit may be a mapping
     assert all(section["additionalProperties"] is False for section in sections)
     assert None not in [item for item in walk(SCHEMA) if not isinstance(item, dict | list)]
     assert "null" not in list(walk(SCHEMA))

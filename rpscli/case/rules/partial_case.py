@@ -14,10 +14,10 @@ from rpscli.case.schema.case_file import (
     BearingSection,
     CaseFile,
     PodiumMasses,
-    Section,
     SuperstructureSection,
 )
 from rpscli.case.schema.check import SchemaCheck
+from rpscli.case.schema.section import Section
 from rpscli.case.text.document import MISSING, Document
 from rpscli.case.text.faults import Path
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.rules.partial_case import LIMITS, SUPERSTRUCTURE, PartialCase
 from rpscli.case.text.faults import Fault, Path, listed, shown
 
@@ -82,7 +83,8 @@ def _modes(case: PartialCase) -> Iterator[Fault]:
 def limits_rules(case: PartialCase) -> Iterator[Fault]:
     """A limit on something that the case cannot give would never be exceeded."""
     if case.storeys == 0:
-        for name in case.present(LIMITS, "base_shear_ratio", "drift_ratio"):
+        of_buildings = (q.name for q in LIMITED if "superstructure" in q.needs)
+        for name in case.present(LIMITS, *of_buildings):
             yield Fault(
                 (*LIMITS, name),
                 f"limits.{name} needs a building, but superstructure.storeys ="

@@ -5,12 +5,13 @@ Rules that join several keys stand in `case.rules`. Optional keys are None when 
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
+from pydantic import BeforeValidator, Field
 
-from rpscli.analyses.result_quantities import RATIOS
 from rpscli.case.schema.fields import ModePair, Quantity, Text, Whole
+from rpscli.case.schema.limits import LimitsSection
+from rpscli.case.schema.section import Section
 from rpscli.constants import STANDARD_GRAVITY
 
 FORMAT_VERSION = 1
@@ -25,12 +26,6 @@ Masses = Annotated[float | tuple[float, ...], Quantity("kg", above=0, per_storey
 Lengths = Annotated[float | tuple[float, ...], Quantity("m", above=0, per_storey=True)]
 Stiffnesses = Annotated[float | tuple[float, ...], Quantity("N/m", above=0, per_storey=True)]
 Profile = Literal["sine", "uniform", "linear", "flexural"]
-
-
-class Section(BaseModel):
-    """A mapping of the file: unknown keys are refused, and nothing changes later."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class DampingSection(Section):
@@ -217,18 +212,6 @@ class AnalysisSection(Section):
     max_events: Annotated[int, Whole(1)] = Field(
         100_000, description="uplifts, impacts and phase changes after which the analysis gives up"
     )
-
-
-def limits_section(kind: Any) -> type[Section]:
-    """A section with an optional limit of this type for each ratio in the table of results."""
-    fields: Any = {
-        ratio.name: (kind | None, Field(None, description=ratio.meaning)) for ratio in RATIOS
-    }
-    return create_model("Limits", __base__=Section, **fields)
-
-
-class LimitsSection(limits_section(PositiveRatio)):  # type: ignore[misc]  # made from a table
-    """Acceptance limits."""
 
 
 class CaseFile(Section):

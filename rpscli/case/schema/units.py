@@ -7,6 +7,7 @@ compares the factors with pint's.
 
 from __future__ import annotations
 
+import math
 import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -29,10 +30,13 @@ KINDS = {
     "s": ("a time", ("s", "ms")),
     "N/m": ("a stiffness", ("N/m", "kN/m", "kN/mm", "MN/m", "kip/in")),
     "m/s2": ("an acceleration", ("m/s2", "cm/s2", "ft/s2")),
+    "m/s": ("a velocity", ("m/s", "cm/s", "ft/s")),
+    "N": ("a force", ("N", "kN", "MN", "kip")),
+    "rad": ("an angle", ("rad", "mrad", "deg")),
 }
 """What each SI unit of the format measures, and units it is usually written in."""
 
-OTHER_KINDS = {"N": "a force", "Pa": "a pressure", "Hz": "a frequency", "rad": "an angle"}
+OTHER_KINDS = {"Pa": "a pressure", "Hz": "a frequency"}
 
 FOOT, INCH = 0.3048, 0.0254
 """In metres, by definition."""
@@ -62,6 +66,9 @@ COMMON_UNITS: dict[str, dict[str, float]] = {
         "kip/ft": 1e3 * POUND_FORCE / FOOT,
     },
     "m/s2": {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "ft/s2": FOOT, "in/s2": INCH},
+    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "ft/s": FOOT, "in/s": INCH},
+    "N": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_FORCE, "kip": 1e3 * POUND_FORCE},
+    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
 }
 """Factors to each SI unit of the format; powers are written without a sign."""
 

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema
 
-from rpscli.case.schema.case_file import Section
 from rpscli.case.schema.fields import Quantity, Whole, refuse
+from rpscli.case.schema.section import Section
 from rpscli.case.text.faults import shown
 
 Number = Annotated[float, Quantity()]

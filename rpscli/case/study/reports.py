@@ -8,8 +8,8 @@ from typing import Protocol
 
 from pydantic import Field
 
-from rpscli.case.schema.case_file import Section
 from rpscli.case.schema.fields import Text
+from rpscli.case.schema.section import Section
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.schema import Analysis
 from rpscli.case.text.document import Document

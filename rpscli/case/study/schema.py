@@ -10,8 +10,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from rpscli.case.schema.case_file import FORMAT_VERSION, Section, Time
+from rpscli.case.schema.case_file import FORMAT_VERSION, Time
 from rpscli.case.schema.fields import Text, Whole
+from rpscli.case.schema.limits import LimitsSection
+from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import (
     DampingRatio,
     Number,
@@ -117,6 +119,9 @@ class StudyFile(Section):
     )
     perturb: PerturbSection | None = Field(
         None, description="small perturbations around every point"
+    )
+    limits: LimitsSection | None = Field(
+        None, description="judge the study, over those of its base; exceeded: exit code 10"
     )
     reports: tuple[str | dict[str, Any], ...] = Field(
         (), description="names of reports, or `name: {option: value}`"

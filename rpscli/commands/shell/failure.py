@@ -40,14 +40,16 @@ def report(error: BaseException, *, as_json: bool) -> int:
 
 
 def concluded(document: Mapping[str, Any], error: RpsError | None) -> dict[str, Any]:
-    """The document of a result, with the error that belongs to it.
+    """The document of a result, with the error that belongs to it, and the exit code.
 
     A limit that is exceeded leaves a good result, of status ``ok``. After any other error the
     document says so, beside the numbers that there are.
     """
+    code = 0 if error is None else error.exit_code
+    end = {"passed": code == 0, "exit_code": code}
     if error is None or isinstance(error, LimitExceeded):
-        return dict(document)
-    return {**document, **failure_document(kind(error), message(error), error.exit_code)}
+        return {**document, **end}
+    return {**document, **failure_document(kind(error), message(error), code)}
 
 
 def leave(error: RpsError | None) -> None:

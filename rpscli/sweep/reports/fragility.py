@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, StrictBool
+from pydantic import Field, StrictBool, create_model
 
-from rpscli.analyses.result_quantities import RATIOS
-from rpscli.case.schema.case_file import limits_section
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.schema.fields import Quantity, Whole
+from rpscli.case.schema.limits import described
+from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import Keys, PositiveNumbers, Seed
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions
@@ -22,7 +23,13 @@ CURVE_POINTS = 101
 MOST_BINS = 10
 
 
-class LimitStates(limits_section(PositiveNumbers)):  # type: ignore[misc]  # made from a table
+_THRESHOLDS: Any = {
+    quantity.name: (PositiveNumbers | None, Field(None, description=described(quantity)))
+    for quantity in LIMITED
+}
+
+
+class LimitStates(create_model("LimitStates", __base__=Section, **_THRESHOLDS)):  # type: ignore[misc]
     """Limit states of a fragility; overturning exceeds every one of them."""
 
     overturning: StrictBool = Field(
@@ -116,9 +123,9 @@ def fragility_report(
 
 def _limit_states(options: FragilityOptions) -> Iterator[LimitState]:
     limits = options.limits
-    for ratio in RATIOS:
-        for threshold in getattr(limits, ratio.name) or ():
-            yield LimitState(ratio.name, threshold)
+    for quantity in LIMITED:
+        for threshold in getattr(limits, quantity.name) or ():
+            yield LimitState(quantity.name, threshold)
     if limits.overturning:
         yield LimitState("overturning", None)
 

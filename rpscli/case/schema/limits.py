@@ -1,0 +1,76 @@
+"""Acceptance limits as pydantic models: one key for each result of the table that may be limited.
+
+A limit is a number, which every record must keep; or a number that a share of the records may
+exceed, `{at_most: 0.5, share: 0.1}`; or one for a fractile, `{at_most: 0.5, fractile: 0.84}`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Self
+
+from pydantic import Discriminator, Field, Tag, create_model, model_validator
+
+from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.case.schema.fields import PLAIN, Quantity, refuse
+from rpscli.case.schema.section import Section
+from rpscli.case.schema.units import KINDS
+
+Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1")]
+Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
+
+
+class LimitRule(Section):
+    """A limit for the records of a study together; a single history must keep it anyway."""
+
+    share: Admissible | None = Field(
+        None, description="share of the records that may exceed the limit; 0 by default"
+    )
+    fractile: Fractile | None = Field(
+        None, description="fractile of the demand that must keep the limit, in place of a share"
+    )
+
+    @model_validator(mode="after")
+    def _one_rule(self) -> Self:
+        if self.share is not None and self.fractile is not None:
+            refuse("must have a share or a fractile, not both")
+        return self
+
+
+def _form(value: object) -> str:
+    return "rule" if isinstance(value, dict | LimitRule) else "number"
+
+
+def _limit(quantity: ResultQuantity) -> Any:
+    """A number, or a mapping with more to say."""
+    unit = quantity.unit if quantity.unit in KINDS else PLAIN
+    bound = Quantity(unit, at_least=0) if quantity.whole else Quantity(unit, above=0)
+    number = Annotated[float, bound]
+    description = f"largest admissible {quantity.label}"
+    fields: Any = {"at_most": (number, Field(description=description))}
+    rule = create_model(f"Limit_{quantity.name}", __base__=LimitRule, **fields)
+    return Annotated[
+        Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")],
+        Discriminator(_form),
+    ]
+
+
+def described(quantity: ResultQuantity) -> str:
+    """What a limit limits, for schemas."""
+    return f"{quantity.label}{f': {quantity.meaning}' * bool(quantity.meaning)}"
+
+
+_FIELDS: Any = {
+    quantity.name: (_limit(quantity) | None, Field(None, description=described(quantity)))
+    for quantity in LIMITED
+}
+
+
+class LimitsSection(create_model("Limits", __base__=Section, **_FIELDS)):  # type: ignore[misc]
+    """Acceptance limits."""
+
+    overturning: Admissible | None = Field(
+        None, description="share of the records that may overturn; 0 = none"
+    )
+    uplift: Admissible | None = Field(
+        None, description="share of the records that may uplift; 0 = none"
+    )

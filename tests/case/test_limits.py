@@ -1,0 +1,60 @@
+"""Limits in their three forms, for every result that may be limited."""
+
+from __future__ import annotations
+
+import pytest
+
+from rpscli.analyses.result_quantities import LIMITED
+from rpscli.case.case import parse_case
+from rpscli.case.conditions import Condition, condition_text, conditions_of
+from rpscli.errors import CaseError
+
+
+def limited(building: str, text: str) -> tuple[Condition, ...]:
+    """Conditions of a case with these limits."""
+    changed = building.replace("limits: {rotation_ratio: 0.5}", f"limits: {text}")
+    assert changed != building
+    return conditions_of(parse_case(changed, name="c.yaml").limits, "the case")
+
+
+def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(building: str) -> None:
+    found = limited(
+        building,
+        "{rotation_ratio: 0.25, max_cap_beam_displacement: {at_most: 300 mm, share: 0.1},"
+        " drift_ratio: {at_most: 0.005, fractile: 0.84}, overturning: 0.05}",
+    )
+    assert found == (
+        Condition("rotation_ratio", 0.25, "the case"),
+        Condition("max_cap_beam_displacement", 0.3, "the case", share=0.1),
+        Condition("drift_ratio", 0.005, "the case", fractile=0.84),
+        Condition("overturning", 0.0, "the case", share=0.05),
+    )
+    assert [condition_text(condition) for condition in found] == [
+        "every record at most 0.25",
+        "at most 10 % of the records above 0.3",
+        "84 % fractile at most 0.005",
+        "at most 5 % of the records",
+    ]
+
+
+@pytest.mark.parametrize("name", [quantity.name for quantity in LIMITED])
+def test_every_result_of_the_list_may_be_limited(building: str, name: str) -> None:
+    ((found),) = limited(building, f"{{{name}: 3}}")
+    assert (found.name, found.limit) == (name, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("{rotation_ratio: {at_most: 0.5, share: 0.1, fractile: 0.5}}", "a share or a fractile"),
+        ("{rotation_ratio: {at_most: 0.5, share: 1}}", "share = 1 must be >= 0 and < 1; 10 % is"),
+        ("{rotation_ratio: {share: 0.1}}", "rotation_ratio.at_most is missing"),
+        ("{rotation_ratio: -1}", "rotation_ratio = -1 must be > 0"),
+        ("{max_base_shear: 2 m}", "is a length, but must be a force"),
+        ("{overturning: 2}", "overturning = 2 must be >= 0 and < 1"),
+    ],
+)
+def test_a_limit_that_makes_no_sense_is_refused(building: str, text: str, message: str) -> None:
+    with pytest.raises(CaseError) as refused:
+        limited(building, text)
+    assert message in str(refused.value)
