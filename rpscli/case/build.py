@@ -17,8 +17,10 @@ from rpscli.case.schema.case_file import (
     PodiumMasses,
     SuperstructureSection,
 )
+from rpscli.case.schema.devices import DeviceSection
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
 from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.devices import DEVICES, Device
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure, profile_stiffnesses
@@ -124,7 +126,15 @@ def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
         superstructure=building(file.superstructure),
         impact_law=podium.impact_law,
         gravity=file.analysis.gravity,
+        devices=tuple(device_of(section) for section in file.podium.devices),
+        columns=file.podium.columns or 1,
     )
+
+
+def device_of(section: DeviceSection) -> Device:
+    """The device that a section describes."""
+    values = section.model_dump(exclude={"kind"}, exclude_none=True)
+    return DEVICES[section.kind](**values)
 
 
 def building(section: SuperstructureSection) -> Superstructure | None:

@@ -13,6 +13,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.build import Podium, podium_of, podium_structure, time_history_settings
 from rpscli.case.overrides import Overrides, apply_overrides
 from rpscli.case.rules.bearing import bearing_rules, impact_rules
+from rpscli.case.rules.devices import devices_rules
 from rpscli.case.rules.masses import masses_rules
 from rpscli.case.rules.partial_case import PartialCase
 from rpscli.case.rules.podium import release_rule, restitution_rule
@@ -31,7 +32,14 @@ from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 
-RULES = (superstructure_rules, masses_rules, bearing_rules, impact_rules, limits_rules)
+RULES = (
+    superstructure_rules,
+    masses_rules,
+    bearing_rules,
+    impact_rules,
+    devices_rules,
+    limits_rules,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +111,8 @@ class Case:
             building.setdefault("profile", "sine")
         if "column_mass" in content["podium"]:
             content["podium"].setdefault("columns", 1)
+        if not content["podium"]["devices"]:
+            del content["podium"]["devices"]
         return content
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
+from rpscli.model.devices import MOST_DEVICES, Device
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.formulae import geometry
@@ -34,12 +35,16 @@ class PodiumStructure:
         Restitution at theta = 0.
     gravity
         g [m/s2].
+    devices
+        Dampers, stops and tendons between ground and cap beam.
+    columns
+        N; only tendons, one in each column, ask for it.
 
     Raises
     ------
     ValueError
         If a mass is not admissible, or the restitution is not in (0, 1]: with e <= 0 the columns
-        would not go over to the other edge (Theory, section 4).
+        would not go over to the other edge (Theory, section 4), or there are too many devices.
 
     Notes
     -----
@@ -52,6 +57,8 @@ class PodiumStructure:
     superstructure: Superstructure | None = None
     impact_law: ImpactLaw = field(default_factory=ImpactLaw)
     gravity: float = STANDARD_GRAVITY
+    devices: tuple[Device, ...] = ()
+    columns: int = 1
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""
@@ -59,6 +66,13 @@ class PodiumStructure:
             raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0")
         if self.superstructure is not None and self.cap_beam_mass == 0.0:
             raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
+        if self.columns < 1:
+            raise ValueError("columns must be >= 1")
+        if len(self.devices) > MOST_DEVICES:
+            raise ValueError(
+                f"{len(self.devices)} devices must be at most {MOST_DEVICES}; write equal ones as"
+                " one, with the sum of their forces and stiffnesses"
+            )
         if not 0.0 < self.restitution <= 1.0:
             raise ValueError(
                 f"restitution e = {self.restitution:.4g} must be in (0, 1]: with e <= 0 the"

@@ -37,7 +37,8 @@ def resolved(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def mapping(schema: dict[str, Any]) -> dict[str, Any]:
-    """The form of a value that is a mapping, where it may be a plain number as well."""
+    """The form of a value that is a mapping, or a list of them, where it may be a plain number."""
+    schema = resolved(schema).get("items", schema)
     forms = [resolved(form) for form in resolved(schema).get("oneOf", (schema,))]
     return next(form for form in forms if "properties" in form)
 
@@ -84,8 +85,10 @@ def test_bounds_words_lists_and_defaults() -> None:
 
 
 def test_closed_and_without_null() -> None:
-    sections = [item for item in walk(SCHEMA) if isinstance(item, dict) and "properties" in item]
-    assert len(sections) == 10 + len(LIMITED)  # a limit may be a mapping
+    sections = [
+        item for item in walk(SCHEMA) if isinstance(item, dict) and item.get("type") == "object"
+    ]
+    assert len(sections) == 11 + len(LIMITED)  # a limit may be a mapping
     assert all(section["additionalProperties"] is False for section in sections)
     assert None not in [item for item in walk(SCHEMA) if not isinstance(item, dict | list)]
     assert "null" not in list(walk(SCHEMA))

@@ -8,6 +8,7 @@ import numpy as np
 
 from rpscli.analyses.kernels.step_lengths import LAST_TERM, contact_rate, uplifted_rate
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.errors import AnalysisError
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.state import ORDER, SYSTEM, Record, records
@@ -36,6 +37,8 @@ def building_system(building: Superstructure) -> Record:
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
     """The rocking storey."""
+    if structure.devices:
+        raise AnalysisError("time histories with podium.devices are not computed yet")
     b = structure.bearing
     record.n = structure.storeys
     record.R, record.alpha, record.beta = b.semi_diagonal, b.alpha, b.beta

@@ -17,6 +17,7 @@ from rpscli.case.schema.case_file import (
     SuperstructureSection,
 )
 from rpscli.case.schema.check import SchemaCheck
+from rpscli.case.schema.devices import DeviceSection
 from rpscli.case.schema.section import Section
 from rpscli.case.text.document import MISSING, Document
 from rpscli.case.text.faults import Path
@@ -27,6 +28,7 @@ SUPERSTRUCTURE: Path = ("superstructure",)
 PODIUM: Path = ("podium",)
 BEARING: Path = ("podium", "bearing")
 IMPACT: Path = ("podium", "impact")
+DEVICES: Path = ("podium", "devices")
 LIMITS: Path = ("limits",)
 
 
@@ -88,6 +90,13 @@ class PartialCase:
     def bearing(self) -> BearingSection | None:
         """The section `podium.bearing`."""
         return self._section(BearingSection, BEARING)
+
+    def device(self, index: str | int) -> DeviceSection | None:
+        """The device at an index of `podium.devices`, or None if it cannot be read."""
+        try:
+            return DeviceSection.model_validate(self.document.at((*DEVICES, index)))
+        except ValidationError:
+            return None
 
     @cached_property
     def shape(self) -> Shape | None:

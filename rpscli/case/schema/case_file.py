@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
+from rpscli.case.schema.devices import DeviceSection
 from rpscli.case.schema.fields import ModePair, Quantity, Text, Whole
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.section import Section
@@ -165,6 +166,9 @@ class PodiumSection(PodiumMasses):
     bearing: BearingSection = Field(description="shape of one column")
     impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = Field(
         ImpactSection(), description="impact law; a law's name alone may stand here"
+    )
+    devices: tuple[DeviceSection, ...] = Field(
+        (), description="dampers, stops and tendons between ground and cap beam, at most 8"
     )
 
 

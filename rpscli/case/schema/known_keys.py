@@ -22,8 +22,13 @@ def section_of(annotation: Any) -> type[BaseModel] | None:
 
 
 def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:
-    """The model of the mapping at a path, or None if there is no mapping in the format."""
+    """The model of the mapping at a path, or None if there is no mapping in the format.
+
+    An index stands for any element of its list.
+    """
     for part in path:
+        if isinstance(part, int):
+            continue
         field = model.model_fields.get(str(part))
         inner = section_of(field.annotation) if field else None
         if inner is None:
@@ -60,7 +65,8 @@ def meant(model: type[BaseModel], path: Path) -> Path | None:
     """
     *parent, key = path
     known = known_paths(model)
-    siblings = {str(p[-1]): p for p in known if list(p[:-1]) == parent}
+    named = tuple(part for part in parent if not isinstance(part, int))
+    siblings = {str(p[-1]): (*parent, p[-1]) for p in known if p[:-1] == named}
     anywhere = {str(p[-1]): p for p in reversed(known)}
     if str(key) in anywhere:
         return anywhere[str(key)]
