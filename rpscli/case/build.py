@@ -107,7 +107,7 @@ def podium_of(file: CaseFile, shape: Shape) -> Podium:
         columns,
         cap_beam,
         total,
-        ImpactLaw(impact.law, impact.restitution, impact.factor),
+        ImpactLaw(impact.law, impact.restitution, impact.factor, impact.loss),
     )
 
 

@@ -25,6 +25,10 @@ class ImpactLaw:
         e of the law ``value``.
     factor
         Multiplies the e of any law.
+    loss
+        kappa: how much of 1 - e is lost beside an impulse at the edges, 1 - e = kappa (1 - e_edge)
+        with e_edge of ``flexible`` or ``rigid``. About x/B if the impulse acts at x from the middle
+        of ends of half width B.
 
     Notes
     -----
@@ -34,6 +38,7 @@ class ImpactLaw:
     kind: ImpactKind = "flexible"
     restitution: float | None = None
     factor: float = 1.0
+    loss: float = 1.0
 
     @property
     def floors_jump(self) -> bool:
@@ -62,7 +67,7 @@ class ImpactLaw:
         """
         law = {"rigid": rigid_restitution, "flexible": flexible_restitution}.get(self.kind)
         if law is not None:
-            return self.factor * law(bearing, gamma, eta)
+            return self.factor * (1.0 - self.loss * (1.0 - law(bearing, gamma, eta)))
         if self.restitution is None:
             raise ValueError("the impact law `value` needs a restitution")
         return self.factor * self.restitution

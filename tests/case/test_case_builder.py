@@ -167,7 +167,7 @@ def test_a_law_may_stand_alone(building: str, written: str) -> None:
 
 
 def test_measured_restitution(building: str) -> None:
-    text = building.replace("{law: rigid}", "{law: value, restitution: 0.92, factor: 0.5}")
+    text = building.replace("{law: rigid}", "{law: value, restitution: 0.92, factor: 0.5, loss: 1}")
     assert parse_case(text, name="c.yaml").structure.restitution == pytest.approx(0.46)
 
 

@@ -40,6 +40,7 @@ SINGLE_VALUES = [
     ("law: rigid", "law: elastic", "17:17", ["flexible, rigid or value"]),
     ("impact: {law: rigid}", "impact: flexibel", "17:11", ["did you mean flexible?"]),
     ("law: rigid", "law: value, restitution: 1.5", "17:37", ["> 0 and <= 1"]),
+    ("law: rigid", "law: rigid, loss: 1.6", "17:30", [">= 0 and <= 1.5", "kappa"]),
     ("record: {source: motion.at2}", "record: motion.at2", "18:9", ["mapping", "source"]),
     ("motion.at2", "12", "18:18: record.source = 12", ["put it in quotes"]),
     ("motion.at2", "' '", "18:18", ["empty"]),
@@ -91,6 +92,7 @@ MISSING_AND_TWICE = [
     ("cap_beam_mass_ratio: 10", "cap_beam_mass_ratio: 0", "15:24", ["> 0", "(line 3) stands"]),
     ("{law: rigid}", "{law: value}", "17:3: podium.impact.restitution is missing", ["0.92"]),
     ("{law: rigid}", "value", "17:3: podium.impact.restitution is missing", ["0.92"]),
+    ("law: rigid", "law: value, restitution: 0.9, loss: 0.5", "17:42", ["loss", "law value"]),
     ("law: rigid", "restitution: 0.9", "17:12", ["law flexible, which gives its own"]),
     ("source: motion.at2", "scale: 2", "18:1: record.source is missing", ["file"]),
     ("  storey_height: 3.0\n", "  storey_height: 3.0\n  storey_height: 4\n", "6:3", ["twice"]),
@@ -234,15 +236,26 @@ def test_limits_need_what_they_limit(building: str, frame: str, faults: Faults) 
     assert "c.yaml:19:10: limits.drift_ratio needs superstructure.storey_height" in message
 
 
-@pytest.mark.parametrize(("law", "widest"), [("rigid", 1.0377), ("flexible", 0.6202)])
-def test_no_restitution(building: str, faults: Faults, law: str, widest: float) -> None:
+@pytest.mark.parametrize(
+    ("law", "loss", "widest"),
+    [
+        ("rigid", 1, 1.0377),
+        ("flexible", 1, 0.6202),
+        ("rigid", 1.5, 0.7268),
+        ("flexible", 1.5, 0.4344),
+    ],
+)
+def test_no_restitution(
+    building: str, faults: Faults, law: str, loss: float, widest: float
+) -> None:
     bearing = "podium.bearing={semi_diagonal: 1.5, slenderness: %s, curvature_ratio: 0}"
     masses = ["podium.cap_beam_mass_ratio=0.5", f"podium.impact.law={law}"]
+    masses.append(f"podium.impact.loss={loss}")
     message = faults(building, overrides=[bearing % 2, *masses])
     assert "restitution" in message
     assert f"law {law}" in message
     proposed = float(message.split("use less than ")[1].split(",")[0])
-    # sin^2(alpha) = (4/3 + 8)/18 and (4/3 + 2)/12 by hand; four digits are proposed.
+    # sin^2(alpha) = (4/3 + 8)/18 kappa and (4/3 + 2)/(18 kappa - 6) by hand, to four digits.
     assert proposed == pytest.approx(widest, abs=1e-3)
     case = parse_case(building, name="c.yaml", overrides=[bearing % proposed, *masses])
     # Four digits of the slenderness leave a restitution of the order of 1e-3 at most.

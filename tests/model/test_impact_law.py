@@ -25,14 +25,15 @@ ratios = st.floats(0.0, 50.0)
 
 
 def angular_momentum_ratio(
-    bearing: Bearing, gamma: float, eta: float, *, floors_jump: bool
+    bearing: Bearing, gamma: float, eta: float, *, floors_jump: bool, reach: float = 1.0
 ) -> float:
     """theta'+/theta'- of one column and its share of beam and floors, by Newton's laws.
 
     Unknown: the rate after, and the impulses (X, Y) at the new lower and upper edges, where the
-    ground and the beam hold the column. Old edges leave without impulse. m_c = R = 1; positions
-    from the column's centre, tilting right before and on. Floors take part in horizontal momentum
-    if they jump, in vertical momentum always.
+    ground and the beam hold the column, or at this part of the way from the middle to them, the
+    `reach`. Old edges leave without impulse. m_c = R = 1; positions from the column's centre,
+    tilting right before and on. Floors take part in horizontal momentum if they jump, in vertical
+    momentum always.
     """
     h, b = math.cos(bearing.alpha), math.sin(bearing.alpha)
     spin = bearing.inertia_ratio - 1.0
@@ -50,7 +51,7 @@ def angular_momentum_ratio(
         matrix[row, 0], known[row] = after[axis], before[axis]
         matrix[row, 1 + axis] = matrix[row, 3 + axis] = -1.0
     # clockwise moment of (X, Y) at (x, y): y X - x Y; at (b, -h) and the upper edge (-b, h)
-    matrix[2] = [spin, h, b, -h, -b]
+    matrix[2] = [spin, h, reach * b, -h, -reach * b]
     known[2] = spin
     carried = (beam + floors if floors_jump else beam, beam + floors)
     for row, axis in ((3, 0), (4, 1)):  # what is carried gets the opposite impulse
@@ -89,6 +90,30 @@ def test_the_second_integrator_uses_the_same_restitution(bearing: Bearing) -> No
         structure = podium(1, bearing.slenderness, law=ImpactLaw(law))
         own = StoreyLagrangian(oracle_system(structure)).restitution
         assert structure.restitution == pytest.approx(own, abs=1e-12)
+
+
+@given(bearings, ratios, st.floats(0.0, 4.0), st.booleans(), st.floats(0.0, 1.5))
+def test_loss_is_where_the_impulse_acts(
+    bearing: Bearing, gamma: float, eta: float, floors_jump: bool, reach: float
+) -> None:
+    """Impulses at p B lose kappa = p (P + Q)/(P + p Q) of what those at B lose."""
+    b2 = math.sin(bearing.alpha) ** 2
+    sideways = gamma * (1.0 + eta) if floors_jump else gamma
+    P = bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * sideways) * (1.0 - b2)
+    Q = (1.0 + 4.0 * gamma * (1.0 + eta)) * b2
+    kappa = reach * (P + Q) / (P + reach * Q)
+    law = ImpactLaw("rigid" if floors_jump else "flexible", loss=kappa)
+    own = angular_momentum_ratio(bearing, gamma, eta, floors_jump=floors_jump, reach=reach)
+    assert law.ratio(bearing, gamma, eta) == pytest.approx(own, abs=1e-11)
+
+
+def test_loss_and_factor_together() -> None:
+    bearing = Bearing(1.5, 0.15, 0.3, 0.5)
+    e = flexible_restitution(bearing, 10.0, 3.0)
+    assert ImpactLaw().ratio(bearing, 10.0, 3.0) == pytest.approx(e, rel=1e-15)
+    assert ImpactLaw(loss=0.0).ratio(bearing, 10.0, 3.0) == 1.0
+    less = ImpactLaw(loss=0.4, factor=0.98).ratio(bearing, 10.0, 3.0)
+    assert less == pytest.approx(0.98 * (0.6 + 0.4 * e), rel=1e-15)
 
 
 def test_value_and_factor() -> None:

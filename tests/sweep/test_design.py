@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
+from rpscli.model.impact import ImpactLaw
 from rpscli.records.measures.intensity import intensity_measures
 from rpscli.records.measures.spectrum import spectral_acceleration
 from rpscli.records.source import load_record
@@ -26,6 +28,8 @@ SAMPLE = (
     "scale: [",
     "sample: {size: 8, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\nscale: [",
 )
+
+CAP, LOSS = "podium.cap_beam_mass_ratio: [5, 10]", "podium.impact.loss: [0.2, 1.4]"
 
 
 def test_the_last_axis_runs_fastest(study_of: Make) -> None:
@@ -65,6 +69,19 @@ def test_samples_are_one_more_axis_and_repeat(study_of: Make) -> None:
     gamma = [first[i * first.points_of_system].values[-1] for i in range(8)]
     assert len(set(gamma)) == 8
     assert all(5.0 < value < 10.0 for value in gamma)
+
+
+def test_the_loss_at_impacts_can_be_varied_and_sampled(study_of: Make) -> None:
+    varied = lay_out(
+        study_of(STUDY, ("podium.bearing.curvature_ratio: [critical,", "podium.impact.loss: [1.2,"))
+    )
+    sampled = lay_out(study_of(STUDY, (SAMPLE[0], SAMPLE[1].replace(CAP, LOSS))))
+    for design in (varied, sampled):
+        context, key = StudyContext(design.plan), design.plan.keys.index("podium.impact.loss")
+        for point in design:
+            structure, kappa = context.systems[point].structure, point.values[key]
+            edge = replace(structure, impact_law=ImpactLaw()).restitution
+            assert 1.0 - structure.restitution == pytest.approx(kappa * (1.0 - edge), rel=1e-12)
 
 
 def test_distributions_have_the_moments_that_are_asked_for() -> None:

@@ -107,18 +107,25 @@ def _narrow_wedge(case: PartialCase, shape: Shape) -> Fault:
 
 
 def impact_rules(case: PartialCase) -> Iterator[Fault]:
-    """The law `value` has a restitution; the other laws give one."""
+    """The law `value` has a restitution; the other laws give one, of which `loss` takes a part."""
     law, path = case.document.at((*IMPACT, "law")), (*IMPACT, "restitution")
     if law == "value" or case.document.at(IMPACT) == "value":
         if not case.has(path):
             text = "podium.impact.restitution is missing: law value needs one, as in 0.92"
             yield Fault(path, text, at_key=True, needs=(path,))
+        if case.document.has((*IMPACT, "loss")) and case.document.at((*IMPACT, "loss")) != 1.0:
+            text = (
+                "podium.impact.loss does not go with law value: a measured restitution holds what"
+                " was lost; take it out, or scale the restitution by factor"
+            )
+            yield Fault((*IMPACT, "loss"), text, at_key=True)
     elif case.document.has(path):
         law = law if isinstance(law, str) else ImpactSection().law
         yield Fault(
             path,
             f"podium.impact.restitution does not go with law {law}{case.where((*IMPACT, 'law'))},"
-            " which gives its own; take it out, write law: value, or scale the law by factor",
+            " which gives its own; take it out, write law: value, or change the law by loss or"
+            " factor",
             at_key=True,
         )
 

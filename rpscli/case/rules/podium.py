@@ -12,6 +12,7 @@ from rpscli.case.schema.case_file import AnalysisSection
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault
 from rpscli.model.bearing import Bearing
+from rpscli.model.impact import ImpactLaw
 
 
 def release_rule(bearing: Bearing, analysis: AnalysisSection) -> Iterator[Fault]:
@@ -40,28 +41,30 @@ def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
             f" <= 1; use a factor of at most {below(law.factor / e)}",
         )
     if e <= 0.0:
-        widest = largest_slenderness(law.kind, column.inertia_ratio, podium.gamma, podium.eta)
+        widest = largest_slenderness(law, column.inertia_ratio, podium.gamma, podium.eta)
+        lost = "" if law.loss == 1.0 else f", loss {law.loss:g}"
         name = "dimensions" if document.has((*BEARING, "dimensions")) else "slenderness"
         yield Fault(
             (*BEARING, name),
             f"podium.bearing: the slenderness tan(alpha) = {column.slenderness:g} gives the"
-            f" restitution {e:.4g} (impact law {law.kind}), which must be > 0 for the columns to"
-            f" go over to their other edge; use less than {below(widest)}, or a measured value"
+            f" restitution {e:.4g} (impact law {law.kind}{lost}), which must be > 0 for the columns"
+            f" to go over to their other edge; use less than {below(widest)}, or a measured value"
             " with impact: {law: value, restitution: ...}",
         )
 
 
-def largest_slenderness(law: str, inertia_ratio: float, gamma: float, eta: float) -> float:
+def largest_slenderness(law: ImpactLaw, inertia_ratio: float, gamma: float, eta: float) -> float:
     """tan(alpha) at which the restitution of a law vanishes (Theory, section 4, solved for alpha).
 
     Housner's block, I_o/(m_c R^2) = 4/3: e = 1 - (3/2) sin^2(alpha) is zero at sin^2 = 2/3.
 
-    >>> round(largest_slenderness("rigid", 4 / 3, 0.0, 0.0) ** 2, 12)
+    >>> round(largest_slenderness(ImpactLaw("rigid"), 4 / 3, 0.0, 0.0) ** 2, 12)
     2.0
     """
-    beam, moved = 4.0 * gamma, 4.0 * gamma * (1.0 + eta)
-    if law == "rigid":
-        sin2 = (inertia_ratio + moved) / (2.0 * (1.0 + moved))
+    beam, floors = 4.0 * gamma, 4.0 * gamma * eta
+    # kappa (1 - e_edge) = 1 with 1 - e_edge = 2 sin^2 (1 + beam + floors)/(Io + ...)
+    if law.kind == "rigid":
+        sin2 = (inertia_ratio + beam + floors) / (2.0 * law.loss * (1.0 + beam + floors))
     else:
-        sin2 = (inertia_ratio + beam) / (2.0 + 2.0 * beam + beam * eta)
+        sin2 = (inertia_ratio + beam) / (2.0 * law.loss * (1.0 + beam + floors) - floors)
     return math.sqrt(sin2 / (1.0 - sin2)) if sin2 < 1.0 else math.inf

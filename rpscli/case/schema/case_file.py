@@ -130,6 +130,13 @@ class ImpactSection(Section):
     restitution: (
         Annotated[float, Quantity(symbol="velocity after over before", above=0, at_most=1)] | None
     ) = Field(None, description="e of the law value")
+    loss: Annotated[
+        float, Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5)
+    ] = Field(
+        1.0,
+        description="kappa: part of the law's loss at an impact, 1 - e = kappa (1 - e of the law);"
+        " 1 = impulse at the edges, 0.3 to 0.5 = spread over plane ends on a damped bed",
+    )
     factor: PositiveRatio = Field(1.0, description="multiplies the restitution of the law")
 
 
