@@ -5,8 +5,8 @@ Fortran and its heirs print numbers ragged, glued together, with D exponents.
 
 from __future__ import annotations
 
+import math
 import re
-from decimal import Decimal
 
 from rpscli.constants import STANDARD_GRAVITY
 
@@ -48,7 +48,7 @@ def to_float(numeral: str) -> float:
 
 
 def numbers_in(line: str) -> list[float] | None:
-    """The numbers of a line that holds nothing else, or None.
+    """The finite numbers of a line that holds nothing else, or None.
 
     Blanks separate; so do commas when each field holds one number, which keeps decimal commas
     from being read as separators.
@@ -66,9 +66,26 @@ def numbers_in(line: str) -> list[float] | None:
     if "," in line:
         fields = [field.strip() for field in line.strip().removesuffix(",").split(",")]
     try:
-        return [float(field) for field in fields]
+        row: list[float] | None = [float(field) for field in fields]
     except ValueError:
-        return _glued(fields)
+        row = _glued(fields)
+    return row if row is not None and all(map(math.isfinite, row)) else None
+
+
+def why_no_numbers(line: str) -> str:
+    """What keeps a line from being read as numbers, if that is its punctuation; else nothing.
+
+    Examples
+    --------
+    >>> why_no_numbers("0,005 0,123"), why_no_numbers("0.1; 0.2"), why_no_numbers("end")
+    (' (decimal commas: write points)', ' (semicolons: separate by commas or blanks)', '')
+    """
+    if re.fullmatch(r"[-+.,0-9EeDd;\s]*[0-9][-+.,0-9EeDd;\s]*", line):
+        if re.search("[0-9],[0-9]", line):
+            return " (decimal commas: write points)"
+        if ";" in line:
+            return " (semicolons: separate by commas or blanks)"
+    return ""
 
 
 def numerals_in(line: str) -> list[str]:
@@ -84,9 +101,11 @@ def last_digit(numeral: str) -> float:
     >>> last_digit(".0050"), last_digit("2.50E-02")
     (0.0001, 0.0001)
     """
-    exponent = Decimal(re.sub("[dD]", "E", numeral)).as_tuple().exponent
-    assert isinstance(exponent, int)
-    return 10.0**exponent
+    mantissa, _, exponent = re.sub("[dD]", "E", numeral.upper()).partition("E")
+    decimals = len(mantissa.partition(".")[2])
+    # Beyond these the unit is zero or infinite anyway, however many digits the exponent has.
+    power = float(exponent or 0.0) - decimals
+    return math.pow(10.0, max(min(power, 308.0), -400.0))
 
 
 def _glued(fields: list[str]) -> list[float] | None:

@@ -93,8 +93,8 @@ class Query:
     def integer(self, key: str) -> int:
         """A whole number that is not negative."""
         value = self.values.get(key)
-        if value is None or not re.fullmatch("[0-9]+", value):
-            found = "is missing" if value is None else f"= {value!r} is not one"
+        if value is None or not re.fullmatch("[0-9]{1,18}", value):
+            found = "is missing" if value is None else f"= {value[:40]!r} is not one"
             raise RecordError(f"{self.source}: {key} {found}; give a whole number, {key}=1")
         return int(value)
 
@@ -104,7 +104,9 @@ class Query:
             raise RecordError(f"{self.source}: {key} is missing; add {key}=...")
         match = _QUANTITY.fullmatch(value)
         if not match or not math.isfinite(to_float(match[1])):
-            raise RecordError(f"{self.source}: {key} = {value!r} is not a number")
+            raise RecordError(
+                f"{self.source}: {key} = {value[:40]!r} is not a number; write {key}=0.5"
+            )
         return match[1], match[2]
 
 

@@ -20,10 +20,11 @@ VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 @given(
     st.lists(VALUE, min_size=2, max_size=23),
     st.floats(1e-6, 1.0),
-    st.text(max_size=300) | st.sampled_from(["NPTS= 3, DT= 1", "velocity  time, units of mm/s2"]),
+    st.text(max_size=300)
+    | st.sampled_from(["NPTS= 3, DT= 1", "units: gal", "velocity  time, units of mm/s2"]),
 )
 def test_what_is_written_is_read_back(values: list[float], dt: float, title: str) -> None:
-    motion = GroundMotion(np.array(values) * STANDARD_GRAVITY, dt, "n", "s", "SMC", title)
+    motion = GroundMotion(np.array(values) * STANDARD_GRAVITY, dt, title, "s", "SMC", title)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "out.at2"
         path.write_text(at2_text(motion), encoding="utf-8", newline="\n")

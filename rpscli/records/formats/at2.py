@@ -14,6 +14,13 @@ import numpy as np
 
 from rpscli.errors import RecordError
 from rpscli.records.formats.record_text import RecordText
+from rpscli.records.formats.statements import (
+    STATED_PATTERN,
+    Statement,
+    agreed,
+    stated_count,
+    stated_positive,
+)
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.quantities import (
     KNOWN_UNITS,
@@ -22,23 +29,31 @@ from rpscli.records.quantities import (
     canonical_unit,
     last_digit,
     numbers_in,
-    to_float,
+    why_no_numbers,
 )
 
 FORMAT = "PEER AT2"
 
 _HEADER_LINES = 40
-_COUNT = re.compile(r"\bNPTS\s*=?\s*([0-9]+)\b", re.IGNORECASE)
-_STEP = re.compile(rf"\bDT\s*=?\s*({NUMBER_PATTERN})", re.IGNORECASE)
+_COUNT = re.compile(r"\bNPTS\s*(?:=\s*)?([0-9]+)\b", re.IGNORECASE)
+_STEP = re.compile(rf"\bDT\s*(?:=\s*)?({STATED_PATTERN})", re.IGNORECASE)
+# Those that can be nothing else: a title may hold a word such as DT2.
+_COUNT_GIVEN = re.compile(r"\bNPTS\s*=\s*([0-9]+)\b", re.IGNORECASE)
+_STEP_GIVEN = re.compile(rf"\bDT\s*=\s*({STATED_PATTERN})", re.IGNORECASE)
 _NUMBERS_FIRST = re.compile(
-    rf"^\s*([0-9]+)[\s,]+({NUMBER_PATTERN})[\s,]+NPTS\b[\s,]*(?:AND\s+)?DT\b", re.IGNORECASE
+    rf"^\s*([0-9]+)[\s,]+({STATED_PATTERN})[\s,]+NPTS\b[\s,]*(?:AND\s+)?DT\b", re.IGNORECASE
 )
 _NUMBERS_LAST = re.compile(
-    rf"\bNPTS[\s,]+DT\b\s*[=:]?\s*([0-9]+)[\s,]+({NUMBER_PATTERN})", re.IGNORECASE
+    rf"\bNPTS[\s,]+DT\b\s*(?:[=:]\s*)?([0-9]+)[\s,]+({STATED_PATTERN})", re.IGNORECASE
 )
 # What begins a row of values, spoilt ones (overflow, not a number) included.
 _VALUE = re.compile(rf"\s*(?:{NUMBER_PATTERN}(?=[\s,+-]|$)|\*+|[+-]?(?:nan|inf))", re.IGNORECASE)
 _OTHER_SERIES = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME\b", re.IGNORECASE)
+# What a title that mentions units in passing does not look like.
+_UNITS_DECLARED = re.compile(
+    rf"^\W*(?:ACCELERATION\b.*)?\bUNITS?\s*(?:OF\b|IN\b|[=:])[\s(\[]*({UNIT_PATTERN})",
+    re.IGNORECASE,
+)
 _UNITS_LINE = re.compile(r"\bUNITS?\s*(?:OF\b|IN\b|[=:])", re.IGNORECASE)
 _UNITS = re.compile(
     rf"\b(?:UNITS?\s*(?:OF\b|IN\b|[=:])|ACCELERATION\b.*\bIN\b)[\s(\[]*({UNIT_PATTERN})",
@@ -48,10 +63,14 @@ _UNITS = re.compile(
 
 @dataclass(frozen=True)
 class _Header:
-    count: int
-    step: str
-    line: int  # of NPTS
+    count: Statement
+    step: Statement
     start: int  # first line of values
+
+    @property
+    def line(self) -> int:
+        """The line of NPTS."""
+        return self.count.line
 
 
 def recognises_at2(text: RecordText) -> bool:
@@ -77,11 +96,12 @@ def read_at2(text: RecordText) -> GroundMotion:
         )
     _refuse_other_series(text, header)
     unit, factor = text.agreed_factor(_stated_units(text, header))
+    _refuse_contradictions(text, header)
     dt, doubts = _step(text, header.step)
-    values, warnings = _values(text, header)
+    values, warnings = _values(text, header.start, stated_count(text, header.count), header.line)
     title = [
         line.strip()
-        for line in text.lines[: header.line]
+        for line in text.heads[: header.line]
         if line.strip() and not _UNITS.search(line)
     ]
     return GroundMotion(
@@ -96,30 +116,54 @@ def read_at2(text: RecordText) -> GroundMotion:
 
 
 def _find_header(text: RecordText) -> _Header | None:
-    for index, line in enumerate(text.lines[:_HEADER_LINES]):
+    for index, line in enumerate(text.heads[:_HEADER_LINES]):
         # A comment that gives npts belongs to a file of plain columns.
         if line.lstrip().startswith("#") or not re.search(r"\bNPTS\b", line, re.IGNORECASE):
             continue
         start = _first_numeric(text, index + 1)
-        both = _NUMBERS_FIRST.search(line) or _NUMBERS_LAST.search(line)
+        both = _both(line)
         if both:
-            return _Header(int(both[1]), both[2], index, start)
+            return _Header(*_statements(both[1], both[2], index, index), start)
         count = _COUNT.search(line)
-        step = _STEP.search("\n".join([line, *text.lines[index + 1 : start], *text.lines[:index]]))
+        elsewhere = (*range(index + 1, min(start, _HEADER_LINES)), *range(index))
+        step = next(
+            ((m[1], i) for i in (index, *elsewhere) if (m := _STEP.search(text.heads[i]))), None
+        )
         if count and step:
-            return _Header(int(count[1]), step[1], index, start)
+            return _Header(*_statements(count[1], step[0], index, step[1]), start)
     return None
+
+
+def _both(line: str) -> re.Match[str] | None:
+    return _NUMBERS_FIRST.search(line) or _NUMBERS_LAST.search(line)
+
+
+def _statements(
+    count: str, step: str, count_line: int, step_line: int
+) -> tuple[Statement, Statement]:
+    return Statement("NPTS", count, count_line), Statement("DT", step, step_line)
+
+
+def _refuse_contradictions(text: RecordText, header: _Header) -> None:
+    counts, steps = [header.count], [header.step]
+    for index, line in enumerate(text.heads[: header.start]):
+        if _both(line):  # their numbers stand after both names
+            continue
+        counts += [Statement("NPTS", numeral, index) for numeral in _COUNT_GIVEN.findall(line)]
+        steps += [Statement("DT", numeral, index) for numeral in _STEP_GIVEN.findall(line)]
+    agreed(text, counts, stated_count)
+    agreed(text, steps, stated_positive)
 
 
 def _first_numeric(text: RecordText, start: int) -> int:
     for index in range(start, len(text.lines)):
-        if _VALUE.match(text.lines[index]):
+        if _VALUE.match(text.heads[index]):
             return index
     return len(text.lines)
 
 
 def _refuse_other_series(text: RecordText, header: _Header) -> None:
-    for index, line in enumerate(text.lines[: header.start]):
+    for index, line in enumerate(text.heads[: header.start]):
         other = _OTHER_SERIES.search(line)
         if other:
             raise text.fault(
@@ -131,31 +175,41 @@ def _refuse_other_series(text: RecordText, header: _Header) -> None:
 
 def _stated_units(text: RecordText, header: _Header) -> str | None:
     # The line of the units stands next to that of NPTS: titles above may mention other units.
+    found: Statement | None = None
     for index in range(header.start - 1, -1, -1):
-        line = text.lines[index]
-        if spelling := _UNITS.search(line):
-            return canonical_unit(spelling[1])
-        if _UNITS_LINE.search(line):
+        line = text.heads[index]
+        spelling = _UNITS.search(line)
+        if spelling and found is None:
+            found = Statement("UNITS", spelling[1], index)
+        elif found is not None and (declared := _UNITS_DECLARED.match(line)):
+            agreed(text, [Statement("UNITS", declared[1], index), found], _unit)
+        elif found is None and _UNITS_LINE.search(line):
             raise text.fault(
                 f"{line.strip()[:60]!r} names no unit of acceleration that is known "
                 f"({KNOWN_UNITS}); correct the line",
                 index,
             )
-    return None
+    return None if found is None else _unit(text, found)
 
 
-def _values(text: RecordText, header: _Header) -> tuple[list[float], tuple[str, ...]]:
+def _unit(_: RecordText, statement: Statement) -> str | None:
+    return canonical_unit(statement.value)
+
+
+def _values(
+    text: RecordText, start: int, count: int, line: int
+) -> tuple[list[float], tuple[str, ...]]:
     values: list[float] = []
-    stop = header.start
+    stop = start
     while stop < len(text.lines) and (row := numbers_in(text.lines[stop])) is not None:
         values.extend(row)
         stop += 1
-    if len(values) != header.count:
-        raise _count_fault(text, header, len(values), stop)
-    rest = [line.strip() for line in text.lines[stop:] if line.strip()]
-    if any(numbers_in(line) for line in rest):
+    if len(values) != count:
+        raise _count_fault(text, count, line, len(values), stop)
+    rest = [words for words in map(str.strip, text.lines[stop:]) if words]
+    if any(numbers_in(words) for words in rest):
         raise text.fault(
-            f"more numbers follow after the {header.count} values and the text {rest[0][:40]!r}; "
+            f"more numbers follow after the {count} values and the text {rest[0][:40]!r}; "
             f"keep one record in a file",
             stop,
         )
@@ -164,28 +218,26 @@ def _values(text: RecordText, header: _Header) -> tuple[list[float], tuple[str, 
     return values, ()
 
 
-def _count_fault(text: RecordText, header: _Header, found: int, stop: int) -> RecordError:
-    if found < header.count and stop < len(text.lines):
+def _count_fault(text: RecordText, count: int, line: int, found: int, stop: int) -> RecordError:
+    if found < count and stop < len(text.lines):
         return text.fault(
-            f"NPTS = {header.count}, but after {found} values comes "
-            f"{text.lines[stop].strip()[:40]!r}, which is not a row of finite numbers; "
+            f"NPTS = {count}, but after {found} values comes {text.lines[stop].strip()[:40]!r}, "
+            f"which is not a row of finite numbers{why_no_numbers(text.lines[stop])}; "
             f"fetch the file again",
             stop,
         )
-    cause = "cut short" if found < header.count else "longer than it says"
+    cause = "cut short" if found < count else "longer than it says"
     return text.fault(
-        f"NPTS = {header.count}, but the file holds {found} values: it is {cause}; fetch it "
+        f"NPTS = {count}, but the file holds {found} values: it is {cause}; fetch it "
         f"again, or write NPTS={found} in the header if all its values belong to the record",
-        header.line,
+        line,
     )
 
 
-def _step(text: RecordText, numeral: str) -> tuple[float, tuple[str, ...]]:
+def _step(text: RecordText, statement: Statement) -> tuple[float, tuple[str, ...]]:
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not the same.
-    printed = to_float(numeral)
-    if printed <= 0.0:
-        raise text.fault(f"DT = {numeral} s must be positive; correct the header")
-    resolution = last_digit(numeral)
+    printed = stated_positive(text, statement)
+    resolution = last_digit(statement.value)
     dt = text.agreed_dt(printed, 0.51 * resolution / printed)
     rate = max(1, round(1.0 / dt))
     if abs(rate * dt - 1.0) < 1e-9 or abs(1.0 / rate - dt) > 0.5 * resolution:

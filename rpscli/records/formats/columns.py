@@ -14,21 +14,27 @@ from dataclasses import dataclass
 import numpy as np
 
 from rpscli.records.formats.record_text import RecordText
+from rpscli.records.formats.statements import (
+    STATED_PATTERN,
+    Statement,
+    agreed,
+    stated_count,
+    stated_positive,
+)
 from rpscli.records.formats.time_axis import printed_resolution, uniform_step
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.quantities import (
     KNOWN_UNITS,
-    NUMBER_PATTERN,
     UNIT_PATTERN,
     canonical_unit,
     numbers_in,
     numerals_in,
-    to_float,
+    why_no_numbers,
 )
 
-_STEP = re.compile(rf"\b(?:dt|time\s*step)\b\s*[=:]\s*({NUMBER_PATTERN})", re.IGNORECASE)
+_STEP = re.compile(rf"\b(?:dt|time\s*step)\b\s*[=:]\s*({STATED_PATTERN})", re.IGNORECASE)
 _COUNT = re.compile(r"\b(?:npts|ndata)\b\s*[=:]\s*([0-9]+)", re.IGNORECASE)
-_UNITS_KEY = re.compile(r"\bunits?\b\s*(?:[=:]|of\b)\s*([^,;]+)", re.IGNORECASE)
+_UNITS_KEY = re.compile(r"\bunits?\b\s*(?:[=:]|(?:of|in|are|is)\b)\s*([^,;]+)", re.IGNORECASE)
 _COLUMN_TITLE = re.compile(
     rf"\b(?:acc|accel|acceleration|ag|a)[\s_]*(?:[\[(]|\bin\b)\s*({UNIT_PATTERN})", re.IGNORECASE
 )
@@ -36,7 +42,7 @@ _COLUMN_TITLE = re.compile(
 
 @dataclass(frozen=True)
 class _Table:
-    header: tuple[str, ...]  # text lines before the first number
+    header: tuple[Statement, ...]  # lines of text before the first number
     rows: tuple[list[float], ...]
     lines: tuple[int, ...]  # of the rows
 
@@ -73,7 +79,7 @@ def _is_comment(line: str) -> bool:
 
 
 def _table(text: RecordText) -> _Table:
-    header: list[str] = []
+    header: list[Statement] = []
     rows: list[list[float]] = []
     lines: list[int] = []
     for index, line in enumerate(text.lines):
@@ -82,28 +88,31 @@ def _table(text: RecordText) -> _Table:
             rows.append(row)
             lines.append(index)
         elif not rows:
-            header.append(line.strip().lstrip("#%!/*|").strip())
+            words = text.heads[index].strip().lstrip("#%!/*|").strip()
+            header.append(Statement("header", words, index))
         elif row is None and not _is_comment(line):
             raise text.fault(
                 f"{line.strip()[:40]!r} stands among the values and is not a row of finite "
-                f"numbers; begin comments with #",
+                f"numbers{why_no_numbers(line)}; begin comments with #",
                 index,
             )
     if len(rows) < 2:
+        why = next(filter(None, map(why_no_numbers, text.heads)), "")
         raise text.fault(
-            f"no known format of ground motions: {len(rows)} row(s) of numbers; export the record "
-            f"as PEER AT2, or as columns of time and acceleration"
+            f"no known format of ground motions: {len(rows)} row(s) of numbers{why}; export the "
+            f"record as PEER AT2, or as columns of time and acceleration"
         )
-    return _Table(tuple(line for line in header if line), tuple(rows), tuple(lines))
+    return _Table(tuple(line for line in header if line.value), tuple(rows), tuple(lines))
 
 
 def _check_count(text: RecordText, table: _Table) -> None:
-    count = _stated_count(table.header)
+    stated = agreed(text, _found(table.header, _COUNT, "npts"), stated_count)
+    count = None if stated is None else stated_count(text, stated)
     found = sum(len(row) for row in table.rows)
     if count is not None and count not in (found, len(table.rows)):
         raise text.fault(
-            f"the header announces {count} values and the file holds {len(table.rows)} row(s); "
-            f"fetch it again, or correct the header"
+            f"the header announces {count} values and the file holds {len(table.rows)} row(s) and "
+            f"{found} number(s); fetch it again, or correct the header"
         )
 
 
@@ -124,7 +133,8 @@ def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
     known_to = max(1e-6, 2.0 * coarsest / (step * len(table.rows)))
     if header_step is not None and abs(header_step - step) > known_to * step:
         raise text.fault(
-            f"the header says dt = {header_step:g} s and the times advance by {step:g} s"
+            f"the header says dt = {header_step:g} s and the times advance by {step:g} s; "
+            f"correct the one or the other"
         )
     dt = text.agreed_dt(step, known_to)
     warnings: tuple[str, ...] = ()
@@ -177,7 +187,9 @@ def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
     if ragged is not None or len(table.rows[-1]) > width:
         bad = len(table.rows) - 1 if ragged is None else ragged
         raise text.fault(
-            f"a row of {len(table.rows[bad])} numbers among rows of {width}", table.lines[bad]
+            f"a row of {len(table.rows[bad])} numbers among rows of {width}; every row but the "
+            f"last must be full: fetch the file again",
+            table.lines[bad],
         )
     first = np.array([row[0] for row in table.rows])
     if width == 2 or (first.size > 2 and bool(np.all(np.diff(first) > 0.0))):
@@ -190,30 +202,24 @@ def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
 
 
 def _description(table: _Table, unit: str) -> str:
-    return f"{table.header[0][:100] if table.header else 'no header'}; values in {unit}"
+    return f"{table.header[0].value[:100] if table.header else 'no header'}; values in {unit}"
 
 
-def _stated_count(header: Sequence[str]) -> int | None:
-    """The number of values that the header announces."""
-    count = _COUNT.search("\n".join(header))
-    return int(count[1]) if count else None
+def _found(header: Sequence[Statement], pattern: re.Pattern[str], name: str) -> list[Statement]:
+    return [
+        Statement(name, value, line.line)
+        for line in header
+        for value in pattern.findall(line.value)
+    ]
 
 
-def _stated_step(text: RecordText, header: Sequence[str]) -> float | None:
-    """The time step that the header states [s].
-
-    Raises
-    ------
-    RecordError
-        If it states two different ones.
-    """
-    steps = {to_float(numeral) for numeral in _STEP.findall("\n".join(header))}
-    if len(steps) > 1:
-        raise text.fault(f"the header states different time steps: {sorted(steps)}")
-    return steps.pop() if steps else None
+def _stated_step(text: RecordText, header: Sequence[Statement]) -> float | None:
+    """The time step that the header states [s]; two different ones are refused."""
+    step = agreed(text, _found(header, _STEP, "dt"), stated_positive)
+    return None if step is None else stated_positive(text, step)
 
 
-def _stated_units(text: RecordText, header: Sequence[str]) -> str | None:
+def _stated_units(text: RecordText, header: Sequence[Statement]) -> str | None:
     """The canonical unit of acceleration that the header states.
 
     Raises
@@ -223,23 +229,25 @@ def _stated_units(text: RecordText, header: Sequence[str]) -> str | None:
     """
     units: set[str] = set()
     for line in header:
-        key = _UNITS_KEY.search(line)
-        if key:
-            units.add(_unit_after_key(text, key[0], key[1]))
-        title = _COLUMN_TITLE.search(line)
-        if title and (unit := canonical_unit(title[1])):
-            units.add(unit)
+        for key in _UNITS_KEY.finditer(line.value):
+            units.add(_unit_after_key(text, key[0], key[1], line.line))
+        for title in _COLUMN_TITLE.findall(line.value):
+            if unit := canonical_unit(title):
+                units.add(unit)
     if len(units) > 1:
-        raise text.fault(f"the header states different units: {', '.join(sorted(units))}")
+        raise text.fault(
+            f"the header states different units: {', '.join(sorted(units))}; correct the header"
+        )
     return units.pop() if units else None
 
 
-def _unit_after_key(text: RecordText, statement: str, spelling: str) -> str:
+def _unit_after_key(text: RecordText, statement: str, spelling: str, line: int) -> str:
     word = re.match(rf"[\s(\[]*({UNIT_PATTERN})", spelling, re.IGNORECASE)
     unit = canonical_unit(word[1]) if word else None
     if unit is None:
         raise text.fault(
-            f"the header says {statement.strip()!r}, which is no unit of acceleration that is "
-            f"known ({KNOWN_UNITS})"
+            f"the header says {statement.strip()[:60]!r}, which is no unit of acceleration that is "
+            f"known ({KNOWN_UNITS}); correct the header",
+            line,
         )
     return unit

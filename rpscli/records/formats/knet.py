@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
-
 from rpscli.records.formats.channels import peak_warnings
 from rpscli.records.formats.record_text import RecordText
+from rpscli.records.formats.series import series
+from rpscli.records.formats.statements import (
+    MOST_VALUES,
+    Statement,
+    agreed,
+    stated_number,
+    stated_positive,
+)
 from rpscli.records.ground_motion import GroundMotion
 
-_KEYS = 17
-_SCALE = re.compile(r"([0-9.]+)\s*\(gal\)\s*/\s*([0-9.]+)")
-_RATE = re.compile(r"([0-9.]+)\s*Hz")
+_KEYS, _KEY_WIDTH, _ROW = 17, 18, 8
+_SCALE = re.compile(r"(.*)\(gal\)\s*/(.*)")
+_RATE = re.compile(r"(.*?)\s*Hz")
 
 
 def recognises_knet(text: RecordText) -> bool:
     """Whether the header has the keys of K-NET."""
-    head = "\n".join(text.lines[:_KEYS])
+    head = "\n".join(text.heads[:_KEYS])
     return head.startswith("Origin Time") and "Scale Factor" in head
 
 
@@ -27,24 +33,53 @@ def read_knet(text: RecordText) -> GroundMotion:
     The counts carry the offset of the sensor. The agency's own peak is that about the mean.
     """
     text.single_channel()
-    header = {line[:18].strip(): line[18:].strip() for line in text.lines[:_KEYS]}
-    scale = _SCALE.search(header.get("Scale Factor", ""))
-    rate = _RATE.search(header.get("Sampling Freq(Hz)", ""))
-    duration = header.get("Duration Time(s)", "")
-    if not (scale and rate and re.fullmatch(r"[0-9.]+", duration)):
-        raise text.fault("the header lacks the scale factor, the sampling rate or the duration")
-    count = round(float(duration) * float(rate[1]))
+    scale = _stated(text, "Scale Factor", _SCALE)
+    (rate,) = _stated(text, "Sampling Freq(Hz)", _RATE)
+    (duration,) = _stated(text, "Duration Time(s)", re.compile("(.+)"))
+    per_second = stated_positive(text, rate)
+    count = stated_positive(text, duration) * per_second
+    if not 0.5 < count < MOST_VALUES:
+        raise text.fault(
+            f"{duration.value} s at {per_second:g} Hz are {count:.3g} values, which is more or less"
+            " than a record can have; correct the header",
+            duration.line,
+        )
     _, factor = text.agreed_factor("gal")
-    values = np.array(text.values(_KEYS, count)) * (float(scale[1]) / float(scale[2]))
+    counts = series(text, _KEYS, round(count), width=_ROW)
+    values = counts * (stated_positive(text, scale[0]) / stated_positive(text, scale[1]))
     mean = float(values.mean())
-    peak = header.get("Max. Acc. (gal)", "")
-    station = f"{header.get('Station Code', '')} {header.get('Dir.', '')}".strip()
+    peaks = _said(text, "Max. Acc. (gal)")
+    code, direction, origin = (
+        said[0].value if (said := _said(text, key)) else ""
+        for key in ("Station Code", "Dir.", "Origin Time")
+    )
     return GroundMotion(
         (values - mean) * factor,
-        text.agreed_dt(1.0 / float(rate[1])),
+        text.agreed_dt(1.0 / per_second),
         text.path.name.replace(".", "_"),  # the extension tells the component
         text.source,
         "K-NET ASCII",
-        f"{station}, {header['Origin Time']}; values in gal; mean of {mean:.4g} gal removed",
-        peak_warnings(values - mean, float(peak), 1e-3) if re.fullmatch(r"[0-9.]+", peak) else (),
+        f"{code} {direction}, {origin}; values in gal; mean of {mean:.4g} gal removed",
+        peak_warnings(values - mean, stated_number(text, peaks[0]), 1e-3) if peaks else (),
     )
+
+
+def _said(text: RecordText, key: str) -> list[Statement]:
+    """What the lines of a key say; an empty value says nothing."""
+    return [
+        Statement(key, line[_KEY_WIDTH:].strip(), index)
+        for index, line in enumerate(text.heads[:_KEYS])
+        if line[:_KEY_WIDTH].strip() == key and line[_KEY_WIDTH:].strip()
+    ]
+
+
+def _stated(text: RecordText, key: str, form: re.Pattern[str]) -> list[Statement]:
+    """The numbers of a key that must be there, once."""
+    said = agreed(text, _said(text, key), lambda _, statement: statement.value)
+    match = form.fullmatch(said.value) if said else None
+    if said is None or match is None:
+        raise text.fault(
+            f"the header lacks {key}, or not in the form of K-NET; fetch the file again",
+            said.line if said else None,
+        )
+    return [Statement(key, part.strip(), said.line) for part in match.groups()]

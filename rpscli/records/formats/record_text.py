@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from rpscli.errors import RecordError
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, numbers_in, unit_factor
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
 
 _BINARY_KINDS = {
     b"PK\x03\x04": "a ZIP archive; unpack it first",
@@ -16,6 +17,9 @@ _BINARY_KINDS = {
     b"%PDF": "a PDF document",
     b"\x89PNG": "a picture",
 }
+_HEADER_WIDTH = 1000  # letters
+_LARGEST_FILE = 200_000_000  # bytes; a day at a hundred samples a second has a tenth
+_SHORTEST_STEP, _LONGEST_STEP = 1e-6, 100.0  # s
 _MARKUP = re.compile(rb"\s*<(?:!doctype|html|head|\?xml)", re.IGNORECASE)
 
 
@@ -45,6 +49,11 @@ class RecordText:
     dt: float | None = None
     units: str | None = None
     channel: int | None = None
+
+    @cached_property
+    def heads(self) -> tuple[str, ...]:
+        """The lines as far as a header goes, so that searching them takes a bounded time."""
+        return tuple(line[:_HEADER_WIDTH] for line in self.lines)
 
     @property
     def name(self) -> str:
@@ -109,6 +118,11 @@ class RecordText:
         assert dt is not None
         if dt <= 0.0:
             raise self.fault(f"dt = {dt} s must be positive")
+        if not _SHORTEST_STEP <= dt <= _LONGEST_STEP:
+            raise self.fault(
+                f"dt = {dt:g} s cannot be the time step of an acceleration record, which lies"
+                f" between {_SHORTEST_STEP:g} s and {_LONGEST_STEP:g} s; correct the file or ?dt="
+            )
         if stated is not None and abs(dt - stated) > tolerance * dt:
             raise self.fault(
                 f"dt = {dt} s contradicts the file, which says {stated} s; leave dt out, "
@@ -120,41 +134,6 @@ class RecordText:
         """Refuse a channel number: the format holds one channel."""
         if self.channel is not None:
             raise self.fault(f"channel = {self.channel}: this file holds one channel; leave it out")
-
-    def values(self, start: int, count: int) -> list[float]:
-        """The numbers of consecutive lines; blank lines are skipped.
-
-        Parameters
-        ----------
-        start : int
-            First line, counted from zero.
-        count : int
-            How many numbers there must be, exactly.
-
-        Raises
-        ------
-        RecordError
-            If text comes before the last of them, or the line of the last one holds more.
-        """
-        found: list[float] = []
-        for index in range(start, len(self.lines)):
-            if len(found) >= count:
-                break
-            row = numbers_in(self.lines[index])
-            if row is None:
-                raise self.fault(
-                    f"found {len(found)} of the {count} values that the header announces, then "
-                    f"{self.lines[index].strip()[:40]!r}; the file is damaged or cut short",
-                    index,
-                )
-            found.extend(row)
-        if len(found) != count:
-            raise self.fault(
-                f"the header announces {count} values, but there are {len(found)} up to "
-                f"{'the end of the line of the last one' if len(found) > count else 'the end'}; "
-                f"the file is damaged, fetch it again"
-            )
-        return found
 
 
 def read_text(
@@ -190,13 +169,20 @@ def read_text(
     if units is not None and unit is None:
         raise RecordError(f"{source}: units = {units!r} is not known; use one of {KNOWN_UNITS}")
     try:
+        if (size := path.stat().st_size) > _LARGEST_FILE:
+            raise RecordError(
+                f"{path}: {size / 1e6:.0f} MB are more than a record has (at most"
+                f" {_LARGEST_FILE / 1e6:.0f} MB); cut out the strong motion"
+            )
         data = path.read_bytes()
     except OSError as error:
         raise RecordError(f"{path}: cannot be read: {error.strerror}") from error
     _refuse_foreign(path, data)
     text = re.sub(r"\r+\n?", "\n", _decoded(data)).rstrip("\x1a\n")
     if not text.strip():
-        raise RecordError(f"{path}: the file is empty")
+        raise RecordError(
+            f"{path}: the file is empty; fetch it again, or export the record as text"
+        )
     return RecordText(path, source, tuple(text.split("\n")), dt, unit, channel)
 
 

@@ -52,6 +52,7 @@ _OTHER_QUANTITIES = {
     ".dt2": "displacement",
 }
 _STRONGEST, _WEAKEST = 4.0, 1e-3  # g
+_FINEST, _COARSEST = 1e-4, 0.1  # s
 
 
 def read_record(
@@ -119,8 +120,14 @@ def _refuse_other_quantity(path: Path) -> None:
 
 def _implausible(motion: GroundMotion) -> tuple[str, ...]:
     peak = motion.pga / STANDARD_GRAVITY
+    doubts = []
+    if not _FINEST <= motion.dt <= _COARSEST:
+        doubts.append(
+            f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
+            f" {_COARSEST:g} s): check the time step"
+        )
     if peak > _STRONGEST:
-        return (f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units",)
+        doubts.append(f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units")
     if peak < _WEAKEST:
-        return (f"PGA = {peak:.3g} g is weaker than can be felt: check the units",)
-    return ()
+        doubts.append(f"PGA = {peak:.3g} g is weaker than can be felt: check the units")
+    return tuple(doubts)

@@ -1,0 +1,152 @@
+"""Small files in the layouts of the agencies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+VALUES = [1.5, -2.25, 30.125, -4.5, 5.0, 6.0, -7.0, 8.0, 9.0, -10.0, 11.0, 12.0]
+PEAK = 30.125
+
+
+def fixed(values: Sequence[float], width: int, form: str) -> str:
+    cells = [form.format(value) for value in values]
+    return "\n".join("".join(cells[i : i + width]) for i in range(0, len(cells), width))
+
+
+def csmip(channels: tuple[int, ...] = (1,), peak: float = PEAK) -> str:
+    body = fixed(VALUES, 8, "{:10.3f}")
+    text = []
+    for number in channels:
+        text += [
+            f"CORRECTED ACCELEROGRAM   36456-S4384-83123.01   CHAN {number:2d}:  90 DEG     FROM",
+            "UNCORRECTED ACCELEROGRAM DATA              PROCESSED:  6/06/83",
+            "AN EARTHQUAKE",
+            "a date",
+            "a trigger",
+            "STATION NO. 36456",
+            "A STATION",
+            f"PEAK ACCELERATION =  {-peak:.3f}    CM/SEC/SEC  AT   10.940   SEC.",
+            "    1    1    1",
+            " 12 POINTS OF ACCEL DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)",
+            body,
+            " 12 POINTS OF VELOC DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC)",
+            body,
+            f"/&  ----------  END OF DATA FOR CHANNEL  {number}  ----------",
+        ]
+    return "\n".join(text) + "\n\x1a\x1a"
+
+
+def cosmos(title: str = "Corrected acceleration", interval: float = 20.0) -> str:
+    reals = [-999.0] * 100
+    reals[33], reals[61], reals[63] = 0.005, interval, -PEAK
+    return "\n".join(
+        [
+            f"{title}    (Format v01.20 with 13 text lines) Src: file",
+            *["text"] * 7,
+            "Sta Chan  3: 340 deg (Rcrdr Chan  1) Location: roof",
+            *["text"] * 4,
+            " 100 Integer-header values follow on  10 lines, Format= (10I8)",
+            fixed([1] * 100, 10, "{:8d}"),
+            " 100 Real-header values follow on  17 lines, Format= (6F13.6)",
+            fixed(reals, 6, "{:13.6f}"),
+            '  1 Comment line(s) follow, each starting with a "|":',
+            " | a comment",
+            "     12  acceleration pts, approx    0 secs, units=cm/sec2(04),Format=(8F10.5)",
+            fixed(VALUES, 8, "{:10.5f}"),
+            "/&  ----------  End of data for channel  1  ----------",
+        ]
+    )
+
+
+def knet() -> str:
+    counts = [round(value * 1000) + 7000 for value in VALUES]
+    peak = max(abs(count - sum(counts) / 12) for count in counts) / 1000
+    return "\n".join(
+        [
+            "Origin Time       2014/12/31 23:49:00",
+            *["Key               value"] * 4,
+            "Station Code      CHB002",
+            *["Key               value"] * 4,
+            "Sampling Freq(Hz) 50Hz",
+            "Duration Time(s)  0.24",
+            "Dir.              N-S",
+            "Scale Factor      2000(gal)/2000000",
+            f"Max. Acc. (gal)   {peak:.3f}",
+            "Last Correction   2014/12/31 23:49:59",
+            "Memo.             ",
+            fixed(counts, 8, "{:8d} "),
+        ]
+    )
+
+
+def esm(kind: str = "ACCELERATION", count: int = 12, units: str = "cm/s^2") -> str:
+    header = [
+        "EVENT_NAME: AN EVENT",
+        "EVENT_DATE_YYYYMMDD: 20190728",
+        "NETWORK: HL",
+        "STATION_CODE: DLFA",
+        "SAMPLING_INTERVAL_S: 0.020000",
+        f"NDATA: {count}",
+        "STREAM: HNE",
+        f"UNITS: {units}",
+        f"PGA_CM/S^2: {PEAK:.6f}",
+        f"DATA_TYPE: {kind}",
+        "USER1: ",
+    ]
+    return "\n".join([*header, *(f"{value:.6f}" for value in VALUES)])
+
+
+def smc(title: str = "2 CORRECTED ACCELEROGRAM") -> str:
+    integers = [-32768] * 48
+    integers[15], integers[16] = 2, 12
+    reals = [1.7e38] * 50
+    reals[1], reals[29], reals[31] = 50.0, PEAK, -10.0
+    cells = [f"{value:11.4E}" for value in VALUES]
+    glued = "".join(cell.replace("E+0", "E+").replace("E-0", "E-").rjust(10) for cell in cells)
+    return "\n".join(
+        [
+            title.ljust(80),
+            *["*"] * 2,
+            "     1989  10  18    0004 Somewhere",
+            "mag",
+            "station = A Station   component=    360",
+            *["*"] * 5,
+            fixed(integers, 8, "{:10d}"),
+            fixed(reals, 5, "{:15.7E}"),
+            "|",
+            "| a comment 1 2 3",
+            glued[:80],
+            glued[80:],
+        ]
+    )
+
+
+def geonet(components: tuple[str, ...] = ("S16W",)) -> str:
+    text = []
+    for component in components:
+        text += [
+            "Corrected accelerogram 2018_WPWS_20 GNS Science",
+            "Site WPWS      39 56 38S",
+            *["text"] * 5,
+            "2018 February 12         21:15:54 UT",
+            "Epicentre",
+            "Number of points  12    Duration 0.22 sec",
+            "Instrument corrected data at 0.020 sec intervals",
+            "Band-pass filter",
+            f"Component {component}  Longitudinal Accelerometer Axis",
+            f"Acceleration:  peak    {PEAK * 10:.1f} mm/s/s at  43.68 sec     rms      2.2 mm/s/s",
+            "Velocity:      peak     1.65 mm/s   at  43.56 sec     rms     0.09 mm/s",
+            "Displacement:  peak    0.131 mm     at  43.66 sec     rms    0.007 mm",
+            fixed([0] * 40, 10, "{:8d}"),
+            fixed([0.0] * 60, 10, "{:8.2f}"),
+            fixed([10 * value for value in VALUES], 10, "{:8.1f}"),
+            fixed(VALUES, 10, "{:8.3f}"),
+            fixed(VALUES, 10, "{:8.3f}"),
+        ]
+    return "\n".join(text)
+
+
+def write(folder: Path, text: str, name: str) -> str:
+    (folder / name).write_bytes(text.replace("\n", "\r\n").encode("latin-1"))
+    return str(folder / name)
