@@ -294,6 +294,9 @@ BLOCK = (
     Field("q", "modes", "m sqrt(kg)", "displacements", "full_contact.modal_block.keep_state"),
     Field("dq", "modes", "m sqrt(kg)/s", "velocities", "full_contact.modal_block.keep_state"),
     Field("step_maps", "steps modes map", "1", "of a WHOLE_STEP, a SHORT_STEP", "modal_block"),
+    Field(
+        "work", "steps modes forms", "1", "of v^2 and v t over them", "energy_of_block.fill_work"
+    ),
     Field("qs", "modes instants", "m sqrt(kg)", "displacements", "full_contact.modal_block"),
     Field("dqs", "modes instants", "m sqrt(kg)/s", "velocities", "full_contact.modal_block"),
     Field("forces", "modes instants", "m sqrt(kg)/s2", "w^2 q + 2 xi w q'", "modal_block"),
@@ -308,8 +311,8 @@ BLOCK = (
     Field("ddV", "ahead", "N/s2", "V'' but for the ground's slope", "follow_modes"),
     Field("at_sample", "instants", "-", "1: before any uplift", "full_contact.demands"),
     Field("alarm", "instants", "-", "1: uplift is near", "full_contact.uplift_search"),
-    Field("input", "instants", "J", "over the step that begins", "full_contact.modal_block"),
-    Field("damped", "instants", "J", "over the step that begins", "full_contact.modal_block"),
+    Field("input", "instants", "J", "over the step that begins", "full_contact.energy_of_block"),
+    Field("damped", "instants", "J", "over the step that begins", "full_contact.energy_of_block"),
     Field("shear_bound", "instants", "1", "sum g q^2", "full_contact.modal_block"),
     Field("acceleration_bound", "instants", "1", "sum g force^2", "full_contact.modal_block"),
     Field("shear", "instants", "N", "of one storey", "full_contact.demands"),
@@ -395,6 +398,7 @@ def record_type(fields: tuple[Field, ...], storeys: int) -> np.dtype[Any]:
         "constants": 5,
         "steps": 2,
         "map": 8,
+        "forms": 9,
     }
     return np.dtype(
         [

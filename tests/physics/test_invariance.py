@@ -49,6 +49,24 @@ def test_the_mirrored_record_gives_the_mirrored_history(structure: PodiumStructu
 
 
 @pytest.mark.parametrize("structure", STRUCTURES, ids=name)
+@pytest.mark.parametrize("start", [0.0, 0.3])
+def test_without_gravity_the_push_chooses_the_side(
+    structure: PodiumStructure, start: float
+) -> None:
+    """Both margins against uplift are negative at once."""
+    sway = start + 0.4 * np.linspace(0.0, 1.0, 30) ** 2
+    falling = ground(np.full(30, -1.3 * structure.gravity), 0.02)
+    here, there = (
+        time_history(structure, ground(side * sway, 0.02), SETTINGS, vertical=falling)
+        for side in (1.0, -1.0)
+    )
+    assert here.events[0].kind == "uplift"
+    assert here.events[0].time == 0.0
+    assert here.trace.rotation[1] < 0.0 < there.trace.rotation[1]
+    assert np.array_equal(here.trace.rotation, -there.trace.rotation)
+
+
+@pytest.mark.parametrize("structure", STRUCTURES, ids=name)
 def test_a_release_to_either_side_is_the_same_motion(structure: PodiumStructure) -> None:
     here, there = (
         time_history(structure, RECORD, replace(SETTINGS, initial_rotation=sign * 0.04))

@@ -119,36 +119,3 @@ def keep_state(block: Record, k: int) -> None:
     """Make the state after k steps of the block the present one."""
     for r in range(block.n):
         block.q[r], block.dq[r] = block.qs[r, k], block.dqs[r, k]
-
-
-@compiled
-def book_energy_of_block(block: Record, system: Record, h: float) -> None:
-    """Energy put in by the ground and damped during each step of length h [J].
-
-    The input -int a_g 1^T M u' dt is exact: integrated by parts it needs int q dt, which the
-    equation of motion gives. The damped energy, with the square of the velocity, is that of the
-    quintic with the values, slopes and curvatures of both ends: of order 6, and independent of the
-    solution's own balance so that the audit can show something.
-    """
-    for k in range(INSTANTS):
-        block.input[k], block.damped[k] = 0.0, 0.0
-    for r in range(block.n):
-        Gamma, omega2, two_xi_omega = system.Gamma[r], system.omega2[r], system.two_xi_omega[r]
-        for k in range(INSTANTS - 1):
-            a0, slope = block.a_g[k], block.a_g_slope[k]
-            a1 = a0 + slope * h
-            q0, q1, v0, v1 = (
-                block.qs[r, k],
-                block.qs[r, k + 1],
-                block.dqs[r, k],
-                block.dqs[r, k + 1],
-            )
-            area = (-Gamma * 0.5 * (a0 + a1) * h - (v1 - v0) - two_xi_omega * (q1 - q0)) / omega2
-            g0 = -Gamma * a0 - two_xi_omega * v0 - omega2 * q0
-            g1 = -Gamma * a1 - two_xi_omega * v1 - omega2 * q1
-            block.input[k] -= Gamma * (a1 * q1 - a0 * q0 - slope * area)
-            j0 = -Gamma * slope - two_xi_omega * g0 - omega2 * v0
-            j1 = -Gamma * slope - two_xi_omega * g1 - omega2 * v1
-            ends = 0.5 * (v0 * v0 + v1 * v1) + h / 5.0 * (v0 * g0 - v1 * g1)
-            bends = h * h / 60.0 * (g0 * g0 + v0 * j0 + (g1 * g1 + v1 * j1))
-            block.damped[k] += two_xi_omega * h * (ends + bends)

@@ -14,8 +14,11 @@ from rpscli.physics.full_contact.demands import (
     observe_contacts,
     raise_floors_of_block,
 )
-from rpscli.physics.full_contact.modal_block import (
+from rpscli.physics.full_contact.energy_of_block import (
     book_energy_of_block,
+    fill_work,
+)
+from rpscli.physics.full_contact.modal_block import (
     fill_map,
     follow_modes,
     keep_state,
@@ -134,7 +137,9 @@ def accept_block(
     first, time = s.interval[l], s.time[l]
     passed = taken // plan.each
     if output.samples.shape[0] > 0:
-        book_energy_of_block(block, system, plan.h)
+        if plan.which == SHORT_STEP:
+            fill_work(block, system, SHORT_STEP, plan.h)
+        book_energy_of_block(block, system, plan.which)
         for k in range(1, taken + 1):
             s.energy_input[l] += block.input[k - 1]
             s.energy_damped[l] += block.damped[k - 1]
@@ -186,7 +191,8 @@ def leave_contact(
     fill_map(block, system, SHORT_STEP, h)
     follow_modes(block, system, SHORT_STEP)
     if output.samples.shape[0] > 0:
-        book_energy_of_block(block, system, h)
+        fill_work(block, system, SHORT_STEP, h)
+        book_energy_of_block(block, system, SHORT_STEP)
         s.energy_input[l] += block.input[0]
         s.energy_damped[l] += block.damped[0]
     keep_state(block, 1)
@@ -203,6 +209,8 @@ def stand(
     margin = margin_of(system)
     modes_to_block(s, l, block)
     fill_map(block, system, WHOLE_STEP, s.contact_step[l])
+    if output.samples.shape[0] > 0:
+        fill_work(block, system, WHOLE_STEP, s.contact_step[l])
     clear_contacts(block)
     side, over, fine = 0.0, False, False
     while side == 0.0 and not over:

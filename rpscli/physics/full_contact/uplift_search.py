@@ -133,8 +133,13 @@ def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float
     path = push_path(block, margin, h, k)
     limit = margin.limit * block.g_up[k]
     rise = margin.limit * (block.g_up_slope[k] * h)
+    # Where gravity is lost both margins are negative at once: then the push decides.
+    lean = 0.0
+    for b in path:
+        lean = lean if lean != 0.0 else b
+    likelier = -1.0 if lean < 0.0 else 1.0
     first, side = NO_PASSAGE, 0.0
-    for sign in (1.0, -1.0):
+    for sign in (likelier, -likelier):
         t = first_descent(margin_path(path, limit, rise, sign), SETTLED, block.piece)
         if t < first:
             first, side = t, sign
