@@ -60,14 +60,14 @@ def condition_text(condition: Condition) -> str:
     """What a condition asks for.
 
     >>> condition_text(Condition("rotation_ratio", 0.5, "", share=0.1))
-    'at most 10 % of the records above 0.5'
+    'at most 0.5 but for 10 % of the records'
     >>> condition_text(Condition("overturning", 0.0, "")), condition_text(Condition("a", 2.0, ""))
-    ('no record', 'every record at most 2')
+    ('no record', 'at most 2 in every record')
     """
     if condition.fractile is not None:
-        return f"{100.0 * condition.fractile:g} % fractile at most {condition.limit:g}"
-    event = condition.name in EVENTS
-    if condition.share:
-        beyond = "" if event else f" above {condition.limit:g}"
-        return f"at most {100.0 * condition.share:g} % of the records{beyond}"
-    return "no record" if event else f"every record at most {condition.limit:g}"
+        return f"at most {condition.limit:g} at the {100.0 * condition.fractile:g} % fractile"
+    percent = f"{100.0 * condition.share:g} %"
+    if condition.name in EVENTS:
+        return f"at most {percent} of the records" if condition.share else "no record"
+    rest = f" but for {percent} of the records" if condition.share else " in every record"
+    return f"at most {condition.limit:g}{rest}"

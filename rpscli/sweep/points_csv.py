@@ -8,11 +8,10 @@ import json
 import math
 from collections.abc import Iterator
 
-from rpscli.case.schema.key_units import unit
 from rpscli.sweep.design.described import described, identifying_columns
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.results import SCALARS
-from rpscli.sweep.reports.intensities import UNITS
+from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.table import Table
 
 LINES_A_PIECE = 1000
@@ -46,7 +45,7 @@ def points_csv(table: Table) -> Iterator[str]:
 def _columns(design: Design) -> Iterator[tuple[str, str]]:
     """Names and units of all columns."""
     for name in identifying_columns(design):
-        yield name, next((u for m, u in UNITS.items() if m == name), unit(name))
+        yield name, unit_of(name)
     if design.plan.analysis == "timehistory":
         yield "scale", "-"
     yield "outcome", "-"

@@ -30,9 +30,9 @@ def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(building: str) -> None
         Condition("overturning", 0.0, "the case", share=0.05),
     )
     assert [condition_text(condition) for condition in found] == [
-        "every record at most 0.25",
-        "at most 10 % of the records above 0.3",
-        "84 % fractile at most 0.005",
+        "at most 0.25 in every record",
+        "at most 0.3 but for 10 % of the records",
+        "at most 0.005 at the 84 % fractile",
         "at most 5 % of the records",
     ]
 

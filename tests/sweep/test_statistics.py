@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -12,8 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from rpscli.errors import CaseError
-from rpscli.sweep.design.layout import Design, lay_out
-from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.reports.demand import DemandOptions, demand_report
 from rpscli.sweep.reports.ida import IdaOptions, ida_report
@@ -22,32 +20,9 @@ from rpscli.sweep.reports.overturning import OverturningOptions, overturning_tab
 from rpscli.sweep.reports.rotation import RotationOptions, rotation_report
 from rpscli.sweep.reports.storey_shear import StoreyShearOptions, storey_shear_report
 from rpscli.sweep.store import Stored
-from rpscli.sweep.table import Table, groups, tabulate
+from rpscli.sweep.table import groups, tabulate
+from sweep.made_up import ALPHA, RHO, place, stored, table_of
 from sweep.small_studies import STUDY, Make
-
-Answer = Callable[[int], Stored]
-
-RHO, ALPHA = "podium.bearing.curvature_ratio", "podium.bearing.slenderness"
-
-
-def stored(outcome: str = "survived", **results: object) -> Stored:
-    """A made-up result."""
-    whole: dict[str, object] = dict.fromkeys(SCALARS["timehistory"], 0.0)
-    shears = results.pop("storey_shears", [3.0, 2.0, 1.0])
-    return Stored(outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears})
-
-
-def table_of(make: Make, answer: Answer, *changes: tuple[str, str]) -> Table:
-    """The study of 2 slendernesses x 3 curvatures x 3 records x 2 scales with made-up results."""
-    design = lay_out(make(STUDY, *changes))
-    return tabulate(design, (answer(number) for number in range(len(design))))
-
-
-def place(design: Design, number: int) -> dict[str, object]:
-    point = design[number]
-    assert point.record is not None
-    named = dict(zip(design.plan.keys, point.values, strict=True))
-    return {**named, "record": int(point.record.source[-1]), "scale": point.scale}
 
 
 @settings(max_examples=30)

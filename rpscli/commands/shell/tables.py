@@ -10,6 +10,10 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 
+LONGEST_WORD = 30
+"""Which is not broken."""
+
+
 def title(text: str) -> Text:
     """A heading above tables."""
     from rich.text import Text  # noqa: PLC0415
@@ -38,7 +42,8 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1
     for index, head in enumerate(heads):
         longest = max((len(row[index]) for row in cells), default=0)
         if index < words:
-            made.add_column(head, overflow="fold")
+            word = max((len(w) for row in cells for w in row[index].split()), default=0)
+            made.add_column(head, overflow="fold", min_width=min(word, LONGEST_WORD))
         else:
             made.add_column(head, justify="right", overflow="fold", min_width=longest)
     for row in cells:

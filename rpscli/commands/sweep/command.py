@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from rpscli.commands.acceptance import parse_condition
 from rpscli.commands.shell.failure import INTERRUPTED, concluded, leave
 from rpscli.commands.shell.options import (
     CaseRequest,
@@ -26,13 +27,16 @@ from rpscli.commands.sweep.input import (
     study_heading,
 )
 from rpscli.commands.sweep.points import begin, compute
-from rpscli.commands.sweep.results import Failure, collect, outcome_counts
-from rpscli.errors import StudyIncomplete
+from rpscli.commands.sweep.requirements import require_results
+from rpscli.commands.sweep.results import Collected, Failure, collect, outcome_counts
+from rpscli.commands.sweep.tables import summary_tables, verdict_lines, verdict_table
+from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.documents import failure_document, heading
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from rpscli.case.conditions import Condition
     from rpscli.report.files.output_folder import OutputFolder
     from rpscli.sweep.run.resume import Resume
     from rpscli.sweep.run.runner import Finish
@@ -57,6 +61,15 @@ WARNINGS_SHOWN = 5
 @click.option("--dry-run", is_flag=True, help="Check the study; show its points and an estimate.")
 @click.option("--fresh", is_flag=True, help="Throw away what is stored, and begin anew.")
 @click.option("--retry-failed", is_flag=True, help="Compute points again that failed.")
+@click.option(
+    "--fail-on",
+    "fail_on",
+    multiple=True,
+    metavar="WHAT",
+    help="End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
+    " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
+    " units); repeatable. The limits of study and case count as well.",
+)
 @click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
 @output_options
 @terminal_options
@@ -65,16 +78,20 @@ def command(
     overrides: tuple[str, ...],
     output: OutputRequest,
     terminal: Terminal,
+    fail_on: tuple[str, ...],
     **choices: Any,
 ) -> None:
     """Compute all points of STUDY, and draw its reports.
 
     Every point is stored as it ends: after an interruption the same command goes on. If points
-    failed the exit code is 5, and failed.csv has the command that computes each of them alone.
+    failed the exit code is 5, and failed.csv has the command that computes each of them alone. It
+    is 10 if a limit of the study, of its base case or of --fail-on is exceeded.
     """
     chosen = SweepChoices(**choices)
     chosen.require_sense()
+    conditions = [parse_condition(text) for text in fail_on]
     given = read_study(CaseRequest(study, overrides), terminal)
+    require_results(given, conditions)
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)
         return
@@ -89,7 +106,7 @@ def command(
             finish = None
         if finish is None or finish.interrupted:
             _stop(given, store, start, terminal)
-        _conclude(given, store, start, finish, folder, terminal)
+        _conclude(given, store, start, finish, folder, conditions, terminal)
 
 
 def _stop(given: StudyInput, store: Store, start: Resume, terminal: Terminal) -> NoReturn:
@@ -118,6 +135,7 @@ def _conclude(
     start: Resume,
     finish: Finish,
     folder: OutputFolder,
+    conditions: list[Condition],
     terminal: Terminal,
 ) -> None:
     from rpscli.commands.case_input import write  # noqa: PLC0415
@@ -127,8 +145,9 @@ def _conclude(
 
     table = tabulate(given.design, store.stored(start.keys))
     results = StudyResults(table, start.keys, store, given.context, available_cores())
-    failures, notes = collect(given, results, folder)
-    error = _incomplete(failures, len(table))
+    found = collect(given, results, conditions, folder)
+    failures, notes = found.failures, found.notes
+    error = _first_error(found, len(table))
     write(folder, terminal)
     terminal.warn(notes[:WARNINGS_SHOWN])
     if len(notes) > WARNINGS_SHOWN:
@@ -145,13 +164,42 @@ def _conclude(
             "unused": start.unused,
         },
         "outcomes": outcome_counts(table),
+        **_statistics(found),
         "failures": [asdict(failure) for failure in failures],
         "notes": list(start.notes),
         "warnings": notes,
         "files": [str(store.path), *folder.files],
     }
-    terminal.result(concluded(document, error), _tables(document))
+    terminal.result(concluded(document, error), _tables(document, found))
     leave(error)
+
+
+def _statistics(found: Collected) -> dict[str, Any]:
+    """Statistics and verdicts in JSON."""
+    if found.summary is None:
+        return {}
+    from rpscli.report.study.statistics import summary_document, verdict_document  # noqa: PLC0415
+
+    keys = found.summary.keys
+    return {
+        "pooled": found.summary.pooled,
+        "statistics": summary_document(found.summary),
+        "verdicts": [verdict_document(keys, verdict) for verdict in found.verdicts],
+    }
+
+
+def _first_error(found: Collected, total: int) -> RpsError | None:
+    """The gravest of what went wrong, whose exit code counts; its text tells of all."""
+    exceeded = verdict_lines(found.summary.keys, found.verdicts) if found.summary else []
+    lines = [f"limit exceeded: {line}" for line in exceeded[:FAILURES_SHOWN]]
+    if len(exceeded) > FAILURES_SHOWN:
+        lines.append(f"... and {len(exceeded) - FAILURES_SHOWN} more, all in verdicts.csv")
+    limits = LimitExceeded("\n".join(lines)) if lines else None
+    all_errors = [*found.broken, _incomplete(found.failures, total), limits]
+    errors = [error for error in all_errors if error is not None]
+    if not errors:
+        return None
+    return type(errors[0])("\n".join(map(str, errors)))
 
 
 def _incomplete(failures: list[Failure], total: int) -> StudyIncomplete | None:
@@ -165,8 +213,12 @@ def _incomplete(failures: list[Failure], total: int) -> StudyIncomplete | None:
     return StudyIncomplete("\n".join(lines))
 
 
-def _tables(document: dict[str, Any]) -> Iterator[RenderableType]:
+def _tables(document: dict[str, Any], found: Collected) -> Iterator[RenderableType]:
     yield title(document["study"]["title"])
     outcomes = document["outcomes"].items()
     rows = [("points", str(document["points"]["total"]))]
     yield listing([*rows, *((name, str(count)) for name, count in outcomes)])
+    if found.summary is not None:
+        yield from summary_tables(found.summary)
+        if found.verdicts:
+            yield verdict_table(found.summary, found.verdicts)

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.commands.sweep.input import StudyInput
+from rpscli.errors import RpsError
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.report.files.output_folder import OutputFolder
 
 if TYPE_CHECKING:
+    from rpscli.case.conditions import Condition
+    from rpscli.case.study.reports import ReportRequest
     from rpscli.sweep.reports.study_results import StudyResults
+    from rpscli.sweep.statistics.summary import Summary
+    from rpscli.sweep.statistics.verdicts import StudyVerdict
     from rpscli.sweep.table import Table
 
 BASE = "base.yaml"
@@ -30,36 +35,72 @@ class Failure:
 
 
 class Collected(NamedTuple):
-    """Points that failed, and what reports have to say about their numbers."""
+    """What a study found besides its points.
+
+    `summary` is None for analyses without histories; `notes` are what statistics and reports have
+    to say about their numbers, `broken` the reports that could not be made.
+    """
 
     failures: list[Failure]
+    summary: Summary | None
+    verdicts: list[StudyVerdict]
     notes: list[str]
+    broken: list[RpsError]
 
 
-def collect(given: StudyInput, results: StudyResults, folder: OutputFolder) -> Collected:
-    """Add all files to the folder.
-
-    Raises
-    ------
-    CaseError
-        If a report cannot be had from this study.
-    """
-    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415 -- numpy is slow
-    from rpscli.sweep.points_csv import points_csv  # noqa: PLC0415
+def collect(
+    given: StudyInput, results: StudyResults, conditions: Sequence[Condition], folder: OutputFolder
+) -> Collected:
+    """Add all files to the folder. A report that fails does not take the others with it."""
+    from rpscli.sweep.points_csv import points_csv  # noqa: PLC0415 -- numpy is slow
 
     folder.add("points.csv", "".join(points_csv(results.table)))
     failures = list(_failures(given, results.table, folder))
     if failures:
         folder.add("failed.csv", csv_text(_failure_columns(failures)))
-    notes: list[str] = []
+    found = Collected(failures, None, [], [], [])
+    if given.design.plan.analysis == "timehistory":
+        found = _with_statistics(found, results, conditions, folder)
     for request in given.study.reports:
-        report = REPORTS[request.kind]
-        numbers = report.numbers(results, request.options)
-        notes += [f"{request.stem}: {note}" for note in report.notes(numbers)]
-        title = request.options.title or given.study.title
-        for name, content in report.files(numbers, request.stem, title):
-            folder.add(name, content)
-    return Collected(failures, notes)
+        try:
+            found.notes.extend(_report(given, results, request, folder))
+        except RpsError as error:
+            found.broken.append(error)
+        except Exception as error:  # noqa: BLE001 -- the points and the others must not be lost
+            text = f"the report {request.stem}: {type(error).__name__}: {error}"
+            found.broken.append(RpsError(f"{text}; this is a fault of rps: please report it"))
+    return found
+
+
+def _with_statistics(
+    found: Collected, results: StudyResults, conditions: Sequence[Condition], folder: OutputFolder
+) -> Collected:
+    from rpscli.report.study.statistics import summary_columns, verdict_columns  # noqa: PLC0415
+    from rpscli.sweep.statistics.summary import summary  # noqa: PLC0415
+    from rpscli.sweep.statistics.verdicts import judged  # noqa: PLC0415
+
+    made = summary(results.table, results.fixed_base)
+    verdicts = judged(results.table, made, conditions)
+    folder.add("statistics.csv", csv_text(summary_columns(made)))
+    if verdicts:
+        folder.add("verdicts.csv", csv_text(verdict_columns(made.keys, verdicts)))
+    notes = [f"statistics: {note}" for note in made.notes]
+    return found._replace(summary=made, verdicts=verdicts, notes=notes)
+
+
+def _report(
+    given: StudyInput, results: StudyResults, request: ReportRequest, folder: OutputFolder
+) -> list[str]:
+    """Add the files of a report; returns what it has to say about its numbers."""
+    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415 -- numpy is slow
+
+    report = REPORTS[request.kind]
+    numbers = report.numbers(results, request.options)
+    notes = [f"{request.stem}: {note}" for note in report.notes(numbers)]
+    title = request.options.title or given.study.title
+    for name, content in list(report.files(numbers, request.stem, title)):
+        folder.add(name, content)
+    return notes
 
 
 def _failures(given: StudyInput, table: Table, folder: OutputFolder) -> Iterator[Failure]:

@@ -13,6 +13,7 @@ from rpscli.sweep.reports.fragility import (
     FragilityOptions,
     FragilityReport,
     fragility_report,
+    limit_states,
 )
 from rpscli.sweep.reports.intensities import Intensity
 
@@ -117,4 +118,5 @@ REPORT = Report(
     tables={"": fragility_columns, "_curves": curve_columns},
     figure=fragility_figure,
     notes=lambda report: report.notes,
+    results=lambda options: [limit.result for limit in limit_states(options)],
 )

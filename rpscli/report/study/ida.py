@@ -20,7 +20,7 @@ from rpscli.sweep.reports.ida import (
     ida_report,
     single_intensity,
 )
-from rpscli.sweep.reports.intensities import UNITS
+from rpscli.sweep.reports.intensities import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,9 +103,8 @@ def _run_out(
 
 
 def _level(report: IdaReport) -> tuple[str, str]:
-    if report.measure is None:
-        return "scale", "-"
-    return report.measure, next(unit for name, unit in UNITS.items() if name == report.measure)
+    name = report.measure or "scale"
+    return name, unit_of(name)
 
 
 REPORT = Report(
@@ -114,4 +113,5 @@ REPORT = Report(
     tables={"": ida_columns},
     figure=ida_figure,
     check=single_intensity,
+    results=lambda options: [options.demand],
 )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from rpscli.case.schema.key_units import unit
 from rpscli.report.files.csv_text import Column
+from rpscli.sweep.reports.intensities import unit_of
 
 SYMBOLS = {
     "superstructure.storeys": "n",
@@ -37,16 +37,19 @@ def symbol(key: str) -> str:
 
 
 def label(key: str, value: object) -> str:
-    """A key with its value.
+    """A key with its value and unit.
 
     >>> label("superstructure.storeys", 3), label("podium.bearing.curvature_ratio", 0)
     ('n = 3', 'flat ends')
+    >>> label("superstructure.period", 0.3), label("superstructure.period", "300 ms")
+    ('T₁ = 0.3 s', 'T₁ = 300 ms')
     """
     if key.endswith("curvature_ratio") and not isinstance(value, list | dict | bool):
         known = CURVATURES.get(value) if isinstance(value, str | int | float) else None
         if known:
             return known
-    return f"{symbol(key)} = {plain(value)}"
+    unit = unit_of(key) if isinstance(value, int | float) else "-"
+    return f"{symbol(key)} = {plain(value)}{'' if unit == '-' else f' {unit}'}"
 
 
 def labels(keys: Iterable[str], values: Values) -> str:
@@ -64,7 +67,7 @@ def plain(value: object) -> str:
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
     """One column a key, from its values in each row."""
     return [
-        Column(key, unit(key), [quoted(row[place]) for row in rows])
+        Column(key, unit_of(key), [quoted(row[place]) for row in rows])
         for place, key in enumerate(keys)
     ]
 

@@ -118,5 +118,6 @@ REPORT = Report(
     tables={"": lines_columns},
     figure=lines_figure,
     check=unknown_results,
+    results=lambda options: (*options.y, *options.dashed),
     analyses=("timehistory", "modal", "pushover"),
 )

@@ -9,6 +9,7 @@ from typing import Generic, TypeVar
 from rpscli.case.study.reports import Check, ReportOptions
 from rpscli.case.study.schema import Analysis
 from rpscli.report.files.csv_text import Column, csv_text
+from rpscli.sweep.design.layout import Design
 from rpscli.sweep.reports.study_results import StudyResults
 
 Options = TypeVar("Options", bound=ReportOptions)
@@ -33,6 +34,11 @@ class Report(Generic[Options, Numbers]):
         What the user should know about the numbers.
     check
         Rules that join the options with the rest of the study; seen before anything is computed.
+    results
+        Names of results that every system must have.
+    requires
+        What is wrong with the points of a study that it cannot show, in words; seen before anything
+        is computed.
     analyses
         Analyses whose results it shows.
     """
@@ -43,6 +49,8 @@ class Report(Generic[Options, Numbers]):
     figure: Callable[[Numbers, str], bytes]
     notes: Callable[[Numbers], Iterable[str]] = lambda _: ()
     check: Check = lambda *_: ()
+    results: Callable[[Options], Iterable[str]] = lambda _: ()
+    requires: Callable[[Design, Options], Iterable[str]] = lambda *_: ()
     analyses: tuple[Analysis, ...] = ("timehistory",)
 
     def files(self, numbers: Numbers, stem: str, title: str) -> Iterator[tuple[str, str | bytes]]:

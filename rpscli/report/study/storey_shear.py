@@ -74,7 +74,7 @@ def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
 
 REPORT = Report(
     options=StoreyShearOptions,
-    numbers=lambda study, options: storey_shear_report(study.table, study.fixed_base(), options),
+    numbers=lambda study, options: storey_shear_report(study.table, study.fixed_base, options),
     tables={"": storey_shear_columns},
     figure=storey_shear_figure,
 )

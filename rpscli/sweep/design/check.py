@@ -5,9 +5,11 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from pathlib import Path as Folder
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.case import Case, case_from_mapping
+from rpscli.case.conditions import Condition, conditions_of
 from rpscli.case.overrides import Override
 from rpscli.case.study.axes import Values
 from rpscli.case.study.study import Study
@@ -27,7 +29,8 @@ class SystemProperties(NamedTuple):
     """What the layout of points and statistics must know of a system, SI units.
 
     `period` is T1 on a fixed base, `frequency_parameter` that of the rigid frame, p_hat;
-    `building` is a digest of the superstructure, empty without one.
+    `building` is a digest of the superstructure, empty without one; `limits` are those of the study
+    and, where it sets none, of the case; `lacking` names results that the system cannot have.
     """
 
     digest: bytes
@@ -40,6 +43,8 @@ class SystemProperties(NamedTuple):
     building: bytes
     record: RecordRequest | None
     scale: float
+    limits: tuple[Condition, ...]
+    lacking: frozenset[str]
 
 
 def check_systems(
@@ -60,7 +65,7 @@ def check_systems(
         values = combinations.values(system)
         try:
             case = resolved(plan, values)
-            properties.append(_properties(case, known))
+            properties.append(_properties(study, case, known))
             _refuse_restitution(study, case, members)
             _refuse_missing(study, plan, case)
         except CaseError as error:
@@ -74,7 +79,9 @@ def check_systems(
     return tuple(properties)
 
 
-def _properties(case: Case, known: dict[RecordRequest, RecordRequest]) -> SystemProperties:
+def _properties(
+    study: Study, case: Case, known: dict[RecordRequest, RecordRequest]
+) -> SystemProperties:
     structure, building = case.structure, case.structure.superstructure
     request = record_request(case)
     if request is not None:
@@ -90,7 +97,38 @@ def _properties(case: Case, known: dict[RecordRequest, RecordRequest]) -> System
         building=b"" if building is None else _digest(building),
         record=request,
         scale=1.0 if case.record is None else case.record.scale,
+        limits=_limits(study, case),
+        lacking=frozenset(q.name for q in LIMITED if q.needs and lacks(case, q.needs)),
     )
+
+
+def _limits(study: Study, case: Case) -> tuple[Condition, ...]:
+    """Limits of the study, and those of the case that it does not set anew."""
+    mine = study.file.limits
+    own = () if mine is None else conditions_of(mine, "limits of the study")
+    named = {condition.name for condition in own}
+    others = conditions_of(case.limits, "limits of the case")
+    return (*own, *(condition for condition in others if condition.name not in named))
+
+
+def lacks(case: Case, needs: str) -> bool:
+    """Whether a case is without what a result needs: a building, or some key.
+
+    Parameters
+    ----------
+    case
+        Resolved.
+    needs
+        As in the table of results: ``a superstructure``, or a dotted key and ``in the case``.
+    """
+    if needs == "a superstructure":
+        return case.structure.superstructure is None
+    content: Any = case.document
+    for part in needs.removesuffix(" in the case").split("."):
+        if part not in content:
+            return True
+        content = content[part]
+    return False
 
 
 def _digest(building: Superstructure) -> bytes:

@@ -111,7 +111,7 @@ def fragility_report(
 ) -> FragilityReport:
     """Fit every limit state of every group of systems; samples and records are pooled."""
     keys = options.series if options.series is not None else leading_keys(table.design)
-    limits = tuple(_limit_states(options))
+    limits = tuple(limit_states(options))
     systems = groups(table.design, keys)
     curves = (
         _fragility(table, measured, options, group.values, group.points, limit)
@@ -121,7 +121,8 @@ def fragility_report(
     return FragilityReport(measured, options.confidence, keys, limits, tuple(curves))
 
 
-def _limit_states(options: FragilityOptions) -> Iterator[LimitState]:
+def limit_states(options: FragilityOptions) -> Iterator[LimitState]:
+    """The limit states that a study asks for."""
     limits = options.limits
     for quantity in LIMITED:
         for threshold in getattr(limits, quantity.name) or ():

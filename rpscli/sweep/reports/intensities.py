@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from rpscli.case.schema.case_file import Time
+from rpscli.case.schema.key_units import unit as key_unit
 from rpscli.case.study.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions
 from rpscli.case.study.schema import Measure
@@ -23,6 +24,15 @@ UNITS: dict[Measure, str] = {
     "Arias": "m/s",
     "CAV": "m/s",
 }
+
+
+def unit_of(name: str) -> str:
+    """SI unit of a measure or of a varied key; ``-`` for plain numbers and words.
+
+    >>> unit_of("PGA"), unit_of("superstructure.period"), unit_of("scale")
+    ('m/s2', 's', '-')
+    """
+    return next((unit for measure, unit in UNITS.items() if measure == name), key_unit(name))
 
 
 class MeasureOptions(ReportOptions):

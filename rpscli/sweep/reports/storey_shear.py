@@ -11,7 +11,7 @@ from pydantic import Field
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import CaseError
-from rpscli.sweep.reports.fixed_base import FixedBaseReferences
+from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.reports.fixed_base import FixedBaseReferences, fixed_base_references
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, intensity
+from rpscli.sweep.statistics.fixed_base import FixedBaseReferences, fixed_base_references
 from rpscli.sweep.store import Store, Stored
 from rpscli.sweep.table import Table
 
@@ -26,6 +27,7 @@ class StudyResults:
         """Everything that is stored of each point, lists too."""
         return self.store.stored(self.keys)
 
+    @cached_property
     def fixed_base(self) -> FixedBaseReferences:
         """Storey shears on a fixed base; computed if they are not stored."""
         return fixed_base_references(self.table.design, self.context, self.store, self.jobs)

@@ -1,0 +1,123 @@
+"""A study as tables for a terminal: demands of each system at each intensity, and verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from rpscli.case.conditions import condition_text
+from rpscli.commands.shell.numbers import large, shown
+from rpscli.commands.shell.tables import table
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.table import Table
+
+    from rpscli.analyses.result_quantities import ResultQuantity
+    from rpscli.sweep.statistics.fractiles import Spread
+    from rpscli.sweep.statistics.summary import Summary
+    from rpscli.sweep.statistics.verdicts import StudyVerdict
+
+MOST_ROWS = 40
+"""The CSV files have them all."""
+DIGITS = 3
+A_TABLE = 3
+"""Quantities side by side in a table that fits a page."""
+
+
+def summary_tables(summary: Summary) -> Iterator[RenderableType]:
+    """Outcomes; then median, 84 % fractile and largest value of the main demands."""
+    rows = summary.rows[:MOST_ROWS]
+    heads, cells = _system_columns(summary, [row.values for row in rows])
+    shares = [(row.failed, row.overturned) for row in rows]
+    outcomes = [
+        [str(over.of), str(failed), str(over.number), over.interval] for failed, over in shares
+    ]
+    yield table(
+        [*heads, "counted", "failed", "overturned", "95 % interval"],
+        [[*system, *outcome] for system, outcome in zip(cells, outcomes, strict=True)],
+        words=len(heads),
+    )
+    main = [place for place, quantity in enumerate(summary.quantities) if quantity.demand]
+    for first in range(0, len(main), A_TABLE):
+        places = main[first : first + A_TABLE]
+        named = [_head(summary.quantities[place]) for place in places]
+        spreads = [
+            [_spread(row.spreads[place], summary.quantities[place]) for place in places]
+            for row in rows
+        ]
+        yield table(
+            [*heads, *named],
+            [[*system, *spread] for system, spread in zip(cells, spreads, strict=True)],
+            words=len(heads),
+        )
+    yield (
+        "demands: median / 84 % fractile / largest; an overturned history is larger than any"
+        " demand (inf)"
+    )
+    if summary.pooled:
+        yield f"each row is over all records and {' and '.join(summary.pooled)}"
+    if len(summary.rows) > len(rows):
+        yield f"the first {len(rows)} of {len(summary.rows)} rows; all are in statistics.csv"
+
+
+def _system_columns(
+    summary: Summary, rows: Sequence[tuple[object, ...]]
+) -> tuple[list[str], list[list[str]]]:
+    from rpscli.report.study.labels import plain, symbol  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.sweep.reports.intensities import unit_of  # noqa: PLC0415
+
+    heads = []
+    for key in summary.keys:
+        unit = unit_of(key)
+        heads.append(symbol(key) if unit == "-" else f"{symbol(key)} {unit}")
+    return heads, [[plain(value) for value in row] for row in rows]
+
+
+def _head(quantity: ResultQuantity) -> str:
+    _, unit = large(None, quantity.unit)
+    return f"{quantity.label} {unit}".strip()
+
+
+def _spread(spread: Spread, quantity: ResultQuantity) -> str:
+    values = [large(value, quantity.unit)[0] for value in spread]
+    return " / ".join(shown(value, DIGITS) for value in values)
+
+
+def verdict_table(summary: Summary, verdicts: Sequence[StudyVerdict]) -> Table:
+    """Every limit of each system and intensity; those that are exceeded first."""
+    ordered = sorted(verdicts, key=lambda verdict: not verdict.exceeded)[:MOST_ROWS]
+    heads, cells = _system_columns(summary, [verdict.values for verdict in ordered])
+    rows = [
+        [
+            *system,
+            verdict.condition.name,
+            "EXCEEDED" if verdict.exceeded else "met",
+            condition_text(verdict.condition),
+            found(verdict),
+        ]
+        for system, verdict in zip(cells, ordered, strict=True)
+    ]
+    return table([*heads, "limit", "", "asked for", "found"], rows, words=len(heads) + 3)
+
+
+def found(verdict: StudyVerdict) -> str:
+    """What a verdict rests on."""
+    if verdict.fractile is not None:
+        return f"{shown(verdict.fractile)} of {verdict.beyond.of} records"
+    fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
+    return f"{verdict.beyond}{fallen}"
+
+
+def verdict_lines(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[str]:
+    """Each exceeded limit in a line."""
+    from rpscli.report.study.labels import labels  # noqa: PLC0415 -- pydantic is slow
+
+    lines = []
+    for verdict in verdicts:
+        if verdict.exceeded:
+            system = labels(keys, verdict.values)
+            asked = f"{verdict.condition.name}: {condition_text(verdict.condition)}"
+            where = f" ({system})" if system else ""
+            lines.append(f"{asked}; {found(verdict)}{where}, {verdict.condition.source}")
+    return lines

@@ -1,0 +1,117 @@
+"""Outcomes and demands of each system at each intensity, and verdicts on them, as documents."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rpscli.case.conditions import LIMITS, Condition
+from rpscli.report.files.csv_text import Column
+from rpscli.report.study.labels import key_columns, quoted
+from rpscli.sweep.statistics.share import Share
+from rpscli.sweep.statistics.summary import Summary
+from rpscli.sweep.statistics.verdicts import StudyVerdict
+
+SPREAD = {"median": "median", "84": "high", "largest": "largest"}
+"""What follows the name of a quantity in a column, and the attribute of its spread."""
+
+
+def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
+    """Count, share and interval; `name` is what is counted."""
+    return [
+        Column(name, "-", [share.number for share in shares]),
+        Column(f"{name}_share", "-", [share.fraction for share in shares]),
+        Column(f"{name}_low", "-", [share.low for share in shares]),
+        Column(f"{name}_high", "-", [share.high for share in shares]),
+    ]
+
+
+def summary_columns(summary: Summary) -> list[Column]:
+    """`statistics.csv`: one row a system and intensity.
+
+    A demand is ``inf`` where so many overturned, and empty where there is none.
+    """
+    rows = summary.rows
+    columns = key_columns(summary.keys, [row.values for row in rows])
+    columns.append(Column("counted", "-", [row.overturned.of for row in rows]))
+    columns.append(Column("failed", "-", [row.failed for row in rows]))
+    columns += share_columns("overturned", [row.overturned for row in rows])
+    for place, quantity in enumerate(summary.quantities):
+        for suffix, attribute in SPREAD.items():
+            values = [reached(getattr(row.spreads[place], attribute)) for row in rows]
+            columns.append(Column(f"{quantity.name}_{suffix}", quantity.unit, values))
+    return columns
+
+
+def reached(value: float) -> float | str:
+    """A demand for a cell of a CSV file: ``inf`` for that of an overturned history."""
+    return "inf" if value == float("inf") else value
+
+
+def verdict_columns(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[Column]:
+    """`verdicts.csv`: one row a limit of each system and intensity."""
+    conditions = [verdict.condition for verdict in verdicts]
+    fractiles = [None if v.fractile is None else reached(v.fractile) for v in verdicts]
+    return [
+        *key_columns(keys, [verdict.values for verdict in verdicts]),
+        Column("limit", "-", [condition.name for condition in conditions]),
+        Column("unit", "-", [_unit(condition) for condition in conditions]),
+        Column("at_most", "SI", [condition.limit for condition in conditions]),
+        Column("admissible_share", "-", [_share(condition) for condition in conditions]),
+        Column("fractile", "-", [condition.fractile for condition in conditions]),
+        Column("value_at_fractile", "SI", fractiles),
+        Column("counted", "-", [verdict.beyond.of for verdict in verdicts]),
+        *share_columns("beyond", [verdict.beyond for verdict in verdicts]),
+        Column("overturned_among_them", "-", [verdict.overturned for verdict in verdicts]),
+        Column("exceeded", "-", [str(verdict.exceeded).lower() for verdict in verdicts]),
+        Column("source", "-", [quoted(condition.source) for condition in conditions]),
+    ]
+
+
+def _unit(condition: Condition) -> str:
+    return LIMITS[condition.name].unit if condition.name in LIMITS else "-"
+
+
+def _share(condition: Condition) -> float | None:
+    return condition.share if condition.fractile is None else None
+
+
+def summary_document(summary: Summary) -> list[dict[str, Any]]:
+    """The rows in JSON; a demand is null where so many overturned."""
+    return [
+        {
+            "system": dict(zip(summary.keys, row.values, strict=True)),
+            "counted": row.overturned.of,
+            "failed": row.failed,
+            "overturned": share_document(row.overturned),
+            "demands": {
+                quantity.name: {
+                    "median": spread.median,
+                    "fractile_84": spread.high,
+                    "largest": spread.largest,
+                }
+                for quantity, spread in zip(summary.quantities, row.spreads, strict=True)
+            },
+        }
+        for row in summary.rows
+    ]
+
+
+def share_document(share: Share) -> dict[str, Any]:
+    """A share in JSON."""
+    return {"count": share.number, "share": share.fraction, "low": share.low, "high": share.high}
+
+
+def verdict_document(keys: Sequence[str], verdict: StudyVerdict) -> dict[str, Any]:
+    """A verdict in JSON."""
+    condition = asdict(verdict.condition)
+    return {
+        "system": dict(zip(keys, verdict.values, strict=True)),
+        **condition,
+        "counted": verdict.beyond.of,
+        "beyond": share_document(verdict.beyond),
+        "overturned_among_them": verdict.overturned,
+        "value_at_fractile": verdict.fractile,
+        "exceeded": verdict.exceeded,
+    }

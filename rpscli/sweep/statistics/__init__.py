@@ -1,0 +1,1 @@
+"""What the histories of a study say together: shares, fractiles, verdicts."""

@@ -1,0 +1,94 @@
+"""Outcomes and demands of each system at each intensity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
+from rpscli.sweep.statistics.fractiles import Spread, demand, spread
+from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
+from rpscli.sweep.statistics.share import Share, share
+from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
+
+REDUCTION = ResultQuantity(
+    "base_shear_over_fixed_base", "-", "base shear over fixed base", demand=True
+)
+
+
+@dataclass(frozen=True, eq=False)
+class SummaryRow:
+    """Histories of one system at one intensity.
+
+    `points` are those that did not fail, `spreads` belong to the quantities of the summary.
+    """
+
+    values: tuple[object, ...]
+    points: Indices
+    failed: int
+    overturned: Share
+    spreads: tuple[Spread, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Summary:
+    """All rows; `pooled` says what differs within a row besides the record, `notes` warn of it."""
+
+    keys: tuple[str, ...]
+    pooled: tuple[str, ...]
+    notes: tuple[str, ...]
+    quantities: tuple[ResultQuantity, ...]
+    rows: tuple[SummaryRow, ...]
+
+
+def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
+    """Count and order the histories of each system at each intensity.
+
+    Parameters
+    ----------
+    table
+        Of time histories.
+    fixed
+        Storey shears on a fixed base, as a reference.
+    """
+    design = table.design
+    keys = apart(design, leading_keys(design))
+    columns = {quantity: table.columns[quantity.name] for quantity in LIMITED}
+    columns[REDUCTION] = shear_over_fixed_base(table, fixed)
+    known = {q: demand(table, v) for q, v in columns.items() if not np.isnan(v).all()}
+    rows = []
+    for group in groups(design, keys):
+        points = group.points[~table.failed[group.points]]
+        rows.append(
+            SummaryRow(
+                values=group.values,
+                points=points,
+                failed=len(group.points) - len(points),
+                overturned=share(int(table.overturned[points].sum()), len(points)),
+                spreads=tuple(spread(column[points]) for column in known.values()),
+            )
+        )
+    return Summary(
+        keys=shown_keys(design, keys),
+        pooled=pooled(design, keys),
+        notes=tuple(pooling_note(design, keys)),
+        quantities=tuple(known),
+        rows=tuple(rows),
+    )
+
+
+def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
+    """(points,) base shear over that of the same building on a fixed base; NaN without one."""
+    design = table.design
+    within = design.points_of_system // len(design.records)
+    reference = np.full(len(design), np.nan)
+    for system, properties in enumerate(design.properties):
+        for place, record in enumerate(design.records):
+            request = record or properties.record
+            if request is not None and (system, request) in fixed:
+                first = system * design.points_of_system + place * within
+                reference[first : first + within] = fixed[system, request][0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(table.columns["max_base_shear"] / (np.abs(table.scale) * reference))

@@ -1,0 +1,240 @@
+"""Shares with intervals, fractiles with overturned histories, verdicts: numbers by hand."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+from scipy.stats import beta
+
+from rpscli.case.conditions import Condition
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.statistics.fractiles import Spread
+from rpscli.sweep.statistics.pooling import apart, pooled
+from rpscli.sweep.statistics.share import share
+from rpscli.sweep.statistics.summary import Summary, summary
+from rpscli.sweep.statistics.verdicts import judged
+from rpscli.sweep.store import Stored
+from rpscli.sweep.table import Table
+from sweep.made_up import ALPHA, RHO, place, stored, table_of
+from sweep.small_studies import BASE, STUDY, Make
+
+FIVE = ("seed: [1, 2, 3]", "seed: [1, 2, 3, 4, 5]")
+
+
+@pytest.mark.parametrize("of", [1, 5, 22, 100])
+def test_none_and_all_have_an_interval_with_one_end(of: int) -> None:
+    # With a probability p of each, none of n has (1 - p)^n, which is 5 % at the end.
+    end = 1.0 - 0.05 ** (1.0 / of)
+    none, every = share(0, of), share(of, of)
+    assert (none.low, none.high) == pytest.approx((0.0, end), abs=1e-9)
+    assert (every.low, every.high) == pytest.approx((1.0 - end, 1.0), abs=1e-9)
+
+
+@pytest.mark.parametrize(("number", "of"), [(1, 22), (3, 22), (9, 22), (50, 100)])
+def test_the_interval_is_that_of_clopper_and_pearson(number: int, of: int) -> None:
+    found = share(number, of)
+    assert found.low == pytest.approx(beta.ppf(0.025, number, of - number + 1), abs=1e-9)
+    assert found.high == pytest.approx(beta.ppf(0.975, number + 1, of - number), abs=1e-9)
+
+
+def test_shares_say_what_users_read() -> None:
+    assert str(share(0, 22)) == "0 of 22 (95 %: below 0.13)"
+    assert str(share(3, 22)) == "3 of 22 (95 %: 0.029 to 0.35)"
+    assert str(share(0, 0)) == "0 of 0 (95 %: -)"
+
+
+def made(make: Make) -> tuple[Table, Summary]:
+    """Flat ends overturn under records 4 and 5 at scale 1; record 3 fails at scale 0.5."""
+    design = lay_out(make(STUDY, FIVE))
+
+    def answer(number: int) -> Stored:
+        at = place(design, number)
+        record = int(str(at["record"]))
+        if at["scale"] == 0.5 and record == 3:
+            return Stored("failed", "why", {})
+        falls = at[RHO] == 0 and at["scale"] == 1.0 and record >= 4
+        outcome = "overturned_rocking" if falls else "survived"
+        return stored(outcome, rotation_ratio=record / 10, uplifts=2.0, max_base_shear=1e6)
+
+    table = table_of(make, answer, FIVE)
+    fixed = {
+        (system, request): np.array([4e6, 1.0, 1.0])
+        for system in range(6)
+        for request in design.records
+        if request
+    }
+    return table, summary(table, fixed)
+
+
+def spread_of(result: Summary, row: int, name: str) -> Spread:
+    names = [quantity.name for quantity in result.quantities]
+    return result.rows[row].spreads[names.index(name)]
+
+
+def test_every_system_at_every_intensity_has_a_row(study_of: Make) -> None:
+    _, result = made(study_of)
+    assert result.keys == (ALPHA, RHO, "scale")
+    assert (result.pooled, result.notes) == ((), ())
+    assert [row.values[2] for row in result.rows] == [0.5, 1.0] * 6
+    weak, strong = result.rows[4], result.rows[5]
+    assert weak.values == (0.10, 0, 0.5)
+    assert (weak.overturned.of, weak.failed, weak.overturned.number) == (4, 1, 0)
+    assert (strong.overturned.of, strong.failed, strong.overturned.number) == (5, 0, 2)
+
+
+def test_an_overturned_history_is_larger_than_any_demand(study_of: Make) -> None:
+    _, result = made(study_of)
+    # 0.1, 0.2, 0.3, overturned, overturned: the third of five is the median.
+    assert spread_of(result, 5, "rotation_ratio") == pytest.approx((0.3, math.inf, math.inf))
+    # 0.1, 0.2, 0.4, 0.5 without the failed one; 84 % of four are more than three.
+    assert spread_of(result, 4, "rotation_ratio") == pytest.approx((0.2, 0.5, 0.5))
+    assert spread_of(result, 3, "rotation_ratio") == pytest.approx((0.3, 0.5, 0.5))
+
+
+def test_the_reduction_is_against_the_fixed_base_at_the_same_scale(study_of: Make) -> None:
+    _, result = made(study_of)
+    # `stored` gives every point the scale 1, so that the reference is 4 MN.
+    name = "base_shear_over_fixed_base"
+    assert spread_of(result, 0, name) == pytest.approx((0.25, 0.25, 0.25))
+    assert spread_of(result, 5, name).median == pytest.approx(0.25)
+
+
+def test_what_is_pooled_is_said(study_of: Make) -> None:
+    design = lay_out(study_of(STUDY + "perturb: {members: 4}\n"))
+    assert apart(design, (RHO,)) == (RHO, "scale")
+    assert pooled(design, (RHO,)) == (f"2 values of {ALPHA}", "2 intensities", "4 members")
+    assert pooled(design, (ALPHA, RHO, "scale")) == ("4 members",)
+    single = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0]")))
+    assert apart(single, (RHO,)) == (RHO,)
+    assert pooled(single, (ALPHA, RHO)) == ()
+
+
+@pytest.mark.parametrize(
+    ("condition", "exceeded", "beyond", "fallen"),
+    [
+        (Condition("rotation_ratio", 0.45, ""), True, 2, 2),
+        (Condition("rotation_ratio", 0.25, ""), True, 3, 2),
+        (Condition("rotation_ratio", 0.25, "", share=0.6), False, 3, 2),
+        (Condition("rotation_ratio", 0.25, "", share=0.59), True, 3, 2),
+        (Condition("rotation_ratio", 0.3, "", fractile=0.6), False, 2, 2),
+        (Condition("rotation_ratio", 9.0, "", fractile=0.61), True, 2, 2),
+        (Condition("overturning", 0.0, ""), True, 2, 0),
+        (Condition("overturning", 0.0, "", share=0.4), False, 2, 0),
+        (Condition("uplift", 0.0, "", share=0.9), True, 5, 0),
+    ],
+)
+def test_verdicts(
+    study_of: Make, condition: Condition, exceeded: bool, beyond: int, fallen: int
+) -> None:
+    table, result = made(study_of)
+    (verdict,) = [
+        found for found in judged(table, result, [condition]) if found.values == (0.10, 0, 1.0)
+    ]
+    assert verdict.exceeded == exceeded
+    assert (verdict.beyond.number, verdict.beyond.of, verdict.overturned) == (beyond, 5, fallen)
+
+
+def test_limits_of_the_study_stand_above_those_of_its_case(study_of: Make) -> None:
+    base = Path("base.yaml")
+    base.write_text(BASE + "limits: {rotation_ratio: 0.5, drift_ratio: 0.01}\n", encoding="utf-8")
+    given = STUDY + "limits: {rotation_ratio: {at_most: 0.4, share: 0.1}}\n"
+    design = lay_out(study_of(given))
+    assert design.properties[3].limits == (
+        Condition("rotation_ratio", 0.4, "limits of the study", share=0.1),
+        Condition("drift_ratio", 0.01, "limits of the case"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("limits", "options", "code"),
+    [
+        ("{rotation_ratio: 1.5}", (), 0),
+        ("{rotation_ratio: 1e-6}", (), 10),
+        ("{rotation_ratio: {at_most: 1e-6, share: 0.99}}", (), 10),
+        ("{rotation_ratio: 1.5}", ("--fail-on", "overturning=0.5"), 0),
+        ("{rotation_ratio: 1.5}", ("--fail-on", "uplift=0.1"), 10),
+        ("{}", ("--fail-on", "max_base_shear=1"), 10),
+    ],
+)
+def test_a_study_is_judged(
+    workplace: Path,
+    sweep_json: Callable[..., dict[str, Any]],
+    limits: str,
+    options: tuple[str, ...],
+    code: int,
+) -> None:
+    (workplace / "base.yaml").write_text(BASE + f"limits: {limits}\n", encoding="utf-8")
+    document = sweep_json("study.yaml", *options, exit_code=code)
+    assert (document["status"], document["exit_code"]) == ("ok", code)
+    assert document["passed"] == (code == 0)
+    assert any(row["exceeded"] for row in document["verdicts"]) == (code == 10)
+    with (workplace / "results/study/sweep/verdicts.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(document["verdicts"])
+    assert {row["exceeded [-]"] for row in rows} <= {"true", "false"}
+
+
+def test_the_table_is_in_terminal_csv_and_json(
+    workplace: Path, sweep: Callable[..., Result], sweep_json: Callable[..., dict[str, Any]]
+) -> None:
+    document = sweep_json("study.yaml")
+    text = sweep("study.yaml").stdout
+    with (workplace / "results/study/sweep/statistics.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    with (workplace / "results/study/sweep/points.csv").open(newline="") as file:
+        points = list(csv.DictReader(file))
+    assert len(rows) == len(document["statistics"]) == 12
+    for row, shown in zip(rows, document["statistics"], strict=True):
+        system = [
+            point
+            for point in points
+            if all(point[f"{key} [-]"] == row[f"{key} [-]"] for key in (ALPHA, RHO))
+            and float(point["scale [-]"]) == float(row["scale [-]"])
+        ]
+        assert [point["outcome [-]"] for point in system].count("failed") == int(row["failed [-]"])
+        stood = sorted(float(point["max_cap_beam_displacement [m]"]) for point in system)
+        # Without overturned ones the median of three is the second, and the largest the last.
+        assert not any(point["outcome [-]"].startswith("overturned") for point in system)
+        assert float(row["max_cap_beam_displacement_median [m]"]) == pytest.approx(stood[1])
+        assert float(row["max_cap_beam_displacement_largest [m]"]) == pytest.approx(stood[2])
+        assert shown["demands"]["max_cap_beam_displacement"]["median"] == stood[1]
+        assert shown["overturned"]["count"] == 0
+    for words in ("95 % interval", "below 0.63", "cap beam displacement m", "base shear kN"):
+        assert words in text
+
+
+@pytest.mark.parametrize(
+    ("addition", "message"),
+    [
+        ("limits: {drift_ratio: 0.01}\n", "limits.drift_ratio needs"),
+        ("reports: [ida: {demand: drift_ratio}]\n", "the report ida: drift_ratio needs"),
+        (
+            "reports: [fragility: {limits: {drift_ratio: 0.01}}]\n",
+            "the report fragility: drift_ratio needs",
+        ),
+        ("reports: [lines: {x: scale, y: drift_ratio}]\n", "the report lines: drift_ratio needs"),
+    ],
+)
+def test_results_that_no_system_has_are_refused_before_anything_runs(
+    workplace: Path, sweep: Callable[..., Result], addition: str, message: str
+) -> None:
+    heights = "  storey_height: 3.0\n"
+    (workplace / "base.yaml").write_text(BASE.replace(heights, ""), encoding="utf-8")
+    (workplace / "study.yaml").write_text(STUDY + addition, encoding="utf-8")
+    for options in (("--dry-run",), ()):
+        result = sweep("study.yaml", *options)
+        assert result.exit_code == 3
+        assert message in result.stderr
+        assert "storey_height" in result.stderr
+    assert not (workplace / "results").exists()
+    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
+    result = sweep("study.yaml", "--fail-on", "drift_ratio=0.1")
+    assert result.exit_code == 2
+    assert "storey_height" in result.stderr
