@@ -148,6 +148,7 @@ def _conclude(
     found = collect(given, results, conditions, folder)
     failures, notes = found.failures, found.notes
     error = _first_error(found, len(table))
+    store.require()
     write(folder, terminal)
     terminal.warn(notes[:WARNINGS_SHOWN])
     if len(notes) > WARNINGS_SHOWN:
