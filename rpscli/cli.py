@@ -34,7 +34,10 @@ class Program(LazyGroup):
         options["standalone_mode"] = False
         try:
             code = super().main(words, *rest, **options)
-        except SystemExit:
+        except SystemExit as end:
+            # Click leaves with 1 if nobody reads its help to the end, as in `rps --help | head -1`.
+            if end.code == 1 and {"--help", "-h", "--version"}.intersection(words):
+                sys.exit(0)
             raise
         except BaseException as error:  # noqa: BLE001 -- the last stop of every error
             # Imported now, when it is needed.

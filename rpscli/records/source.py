@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import glob
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from rpscli.errors import RecordError, nearest
@@ -51,6 +52,11 @@ def load_record(
     RecordError
         If there is no such record, or it cannot be read without guessing.
     """
+    with _readable(source):
+        return _loaded(source, folder, dt, units)
+
+
+def _loaded(source: str, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
     scheme, rest = _split_scheme(source, folder)
     if scheme:
         if dt is not None or units is not None:
@@ -102,6 +108,18 @@ def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> lis
     return list(dict.fromkeys(expanded))
 
 
+@contextmanager
+def _readable(source: str) -> Iterator[None]:
+    """Paths that the system refuses: no permission, too long, a working folder that is gone."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or error
+        raise RecordError(
+            f"{source[:200]}: cannot be read: {reason}; check the name and the permissions"
+        ) from None
+
+
 def _differ(one: str, other: str) -> bool:
     units = canonical_unit(one), canonical_unit(other)
     if units[0] is None or units[1] is None:
@@ -110,6 +128,11 @@ def _differ(one: str, other: str) -> bool:
 
 
 def _expand(source: str, folder: Path | None) -> list[str]:
+    with _readable(source):
+        return _expanded(source, folder)
+
+
+def _expanded(source: str, folder: Path | None) -> list[str]:
     scheme, rest = _split_scheme(source, folder)
     if scheme == sets.SCHEME:
         return sets.expand_set(rest, source)
@@ -155,7 +178,13 @@ def _split_options(source: str) -> tuple[str, str]:
 
 
 def _located(place: str, folder: Path | None) -> Path:
-    return (folder or Path()) / Path(place).expanduser()
+    try:
+        path = Path(place).expanduser()
+    except RuntimeError:
+        raise RecordError(f"{place}: there is no such user; write the folder out") from None
+    if "\0" in place:
+        raise RecordError(f"{place[:200]!r}: no path holds a zero byte; correct the name")
+    return (folder or Path()) / path
 
 
 def _require_file(path: Path, source: str) -> None:

@@ -136,6 +136,34 @@ def test_a_fault_of_ours_says_so(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -
     assert "Traceback" in rps("modal", "small.yaml").stderr
 
 
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (PermissionError(13, "Permission denied", "a/b"), "a/b: Permission denied; check the path"),
+        (MemoryError(), "more memory is needed than there is"),
+        (RecursionError("too deep"), "more memory is needed than there is"),
+    ],
+)
+def test_what_the_machine_refuses_is_no_fault_of_ours(
+    rps: Invoke, monkeypatch: pytest.MonkeyPatch, error: Exception, words: str
+) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr("rpscli.analyses.modal.modal", refused)
+    result = rps("modal", "small.yaml")
+    assert result.exit_code == 1
+    assert words in result.stderr
+    assert "internal" not in result.stderr
+
+
+def test_a_working_folder_that_is_gone(shell: Shell) -> None:
+    line = "here=$PWD; mkdir gone; cd gone; rmdir ../gone; rps modal $here/small.yaml; echo $?"
+    result = shell(line)
+    assert result.stdout.splitlines()[-1] == "1"
+    assert "cannot be written: No such file or directory" in result.stderr
+
+
 def test_no_arguments_show_the_help(rps: Invoke) -> None:
     result = rps()
     assert "timehistory" in result.output
@@ -179,7 +207,14 @@ def test_narrow_terminals_fold_words_and_break_no_number(
 
 def test_a_reader_that_leaves_is_no_error(shell: Shell) -> None:
     line = "rps {} | true; echo ${{PIPESTATUS[0]}}"
-    for command in ("check small.yaml", "check small.yaml --json", "schema"):
+    for command in (
+        "check small.yaml",
+        "check small.yaml --json",
+        "schema",
+        "--help",
+        "sweep -h",
+        "--version",
+    ):
         result = shell(line.format(command))
         assert result.stderr == ""
         assert result.stdout.splitlines()[-1].endswith("0")

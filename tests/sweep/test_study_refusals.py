@@ -29,6 +29,7 @@ def sampled(distribution: str) -> tuple[str, str]:
             "sample: {size: 4, ranges: text}\n" + SCALE,
             ("sample.ranges = 'text'", "keys with their ranges"),
         ),
+        (BASE, "base: study.yaml", ("study.yaml:3:7", "is a study, and a base is a case")),
         # vary
         ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary must be a list of axes")),
         ("  - podium.bearing.curv", "  - 3\n  - podium.bearing.curv", ("vary.1 = 3", "mapping")),
@@ -61,6 +62,7 @@ def sampled(distribution: str) -> tuple[str, str]:
         (SCALE, f"reports: demand\n{SCALE}", ("study.yaml:10:10", "must be a list")),
         (SCALE, f"reports: [3]\n{SCALE}", ("reports.0 = 3", "must be a name")),
         (SCALE, f"reports: [xyzzy]\n{SCALE}", ("no report 'xyzzy'", "known are", "fragility")),
+        (SCALE, f"reports: [{'x' * 5000}]\n{SCALE}", ("no report 'xxx", "xxx...; known are")),
         (SCALE, f"reports: [lines]\n{SCALE}", ("reports.0.x is missing", "reports.0.y is missing")),
         (SCALE, f"reports: [demand: 3]\n{SCALE}", ("demand = 3", "mapping of options")),
         (SCALE, f"reports: [demand: {{panels: [3]}}]\n{SCALE}", ("a key or a list of keys",)),

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from rpscli.case.schema.known_keys import field_at, section_at, unknown_key
-from rpscli.case.text.document import Document
+from rpscli.case.text.document import MOST_FAULTS, Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
 from rpscli.errors import nearest
 
@@ -41,7 +41,7 @@ class SchemaCheck(NamedTuple, Generic[Model]):
 
 def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     """Faults of a document in the eyes of a model, key by key."""
-    empty = list(_nulls(document.content, ()))
+    empty = dict.fromkeys(_nulls(document.content, ()))
     told = {fault.path for fault in document.faults}
     check: SchemaCheck[Model] = SchemaCheck([*document.faults], set(), {}, None)
     for path in empty:
@@ -54,6 +54,8 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     bad = [*empty]
     for error in errors:
         path = _path(error, document)
+        if error["type"] == "too_short" and document.at(path):
+            continue  # its values are refused one by one
         if error["type"] == "extra_forbidden":
             _unknown(check, model, path)
         elif error["type"] != "missing":
@@ -69,6 +71,10 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
 
 
 def _unknown(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
+    # Beyond what is told at once there is no use in looking for what was meant.
+    if len(check.faults) > MOST_FAULTS:
+        check.faults.append(Fault(path, f"{dotted(path)} is not a key of the format", at_key=True))
+        return
     fault, guess = unknown_key(model, path)
     check.faults.append(fault)
     if guess:

@@ -46,7 +46,7 @@ def _faults(document: Document, path: Path, item: object, kinds: ReportKinds) ->
     if kind not in kinds:
         guess = nearest(kind, kinds)
         hint = f"did you mean {guess}?" if guess else f"known are {listed(kinds, 'and')}"
-        yield Fault(options_path, f"{dotted(path)}: there is no report {kind!r}; {hint}")
+        yield Fault(options_path, f"{dotted(path)}: there is no report {shown(kind)}; {hint}")
     elif isinstance(given, dict):
         for fault in schema_check(kinds[kind].options, document.part(*options_path)).faults:
             text = f"{dotted(options_path)}.{fault.text}"

@@ -25,7 +25,7 @@ from rpscli.case.study.rules import (
 from rpscli.case.study.schema import StudyFile
 from rpscli.case.study.sources import sources_of
 from rpscli.case.text.document import Document
-from rpscli.case.text.faults import Fault
+from rpscli.case.text.faults import Fault, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
@@ -192,9 +192,12 @@ def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:
     if isinstance(written, dict):
         return document.part("base"), None
     path = folder / written
+    here = f"{document.value_place(('base',))}: base = {shown(written)}"
     try:
-        return read_yaml(read_text(path), str(path)), path
+        text = read_text(path)
     except CaseError as error:
-        if path.is_file():
-            raise
-        raise CaseError(f"{document.value_place(('base',))}: base = {written!r}: {error}") from None
+        raise CaseError(f"{here}: {error}") from None
+    base = read_yaml(text, str(path))
+    if "base" in base.content and "superstructure" not in base.content:
+        raise CaseError(f"{here} is a study, and a base is a case; name the case that it varies")
+    return base, path

@@ -10,6 +10,9 @@ from typing import Any
 from rpscli.case.text.faults import Fault, Path, Place
 from rpscli.errors import CaseError
 
+MOST_FAULTS = 100
+"""Told at once."""
+
 MISSING = object()
 """Stands for a value that a document does not hold (None is YAML's null)."""
 
@@ -111,7 +114,11 @@ class Document:
         placed = [(self._fault_place(fault), fault.text) for fault in faults]
         placed.sort(key=lambda item: (item[0].rank, item[0].line, item[0].column))
         if placed:
-            lines = dict.fromkeys(f"{place}: {text}" for place, text in placed)
+            lines = list(dict.fromkeys(f"{place}: {text}" for place, text in placed))
+            more = len(lines) - MOST_FAULTS
+            if more > 0:
+                lines = lines[:MOST_FAULTS]
+                lines.append(f"{self.name}: {more} more faults; correct these first")
             raise CaseError("\n".join(lines))
 
     def _fault_place(self, fault: Fault) -> Place:

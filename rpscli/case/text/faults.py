@@ -64,12 +64,12 @@ class Fault:
 
 
 def dotted(path: Path) -> str:
-    """A path as the user writes it.
+    """A path as the user writes it, long keys cut.
 
     >>> dotted(("superstructure", "storey_mass", 0))
     'superstructure.storey_mass.0'
     """
-    return ".".join(str(part) for part in path)
+    return ".".join(part if len(part) <= 60 else f"{part[:57]}..." for part in map(str, path))
 
 
 def shown(value: object, width: int = 60) -> str:

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import os
+import select
+import stat
 import sys
 from importlib import resources
 from pathlib import Path
+from typing import BinaryIO
 
 from rpscli.errors import CaseError, nearest
 
 STDIN = "-"
+LARGEST = 2_000_000
+"""Bytes of a case or study file; a case of two hundred storeys has ten thousand."""
+_PATIENCE = 10.0
+"""Seconds that a named pipe may stay without a writer."""
 
 
 def read_text(source: str | Path) -> str:
@@ -17,22 +25,51 @@ def read_text(source: str | Path) -> str:
     Raises
     ------
     CaseError
-        If there is no such file, it is a folder, it cannot be read, or it is not UTF-8.
+        If there is no such file, it is a folder or a device, it cannot be read, it is too large,
+        or it is not UTF-8.
     """
     if str(source) == STDIN:
         if sys.stdin is None:
             raise CaseError("<stdin>: the standard input is closed; name a file, or pipe a case in")
-        return decoded(sys.stdin.buffer.read(), "<stdin>")
+        return decoded(_bounded(sys.stdin.buffer, "<stdin>"), "<stdin>")
     path = Path(source)
-    if path.is_dir():
-        raise CaseError(f"{source}: is a folder; name a file in it{_example(path)}")
     try:
-        return decoded(path.read_bytes(), str(source))
+        kind = path.stat().st_mode
+        if stat.S_ISDIR(kind):
+            raise CaseError(f"{source}: is a folder; name a file in it{_example(path)}")
+        if stat.S_ISCHR(kind) or stat.S_ISBLK(kind):
+            raise CaseError(f"{source}: is a device; name a file, or `-` for the standard input")
+        with _opened(path, kind) as file:
+            return decoded(_bounded(file, str(source)), str(source))
     except FileNotFoundError:
         raise CaseError(f"{source}: there is no such file{_similar(path)}") from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise CaseError(f"{source}: cannot be read: {reason}") from None
+        raise CaseError(
+            f"{str(source)[:200]}: cannot be read: {reason}; check the name and the permissions"
+        ) from None
+
+
+def _opened(path: Path, kind: int) -> BinaryIO:
+    """The file; a pipe must have a writer, for without one reading would never end."""
+    if not stat.S_ISFIFO(kind):
+        return path.open("rb")
+    pipe = os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb")
+    if not select.select([pipe], [], [], _PATIENCE)[0]:
+        pipe.close()
+        raise CaseError(f"{path}: nothing writes to this pipe; name a file, or write to it first")
+    os.set_blocking(pipe.fileno(), True)
+    return pipe
+
+
+def _bounded(file: BinaryIO, name: str) -> bytes:
+    data = file.read(LARGEST + 1)
+    if len(data) > LARGEST:
+        raise CaseError(
+            f"{name}: more than {LARGEST / 1e6:g} MB is no case or study; records are named by"
+            " their files, not written out"
+        )
+    return data
 
 
 def decoded(data: bytes, name: str) -> str:

@@ -17,7 +17,8 @@ REMEDIES = {
     " quotes",
     "found unexpected end of stream": "a quotation mark is not closed",
     "cannot start any token": "text that begins with this character needs quotes",
-    "nested over": "brackets are nested without end; close them",
+    "nested over": "a case is five levels deep: close brackets, or take indentation out",
+    "nodes": "no case or study has so many values",
 }
 """What to do, by a part of PyYAML's message; the first that fits counts."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -17,7 +18,7 @@ from rpscli.errors import CaseError
 
 DEEPEST = 40
 """Levels of nesting; a case needs five."""
-LARGEST = 100_000
+LARGEST = 20_000
 """Values in a document, aliases counted each time they are used."""
 
 
@@ -43,13 +44,17 @@ class CoreLoader(yaml.SafeLoader):
     yaml_implicit_resolvers: dict[Any, Any] = {}  # noqa: RUF012 -- PyYAML's own class attribute
 
     depth = 0
+    nodes = 0
 
     def compose_node(self, parent: Node | None, index: int) -> Node | None:
-        """Compose one node, unless it is nested deeper than anything sensible."""
+        """Compose one node, unless there are more, or deeper ones, than anything sensible."""
         self.depth += 1
-        if self.depth > DEEPEST:
+        self.nodes += 1
+        if self.depth > DEEPEST or self.nodes > 2 * LARGEST:  # keys are nodes too
             mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
-            raise yaml.composer.ComposerError(None, None, f"nested over {DEEPEST} deep", mark)
+            deep = self.depth > DEEPEST
+            problem = f"nested over {DEEPEST} deep" if deep else f"over {2 * LARGEST} nodes"
+            raise yaml.composer.ComposerError(None, None, problem, mark)
         node = super().compose_node(parent, index)
         self.depth -= 1
         return node
@@ -169,7 +174,10 @@ class _Reader:
 
     def pairs(self, node: MappingNode, path: Path) -> Iterator[tuple[str, Node]]:
         """Keys with their nodes, each key once."""
+        commas = _decimal_commas(node)
         for key_node, value_node in node.value:
+            if any(key_node is fraction for fraction in commas.values()):
+                continue
             key = self.key(key_node, path)
             if key is None:
                 continue
@@ -180,6 +188,14 @@ class _Reader:
                 self.fault(here, key_node, text)
                 continue
             self.keys[here] = self.place(key_node)
+            if fraction := commas.get(id(value_node)):
+                text = f"{value_node.value},{fraction.value}"
+                self.fault(
+                    here,
+                    value_node,
+                    f"{dotted(here)} = {text} has a decimal comma; write {text.replace(',', '.')}",
+                )
+                value_node = ScalarNode(TAG + "null", "", value_node.start_mark)  # noqa: PLW2901
             yield key, value_node
 
     def key(self, node: Node, path: Path) -> str | None:
@@ -196,6 +212,25 @@ class _Reader:
 
     def fault(self, path: Path, node: Node, text: str) -> None:
         self.faults.append(Fault(path, text, place=self.place(node)))
+
+
+def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
+    """The fractions of whole numbers with a decimal comma, as in ``{period: 0,3}``.
+
+    YAML reads a second key, a number without a value. By the identity of the number before.
+    """
+    if not node.flow_style:
+        return {}
+    items = node.value
+    return {
+        id(value): fraction
+        for (_, value), (fraction, nothing) in itertools.pairwise(items)
+        if isinstance(fraction, ScalarNode)
+        and isinstance(value, ScalarNode)
+        and value.tag == fraction.tag == TAG + "int"
+        and nothing.tag == TAG + "null"
+        and fraction.start_mark.index == value.end_mark.index + 1
+    }
 
 
 def _scalar(tag: str, text: str) -> Scalar:

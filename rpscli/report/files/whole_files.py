@@ -45,7 +45,10 @@ def require_writable(folder: Path) -> None:
     OutputError
         If it cannot.
     """
-    existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    try:
+        existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    except OSError as error:
+        raise _not_written(folder, error) from None
     if not existing.is_dir():
         raise OutputError(f"{folder}: cannot be a folder of results, {existing} is a file")
     if not os.access(existing, os.W_OK | os.X_OK):
@@ -54,4 +57,6 @@ def require_writable(folder: Path) -> None:
 
 def _not_written(path: Path, error: OSError) -> OutputError:
     reason = error.strerror or str(error)
-    return OutputError(f"{path}: cannot be written: {reason}; name another place with -o")
+    return OutputError(
+        f"{str(path)[:200]}: cannot be written: {reason}; name another place with -o"
+    )

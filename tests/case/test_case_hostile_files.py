@@ -1,0 +1,128 @@
+"""Files that are none, too large, or written to keep a reader busy."""
+
+from __future__ import annotations
+
+import os
+import threading
+from pathlib import Path
+
+import pytest
+
+from rpscli.case.case import load_case, parse_case
+from rpscli.case.text import files
+from rpscli.errors import CaseError, RecordError
+from rpscli.records.source import expand_sources, load_record
+
+
+def refusal(source: Path | str) -> str:
+    with pytest.raises(CaseError) as error:
+        load_case(source)
+    return str(error.value)
+
+
+def text_refusal(text: str) -> str:
+    with pytest.raises(CaseError) as error:
+        parse_case(text, name="c.yaml")
+    return str(error.value)
+
+
+def test_a_name_too_long_is_refused() -> None:
+    assert "cannot be read: File name too long; check" in refusal("x" * 5000)
+    assert len(refusal("x" * 5000)) < 400
+    for read in (load_record, lambda source: expand_sources([source])):
+        with pytest.raises(RecordError, match="cannot be read: File name too long"):
+            read("x" * 5000)
+        with pytest.raises(RecordError, match="there is no such user"):
+            read("~nobodysuch/rec.at2")
+        with pytest.raises(RecordError, match="no path holds a zero byte"):
+            read("a\0b.at2")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_a_folder_without_permission_is_refused(tmp_path: Path) -> None:
+    folder = tmp_path / "closed"
+    folder.mkdir()
+    folder.chmod(0)
+    try:
+        assert "cannot be read: Permission denied" in refusal(folder / "c.yaml")
+        with pytest.raises(RecordError, match="cannot be read: Permission denied"):
+            load_record(str(folder / "rec.at2"))
+        with pytest.raises(RecordError, match="cannot be read: Permission denied"):
+            expand_sources([str(folder)])
+    finally:
+        folder.chmod(0o700)
+
+
+def test_any_refusal_of_the_system_is_an_error_in_plain_words(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Permissions do not stop root, under whom tests may run."""
+
+    def denied(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied", "a")
+
+    monkeypatch.setattr(Path, "stat", denied)
+    assert "cannot be read: Permission denied" in refusal(tmp_path / "c.yaml")
+    with pytest.raises(RecordError, match="cannot be read: Permission denied"):
+        load_record(str(tmp_path / "rec.at2"))
+
+
+@pytest.mark.parametrize("device", ["/dev/zero", "/dev/null", "/dev/urandom"])
+def test_devices_are_refused(device: str) -> None:
+    assert "is a device; name a file" in refusal(device)
+
+
+def test_a_pipe_is_read_if_somebody_writes(
+    tmp_path: Path, building: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    monkeypatch.setattr(files, "_PATIENCE", 0.05)
+    assert "nothing writes to this pipe" in refusal(pipe)
+    monkeypatch.setattr(files, "_PATIENCE", 10.0)
+    writer = threading.Thread(target=lambda: pipe.write_text(building))
+    writer.start()
+    assert load_case(pipe).name == "pipe"
+    writer.join()
+
+
+def test_sizes_are_refused_before_they_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "large.yaml"
+    path.write_bytes(b"rps: 1\ntitle: " + b"x" * files.LARGEST)
+    assert "more than 2 MB is no case or study" in refusal(path)
+
+
+def test_many_values_are_refused_while_they_are_read() -> None:
+    text = "rps: 1\nperiod: [" + "1," * 50_000 + "1]"
+    assert "no case or study has so many values" in text_refusal(text)
+
+
+def test_of_many_faults_the_first_hundred_are_told() -> None:
+    lines = text_refusal("".join(f"key_{number}: 1\n" for number in range(3000))).splitlines()
+    assert len(lines) == 101
+    assert lines[-1].startswith("c.yaml: 29")
+    assert lines[-1].endswith("more faults; correct these first")
+
+
+def test_long_keys_are_cut() -> None:
+    assert max(map(len, text_refusal("k" * 5000 + ": 1\n").splitlines())) < 300
+
+
+@pytest.mark.parametrize("text", ["- " * 60, "\n".join(" " * n + "a:" for n in range(60))])
+def test_nesting_is_named_for_what_it_is(text: str) -> None:
+    message = text_refusal(text)
+    assert "a case is five levels deep: close brackets, or take indentation out" in message
+
+
+def test_a_nested_list_is_not_called_empty(building: str) -> None:
+    message = text_refusal(building.replace("200 t", "[[1, 2, 3]]"))
+    assert message == "c.yaml:4:17: superstructure.storey_mass.0 = [1, 2, 3] must be a mass in kg"
+
+
+def test_a_decimal_comma_in_braces_is_named() -> None:
+    text = "rps: 1\nsuperstructure: {storeys: 3, period: 0,3, storey_height: 3}\n"
+    lines = text_refusal(text).splitlines()
+    named = [line for line in lines if "period" in line]
+    assert named == ["c.yaml:2:38: superstructure.period = 0,3 has a decimal comma; write 0.3"]
+    assert not any("the key 3" in line for line in lines)
+    assert "the key 3 must be text" in text_refusal("a: {b: 0, 3}\n")
