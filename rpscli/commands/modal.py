@@ -13,6 +13,7 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
+    figure_options,
     output_options,
     terminal_options,
 )
@@ -20,6 +21,7 @@ from rpscli.commands.shell.tables import table
 from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.report.documents import heading
+from rpscli.report.figures.look import Look
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -29,12 +31,13 @@ if TYPE_CHECKING:
 
 @click.command("modal")
 @case_options
+@figure_options
 @output_options
 @terminal_options
-def command(request: CaseRequest, output: OutputRequest, terminal: Terminal) -> None:
+def command(request: CaseRequest, output: OutputRequest, terminal: Terminal, look: Look) -> None:
     """Modes of CASE in full contact and, linearised, rolling and rocking.
 
-    Writes modes.csv, shapes.csv, eigenvalues.csv and modes.png.
+    Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
     """
     given = read_case(request, terminal)
     folder = case_folder(given, output, "modal")
@@ -42,7 +45,7 @@ def command(request: CaseRequest, output: OutputRequest, terminal: Terminal) -> 
     from rpscli.report.bundles import modal_files  # noqa: PLC0415
 
     result = modal(given.case.structure)
-    for name, content in modal_files(result, given.case.title):
+    for name, content in modal_files(result, given.case.title, look):
         folder.add(name, content)
     write(folder, terminal)
     document = {

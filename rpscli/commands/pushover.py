@@ -14,6 +14,7 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
+    figure_options,
     output_options,
     terminal_options,
 )
@@ -22,6 +23,7 @@ from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading, pushover_document
+from rpscli.report.figures.look import Look
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -39,15 +41,19 @@ if TYPE_CHECKING:
     help="Floor forces: uniform, triangular, first_mode, or f1,f2,... from the bottom; repeatable."
     " All three named ones by default.",
 )
+@figure_options
 @output_options
 @terminal_options
 def command(
-    request: CaseRequest, output: OutputRequest, terminal: Terminal, patterns: tuple[str, ...]
+    request: CaseRequest,
+    output: OutputRequest,
+    terminal: Terminal,
+    look: Look,
+    patterns: tuple[str, ...],
 ) -> None:
     """Restoring force of the storey of CASE, and capacity curves of the whole structure.
 
-    Writes storey_curve.csv and storey_curve.png and, for a case with storeys, capacity.csv and
-    capacity.png.
+    Writes storey_curve.csv and, for a case with storeys, capacity.csv, and a figure of each.
     """
     given = read_case(request, terminal)
     from rpscli.analyses.pushover import PATTERNS, pushover  # noqa: PLC0415 -- numpy is slow
@@ -61,7 +67,7 @@ def command(
         result = pushover(given.case.structure, patterns=asked)
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
-    for name, content in pushover_files(result, given.case.title):
+    for name, content in pushover_files(result, given.case.title, look):
         folder.add(name, content)
     write(folder, terminal)
     document = {

@@ -18,6 +18,7 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
+    figure_options,
     output_options,
     terminal_options,
 )
@@ -26,6 +27,7 @@ from rpscli.commands.timehistory_tables import timehistory_tables
 from rpscli.errors import AnalysisError, RpsError, UsageError
 from rpscli.report.documents import heading, timehistory_document
 from rpscli.report.figures.drawing import artists
+from rpscli.report.figures.look import Look
 from rpscli.report.files.json_text import json_text
 
 if TYPE_CHECKING:
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
 @click.option(
     "--animate", type=click.Path(path_type=Path), metavar="FILE.gif", help="Also draw it moving."
 )
+@figure_options
 @output_options
 @terminal_options
 def command(
@@ -59,6 +62,7 @@ def command(
     terminal: Terminal,
     fail_on: tuple[str, ...],
     animate: Path | None,
+    look: Look,
     **motion: Any,
 ) -> None:
     """Response of CASE to its record, or to that of --record.
@@ -71,7 +75,7 @@ def command(
     given = read_case(request, terminal)
     ground = load_motion(given.case, MotionRequest(**motion))
     folder = case_folder(given, output, "timehistory", record=motion_inputs(ground))
-    with artists() as drawing:
+    with artists(5 * len(look.endings)) as drawing:
         announce_compilation(terminal, moving=True)
         from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
         from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
@@ -79,7 +83,7 @@ def command(
         result = time_history(
             given.case.structure, ground.horizontal, given.case.analysis, vertical=ground.vertical
         )
-        for name, content in timehistory_files(result, given.case.title, drawing):
+        for name, content in timehistory_files(result, given.case.title, look, drawing):
             folder.add(name, content)
     if result.failure:
         verdicts: list[Verdict] = []

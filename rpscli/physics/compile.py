@@ -8,9 +8,7 @@ what is found there always belongs to the program that runs.
 from __future__ import annotations
 
 import hashlib
-import os
 import re
-import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -18,6 +16,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.extending import register_jitable
+
+from rpscli.user_cache import user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -42,30 +42,13 @@ def sources_digest(folder: Path) -> str:
 
 @cache
 def cache_folder() -> Path | None:
-    """Folder of the compiled kernels; None if no place is writable.
-
-    ``RPS_CACHE_DIR`` wins, then the user's cache folder, then the system's temporary one.
-    """
-    name = f"kernels-{sources_digest(SOURCES)}"
-    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
-    places = [
-        os.environ.get("RPS_CACHE_DIR"),
-        Path(home) / "rps",
-        Path(tempfile.gettempdir()) / "rps",
-    ]
-    for place in places:
-        if place and _is_writable(folder := Path(place) / name):
-            return folder
-    return None
-
-
-def _is_writable(folder: Path) -> bool:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
-    except OSError:
-        return False
+    """Folder of the compiled kernels; None if no place is writable."""
+    place = user_cache()
+    if place is None:
+        return None
+    folder = place / f"kernels-{sources_digest(SOURCES)}"
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 def kernel(function: Function) -> Function:

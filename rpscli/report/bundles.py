@@ -12,8 +12,9 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.spectrum import ResponseSpectrum
 from rpscli.report.figures.capacity import capacity_figure
 from rpscli.report.figures.displacement import displacement_figure
-from rpscli.report.figures.drawing import Artists, drawn
+from rpscli.report.figures.drawing import Artists, Draw, figure_files
 from rpscli.report.figures.energy import energy_figure
+from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.figures.modes import modes_figure
 from rpscli.report.figures.moment import moment_figure
 from rpscli.report.figures.profile import profile_figure
@@ -31,42 +32,45 @@ Files = Iterator[tuple[str, str | bytes]]
 """Names and contents."""
 
 
-def modal_files(result: ModalResult, title: str) -> Files:
+def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     """Files of a modal analysis."""
     yield "modes.csv", csv_text(mode_columns(result))
     yield "shapes.csv", csv_text(shape_columns(result))
     yield "eigenvalues.csv", csv_text(eigenvalue_columns(result))
-    yield "modes.png", modes_figure(result, title)
+    yield from figure_files({"modes": partial(modes_figure, result, title)}, look).items()
 
 
-def pushover_files(result: PushoverResult, title: str) -> Files:
+def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Files:
     """Files of the static characteristics; without a building there are no capacity curves."""
     yield "storey_curve.csv", csv_text(storey_curve_columns(result.curve))
-    yield "storey_curve.png", storey_curve_figure(result, title)
+    figures: dict[str, Draw] = {"storey_curve": partial(storey_curve_figure, result, title)}
     if result.capacity:
         yield "capacity.csv", csv_text(capacity_columns(result.capacity))
-        yield "capacity.png", capacity_figure(result, title)
+        figures["capacity"] = partial(capacity_figure, result, title)
+    yield from figure_files(figures, look).items()
 
 
-def timehistory_files(result: TimeHistoryResult, title: str, artists: Artists = ()) -> Files:
+def timehistory_files(
+    result: TimeHistoryResult, title: str, look: Look = USUAL, artists: Artists = ()
+) -> Files:
     """Files of a time history."""
     yield "timehistory.csv", csv_text(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
     figures: dict[str, Callable[..., bytes]] = {
-        "rotation.png": rotation_figure,
-        "displacements.png": displacement_figure,
-        "moment_rotation.png": moment_figure,
-        "energy.png": energy_figure,
+        "rotation": rotation_figure,
+        "displacements": displacement_figure,
+        "moment_rotation": moment_figure,
+        "energy": energy_figure,
     }
     if result.structure.storeys:
-        figures["storey_shears.png"] = profile_figure
-    draws = {name: partial(draw, result, title) for name, draw in figures.items()}
-    yield from drawn(draws, artists).items()
+        figures["storey_shears"] = profile_figure
+    draws = {stem: partial(draw, result, title) for stem, draw in figures.items()}
+    yield from figure_files(draws, look, artists).items()
 
 
-def record_files(motion: GroundMotion, spectrum: ResponseSpectrum) -> Files:
+def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
     """Files of a ground motion."""
     yield "record.csv", csv_text(motion_columns(motion))
     yield "spectrum.csv", csv_text(spectrum_columns(spectrum))
-    yield "record.png", record_figure(motion, spectrum)
+    yield from figure_files({"record": partial(record_figure, motion, spectrum)}, look).items()

@@ -63,7 +63,7 @@ def figures() -> None:
 def _figures_cost_nothing(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """What figures look like is tested elsewhere; here they only have to be written."""
     if "figures" not in request.fixturenames:
-        monkeypatch.setattr("rpscli.report.figures.style.png", lambda *_: b"a figure")
+        monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
 
 
 @pytest.fixture

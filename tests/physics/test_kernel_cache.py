@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +19,7 @@ from rpscli.physics.compile import (
     remember_compiled,
     sources_digest,
 )
+from rpscli.user_cache import user_cache
 
 
 @pytest.fixture(autouse=True)
@@ -56,6 +59,27 @@ def test_nowhere_to_write_means_no_cache(fresh_folder: pytest.MonkeyPatch, tmp_p
     assert cache_folder() is None
     double = kernel(twice)
     assert double(3.0) == 6.0
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
+def test_a_shared_temporary_folder_is_used_only_if_nobody_else_can_write_there(
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Machine code from there is run."""
+    (tmp_path / "file").write_text("no folder")
+    fresh_folder.setenv("RPS_CACHE_DIR", "")
+    fresh_folder.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    fresh_folder.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    own = tmp_path / f"rps-{os.getuid()}"
+    assert user_cache() == own
+    assert stat.S_IMODE(own.stat().st_mode) == 0o700
+    own.chmod(0o777)
+    assert user_cache() is None
+    own.chmod(0o700)
+    somebody = os.getuid() + 1
+    own.rename(tmp_path / f"rps-{somebody}")
+    fresh_folder.setattr(os, "getuid", lambda: somebody)
+    assert user_cache() is None
 
 
 @pytest.mark.parametrize("source", ["energy.py", "uplifted/steps.py", "formulae/geometry.py"])

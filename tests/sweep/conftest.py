@@ -44,7 +44,7 @@ def study_of(workplace: Path) -> Make:
 @pytest.fixture
 def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures cost nothing; what they look like is not what is tested."""
-    monkeypatch.setattr("rpscli.report.figures.style.png", lambda *_: b"a figure")
+    monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
 
 
 @pytest.fixture

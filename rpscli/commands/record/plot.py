@@ -9,9 +9,15 @@ import click
 from rpscli.commands.case_input import write
 from rpscli.commands.record.info import record_tables
 from rpscli.commands.record.input import record_folder, source_options
-from rpscli.commands.shell.options import OutputRequest, output_options, terminal_options
+from rpscli.commands.shell.options import (
+    OutputRequest,
+    figure_options,
+    output_options,
+    terminal_options,
+)
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.report.documents import heading
+from rpscli.report.figures.look import Look
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
@@ -22,11 +28,12 @@ DAMPING = 0.05
 @click.command("plot")
 @terminal_options
 @source_options
+@figure_options
 @output_options
-def command(motion: GroundMotion, output: OutputRequest, terminal: Terminal) -> None:
+def command(motion: GroundMotion, output: OutputRequest, terminal: Terminal, look: Look) -> None:
     """Draw SRC: acceleration, velocity, displacement and its response spectrum at 5 % damping.
 
-    Writes record.png, record.csv and spectrum.csv.
+    Writes record.csv, spectrum.csv and the figure record.
     """
     import numpy as np  # noqa: PLC0415 -- slow
 
@@ -38,7 +45,7 @@ def command(motion: GroundMotion, output: OutputRequest, terminal: Terminal) -> 
     folder = record_folder(motion, output, "plot")
     periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
     spectrum = response_spectrum(motion, periods, DAMPING)
-    for name, content in record_files(motion, spectrum):
+    for name, content in record_files(motion, spectrum, look):
         folder.add(name, content)
     write(folder, terminal)
     measures = intensity_measures(motion)

@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.user_cache import VARIABLE
+
+NOWHERE = f"no folder for it can be written; name one in {VARIABLE}"
 
 
 def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
@@ -23,7 +26,10 @@ def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
 
     @contextmanager
     def told(name: str) -> Iterator[None]:
-        terminal.note(f"compiling the kernel for {name}, once for this version: half a minute")
+        from rpscli.physics.compile import cache_folder  # noqa: PLC0415 -- numba is slow
+
+        often = "once for this version" if cache_folder() else f"each time: {NOWHERE}"
+        terminal.note(f"compiling the kernel for {name}, {often}: half a minute")
         if moving and not terminal.quiet and sys.stderr is not None and sys.stderr.isatty():
             with _seconds():
                 yield

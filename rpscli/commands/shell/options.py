@@ -14,6 +14,8 @@ from typing import Any
 import click
 
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import UsageError, nearest
+from rpscli.report.figures.look import FORMATS, Look, read_style
 
 Command = Callable[..., None]
 
@@ -65,6 +67,54 @@ def case_options(function: Command) -> Command:
         function(request=CaseRequest(case, overrides), **rest)
 
     return command
+
+
+def figure_options(function: Command) -> Command:
+    """--figures, --columns and --style, as `look`."""
+
+    @click.option(
+        "--figures",
+        metavar="FORMATS",
+        help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none.",
+    )
+    @click.option(
+        "--columns",
+        type=click.Choice(("1", "2")),
+        help="Make figures as wide as one column of a journal (89 mm), or two (178 mm).",
+    )
+    @click.option(
+        "--style",
+        "style_file",
+        type=click.Path(path_type=Path),
+        metavar="FILE.mplstyle",
+        help="matplotlib's settings for the figures: fonts, sizes, lines.",
+    )
+    @functools.wraps(function)
+    def command(
+        *, figures: str | None, columns: str | None, style_file: Path | None, **rest: Any
+    ) -> None:
+        formats = None if figures is None else _formats(figures)
+        style = {} if style_file is None else read_style(style_file)
+        function(look=Look(formats, None if columns is None else int(columns), style), **rest)
+
+    return command
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    """Formats of figures; none at all for the word none.
+
+    >>> _formats("svg, pdf"), _formats("none")
+    (('svg', 'pdf'), ())
+    """
+    words = [word.strip().lower() for word in text.split(",")]
+    if words == ["none"]:
+        return ()
+    for word in words:
+        if word not in FORMATS:
+            close = nearest(word, (*FORMATS, "none"), 0.6)
+            hint = f"did you mean {close}?" if close else "write png, svg, pdf, svg,pdf or none"
+            raise UsageError(f"--figures {text}: {word or 'nothing'} is no format; {hint}")
+    return tuple(dict.fromkeys(words))
 
 
 def output_options(function: Command) -> Command:

@@ -63,6 +63,8 @@ def rendered(tables: Iterable[RenderableType]) -> str:
         file=page,
         force_terminal=screen or None,  # None leaves it to FORCE_COLOR
         width=None if screen or "COLUMNS" in os.environ else PLAIN_WIDTH,
+        # rich leaves bold letters where NO_COLOR asks for none.
+        color_system=None if os.environ.get("NO_COLOR") else "auto",
         highlight=False,
         # Titles and file names may hold [brackets] and :colons:, which mean nothing here.
         markup=False,

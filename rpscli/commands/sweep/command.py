@@ -13,6 +13,7 @@ from rpscli.commands.shell.failure import INTERRUPTED, concluded, leave
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
+    figure_options,
     output_options,
     terminal_options,
 )
@@ -32,6 +33,7 @@ from rpscli.commands.sweep.results import Collected, Failure, collect, outcome_c
 from rpscli.commands.sweep.tables import summary_tables, verdict_lines, verdict_table
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.documents import failure_document, heading
+from rpscli.report.figures.look import Look
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -71,6 +73,7 @@ WARNINGS_SHOWN = 5
     " units); repeatable. The limits of study and case count as well.",
 )
 @click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
+@figure_options
 @output_options
 @terminal_options
 def command(
@@ -79,6 +82,7 @@ def command(
     output: OutputRequest,
     terminal: Terminal,
     fail_on: tuple[str, ...],
+    look: Look,
     **choices: Any,
 ) -> None:
     """Compute all points of STUDY, and draw its reports.
@@ -90,7 +94,7 @@ def command(
     chosen = SweepChoices(**choices)
     chosen.require_sense()
     conditions = [parse_condition(text) for text in fail_on]
-    given = read_study(CaseRequest(study, overrides), terminal)
+    given = read_study(CaseRequest(study, overrides), terminal, look)
     require_results(given, conditions)
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)

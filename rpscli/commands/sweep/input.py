@@ -10,6 +10,7 @@ from rpscli.commands.case_input import RESULTS
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
+from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.files.output_folder import OutputFolder, Run
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ class StudyInput:
     design: Design
     context: StudyContext
     request: CaseRequest
+    look: Look = USUAL
 
     @property
     def study(self) -> Study:
@@ -58,7 +60,7 @@ class StudyInput:
         return None if self.request.source == "-" else Path(self.request.source)
 
 
-def read_study(request: CaseRequest, terminal: Terminal) -> StudyInput:
+def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> StudyInput:
     """Read and check a study and all its systems."""
     from rpscli.case.study.study import parse_study  # noqa: PLC0415
     from rpscli.case.text.files import read_text  # noqa: PLC0415 -- pydantic and yaml are slow
@@ -78,7 +80,7 @@ def read_study(request: CaseRequest, terminal: Terminal) -> StudyInput:
     if (section := study.file.sample) and (note := balance_note(section)):
         terminal.warn([note])
     design = lay_out(study)
-    return StudyInput(design, StudyContext(design.plan), request)
+    return StudyInput(design, StudyContext(design.plan), request, look)
 
 
 def study_folder(given: StudyInput, output: OutputRequest) -> OutputFolder:

@@ -98,7 +98,7 @@ def _report(
     numbers = report.numbers(results, request.options)
     notes = [f"{request.stem}: {note}" for note in report.notes(numbers)]
     title = request.options.title or given.study.title
-    for name, content in list(report.files(numbers, request.stem, title)):
+    for name, content in list(report.files(numbers, request.stem, title, given.look)):
         folder.add(name, content)
     return notes
 

@@ -42,8 +42,10 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
         close.set_xlim(0.0, 3.0 * uplift)
         close.locator_params(axis="x", nbins=5)
         whole.set_ylabel(f"sum of the floor forces [{prefix}N]")
-        whole.set_xlabel("roof displacement [m]")
-        close.set_xlabel("roof displacement, near uplift [m]")
-        figure.legend(*close.get_legend_handles_labels(), loc="outside lower center", ncols=5)
+        whole.set_xlabel(style.folded(figure, "roof displacement [m]"))
+        close.set_xlabel(style.folded(figure, "roof displacement, near uplift [m]"))
+        columns = 5 if figure.get_figwidth() >= style.WIDTH else 2
+        legend = close.get_legend_handles_labels()
+        figure.legend(*legend, loc="outside lower center", ncols=columns)
 
-    return style.png(draw, 3.6)
+    return style.picture(draw, 3.6)

@@ -38,7 +38,7 @@ def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
         panels[-1].set_xlabel("time [s]")
         figure.align_ylabels()
 
-    return style.png(draw, 4.8 if floors else 3.0)
+    return style.picture(draw, 4.8 if floors else 3.0)
 
 
 def shown_floors(storeys: int) -> list[int]:

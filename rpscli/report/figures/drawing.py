@@ -9,23 +9,25 @@ import os
 import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from multiprocessing.connection import Connection, wait
 
 from rpscli.report.figures import style
+from rpscli.report.figures.look import Look, drawn_with
 
 MOST_ARTISTS = 2
 """A time history has five figures: more processes would load longer than they draw."""
 
 Draw = Callable[[], bytes]
-"""Makes the PNG file of a figure; can be pickled."""
+"""Makes the file of a figure; can be pickled."""
 
 Artists = Sequence[Connection]
 """What leads to processes that draw what they are sent, and send the picture back."""
 
 
 @contextmanager
-def artists() -> Iterator[Artists]:
-    """Processes that get ready to draw; none if all is to be drawn here.
+def artists(figures: int = MOST_ARTISTS) -> Iterator[Artists]:
+    """Processes that get ready to draw so many figures; none if all is to be drawn here.
 
     They are copies of this process, to be made early: what is in memory by then must be copied as
     soon as it is touched, which takes longer than to load it once more. They end with it.
@@ -33,7 +35,7 @@ def artists() -> Iterator[Artists]:
     import multiprocessing  # noqa: PLC0415 -- where drawing is wanted
 
     ends: list[Connection] = []
-    for _ in range(_cores_for_copies()):
+    for _ in range(min(_cores_for_copies(), figures)):
         here, there = multiprocessing.Pipe()
         ends.append(here)
         fork = multiprocessing.get_context("fork")
@@ -46,8 +48,30 @@ def artists() -> Iterator[Artists]:
             end.close()
 
 
+def figure_files(
+    figures: Mapping[str, Draw], look: Look, artists: Artists = ()
+) -> dict[str, bytes]:
+    """The files of figures by their names, in each format that is wanted.
+
+    Parameters
+    ----------
+    figures
+        What draws each figure, by the file's name without its ending.
+    look
+        Formats and style.
+    artists
+        Processes that draw.
+    """
+    wanted = {
+        f"{stem}.{ending}": partial(drawn_with, look, ending, draw)
+        for stem, draw in figures.items()
+        for ending in look.endings
+    }
+    return drawn(wanted, artists)
+
+
 def drawn(figures: Mapping[str, Draw], artists: Artists = ()) -> dict[str, bytes]:
-    """The PNG files of figures by their names, in the order given.
+    """The files of figures by their names, in the order given.
 
     What a process fails to draw is drawn here; if it fails here too, that is the error.
     """
@@ -90,6 +114,6 @@ def _work(here: Connection, elsewhere: Artists) -> None:
     for end in elsewhere:
         end.close()  # or this process would keep its own line open
     with suppress(Exception):
-        style.png(lambda figure: style.heading(figure, "fonts"), 1.0, layout=None)
+        style.picture(lambda figure: style.heading(figure, "fonts"), 1.0, layout=None)
         while True:
             here.send_bytes(here.recv()())

@@ -41,4 +41,4 @@ def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
         axes.set_ylabel(f"energy [{prefix}J]")
         style.legend_above(axes, 4)
 
-    return style.png(draw, 3.4)
+    return style.picture(draw, 3.4)

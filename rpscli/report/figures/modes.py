@@ -42,10 +42,13 @@ def modes_figure(result: ModalResult, title: str) -> bytes:
         reach = 1.05 * max(abs(limit) for limit in panels[0, 0].get_xlim())
         panels[0, 0].set_xlim(-reach, reach)
         handles, names = panels[0, -1].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=3)
+        narrow = figure.get_figwidth() < width
+        figure.legend(handles, names, loc="outside lower center", ncols=1 if narrow else 3)
+        for axes in panels.flat if narrow else ():
+            axes.set_title(axes.get_title().replace(": ", "\n").replace(" rad/s", "\nrad/s"))
 
     width = 1.0 + 1.5 * (1 + vibrations)
-    return style.png(draw, 0.9 + 2.1 * len(states), max(width, 4.0))
+    return style.picture(draw, 0.9 + 2.1 * len(states), max(width, 4.0))
 
 
 def _draw_mode(

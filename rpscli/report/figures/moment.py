@@ -39,4 +39,4 @@ def moment_figure(result: TimeHistoryResult, title: str) -> bytes:
         axes.set_ylabel(f"moment about the contact points [{prefix}N m]")
         style.legend_above(axes, 2)
 
-    return style.png(draw, 4.2, 6.0)
+    return style.picture(draw, 4.2, 6.0)

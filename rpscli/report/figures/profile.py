@@ -36,12 +36,12 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
             _stairs(drift, _drift(demands)[0], look)
             floors = np.arange(1, result.structure.storeys + 1)
             acceleration.plot(demands.floor_acceleration, floors, marker="o", ms=3.5, **look)
-        shear.set_xlabel("storey shear [kN]")
+        shear.set_xlabel(style.folded(figure, "storey shear [kN]"))
         static = result.structure.static_base_shear * 1e-3
         ratio = shear.secondary_xaxis("top", functions=style.over(static))
         ratio.set_xlabel("$V_i/V_{st}$ [-]")
-        drift.set_xlabel(_drift(series[0][0])[1])
-        acceleration.set_xlabel("floor acceleration [m/s²]")
+        drift.set_xlabel(style.folded(figure, _drift(series[0][0])[1]))
+        acceleration.set_xlabel(style.folded(figure, "floor acceleration [m/s²]"))
         acceleration.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label="PGA")
         _levels(shear, result.structure.storeys)
         for axes in (shear, drift, acceleration):
@@ -49,7 +49,7 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
         handles, names = acceleration.get_legend_handles_labels()
         figure.legend(handles, names, loc="outside lower center", ncols=3)
 
-    return style.png(draw, 4.2)
+    return style.picture(draw, 4.2)
 
 
 def _stairs(axes: Axes, values: Array, look: dict[str, Any]) -> None:

@@ -38,7 +38,7 @@ def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
         left.align_ylabels()
         _draw_spectrum(right.subplots(), spectrum)
 
-    return style.png(draw, 4.2, 8.0)
+    return style.picture(draw, 4.2, 8.0)
 
 
 def _draw_history(
@@ -48,7 +48,9 @@ def _draw_history(
     axes.plot(time, values, color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
     axes.set_ylabel(label)
-    axes.set_title(f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s", loc="right", fontsize=7.5)
+    axes.set_title(
+        f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s", loc="right", fontsize=style.small()
+    )
 
 
 def _draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:

@@ -49,7 +49,7 @@ def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
         events.set_xlabel("time [s]")
         figure.align_ylabels()
 
-    return style.png(draw, 4.6 + 0.15 * len(rows))
+    return style.picture(draw, 4.6 + 0.15 * len(rows))
 
 
 def _draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
@@ -105,7 +105,7 @@ def _level(axes: Axes, value: float, line: str, colour: str, symbol: str) -> Non
 
 def _draw_events(axes: Axes, result: TimeHistoryResult, rows: Sequence[EventRow]) -> None:
     axes.set_yticks(range(len(rows)), [name for _, name, _ in rows])
-    axes.tick_params(axis="y", length=0.0, labelsize=7.0)
+    axes.tick_params(axis="y", length=0.0, labelsize=0.9 * style.small())
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.grid(visible=False)
     for row, (kinds, _, colour) in enumerate(rows):

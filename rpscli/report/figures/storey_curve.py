@@ -49,14 +49,14 @@ def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
         style.legend_above(force, 3)
         figure.align_ylabels()
 
-    return style.png(draw, 4.8, 5.8)
+    return style.picture(draw, 4.8, 5.8)
 
 
 def _mark(axes: Axes, x: float, y: float, text: str, offset: tuple[float, float]) -> None:
     """A point with its name, offset [pt] to the side on which no curve runs."""
     axes.plot(x, y, "o", color=style.BLACK, ms=5.0, zorder=5, clip_on=False)
     axes.annotate(
-        text, (x, y), offset, textcoords="offset points", fontsize=8.0,
+        text, (x, y), offset, textcoords="offset points", fontsize=style.small(),
         ha="left" if offset[0] > 0.0 else "right", va="bottom" if offset[1] > 0.0 else "top",
     )  # fmt: skip
 

@@ -1,10 +1,15 @@
-"""One look for all figures; matplotlib is imported when the first of them is drawn."""
+"""One style for all figures; matplotlib is imported when the first of them is drawn."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
+
+from rpscli.report.figures.look import SMALL, in_force, quiet_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,19 +32,14 @@ DPI = 150
 COMPRESSION = 3
 """Of PNG files: a tenth larger than at the usual 6, in two thirds of the time."""
 LETTERS_PER_INCH = 15.0
-"""Of the heading's font."""
+"""Of letters of 8 points."""
 
 WIDTH = 7.0
 """Width of a figure [in]: a page with its margins."""
 
 STYLE: dict[str, Any] = {
     "font.family": "sans-serif",
-    "font.size": 9.0,
-    "axes.titlesize": 9.0,
-    "axes.labelsize": 9.0,
-    "legend.fontsize": 8.0,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
+    "figure.dpi": DPI,
     "axes.linewidth": 0.7,
     "axes.axisbelow": True,
     "axes.grid": True,
@@ -50,32 +50,43 @@ STYLE: dict[str, Any] = {
     "xtick.direction": "in",
     "ytick.direction": "in",
     "agg.path.chunksize": 20000,
+    "pdf.fonttype": 42,  # TrueType: journals refuse the other kind
+    "svg.hashsalt": "rps",  # the same data give the same file
 }
 
+METADATA: dict[str, dict[str, None]] = {
+    "png": {"Software": None},
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+"""What matplotlib would say about itself and the time in a file: it tells nothing of the data."""
 
-def png(
+
+def picture(
     draw: Callable[[Figure], None],
     height: float,
     width: float = WIDTH,
     layout: Literal["constrained"] | None = "constrained",
 ) -> bytes:
-    """The PNG file of a figure.
+    """The file of a figure, with the look and in the format that are in force.
 
     Parameters
     ----------
     draw
         Fills the figure, which is empty and lays itself out.
     height, width
-        Size [in].
+        Size [in], where the look does not say otherwise.
     layout
         None for a figure that places its axes itself, which draws four times as fast.
     """
+    quiet_matplotlib()
     import matplotlib.style  # noqa: PLC0415
     from matplotlib.figure import Figure  # noqa: PLC0415
 
+    now = in_force()
     # "default" first: a user's own matplotlibrc must not change what a report looks like.
-    with matplotlib.style.context(["default", STYLE]):
-        figure = Figure(figsize=(width, height), dpi=DPI, layout=layout)
+    with matplotlib.style.context(["default", STYLE, now.look.settings]), _no_noise():
+        figure = Figure(figsize=(now.look.width(width), height), layout=layout)
         draw(figure)
         if (engine := figure.get_layout_engine()) is not None:
             # Once, and no more: matplotlib would do it in a trial drawing, and again in the real
@@ -83,27 +94,48 @@ def png(
             engine.execute(figure)
             figure.set_layout_engine(None)
         buffer = io.BytesIO()
-        figure.savefig(
-            buffer,
-            format="png",
-            metadata={"Software": None},  # the same data give the same file
-            pil_kwargs={"compress_level": COMPRESSION},
+        compressed: dict[str, Any] = (
+            {"pil_kwargs": {"compress_level": COMPRESSION}} if now.ending == "png" else {}
         )
+        figure.savefig(buffer, format=now.ending, metadata=METADATA[now.ending], **compressed)
     return buffer.getvalue()
+
+
+@contextmanager
+def _no_noise() -> Iterator[None]:
+    """Letters that the font lacks show in the picture; matplotlib prints a line for each."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        warnings.filterwarnings("ignore", message="Matplotlib currently does not support")
+        yield
+
+
+def small() -> float:
+    """Size of small letters [pt], inside a figure that is being drawn."""
+    import matplotlib as mpl  # noqa: PLC0415
+
+    return SMALL * float(mpl.rcParams["font.size"])
 
 
 def heading(figure: Figure, *parts: str) -> None:
     """A line above the figure that says what it belongs to, cut to its width."""
     text = "   |   ".join(part for part in parts if part)
-    most = int(LETTERS_PER_INCH * figure.get_figwidth())
+    most = int(LETTERS_PER_INCH * figure.get_figwidth() * 8.0 / small())
     if len(text) > most:
         text = f"{text[: most - 3]}..."
     # A dollar sign in a title begins no formula.
-    figure.suptitle(text, fontsize=8.0, color=GREY, parse_math=False)
+    figure.suptitle(text, fontsize=small(), color=GREY, parse_math=False)
 
 
 def legend_above(axes: Axes, columns: int) -> None:
-    """A legend on top of the axes, where it covers nothing."""
+    """A legend on top of the axes, where it covers nothing; folded where the figure is narrow."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None, "axes stand in a figure"
+    width = figure.get_figwidth()
+    if width < WIDTH:
+        widest = max(_letters(str(text)) for text in axes.get_legend_handles_labels()[1])
+        room = (width - 0.5) / (0.4 + widest / LETTERS_PER_INCH)
+        columns = max(1, min(columns, int(room)))
     axes.legend(
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0, 1.0, 0.1),
@@ -112,6 +144,20 @@ def legend_above(axes: Axes, columns: int) -> None:
         columnspacing=1.4,
         handlelength=1.8,
     )
+
+
+def _letters(text: str) -> int:
+    r"""How many letters a text with formulas shows, about.
+
+    >>> _letters(r"$\theta_{cr}$ = 0.3")
+    9
+    """
+    return len(re.sub(r"[${}_^]", "", re.sub(r"\\[A-Za-z]+", "x", text)))
+
+
+def folded(figure: Figure, text: str) -> str:
+    """A label of one of several axes side by side: in a narrow figure, one word a line."""
+    return text if figure.get_figwidth() >= WIDTH else text.replace(" ", "\n")
 
 
 def over(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:

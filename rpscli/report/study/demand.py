@@ -57,7 +57,8 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
                 f"\nslope kₛ {fit.slope_after:.2f} beyond"
             )
             axes.text(
-                0.96, 0.05, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7.0,
+                0.96, 0.05, text, transform=axes.transAxes, ha="right", va="bottom",
+                fontsize=0.9 * style.small(),
                 bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
             )  # fmt: skip
 

@@ -56,7 +56,9 @@ def overturning_figure(table: OverturningTable, title: str) -> bytes:
         axes.tick_params(length=0, labeltop=True, labelbottom=False)
         axes.grid(visible=False)
 
-    return style.png(draw, 1.1 + 0.28 * len(rows), min(style.WIDTH, 2.6 + 1.1 * len(table.columns)))
+    return style.picture(
+        draw, 1.1 + 0.28 * len(rows), min(style.WIDTH, 2.6 + 1.1 * len(table.columns))
+    )
 
 
 def _share(cell: object) -> float:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.report.figures import style
+from rpscli.report.figures.look import in_force
 from rpscli.report.study.labels import labels
 
 if TYPE_CHECKING:
@@ -84,7 +85,9 @@ def panel_figure(
     note
         A remark after the title: what was left out.
     """
-    shown, columns = panels[:MOST_PANELS], layout.columns
+    width = in_force().look.width(style.WIDTH)
+    shown = panels[:MOST_PANELS]
+    columns = layout.columns if width >= style.WIDTH else min(2, layout.columns)
     names = _wrapped(layout.names, columns)
     rows = max(1, math.ceil(len(shown) / columns))
     if len(panels) > len(shown):
@@ -110,9 +113,9 @@ def panel_figure(
             limits(grid.flat[0])
         _arrange(figure, grid, _legend_lines(figure, grid), share_axes=share_axes)
 
-    width = style.WIDTH if columns > 1 else 0.72 * style.WIDTH
+    width = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
     height = 3.8 if rows == 1 and columns == 1 else 1.0 + (2.6 if columns < 3 else 2.1) * rows
-    return style.png(fill, height, width, None)
+    return style.picture(fill, height, width, None)
 
 
 def _legend_lines(figure: Figure, grid: Any) -> int:
@@ -144,7 +147,7 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_axes: bool) 
     # Where axes are shared, room for half of the last number of one and of the first of the next.
     across = 0.32 if share_axes else 0.36
     down = 0.14 + LINE * title_lines + (0.0 if share_axes else 0.2)
-    figure.suptitle(figure.get_suptitle(), y=1.0 - 0.08 / height, fontsize=8.0, color=style.GREY)
+    figure.suptitle(figure.get_suptitle(), y=1.0 - 0.08 / height, color=style.GREY)
     figure.subplots_adjust(
         left=left / width,
         right=1.0 - right / width,

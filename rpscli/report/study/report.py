@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Generic, TypeVar
 
 from rpscli.case.study.reports import Check, ReportOptions
 from rpscli.case.study.schema import Analysis
+from rpscli.report.figures.drawing import figure_files
+from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.reports.study_results import StudyResults
@@ -29,7 +32,7 @@ class Report(Generic[Options, Numbers]):
     tables
         Columns of each CSV file, by what follows the report's name in the file's.
     figure
-        The PNG file under a title.
+        The file of its figure under a title.
     notes
         What the user should know about the numbers.
     check
@@ -53,8 +56,10 @@ class Report(Generic[Options, Numbers]):
     requires: Callable[[Design, Options], Iterable[str]] = lambda *_: ()
     analyses: tuple[Analysis, ...] = ("timehistory",)
 
-    def files(self, numbers: Numbers, stem: str, title: str) -> Iterator[tuple[str, str | bytes]]:
+    def files(
+        self, numbers: Numbers, stem: str, title: str, look: Look = USUAL
+    ) -> Iterator[tuple[str, str | bytes]]:
         """Names and contents of its files."""
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns(numbers))
-        yield f"{stem}.png", self.figure(numbers, title)
+        yield from figure_files({stem: partial(self.figure, numbers, title)}, look).items()

@@ -1,0 +1,164 @@
+"""How figures are written: formats, width, and what a user's own style file says.
+
+Colours mean something in these figures, and stay.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+from rpscli.errors import UsageError
+from rpscli.user_cache import user_cache
+
+FORMATS = ("png", "svg", "pdf")
+COLUMN_WIDTHS = {1: 3.5, 2: 7.0}
+"""Widths of figures [in] that fill one or two columns of a journal: 89 and 178 mm."""
+
+FONT_SIZE = 9.0
+"""Points, where no style file says otherwise."""
+SMALL = 8.0 / 9.0
+"""Numbers on axes, legends and headings, as a part of the font size."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """How the figures of a command are written.
+
+    Parameters
+    ----------
+    formats
+        Endings of the files; none at all if it is empty, None if the user did not say.
+    columns
+        Of the page that a figure fills; None leaves each figure its own width.
+    style
+        matplotlib's settings of the user's style file, which go over ours.
+    """
+
+    formats: tuple[str, ...] | None = None
+    columns: int | None = None
+    style: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """Formats to be written; PNG if the user did not say."""
+        return ("png",) if self.formats is None else self.formats
+
+    def width(self, usual: float) -> float:
+        """Width of a figure [in]: its own, that of its columns, or that of the style file."""
+        if self.columns is not None:
+            return min(usual, COLUMN_WIDTHS[self.columns])
+        if "figure.figsize" in self.style:
+            return float(self.style["figure.figsize"][0])
+        return usual
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """matplotlib's settings: sizes of letters follow the font size."""
+        size = float(self.style.get("font.size", FONT_SIZE))
+        sizes = {
+            "font.size": size,
+            "axes.titlesize": size,
+            "axes.labelsize": size,
+            "legend.fontsize": SMALL * size,
+            "xtick.labelsize": SMALL * size,
+            "ytick.labelsize": SMALL * size,
+        }
+        return {**sizes, **self.style}
+
+
+USUAL = Look()
+"""What a user gets who asks for nothing."""
+
+
+@dataclass(frozen=True)
+class InForce:
+    """The look that is in force, and the ending of the file to be drawn."""
+
+    look: Look = USUAL
+    ending: str = "png"
+
+
+_in_force: ContextVar[InForce] = ContextVar("look")
+
+
+def in_force() -> InForce:
+    """What a figure that is drawn now must look like."""
+    return _in_force.get(InForce())
+
+
+@contextmanager
+def put_in_force(look: Look, ending: str) -> Iterator[None]:
+    """Figures are drawn with this look, in the format of this ending."""
+    token = _in_force.set(InForce(look, ending))
+    try:
+        yield
+    finally:
+        _in_force.reset(token)
+
+
+def drawn_with(look: Look, ending: str, draw: Callable[[], bytes]) -> bytes:
+    """The file of a figure with a look, in the format of an ending."""
+    with put_in_force(look, ending):
+        return draw()
+
+
+def quiet_matplotlib() -> None:
+    """Give matplotlib a folder for its list of fonts where its own cannot be written.
+
+    Otherwise it makes a new one each time, and prints two lines about it.
+    """
+    if "MPLCONFIGDIR" in os.environ or "matplotlib" in sys.modules:
+        return
+    home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")  # noqa: PTH111
+    usual = Path(home) if sys.platform == "linux" else Path(os.path.expanduser("~"))  # noqa: PTH111
+    existing = next(place for place in (usual / "matplotlib", *usual.parents) if place.exists())
+    if not os.access(existing, os.W_OK) and (place := user_cache()):
+        os.environ["MPLCONFIGDIR"] = str(place / "matplotlib")
+
+
+def read_style(path: Path) -> dict[str, Any]:
+    """matplotlib's settings in a style file.
+
+    Raises
+    ------
+    UsageError
+        If there is no such file, or it says what matplotlib does not understand.
+    """
+    quiet_matplotlib()
+    from matplotlib import rc_params_from_file  # noqa: PLC0415 -- slow
+
+    complaints = _Complaints()
+    logger = logging.getLogger("matplotlib")
+    logger.addHandler(complaints)
+    passed_on, logger.propagate = logger.propagate, False
+    try:
+        found = cast("dict[str, Any]", rc_params_from_file(path, use_default_template=False))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "is no text"
+        raise UsageError(f"--style {path}: cannot be read: {reason}") from None
+    finally:
+        logger.removeHandler(complaints)
+        logger.propagate = passed_on
+    if complaints.texts:
+        reasons = "; ".join(" ".join(text.split()) for text in complaints.texts)
+        raise UsageError(f"--style {path}: {reasons}")
+    return dict(found)  # can be sent to another process
+
+
+class _Complaints(logging.Handler):
+    """What matplotlib says about a style file, which it would print and go on."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.texts: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.texts.append(record.getMessage())

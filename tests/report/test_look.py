@@ -1,0 +1,94 @@
+"""Figures as a user asks for them: formats, widths, fonts."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+from PIL import Image
+
+from report.small_results import KINDS
+from rpscli.errors import UsageError
+from rpscli.report.figures import style
+from rpscli.report.figures.drawing import figure_files
+from rpscli.report.figures.look import Look, put_in_force, read_style
+from rpscli.report.figures.rotation import rotation_figure
+
+
+def drawn_as(ending: str, look: Look | None = None, title: str = "title") -> bytes:
+    with put_in_force(look or Look(), ending):
+        return rotation_figure(KINDS["rolls"](), title)
+
+
+def test_each_format_is_what_its_ending_says_and_the_same_for_the_same_data() -> None:
+    files = {ending: drawn_as(ending) for ending in ("png", "svg", "pdf")}
+    assert files["png"].startswith(b"\x89PNG")
+    assert files["pdf"].startswith(b"%PDF")
+    assert b"<svg" in files["svg"]
+    assert {ending: drawn_as(ending) for ending in files} == files
+
+
+def test_formats_become_files() -> None:
+    def draw() -> bytes:
+        return style.picture(lambda _: None, 1.0, layout=None)
+
+    assert list(figure_files({"a": draw}, Look(("svg", "pdf")))) == ["a.svg", "a.pdf"]
+    assert list(figure_files({"a": draw}, Look())) == ["a.png"]
+    assert figure_files({"a": draw}, Look(())) == {}
+
+
+@pytest.mark.parametrize(("columns", "inches"), [(1, 3.5), (2, 7.0)])
+def test_a_figure_fills_columns_of_a_journal(columns: int, inches: float) -> None:
+    width, _ = Image.open(io.BytesIO(drawn_as("png", Look(columns=columns)))).size
+    assert width == pytest.approx(inches * style.DPI, abs=1)
+    found = re.search(rb'width="([\d.]+)pt"', drawn_as("svg", Look(columns=columns)))
+    assert found is not None
+    assert float(found[1]) == pytest.approx(72.0 * inches)
+
+
+def test_a_style_file_goes_over_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "paper.mplstyle"
+    file.write_text("font.family: serif\nfont.size: 12\nfigure.figsize: 5, 9\nlines.linewidth: 3\n")
+    kept: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: kept.append(figure))
+    drawn_as("png", Look(style=read_style(file)))
+    (figure,) = kept
+    assert figure.get_figwidth() == 5.0
+    assert figure.get_figheight() != 9.0  # each figure knows how high it must be
+    axes = figure.axes[1]
+    label = axes.yaxis.label
+    assert label.get_size() == 12.0
+    assert label.get_family() == ["serif"]
+    assert axes.yaxis.get_ticklabels()[0].get_size() == pytest.approx(12.0 * 8.0 / 9.0)
+    assert 3.0 in {line.get_linewidth() for line in axes.lines}
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("font.siize: 9\n", "font.siize"),
+        ("font.size: large as life\n", "font.size"),
+        (None, "No such file"),
+        (b"\xff\xfe\x00", "is no text"),
+    ],
+)
+def test_a_style_file_that_says_nonsense_is_refused(
+    tmp_path: Path, text: str | bytes | None, reason: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "paper.mplstyle"
+    if text is not None:
+        file.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(UsageError, match=reason):
+        read_style(file)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_letters_that_the_font_lacks_make_no_noise(capfd: pytest.CaptureFixture[str]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert drawn_as("png", title="地震 \x07 six storeys")
+    assert capfd.readouterr() == ("", "")
