@@ -61,9 +61,9 @@ def test_a_style_file_goes_over_ours(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert figure.get_figheight() != 9.0  # each figure knows how high it must be
     axes = figure.axes[1]
     label = axes.yaxis.label
-    assert label.get_size() == 12.0
-    assert label.get_family() == ["serif"]
-    assert axes.yaxis.get_ticklabels()[0].get_size() == pytest.approx(12.0 * 8.0 / 9.0)
+    assert label.get_fontsize() == 12.0
+    assert label.get_fontfamily() == ["serif"]
+    assert axes.yaxis.get_ticklabels()[0].get_fontsize() == pytest.approx(12.0 * 8.0 / 9.0)
     assert 3.0 in {line.get_linewidth() for line in axes.lines}
 
 
