@@ -7,6 +7,7 @@ what is found there always belongs to the program that runs.
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import re
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from typing import Any, TypeVar, cast
 import numba
 from numba.extending import register_jitable
 
+from rpscli.physics.kernel_files import discard_damaged, note_files
 from rpscli.user_cache import user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -51,9 +53,21 @@ def cache_folder() -> Path | None:
     return folder
 
 
+@cache
+def sound_cache() -> Path | None:
+    """The cache folder without what a disk has damaged; None where there can be none."""
+    if (folder := cache_folder()) is not None:
+        try:
+            discard_damaged(folder)
+        except OSError:
+            return None
+        atexit.register(note_files, folder)
+    return folder
+
+
 def kernel(function: Function) -> Function:
     """Compile at the first call from Python, without the GIL; keep the machine code on disk."""
-    folder, config = cache_folder(), cast("Any", numba.config)
+    folder, config = sound_cache(), cast("Any", numba.config)
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
     try:
         return cast("Function", numba.njit(function, cache=folder is not None, **OPTIONS))
@@ -84,14 +98,15 @@ _compiled_here: set[str] = set()
 
 def is_compiled(name: str) -> bool:
     """Whether `remember_compiled` was told so by any process that uses the same cache folder."""
-    folder = cache_folder()
+    folder = sound_cache()
     return name in _compiled_here or (folder is not None and (folder / _mark(name)).exists())
 
 
 def remember_compiled(name: str) -> None:
     """Note that the machine code of a kernel is in memory and, if there is a cache, on disk."""
     _compiled_here.add(name)
-    if (folder := cache_folder()) is not None:
+    if (folder := sound_cache()) is not None:
+        note_files(folder)
         (folder / _mark(name)).touch()
 
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
+import pickle
 import shutil
 import stat
+import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from paper_structures import needs_compiled_kernels
 
 from rpscli.physics import compile as compilation
 from rpscli.physics.compile import (
@@ -17,18 +21,22 @@ from rpscli.physics.compile import (
     is_compiled,
     kernel,
     remember_compiled,
+    sound_cache,
     sources_digest,
 )
+from rpscli.physics.kernel_files import NOTES, discard_damaged, note_files
 from rpscli.user_cache import user_cache
 
 
 @pytest.fixture(autouse=True)
 def fresh_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
     """The folder is remembered for the process; each test looks for it anew."""
-    cache_folder.cache_clear()
+    for remembered in (cache_folder, sound_cache):
+        remembered.cache_clear()
     yield monkeypatch
     monkeypatch.undo()
-    cache_folder.cache_clear()
+    for remembered in (cache_folder, sound_cache):
+        remembered.cache_clear()
 
 
 def test_the_user_may_name_the_place(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -130,3 +138,69 @@ def test_what_was_compiled_is_remembered(fresh_folder: pytest.MonkeyPatch, tmp_p
     fresh_folder.setattr(compilation, "_compiled_here", set())
     assert is_compiled("three, of them")
     assert not is_compiled("three")
+
+
+PROGRAM = """
+from rpscli.physics import compile as compilation
+@compilation.kernel
+def four(x: float) -> float:
+    return 4.0 * x
+assert four(0.5) == 2.0
+print(sum(four.stats.cache_hits.values()), compilation.is_compiled("four"))
+compilation.remember_compiled("four")
+"""
+
+
+@needs_compiled_kernels
+def test_a_damaged_cache_is_thrown_away_and_filled_again(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM)
+    environment = {**os.environ, "RPS_CACHE_DIR": str(tmp_path / "cache")}
+
+    def run() -> str:
+        """Kernels found in the cache, and whether the program believed so before."""
+        command = [sys.executable, str(program)]
+        return subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=True
+        ).stdout.strip()
+
+    def only(suffix: str) -> Path:
+        (file,) = (tmp_path / "cache").rglob(f"*.{suffix}")
+        return file
+
+    assert run() == "0 False"
+    assert run() == "1 True"
+    only("nbi").write_bytes(b"")  # what a power loss leaves
+    assert run() == "0 False"
+    code = bytearray(only("nbc").read_bytes())
+    code[len(code) // 2] ^= 4  # numba would run it
+    only("nbc").write_bytes(code)
+    assert run() == "0 False"
+    assert run() == "1 True"
+
+
+@pytest.mark.parametrize("damage", [b"", b"no pickle", pickle.dumps([1, 2, 3])[:-3]])
+def test_an_index_that_is_not_whole_is_damaged(tmp_path: Path, damage: bytes) -> None:
+    index, code = tmp_path / "a.nbi", tmp_path / "a.1.nbc"
+    index.write_bytes(pickle.dumps("version") + pickle.dumps({"a": code.name}))
+    code.write_bytes(b"machine code")
+    (tmp_path / "a.compiled").touch()
+    assert not discard_damaged(tmp_path)
+    index.write_bytes(damage)
+    assert discard_damaged(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_notes_that_are_damaged_themselves_are_made_anew(tmp_path: Path) -> None:
+    code = tmp_path / "below" / "a.nbc"
+    code.parent.mkdir()
+    code.write_bytes(b"machine code")
+    note_files(tmp_path)
+    assert not discard_damaged(tmp_path)
+    for notes in (b"", b"[1]", b"\xff"):
+        (tmp_path / NOTES).write_bytes(notes)
+        assert not discard_damaged(tmp_path)
+    note_files(tmp_path)
+    code.write_bytes(b"other code!!")
+    assert discard_damaged(tmp_path)
+    assert not code.exists()
