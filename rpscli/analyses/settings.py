@@ -23,7 +23,8 @@ class TimeHistorySettings:
         ``relative``, their velocity relative to the cap beam, so that they approach it as the
         square root.
     overturning_limit
-        The structure counts as overturned at this times theta_cr.
+        The structure counts as overturned at this times theta_cr, at most where the columns lie
+        down and the model ends (`Bearing.largest_rotation`).
     accuracy
         Divides the default time step; 2 gives steps half as long.
     max_events

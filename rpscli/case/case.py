@@ -16,7 +16,7 @@ from rpscli.case.rules.bearing import bearing_rules, impact_rules
 from rpscli.case.rules.devices import devices_rules
 from rpscli.case.rules.masses import masses_rules
 from rpscli.case.rules.partial_case import PartialCase
-from rpscli.case.rules.podium import release_rule, restitution_rule
+from rpscli.case.rules.podium import overturning_rule, release_rule, restitution_rule
 from rpscli.case.rules.superstructure import (
     ignored_keys,
     ignored_text,
@@ -197,6 +197,7 @@ def _podium(file: CaseFile, partial: PartialCase) -> Podium:
         podium = podium_of(file, partial.shape)
         faults = [
             *restitution_rule(podium, document),
+            *overturning_rule(podium.bearing, file.analysis),
             *release_rule(podium.bearing, file.analysis),
         ]
     except ValueError as error:

@@ -148,6 +148,19 @@ class Bearing:
         """
         return geometry.critical_rotation(self.rolling, self.rocking, self.beta)
 
+    @cached_property
+    def largest_rotation(self) -> float:
+        """Where the model ends [rad]: the cap beam is farthest from its place, C = 0.
+
+        pi/2 + alpha for flat ends; at most pi, up to where `formulae.trigonometry` holds.
+
+        >>> round(Bearing(1.5, 0.15, 0.15, 0.0).largest_rotation - math.atan(0.15), 12) == round(
+        ...     math.pi / 2, 12
+        ... )
+        True
+        """
+        return min(geometry.arm_root(self.rocking) + 0.5 * math.pi, math.pi)
+
     @property
     def overturns_rolling(self) -> bool:
         """Whether theta_cr is reached before the contact arrives at the arc's end."""

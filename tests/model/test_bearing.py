@@ -15,6 +15,7 @@ from rpscli.analyses.verification.comparison import Known, printed
 from rpscli.analyses.verification.geometry import EXPECTED, Geometry
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
+from rpscli.physics.formulae import geometry
 
 
 def close(known: Known) -> object:
@@ -121,3 +122,15 @@ def test_shapes_that_cannot_be_built_are_refused(changes: dict[str, float], said
     }
     with pytest.raises(ValueError, match=said):
         Bearing(**(shape | changes))
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.08, 0.25, 0.5, 2.0])
+@pytest.mark.parametrize("slenderness", [0.05, 0.15, 0.7])
+def test_the_cap_beam_moves_on_until_the_model_ends(rho: float, slenderness: float) -> None:
+    bearing = Bearing(1.5, slenderness, 1.15 * slenderness, rho)
+    end = bearing.largest_rotation
+    assert bearing.critical_rotation < end
+    x = np.linspace(0.0, end, 2001)
+    _, C, u, _ = geometry.path_along(bearing.rolling, bearing.rocking, bearing.beta, x)
+    assert np.all(np.diff(u) > 0.0)
+    assert end == math.pi or C[-1] == pytest.approx(0.0, abs=1e-12)

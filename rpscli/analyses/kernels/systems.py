@@ -61,9 +61,15 @@ def fill_settings(
     Raises
     ------
     ValueError
-        If the structure would start beyond the overturning limit.
+        If the structure would start beyond the overturning limit, or the model ends before it.
     """
-    limit = settings.overturning_limit * structure.critical_rotation
+    critical, end = structure.critical_rotation, structure.bearing.largest_rotation
+    limit = settings.overturning_limit * critical
+    if limit > end:
+        raise ValueError(
+            f"overturning_limit = {settings.overturning_limit:.6g} times theta_cr must not exceed"
+            f" {end:.6g} rad, where the columns lie down; use less than {end / critical:.4g}"
+        )
     if abs(settings.initial_rotation) >= limit:
         raise ValueError(
             f"initial_rotation = {settings.initial_rotation:.6g} rad must stay below the"

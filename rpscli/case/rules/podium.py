@@ -15,6 +15,18 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 
 
+def overturning_rule(bearing: Bearing, analysis: AnalysisSection) -> Iterator[Fault]:
+    """A structure must have overturned where the model ends."""
+    limit, critical = analysis.overturning_limit, bearing.critical_rotation
+    if limit * critical > bearing.largest_rotation:
+        yield Fault(
+            ("analysis", "overturning_limit"),
+            f"analysis.overturning_limit = {limit:g} times theta_cr = {critical:.6g} rad must not"
+            f" exceed {bearing.largest_rotation:.6g} rad, where the columns lie down and the model"
+            f" ends; use at most {below(bearing.largest_rotation / critical)}",
+        )
+
+
 def release_rule(bearing: Bearing, analysis: AnalysisSection) -> Iterator[Fault]:
     """A structure that is let go from a rotation must not have overturned already."""
     limit = analysis.overturning_limit * bearing.critical_rotation
