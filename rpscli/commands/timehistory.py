@@ -22,6 +22,7 @@ from rpscli.commands.shell.options import (
     output_options,
     terminal_options,
 )
+from rpscli.commands.shell.patience import patience
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.timehistory_tables import timehistory_tables
 from rpscli.errors import AnalysisError, RpsError, UsageError
@@ -80,9 +81,13 @@ def command(
         from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
         from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
 
-        result = time_history(
-            given.case.structure, ground.horizontal, given.case.analysis, vertical=ground.vertical
-        )
+        with patience(given.case, ground.horizontal.duration, terminal):
+            result = time_history(
+                given.case.structure,
+                ground.horizontal,
+                given.case.analysis,
+                vertical=ground.vertical,
+            )
         for name, content in timehistory_files(result, given.case.title, look, drawing):
             folder.add(name, content)
     if result.failure:

@@ -242,3 +242,15 @@ def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.Mon
     assert heard.count("compiling the kernel for buildings of up to 32 storeys") == 1
     monkeypatch.setattr("rpscli.analyses.kernels.compilation._announced", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
+
+
+def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> None:
+    """As many steps as this if it never came to rest, which it does at once."""
+    stiff = ("--set", "superstructure.period=0.0001", "--set", "analysis.free_vibration=auto")
+    pulse = ("--record", "pulse:half_sine?amplitude=0.01g&period=0.6")
+    long = rps("timehistory", "small.yaml", *stiff, *pulse)
+    assert long.exit_code == 0, long.stderr
+    assert "a long history: up to" in long.stderr
+    assert "steps of 3 modes" in long.stderr
+    assert "analysis.free_vibration" in long.stderr
+    assert "a long history" not in rps("timehistory", "small.yaml").stderr

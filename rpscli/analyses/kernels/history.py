@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,12 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.compilation import compiled
+from rpscli.analyses.kernels.step_lengths import most_steps
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.run import Output, Run, empty_block
 from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, Record, records
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
+
+MOST_NUMBERS = 1e9
+"""Of the samples of one history: 8 GB, of which those that are reached are taken."""
+
+MOST_STEPS = 1e10
+"""Of one history: more than an hour."""
 
 FIRST_LOG = 4096
 """Rows of the event log at the first attempt; a longer history is run once more."""
@@ -146,6 +155,39 @@ class SampledHistory:
     log: Record
 
 
+def longest_history(settings: TimeHistorySettings, record: GroundMotion) -> int:
+    """Samples of a history that never comes to rest."""
+    free = settings.free_vibration
+    longest = LONGEST_FREE_VIBRATION if free is None else free
+    return record.npts + math.ceil(longest / record.dt) + 1
+
+
+def refuse_endless(
+    structure: PodiumStructure, settings: TimeHistorySettings, record: GroundMotion
+) -> None:
+    """Refuse a history that may take more memory or time than anybody has.
+
+    Raises
+    ------
+    CaseError
+        If it may have more than `MOST_NUMBERS` or `MOST_STEPS`.
+    """
+    remedy = "give a shorter analysis.free_vibration"
+    numbers = longest_history(settings, record) * (2 * structure.storeys + len(SAMPLE))
+    if numbers > MOST_NUMBERS:
+        raise CaseError(
+            f"the history may have {longest_history(settings, record)} samples of"
+            f" {structure.storeys} storeys, {numbers:.3g} numbers, which must not be more than"
+            f" {MOST_NUMBERS:.3g}; {remedy}, or resample the record, whose dt is {record.dt:g} s"
+        )
+    if (steps := most_steps(structure, settings, record.duration)) > MOST_STEPS:
+        raise CaseError(
+            f"the history may take {steps:.3g} steps, which must not be more than {MOST_STEPS:.3g}:"
+            " the highest modes of the building are too stiff or too strongly damped;"
+            f" {remedy}, damp by `modal`, or use fewer storeys"
+        )
+
+
 def sampled_history(
     structure: PodiumStructure,
     record: GroundMotion,
@@ -173,9 +215,8 @@ def sampled_history(
     motions = [along] if upwards is None else [along, upwards]
     request = Request(0, 0, None if upwards is None else 1)
     systems = stacked_systems([(structure, settings)])
-    free = settings.free_vibration
-    longest = LONGEST_FREE_VIBRATION if free is None else free
-    rows = along.npts + int(np.ceil(longest / record.dt)) + 1
+    refuse_endless(structure, settings, along)
+    rows = longest_history(settings, along)
     events = FIRST_LOG
     while True:
         run = run_of(systems, motions, [request], rows=rows, events=events)

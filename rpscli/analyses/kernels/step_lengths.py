@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 
 UPLIFTED_ANGLE = 0.6
@@ -25,11 +26,37 @@ CONTACT_ANGLE = 1.0
 """The same for the exact steps in full contact, where it guards the search of uplift: the quintic
 between two instants errs by (w h)^6/46080 of a mode's push."""
 
+STEP_SECONDS, MODE_SECONDS = 4e-7, 4e-8
+"""About the time of a step of one history, and what each mode adds."""
+
 
 def uplifted_rate(structure: PodiumStructure) -> float:
     """Taylor steps a second that follow the uplifted structure at accuracy 1 [1/s]."""
     by_angle = highest_frequency(structure) / UPLIFTED_ANGLE
     return max(by_angle, fastest_decay(structure) / UPLIFTED_DECAY)
+
+
+def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, duration: float) -> float:
+    """Taylor steps of a history that never comes to rest, a bound on those of all others.
+
+    Parameters
+    ----------
+    structure, settings
+        What is followed, and how.
+    duration
+        Of the record [s].
+    """
+    free = settings.free_vibration
+    longest = duration + (LONGEST_FREE_VIBRATION if free is None else free)
+    return longest * settings.accuracy * uplifted_rate(structure)
+
+
+def most_seconds(
+    structure: PodiumStructure, settings: TimeHistorySettings, duration: float
+) -> float:
+    """About the computing time of that [s], for the parameters of `most_steps`."""
+    each = STEP_SECONDS + MODE_SECONDS * structure.storeys
+    return each * most_steps(structure, settings, duration)
 
 
 def contact_rate(structure: PodiumStructure) -> float:

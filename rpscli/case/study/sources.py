@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
+import math
 from pathlib import Path as Folder
 
 from rpscli.case.study.fields import ValueRange, spaced
+from rpscli.case.study.sizes import MOST_SOURCES
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, Path, dotted, shown
 from rpscli.errors import RecordError
@@ -48,6 +50,11 @@ def _product(item: object, path: Path) -> list[str]:
         for key, value in item.items()
         if key != "source"
     ]
+    if (count := math.prod(map(len, options))) > MOST_SOURCES:
+        raise ValueError(
+            f"{dotted(path)} stands for {count} ground motions, which must not be more than"
+            f" {MOST_SOURCES}; use fewer values of its options"
+        )
     mark = "&" if "?" in source and not source.endswith("?") else "?" * (not source.endswith("?"))
     return [
         f"{source}{mark if chosen else ''}{'&'.join(chosen)}"

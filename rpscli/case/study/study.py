@@ -23,6 +23,7 @@ from rpscli.case.study.rules import (
     unknown_keys,
 )
 from rpscli.case.study.schema import StudyFile
+from rpscli.case.study.sizes import size_faults
 from rpscli.case.study.sources import sources_of
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, shown
@@ -120,6 +121,7 @@ def parse_study(
     axes, sources, reports = _checked(document, folder, kinds)
     file = StudyFile.model_validate(document.content)
     document.refuse(fixed_faults(document, of_base))
+    document.refuse(size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
     base = apply_overrides(base, of_base)
     return Study(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from rpscli.commands.shell.passing_time import passing_time
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.user_cache import VARIABLE
 
@@ -30,22 +30,10 @@ def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
 
         often = "once for this version" if cache_folder() else f"each time: {NOWHERE}"
         terminal.note(f"compiling the kernel for {name}, {often}: half a minute")
-        if moving and not terminal.quiet and sys.stderr is not None and sys.stderr.isatty():
-            with _seconds():
+        if moving:
+            with passing_time("compiling", terminal):
                 yield
         else:
             yield
 
     announce_to(told)
-
-
-@contextmanager
-def _seconds() -> Iterator[None]:
-    """A line with the time that has passed, gone when the work is done."""
-    from rich.console import Console  # noqa: PLC0415 -- other commands do without
-    from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn  # noqa: PLC0415
-
-    columns = (SpinnerColumn(), "compiling", TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        progress.add_task("", total=None)
-        yield
