@@ -298,8 +298,8 @@ def _explained(path: Path, error: sqlite3.Error) -> RpsError:
     return _damaged(path, str(error))
 
 
-def _damaged(path: Path, what: str) -> RpsError:
-    return RpsError(f"{path} is damaged ({what}); begin anew with --fresh, or restore the file")
+def _damaged(path: Path, what: str) -> Refused:
+    return Refused(f"{path} is damaged ({what}); begin anew with --fresh, or restore the file")
 
 
 def _signed(*fields: bytes | str | None) -> tuple[bytes | str | None, ...]:

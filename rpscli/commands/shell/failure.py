@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import traceback
 from collections.abc import Mapping
@@ -71,7 +72,12 @@ def kind(error: BaseException) -> str:
 
 
 def message(error: BaseException) -> str:
-    """What an error says, without its kind."""
+    """What an error says, without its kind; words of hundreds of letters are cut."""
+    # The end of a path says most of it.
+    return re.sub(r"\S{301,}", lambda word: f"{word[0][:140]}...{word[0][-140:]}", _message(error))
+
+
+def _message(error: BaseException) -> str:
     if isinstance(error, click.ClickException):
         return error.format_message()
     if exit_code_of(error) == INTERRUPTED:

@@ -37,9 +37,9 @@ FORMAT = "PEER AT2"
 _HEADER_LINES = 40
 _COUNT = re.compile(r"\bNPTS\s*(?:=\s*)?([0-9]+)\b", re.IGNORECASE)
 _STEP = re.compile(rf"\bDT\s*(?:=\s*)?({STATED_PATTERN})", re.IGNORECASE)
-# Those that can be nothing else: a title may hold a word such as DT2.
+# Those that can be nothing else: a title may hold a word such as DT2, or a source with ?dt=.
 _COUNT_GIVEN = re.compile(r"\bNPTS\s*=\s*([0-9]+)\b", re.IGNORECASE)
-_STEP_GIVEN = re.compile(rf"\bDT\s*=\s*({STATED_PATTERN})", re.IGNORECASE)
+_STEP_GIVEN = re.compile(rf"(?<![?&])\bDT\s*=\s*({STATED_PATTERN})", re.IGNORECASE)
 _NUMBERS_FIRST = re.compile(
     rf"^\s*([0-9]+)[\s,]+({STATED_PATTERN})[\s,]+NPTS\b[\s,]*(?:AND\s+)?DT\b", re.IGNORECASE
 )

@@ -52,7 +52,7 @@ def _one_line(title: str) -> str:
     # A title must not be taken for one of the header lines that carry numbers.
     line = "".join(letter for letter in " ".join(title.split()) if letter.isprintable())
     line = re.sub(r"\b(n)(pts)\b", r"\1-\2", line, flags=re.IGNORECASE)
-    line = re.sub(r"\b(d)(t\s*=)", r"\1-\2", line, flags=re.IGNORECASE)
+    line = re.sub(r"(?<![?&])\b(d)(t\s*=)", r"\1-\2", line, flags=re.IGNORECASE)
     line = re.sub(r"\b(u)(nits?\s*(?:of|in|[=:]))", r"\1-\2", line, flags=re.IGNORECASE)
     line = re.sub(r"\b(velocity|displacement)\s+time\b", r"\1-time", line, flags=re.IGNORECASE)
     return line[:_TITLE_WIDTH]

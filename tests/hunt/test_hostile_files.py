@@ -1,0 +1,202 @@
+"""Cases, studies and records that were damaged: each is read, or refused in plain words."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from random import Random
+
+import pytest
+from small_records import cosmos, csmip, esm, geonet, knet, smc
+
+from hunt.mutation import mutated
+from hunt.trials import hunt, judged, shares
+from rpscli.case.schema.case_file import CaseFile
+from rpscli.case.schema.known_keys import known_paths
+from rpscli.case.study.schema import StudyFile
+from rpscli.records.formats.at2_writer import at2_text
+from rpscli.records.source import load_record
+
+CASES = Path(__file__).parents[2] / "cases"
+CASE_TEXTS = [
+    path.read_text(encoding="utf-8").replace("records/", f"{CASES}/records/")
+    for path in sorted(CASES.glob("*.yaml"))
+]
+STUDY_TEXTS = [
+    path.read_text(encoding="utf-8").replace("../", f"{CASES}/")
+    for path in sorted((CASES / "studies").glob("*.yaml"))
+]
+CASE_KEYS = [".".join(map(str, path)) for path in known_paths(CaseFile)]
+STUDY_KEYS = [".".join(map(str, path)) for path in known_paths(StudyFile)]
+VALUES = [
+    "0", "1", "-1", "1e-300", "1e300", ".nan", ".inf", "x", "[]", "{}", "[1, 2]", "[[1]]", "{a: 1}",
+    "true", "2 t", "3 mm", "4 kN/mm", "critical", "auto", "1000000000", "'2 parsec'", "[x, 1]",
+    "200", "{low: 0, high: 1, count: 1000000000}", "{low: 1, high: 2, count: 3}", "0,3",
+    "'~nouser/x'", "pulse:sine?amplitude=1e300g&period=1", "[null]", "'" + "x" * 300 + "'",
+]  # fmt: skip
+"""For any key."""
+
+COLUMN = "# units: g, dt: 0.01\n" + "\n".join(f"{0.01 * (i % 7 - 3):.4f}" for i in range(60))
+COLUMNS = "Time (s)  Acceleration (m/s2)\n" + "\n".join(
+    f"{0.02 * i:.2f}  {0.3 * (i % 5 - 2):.4f}" for i in range(60)
+)
+
+
+@pytest.fixture(autouse=True)
+def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def written(name: str, text: str, random: Random) -> None:
+    encoding = random.choice(["utf-8", "utf-8", "utf-8", "latin-1", "utf-16"])
+    data = text.encode(encoding, "replace")
+    if random.random() < 0.05:
+        data = bytes(random.randrange(256) for _ in range(random.randrange(300))) + data
+    Path(name).write_bytes(data)
+
+
+@shares
+def test_cases(long: bool) -> None:
+    def trial(random: Random) -> str:
+        text = mutated(random.choice(CASE_TEXTS), random)
+        written("case.yaml", text, random)
+        command = random.choice(["check", "check", "check", "modal"])
+        options = random.choice([(), ("--json",), ("-q",)]) if command == "check" else ("--json",)
+        return judged(command, "case.yaml", *options, places=("case.yaml",), text=text)
+
+    hunt("cases", trial, 60, 6000 if long else None)
+
+
+@shares
+def test_values_of_cases(long: bool) -> None:
+    def trial(random: Random) -> str:
+        text = random.choice(CASE_TEXTS)
+        Path("case.yaml").write_text(text, encoding="utf-8")
+        changes = [
+            f"{random.choice(CASE_KEYS)}={random.choice(VALUES)}"
+            for _ in range(random.choice([1, 1, 2, 3]))
+        ]
+        options = [word for change in changes for word in ("--set", change)]
+        places = ("case.yaml", "--set")
+        text = " ".join([text, *changes])
+        return judged("check", "case.yaml", *options, "--json", places=places, text=text)
+
+    hunt("values of cases", trial, 60, 4000 if long else None)
+
+
+@shares
+def test_studies(long: bool) -> None:
+    def trial(random: Random) -> str:
+        written("study.yaml", mutated(random.choice(STUDY_TEXTS), random), random)
+        return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", ".yaml:"))
+
+    hunt("studies", trial, 12, 3000 if long else None)
+
+
+@shares
+def test_values_of_studies(long: bool) -> None:
+    def trial(random: Random) -> str:
+        Path("study.yaml").write_text(random.choice(STUDY_TEXTS), encoding="utf-8")
+        change = f"{random.choice([*STUDY_KEYS, *CASE_KEYS])}={random.choice(VALUES)}"
+        return judged("sweep", "study.yaml", "--dry-run", "--set", change)
+
+    hunt("values of studies", trial, 12, 2000 if long else None)
+
+
+def at2() -> str:
+    return at2_text(load_record("synthetic:?pga=0.3g&seed=1&duration=2&dt=0.02"))
+
+
+LAYOUTS: dict[str, Callable[[], str]] = {
+    "rec.AT2": at2,
+    "rec.v1": cosmos,
+    "rec.V2": csmip,
+    "rec.V2A": geonet,
+    "rec.NS": knet,
+    "rec.ASC": esm,
+    "rec.smc": smc,
+    "rec.txt": lambda: COLUMN,
+    "rec.csv": lambda: COLUMNS,
+}
+OPTIONS = ["", "", "", "?dt=0.01", "?units=g", "?dt=0.01&units=g", "?channel=1", "?channel=2"]
+OPTIONS += ["?dt=1E999", "?dt=", "?units=" + "g" * 999, "?channel=" + "7" * 5000, "?step=1"]
+
+
+def judged_record(name: str, text: str, random: Random) -> str:
+    written(name, text, random)
+    source = name + random.choice(OPTIONS)
+    return judged("record", "info", source, "--json", places=(name,))
+
+
+@shares
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_records(name: str, long: bool) -> None:
+    text = LAYOUTS[name]()
+
+    def trial(random: Random) -> str:
+        return judged_record(name, mutated(text, random), random)
+
+    hunt(f"records {name}", trial, 20, 700 if long else None)
+
+
+@shares
+def test_records_of_the_agencies(long: bool, records_folder: Path) -> None:
+    files = [
+        path for path in sorted((records_folder / "formats").iterdir()) if path.suffix != ".md"
+    ]
+    texts = {path.name: path.read_text(encoding="latin-1") for path in files}
+
+    def trial(random: Random) -> str:
+        name = random.choice(sorted(texts))
+        return judged_record(name, mutated(texts[name], random), random)
+
+    hunt("records of agencies", trial, 4, 700 if long else None)
+
+
+@shares
+def test_folders_of_records(long: bool) -> None:
+    """Of a study: what is no record is left out, and none hangs."""
+
+    def trial(random: Random) -> str:
+        folder = Path(f"folder{random.random()}")
+        folder.mkdir()
+        for name in random.sample(sorted(LAYOUTS), 3):
+            written(f"{folder}/{name}", mutated(LAYOUTS[name](), random), random)
+        text = f"rps: 1\nbase: {CASES}/rigid_frame.yaml\nrecords: [{folder}]\n"
+        Path("study.yaml").write_text(text, encoding="utf-8")
+        return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", str(folder)))
+
+    hunt("folders of records", trial, 6, 300 if long else None)
+
+
+PATHS = [
+    "x" * 5000, "a\0b", "~nouser/x", "", " ", "/dev/zero", "/dev/null", "/", ".", "..",
+    "case.yaml/x", "-x", "fifo", "C:/x", "nowhere/x.yaml", "*", "[", "?", "\udce4", "建物.yaml", "http://x/y",
+    "loop",
+]  # fmt: skip
+
+
+@shares
+def test_paths(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rpscli.case.text.files._PATIENCE", 0.01)
+    Path("case.yaml").write_text(CASE_TEXTS[0], encoding="utf-8")
+    os.mkfifo("fifo")
+    Path("loop").symlink_to("loop")
+
+    def trial(random: Random) -> str:
+        path = random.choice(PATHS)
+        Path("study.yaml").write_text("rps: 1\nbase: case.yaml\n", encoding="utf-8")
+        Path("other.yaml").write_text(
+            f"rps: 1\nbase: {path!r}\n", encoding="utf-8", errors="replace"
+        )
+        commands = [
+            ("check", "--", path),
+            ("record", "info", "--", path),
+            ("check", "case.yaml", "--set", f"record.source={path!r}"),
+            ("sweep", "other.yaml", "--dry-run"),
+            ("sweep", "study.yaml", "--dry-run", "--set", f"records=[{path!r}]"),
+        ]
+        return judged(*random.choice(commands))
+
+    hunt("paths", trial, 25, 300 if long else None)

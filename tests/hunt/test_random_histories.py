@@ -1,0 +1,146 @@
+"""Random structures under random motions: an outcome, the energy, and the mirror image for each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from random import Random
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from paper_structures import needs_compiled_kernels
+
+from hunt.trials import hunt, shares
+from rpscli.analyses.kernels.step_lengths import contact_rate, uplifted_rate
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.bearing import Bearing
+from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.records.ground_motion import GroundMotion
+
+OUTCOMES = {"at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"}
+RESIDUAL = 1e-6
+"""Of the energy: what the step is made for."""
+
+MOST_STEPS = 1_500_000
+"""Of a history, some ten seconds; longer ones are followed for a shorter time after the record."""
+
+
+def logarithmic(random: Random, low: float, high: float) -> float:
+    return math.exp(random.uniform(math.log(low), math.log(high)))
+
+
+def building(random: Random) -> Superstructure | None:
+    n = random.choice([0, 1, 1, 2, 2, 3, 3, 4, 6, 9, 15, 25, 33, 60])
+    if not n:
+        return None
+    masses = np.array([logarithmic(random, 1e5, 4e5) for _ in range(n)])
+    stiffnesses = profile_stiffnesses(
+        masses, logarithmic(random, 0.05, 3.0), random.choice(["sine", "uniform", "linear"])
+    )
+    ratio = random.choice([0.0, 0.01, 0.05, 0.05, 0.2, 0.9, random.uniform(0.0, 1.5)])
+    modes = random.choice([(1, 2), (1, 1), (1, 3)])
+    modal = random.random() < 0.2
+    return Superstructure(
+        masses, stiffnesses, ModalDamping(ratio) if modal else RayleighDamping(ratio, modes)
+    )
+
+
+def structure(random: Random) -> PodiumStructure:
+    slope = random.uniform(0.05, 0.5)
+    rho = random.choice([0.0, 0.0, 0.25, 0.5, 0.5, 1.0, random.uniform(0.0, 2.0)])
+    bearing = Bearing(logarithmic(random, 0.3, 6.0), slope, slope * random.uniform(1.0, 3.0), rho)
+    law = random.choice(
+        [ImpactLaw("flexible"), ImpactLaw("rigid"), ImpactLaw("value", random.uniform(0.1, 1.0))]
+    )
+    columns = logarithmic(random, 1e3, 1e5)
+    return PodiumStructure(
+        bearing, columns, columns * logarithmic(random, 0.3, 30), building(random), law
+    )
+
+
+def samples(random: Random, peak: float) -> NDArray[np.float64]:
+    noise = np.random.default_rng(random.randrange(2**32))
+    count = random.randrange(2, 500)
+    time = np.arange(count)
+    kind = random.randrange(6)
+    if kind == 0:
+        shape = noise.normal(size=count)
+    elif kind == 1:
+        shape = np.sin(time * random.uniform(0.005, 1.0))
+    elif kind == 2:
+        shape = np.zeros(count)
+        shape[noise.integers(count, size=3)] = noise.uniform(-1.0, 1.0, 3)
+    elif kind == 3:
+        shape = np.sign(np.sin(time * random.uniform(0.005, 0.5)))
+    elif kind == 4:
+        shape = np.cumsum(noise.normal(size=count))
+    else:
+        shape = noise.normal(size=count) * np.exp(-(((time - count / 2) / (count / 6)) ** 2))
+    return peak * shape / max(float(np.max(np.abs(shape))), 1e-12)
+
+
+def motions(random: Random) -> tuple[GroundMotion, GroundMotion | None]:
+    dt = random.choice([0.002, 0.005, 0.01, 0.01, 0.02, 0.05])
+    along = samples(random, 9.81 * logarithmic(random, 0.02, 3.0))
+    record = GroundMotion(along, dt, "random", "random", "made")
+    if random.random() < 0.7:
+        return record, None
+    up = samples(random, 9.81 * logarithmic(random, 0.02, 0.9))
+    return record, GroundMotion(up, dt, "random", "random", "made")
+
+
+def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> TimeHistorySettings:
+    start = random.uniform(0.01, 0.95) * system.critical_rotation if random.random() < 0.15 else 0.0
+    rate = max(uplifted_rate(system), contact_rate(system))
+    left = MOST_STEPS / rate - record.duration
+    chosen = TimeHistorySettings(initial_rotation=start)
+    return (
+        chosen if left > LONGEST_FREE_VIBRATION else replace(chosen, free_vibration=max(left, 0.0))
+    )
+
+
+def residual(result: TimeHistoryResult) -> float:
+    """The error of the audit over the largest of its entries."""
+    energy = result.energy
+    started = float(result.trace.energy_stored[0])
+    largest = max(abs(energy.input), energy.damped, abs(energy.impact), energy.stored) + started
+    return abs(energy.residual) / largest if largest > 0.0 else 0.0
+
+
+def judged_history(random: Random) -> str:
+    try:
+        system = structure(random)
+    except ValueError:  # an arc that does not reach its wedge, a restitution below zero
+        return "refused"
+    record, vertical = motions(random)
+    chosen = settings(random, system, record)
+    here = time_history(system, record, chosen, vertical=vertical)
+    assert here.outcome in OUTCOMES
+    assert (here.failure is not None) == (here.outcome == "failed"), here.failure
+    assert math.isfinite(here.max_rotation)
+    assert np.isfinite(here.trace.rotation).all()
+    assert np.isfinite(here.trace.floor_displacements).all()
+    if here.outcome == "failed":
+        return f"failed: {(here.failure or '')[:40]}"
+    error = residual(here)
+    assert error <= RESIDUAL, f"residual {error:.2g}, {here.outcome}"
+    mirrored = replace(chosen, initial_rotation=-chosen.initial_rotation)
+    there = time_history(system, record.scaled(-1.0), mirrored, vertical=vertical)
+    assert here.outcome == there.outcome
+    assert np.array_equal(here.trace.rotation, -there.trace.rotation)
+    assert np.array_equal(here.trace.floor_displacements, -there.trace.floor_displacements)
+    assert here.history.energies.tolist() == there.history.energies.tolist()
+    return here.outcome
+
+
+@needs_compiled_kernels
+@shares
+@pytest.mark.parametrize("part", range(4))
+def test_histories(part: int, long: bool) -> None:
+    hunt(f"histories {part}", judged_history, 6, 500 if long else None)

@@ -1,0 +1,146 @@
+"""Many trials with hostile input: how they are drawn, counted, bounded and judged.
+
+Each trial draws from its own seed, so that one that fails is repeated by its number alone.
+`RPS_HUNT_SEED` sets the seed of all, `RPS_HUNT_TIMES` multiplies the counts of the long hunt, and
+`RPS_HUNT_TABLE` names a file to which each hunt adds a row.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+from types import FrameType
+
+import pytest
+from click.testing import CliRunner, Result
+
+from rpscli.cli import program
+
+SEED = os.environ.get("RPS_HUNT_SEED", "1")
+TIMES = float(os.environ.get("RPS_HUNT_TIMES", "1"))
+TABLE = os.environ.get("RPS_HUNT_TABLE")
+
+PROMISED = {0, 3, 4, 5, 7, 10}
+"""Exit codes that input may lead to; 1 is a fault of ours, 2 one of the command line."""
+
+LONGEST_LINE = 700
+"""Letters of a message: place, value, rule and remedy, beside the path of a temporary folder."""
+
+SLOWEST = 30.0
+"""Seconds that one trial may compute; it may wait ten times as long on a busy machine."""
+
+
+class TooSlow(BaseException):
+    """A trial that is not over in time; no part of the program may take it for its own error."""
+
+
+Trial = Callable[[Random], str]
+"""What one trial does with its random numbers; the result says how it ended, for the table."""
+
+shares = pytest.mark.parametrize(
+    "long", [False, pytest.param(True, marks=pytest.mark.long)], ids=["quick", "long"]
+)
+
+
+def hunt(name: str, trial: Trial, quick: int, long: int | None = None) -> None:
+    """Run trials of a kind; all that fail are told, each with its number.
+
+    Parameters
+    ----------
+    name
+        Of the kind, for seeds and the table.
+    trial
+        Raises AssertionError, or anything else, where a promise is broken.
+    quick
+        How many of them.
+    long
+        How many where the long hunt was asked for, times `RPS_HUNT_TIMES`.
+    """
+    count = quick if long is None else round(long * TIMES)
+    seed = SEED if long is not None else "1"
+    ends: Counter[str] = Counter()
+    failures: list[str] = []
+    slowest = 0.0
+    for number in range(count):
+        begin = time.process_time()
+        try:
+            with time_limit(SLOWEST):
+                draw = Random(f"{seed}-{name}-{number}")  # noqa: S311 -- no secret
+                ends[trial(draw)] += 1
+        except (Exception, TooSlow) as error:  # noqa: BLE001 -- it is what is looked for
+            failures.append(f"{name} {number} of seed {seed}: {type(error).__name__}: {error}")
+        slowest = max(slowest, time.process_time() - begin)
+    if TABLE:
+        row = {"name": name, "seed": seed, "tried": count, "failed": len(failures)}
+        row |= {"slowest": round(slowest, 1), "ends": dict(ends), "failures": failures}
+        with Path(TABLE).open("a", encoding="utf-8") as file:
+            file.write(json.dumps(row) + "\n")
+    assert not failures, f"{len(failures)} of {count}:\n" + "\n".join(failures[:20])
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """An error after so many seconds of computing, wherever Python is."""
+
+    def over(number: int, frame: FrameType | None) -> None:
+        raise TooSlow(f"not over after {seconds:g} s")
+
+    timers = {signal.ITIMER_PROF: signal.SIGPROF, signal.ITIMER_REAL: signal.SIGALRM}
+    before = {number: signal.signal(number, over) for number in timers.values()}
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_REAL, 10.0 * seconds)
+    try:
+        yield
+    finally:
+        for timer, number in timers.items():
+            signal.setitimer(timer, 0.0)
+            signal.signal(number, before[number])
+
+
+def judged(*arguments: str, places: tuple[str, ...] = (), text: str = "") -> str:
+    """Run `rps` and hold its exit code and its messages to what is promised.
+
+    Parameters
+    ----------
+    *arguments
+        Of the command line.
+    places
+        One of these must stand in the first line of a refusal,
+    text
+        or this text must hold what the line begins with, such as the source of a record.
+    """
+    result = CliRunner().invoke(program, list(arguments))
+    shown = f"{' '.join(arguments)[:300]}: {result.stderr[-600:]}"
+    assert result.exit_code in PROMISED, f"exit code {result.exit_code}: {shown}"
+    if "--json" in arguments:
+        document = json.loads(result.stdout, parse_constant=_no_json)
+        assert document["schema_version"] == 1
+    if result.exit_code == 0:
+        assert "error:" not in result.stderr, shown
+        return "done"
+    _judge_message(result, places, text, shown)
+    return f"exit {result.exit_code}"
+
+
+def _judge_message(result: Result, places: tuple[str, ...], text: str, shown: str) -> None:
+    lines = [line for line in result.stderr.splitlines() if line.startswith("error: ")]
+    assert lines, f"no message: {shown}"
+    assert len(lines) <= 101, f"{len(lines)} lines: {shown}"
+    assert not any("internal error" in line for line in lines), shown
+    begin = lines[0].removeprefix("error: ").split(": ")[0].split("...")[0]
+    named = any(place in lines[0] for place in places) or begin in text
+    assert named or not places, f"no place: {shown}"
+    longest = max(lines, key=len)
+    assert len(longest) <= LONGEST_LINE, f"a line of {len(longest)} letters: {longest[:300]}"
+    assert all(len(line.split()) >= 5 for line in lines), f"no rule: {shown}"
+
+
+def _no_json(constant: str) -> None:
+    raise AssertionError(f"{constant} is no JSON")
