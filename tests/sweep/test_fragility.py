@@ -15,7 +15,7 @@ from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.fits.probit import probit_fit, separated
 from rpscli.sweep.reports.fragility import FragilityOptions, LimitStates, fragility_report
 from rpscli.sweep.reports.intensities import intensity
-from rpscli.sweep.reports.overturning_spectrum import SpectrumOptions, pulse_period, spectrum_report
+from rpscli.sweep.reports.overturning_spectrum import SpectrumOptions, pulse_of, spectrum_report
 from rpscli.sweep.store import Stored
 from rpscli.sweep.table import tabulate
 from sweep.small_studies import STUDY, Make
@@ -207,7 +207,11 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     assert (drift.exceeded, overturning.exceeded) == (18, 18)
     assert rotation.exceeded > 18
     assert rotation.observed.intensity.tolist() == pytest.approx([0.2, 0.4, 0.8], rel=1e-12)
-    assert len(report.notes) == 2  # drift and overturning are separated
+    # Each of three limits counts the 18 overturned histories; drift and overturning are separated.
+    counts = f"36 of {rotation.exceeded + 18} excesses of limits are overturned histories"
+    assert len(report.notes) == 4
+    assert report.notes[0].startswith("pools 2 values of podium.bearing.slenderness and 3 values")
+    assert report.notes[1].endswith(counts)
 
 
 def test_intensities_follow_records_and_scales(study_of: Make) -> None:
@@ -235,7 +239,7 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
         for p in design
     ]
     report = spectrum_report(tabulate(design, rows), StudyContext(design.plan), SpectrumOptions())
-    panel, properties = report.panels[0], design.properties[0]
+    (panel,), properties = report.panels[0].series, design.properties[0]
     p = properties.frequency_parameter
     assert panel.frequency_ratio[:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
     # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
@@ -244,5 +248,5 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
 
 
 def test_a_spectrum_of_earthquakes_is_refused() -> None:
-    with pytest.raises(CaseError, match="needs pulses"):
-        pulse_period("fema_p695:farfield/1/a")
+    with pytest.raises(CaseError, match="is no pulse with a period"):
+        pulse_of("fema_p695:farfield/1/a", SpectrumOptions())

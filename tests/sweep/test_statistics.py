@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from rpscli.errors import CaseError
 from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.reports.demand import DemandOptions, demand_report
@@ -18,7 +17,11 @@ from rpscli.sweep.reports.ida import IdaOptions, ida_report
 from rpscli.sweep.reports.lines import LinesOptions, lines_report
 from rpscli.sweep.reports.overturning import OverturningOptions, overturning_table
 from rpscli.sweep.reports.rotation import RotationOptions, rotation_report
-from rpscli.sweep.reports.storey_shear import StoreyShearOptions, storey_shear_report
+from rpscli.sweep.reports.storey_shear import (
+    StoreyShearOptions,
+    storey_shear_report,
+    unlike_buildings,
+)
 from rpscli.sweep.store import Stored
 from rpscli.sweep.table import groups, tabulate
 from sweep.made_up import ALPHA, RHO, place, stored, table_of
@@ -89,15 +92,21 @@ def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -
             return Stored("failed", "why", {})
         return stored("overturned_rolling" if at[RHO] == 0 and at["scale"] == 1.0 else "survived")
 
-    table = overturning_table(table_of(study_of, answer), OverturningOptions())
+    apart = overturning_table(table_of(study_of, answer), OverturningOptions())
+    assert (apart.row_keys, apart.notes) == ((ALPHA, "scale"), ())
+    assert apart.rows == ((0.10, 0.5), (0.10, 1.0), (0.15, 0.5), (0.15, 1.0))
+    assert [row[2].overturned[:2] for row in apart.cells if row[2]] == [(0, 3), (2, 2)] * 2
+    table = overturning_table(table_of(study_of, answer), OverturningOptions(rows=(ALPHA,)))
     assert table.rows == ((0.10,), (0.15,))
+    assert table.pooled == ("2 intensities",)
+    assert "pools 2 intensities" in table.notes[0]
     assert table.columns == (("critical",), (0.5,), (0,))
     for row in table.cells:
-        assert [cell.fraction for cell in row if cell] == [0.0, 0.0, 2 / 5]
+        assert [cell.overturned.fraction for cell in row if cell] == [0.0, 0.0, 2 / 5]
         assert [cell.failed for cell in row if cell] == [1, 1, 1]
     turned = OverturningOptions(rows=(RHO,), columns=("scale",))
     by_scale = overturning_table(table_of(study_of, answer), turned)
-    assert [cell.fraction for cell in by_scale.cells[2] if cell] == [0.0, 1.0]
+    assert [cell.overturned.fraction for cell in by_scale.cells[2] if cell] == [0.0, 1.0]
 
 
 def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
@@ -152,7 +161,12 @@ def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
         for request in design.records
         if request
     }
-    report = storey_shear_report(table, fixed, StoreyShearOptions())
+    report = storey_shear_report(table, fixed, StoreyShearOptions(panels=(ALPHA, RHO)))
+    assert report.pooled == ("2 intensities",)
+    assert "12 of 36 histories overturned" in report.notes[1]
+    apart = storey_shear_report(table, fixed, StoreyShearOptions())
+    assert apart.panel_keys == (ALPHA, RHO, "scale")
+    assert (apart.profiles[0].counted, apart.profiles[0].overturned) == (2, 1)
     first = report.profiles[0]
     static = first.static_base_shear
     assert static == pytest.approx(600e3 * 9.80665 * 0.10, rel=1e-12)
@@ -167,9 +181,13 @@ def test_buildings_of_different_height_have_no_common_profile(study_of: Make) ->
         "  - podium.bearing.curv",
         "  - superstructure.storeys: [2, 3]\n  - podium.bearing.curv",
     )
-    table = table_of(study_of, lambda _: stored(storey_shears=[1.0]), storeys)
-    with pytest.raises(CaseError, match=r"\[2, 3\] storeys"):
-        storey_shear_report(table, {}, StoreyShearOptions(panels=(RHO,)))
+    design = lay_out(study_of(STUDY, storeys))
+    faults = list(unlike_buildings(design, StoreyShearOptions(panels=(RHO,))))
+    assert len(faults) == 3
+    assert "holds buildings of [2, 3] storeys" in faults[0]
+    assert not list(unlike_buildings(design, StoreyShearOptions()))
+    in_kn = StoreyShearOptions(panels=(RHO, "superstructure.storeys"), unit="kN")
+    assert "different V_st" in next(unlike_buildings(design, in_kn))
 
 
 def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> None:

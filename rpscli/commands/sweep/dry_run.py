@@ -14,6 +14,8 @@ from rpscli.report.documents import heading
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from rpscli.sweep.design.layout import Design
+
 POINTS_SHOWN = 3
 """At each end of the study."""
 
@@ -23,7 +25,6 @@ GUESSED_POINT_SECONDS = 0.01
 
 def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -> None:
     """Count, first and last points, and an estimate of the time."""
-    from rpscli.sweep.design.described import described  # noqa: PLC0415 -- numpy is slow
     from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
 
     design = given.design
@@ -31,7 +32,7 @@ def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -
     count = len(design)
     first = range(min(POINTS_SHOWN, count))
     last = range(max(0, count - POINTS_SHOWN), count)
-    points = {n: {"point": n + 1, **described(design, design[n])} for n in {*first, *last}}
+    points = {n: {"point": n + 1, **_described(design, n)} for n in {*first, *last}}
     seconds, source = _estimate(given, jobs)
     document: dict[str, Any] = {
         **heading(),
@@ -50,6 +51,16 @@ def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -
     }
     shown = [points[n] for n in sorted(points)]
     terminal.result(document, _tables(document, shown))
+
+
+def _described(design: Design, number: int) -> dict[str, Any]:
+    """A point with its factor on the record, where no measure decides about it."""
+    from rpscli.sweep.design.described import described  # noqa: PLC0415 -- numpy is slow
+
+    point = design[number]
+    factor = point.scale * point.scale_change
+    known = design.plan.measure is None and design.plan.analysis == "timehistory"
+    return described(design, point) | ({"scale": factor} if known else {})
 
 
 def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:

@@ -118,13 +118,18 @@ def small() -> float:
 
 
 def heading(figure: Figure, *parts: str) -> None:
-    """A line above the figure that says what it belongs to, cut to its width."""
-    text = "   |   ".join(part for part in parts if part)
+    """What the figure belongs to and how to read it, above it.
+
+    What does not fit beside the first part, the title, stands below it; lines are cut to the width.
+    """
+    title, *others = (part for part in parts if part)
     most = int(LETTERS_PER_INCH * figure.get_figwidth() * 8.0 / small())
-    if len(text) > most:
-        text = f"{text[: most - 3]}..."
+    lines = ["   |   ".join((title, *others))]
+    if others and len(lines[0]) > most:
+        lines = [title, "   |   ".join(others)]
+    cut = [line if len(line) <= most else f"{line[: most - 3]}..." for line in lines]
     # A dollar sign in a title begins no formula.
-    figure.suptitle(text, fontsize=small(), color=GREY, parse_math=False)
+    figure.suptitle("\n".join(cut), fontsize=small(), color=GREY, parse_math=False)
 
 
 def legend_above(axes: Axes, columns: int) -> None:

@@ -8,8 +8,16 @@ import numpy as np
 
 from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column
-from rpscli.report.study.labels import key_columns, labels
-from rpscli.report.study.panels import by_values, colour, left_out, marker, panel_figure
+from rpscli.report.study.labels import key_columns, labels, quoted
+from rpscli.report.study.panels import (
+    by_values,
+    colour,
+    left_out,
+    marker,
+    over,
+    panel_figure,
+    remarks,
+)
 from rpscli.report.study.report import Report
 from rpscli.sweep.reports.demand import DemandOptions, DemandPanel, DemandReport, demand_report
 
@@ -33,7 +41,8 @@ def demand_columns(report: DemandReport) -> list[Column]:
     columns = key_columns(report.panel_keys, [panel.values for panel in panels])
     for name, attribute in FITTED:
         columns.append(Column(name, "-", [getattr(p.fit, attribute, None) for p in panels]))
-    return columns + [Column(name, "-", [getattr(p, name) for p in panels]) for name in COUNTS]
+    columns += [Column(name, "-", [getattr(p, name) for p in panels]) for name in COUNTS]
+    return [*columns, Column("note", "-", [quoted(panel.note) for panel in panels])]
 
 
 def demand_figure(report: DemandReport, title: str) -> bytes:
@@ -49,6 +58,7 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
                 ms=2.4, alpha=0.55, mew=0.0, color=colour(place),
                 label=labels(report.series_keys, series.values) or None,
             )  # fmt: skip
+        text = "no curve: too few points"
         if (fit := panel.fit) is not None:
             x = np.array([0.0, fit.break_x, max(highest, fit.break_x)])
             axes.plot(x, fit(x), color=style.BLACK, lw=1.6, label="bilinear fit")
@@ -56,11 +66,11 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
                 f"saturation at {fit.break_x:.3f}, {fit.break_y:.2f}"
                 f"\nslope kₛ {fit.slope_after:.2f} beyond"
             )
-            axes.text(
-                0.96, 0.05, text, transform=axes.transAxes, ha="right", va="bottom",
-                fontsize=0.9 * style.small(),
-                bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
-            )  # fmt: skip
+        axes.text(
+            0.96, 0.05, text, transform=axes.transAxes, ha="right", va="bottom",
+            fontsize=0.9 * style.small(),
+            bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
+        )  # fmt: skip
 
     def limits(axes: Axes) -> None:
         axes.set_xlim(0.0, 1.04 * highest or 1.0)
@@ -74,8 +84,16 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
         x_label=r"$|\theta_{max}|/\theta_{cr}$ [-]",
         y_label="$V_b/V_{st}$ [-]",
         limits=limits,
-        note=left_out(sum(panel.failed for panel in report.panels)),
+        note=remarks(
+            over(report.pooled),
+            _fallen(sum(panel.overturned for panel in report.panels)),
+            left_out(sum(panel.failed for panel in report.panels)),
+        ),
     )
+
+
+def _fallen(overturned: int) -> str:
+    return f"{overturned} overturned points left out" if overturned else ""
 
 
 REPORT = Report(
@@ -83,4 +101,5 @@ REPORT = Report(
     numbers=lambda study, options: demand_report(study.table, options),
     tables={"": demand_columns},
     figure=demand_figure,
+    notes=lambda report: report.notes,
 )

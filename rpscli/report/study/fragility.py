@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING
 
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, labels, quoted
-from rpscli.report.study.panels import Layout, colour, left_out, marker, panel_figure
+from rpscli.report.study.panels import (
+    Layout,
+    colour,
+    left_out,
+    marker,
+    over,
+    panel_figure,
+    remarks,
+)
 from rpscli.report.study.report import Report
 from rpscli.sweep.reports.fragility import (
     Fragility,
@@ -15,7 +23,7 @@ from rpscli.sweep.reports.fragility import (
     fragility_report,
     limit_states,
 )
-from rpscli.sweep.reports.intensities import Intensity
+from rpscli.sweep.reports.intensities import Intensity, measure_without_period
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,14 +49,16 @@ def fragility_columns(report: FragilityReport) -> list[Column]:
         Column("beta_high", "-", [c.fit.beta_band[1] for c in curves]),
         Column("counted", "-", [c.counted for c in curves]),
         Column("exceeded", "-", [c.exceeded for c in curves]),
+        Column("overturned_among_them", "-", [c.overturned for c in curves]),
         Column("failed", "-", [c.failed for c in curves]),
         Column("note", "-", [quoted(c.fit.note) for c in curves]),
     ]
 
 
 def curve_columns(report: FragilityReport) -> list[Column]:
-    """The curves, one row a point of each."""
-    rows = [(c, place) for c in report.curves for place in range(len(c.grid))]
+    """The curves, one row a point of each; those that could not be fitted are left out."""
+    fitted = [c for c in report.curves if c.fitted]
+    rows = [(c, place) for c in fitted for place in range(len(c.grid))]
     curves = [c for c, _ in rows]
     return [
         *key_columns(report.series_keys, [c.values for c in curves]),
@@ -61,10 +71,14 @@ def curve_columns(report: FragilityReport) -> list[Column]:
 
 
 def fragility_figure(report: FragilityReport, title: str) -> bytes:
-    """One panel a limit state; markers are observed shares, shades the bootstrap bands."""
-    panels = [[c for c in report.curves if c.limit == limit] for limit in report.limits]
-    count = len(panels[0]) if panels else 0
-    place_of = {c.values: place for place, c in enumerate(panels[0])} if panels else {}
+    """One panel a limit state; markers are observed shares, shades the bootstrap bands.
+
+    Curves that could not be fitted are not drawn, nor are limit states without any.
+    """
+    values = list(dict.fromkeys(c.values for c in report.curves))
+    place_of, count = {each: place for place, each in enumerate(values)}, len(values)
+    limits = [limit for limit in report.limits if report.fitted(limit)]
+    panels = [report.fitted(limit) for limit in limits]
 
     def shade(place: int) -> str:
         return colour(place, count)
@@ -89,15 +103,19 @@ def fragility_figure(report: FragilityReport, title: str) -> bytes:
     notes = [f"bands: {report.confidence:.0%}"]
     if any(c.fit.method == "penalised" for c in report.curves):
         notes.append("dashed: separated data, penalised fit")
-    notes.append(left_out(sum(c.failed for c in panels[0]) if panels else 0))
+    if any(limit.threshold is not None for limit in limits):
+        notes.append("overturning exceeds every limit")
+    if missing := sum(not c.fitted for c in report.curves):
+        notes.append(f"{missing} of {len(report.curves)} curves without a fit, see CSV")
+    notes += [over(report.pooled), left_out(sum(c.failed for c in panels[0]) if panels else 0)]
     return panel_figure(
-        Layout([limit.label for limit in report.limits], _side_by_side(len(panels))),
+        Layout([limit.label for limit in limits], _side_by_side(len(panels))),
         panels,
         draw,
         title=title,
         x_label=f"{measure_name(report.intensity)} [{report.intensity.unit}]",
         y_label="probability of exceeding",
-        note="; ".join(filter(None, notes)),
+        note=remarks(*notes),
     )
 
 
@@ -117,6 +135,8 @@ REPORT = Report(
     numbers=lambda study, options: fragility_report(study.table, study.intensity(options), options),
     tables={"": fragility_columns, "_curves": curve_columns},
     figure=fragility_figure,
+    drawable=lambda report: any(curve.fitted for curve in report.curves),
     notes=lambda report: report.notes,
+    requires=measure_without_period,
     results=lambda options: [limit.result for limit in limit_states(options)],
 )

@@ -9,7 +9,7 @@ import numpy as np
 from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
-from rpscli.report.study.panels import by_values, left_out, panel_figure
+from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.reports.ida import (
@@ -78,7 +78,7 @@ def ida_figure(report: IdaReport, title: str) -> bytes:
         x_label=SCALARS["timehistory"][report.demand].axis_label,
         y_label=f"{name} [{unit}]",
         limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
-        note=left_out(sum(p.failed for p in report.panels)),
+        note=remarks(over(report.pooled), left_out(sum(p.failed for p in report.panels))),
     )
 
 
@@ -112,6 +112,7 @@ REPORT = Report(
     numbers=lambda study, options: ida_report(study.table, options),
     tables={"": ida_columns},
     figure=ida_figure,
+    notes=lambda report: report.notes,
     check=single_intensity,
     results=lambda options: [options.demand],
 )

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rpscli.case.schema.key_units import unit
+from rpscli.analyses.result_quantities import ResultQuantity
+from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, labels, plain, quoted, symbol
-from rpscli.report.study.panels import by_values, colour, left_out, panel_figure
+from rpscli.report.study.panels import by_values, colour, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
+from rpscli.report.study.statistics import reached
 from rpscli.sweep.evaluation.results import KNOWN, quantity
+from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.reports.lines import (
+    Line,
     LinesOptions,
     LinesPanel,
     LinesReport,
@@ -26,21 +30,27 @@ LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid es
 
 
 def lines_columns(report: LinesReport) -> list[Column]:
-    """One row a point of each line."""
+    """One row a point of each line; ``inf`` where a fractile overturned."""
     rows = [
-        (panel, line, x, y)
+        (panel, line, place)
         for panel in report.panels
         for line in panel.lines
-        for x, y in zip(line.x, line.y, strict=True)
+        for place in range(len(line.x))
     ]
-    x_name = report.options.x
-    return [
+    x_name = report.x_name
+    columns = [
         *key_columns(report.panel_keys, [panel.values for panel, *_ in rows]),
-        *key_columns(report.series_keys, [line.values for _, line, *_ in rows]),
-        Column("result", "-", [line.result for _, line, *_ in rows]),
-        Column(x_name, unit(x_name), [quoted(x) for _, _, x, _ in rows]),
-        Column("value", "SI", [y for *_, y in rows]),
+        *key_columns(report.series_keys, [line.values for _, line, _ in rows]),
+        Column("result", "-", [line.result for _, line, _ in rows]),
+        Column("unit", "-", [_unit(line.result) for _, line, _ in rows]),
+        Column(x_name, _unit(x_name), [quoted(line.x[place]) for _, line, place in rows]),
+        Column("value", _common_unit(report), [reached(line.y[i]) for _, line, i in rows]),
     ]
+    if report.statistic:
+        columns.append(Column("statistic", "-", [report.statistic] * len(rows)))
+        columns.append(Column("counted", "-", [line.counted[i] for _, line, i in rows]))
+        columns.append(Column("overturned", "-", [line.overturned[i] for _, line, i in rows]))
+    return columns
 
 
 def lines_figure(report: LinesReport, title: str) -> bytes:
@@ -66,10 +76,14 @@ def lines_figure(report: LinesReport, title: str) -> bytes:
                 marker="o" if len(x) < 25 and not line.dashed else "", ms=3.0,
                 label=", ".join(filter(None, parts)) or None,
             )  # fmt: skip
+            if not options.upright:
+                _say_what_is_left_out(axes, line, x, statistic=report.statistic)
             if words:
                 (axes.set_yticks if options.upright else axes.set_xticks)(x, words)
 
-    axis_labels = (options.x_label or _axis(options.x), options.y_label or _axis(report.results[0]))
+    y_label = options.y_label or _axis(report.results[0])
+    y_label = ", ".join(filter(None, (y_label, report.statistic)))
+    axis_labels = (options.x_label or _axis(report.x_name), y_label)
     return panel_figure(
         by_values(report.panel_keys, report.panels),
         report.panels,
@@ -77,8 +91,28 @@ def lines_figure(report: LinesReport, title: str) -> bytes:
         title=title,
         x_label=axis_labels[options.upright],
         y_label=axis_labels[not options.upright],
-        note=left_out(report.failed),
+        note=remarks(over(report.pooled), _beyond(report), left_out(report.failed)),
     )
+
+
+def _beyond(report: LinesReport) -> str:
+    """Fractiles are larger than any demand where so many overturned."""
+    lines = [line for panel in report.panels for line in panel.lines]
+    unbounded = any(y == float("inf") for line in lines for y in line.y)
+    return "not drawn where so many overturned" if unbounded else ""
+
+
+def _say_what_is_left_out(axes: Axes, line: Line, x: list[float], *, statistic: str) -> None:
+    """Both counts beside every mean that leaves overturned histories out."""
+    if statistic != "mean of survivors":
+        return
+    axes.margins(y=0.12)
+    for at, y, counted, overturned in zip(x, line.y, line.counted, line.overturned, strict=True):
+        if overturned:
+            axes.annotate(
+                f"{counted} of {counted + overturned}", (at, y), (0.0, 4.0), ha="center",
+                fontsize=0.8 * style.small(), textcoords="offset points", color=style.GREY,
+            )  # fmt: skip
 
 
 def _distinct(results: tuple[str, ...]) -> list[str]:
@@ -108,8 +142,23 @@ def _dashes(dashed: bool, result: str, solid: list[str]) -> str:  # noqa: FBT001
 
 def _axis(name: str) -> str:
     """Label of an axis: that of the result, or the varied key with its unit."""
-    found = next(filter(None, (quantity(analysis, name) for analysis in KNOWN)), None)
-    return found.axis_label if found else f"{symbol(name)} [{unit(name)}]"
+    found = _quantity(name)
+    return found.axis_label if found else f"{symbol(name)} [{unit_of(name)}]"
+
+
+def _quantity(name: str) -> ResultQuantity | None:
+    return next(filter(None, (quantity(analysis, name) for analysis in KNOWN)), None)
+
+
+def _unit(name: str) -> str:
+    found = _quantity(name)
+    return (found.unit or "-") if found else unit_of(name)
+
+
+def _common_unit(report: LinesReport) -> str:
+    """That of all results, or SI where they differ."""
+    units = {_unit(name) for name in report.results}
+    return units.pop() if len(units) == 1 else "SI"
 
 
 REPORT = Report(
@@ -117,6 +166,7 @@ REPORT = Report(
     numbers=lambda study, options: lines_report(study.table, study.stored(), options),
     tables={"": lines_columns},
     figure=lines_figure,
+    notes=lambda report: report.notes,
     check=unknown_results,
     results=lambda options: (*options.y, *options.dashed),
     analyses=("timehistory", "modal", "pushover"),

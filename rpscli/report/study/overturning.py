@@ -7,9 +7,15 @@ from typing import TYPE_CHECKING
 from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, label, labels, plain
-from rpscli.report.study.panels import left_out
+from rpscli.report.study.panels import left_out, over
 from rpscli.report.study.report import Report
-from rpscli.sweep.reports.overturning import OverturningOptions, OverturningTable, overturning_table
+from rpscli.sweep.reports.overturning import (
+    Cell,
+    OverturningOptions,
+    OverturningTable,
+    overturning_table,
+)
+from rpscli.sweep.statistics.share import share
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,17 +24,21 @@ MOST_ROWS = 60
 
 
 def overturning_columns(table: OverturningTable) -> list[Column]:
-    """One row a system, one column for each value of the last axis, shares from 0 to 1."""
+    """One row a system; share, interval and counts for each value of the last axis."""
     columns = key_columns(table.row_keys, table.rows)
     for place, values in enumerate(table.columns):
         named = zip(table.column_keys, values, strict=True)
         name = ";".join(f"{key}={plain(value)}" for key, value in named) or "overturned"
         cells = [row[place] for row in table.cells]
-        columns.append(Column(name, "-", [cell.fraction if cell else None for cell in cells]))
-    for name in ("counted", "failed"):
-        counts = [sum(getattr(c, name) for c in row if c) for row in table.cells]
-        columns.append(Column(name, "-", counts))
-    return columns
+        shares = [cell.overturned if cell else share(0, 0) for cell in cells]
+        columns.append(Column(name, "-", [share.fraction for share in shares]))
+        columns.append(Column(f"{name};low", "-", [share.low for share in shares]))
+        columns.append(Column(f"{name};high", "-", [share.high for share in shares]))
+        columns.append(Column(f"{name};number", "-", [share.number for share in shares]))
+        columns.append(Column(f"{name};counted", "-", [share.of for share in shares]))
+    counted = [sum(c.overturned.of for c in row if c) for row in table.cells]
+    failed = [sum(c.failed for c in row if c) for row in table.cells]
+    return [*columns, Column("counted", "-", counted), Column("failed", "-", failed)]
 
 
 def overturning_figure(table: OverturningTable, title: str) -> bytes:
@@ -40,14 +50,16 @@ def overturning_figure(table: OverturningTable, title: str) -> bytes:
         notes = [left_out(table.failed)]
         if len(table.rows) > MOST_ROWS:
             notes.append(f"the first {MOST_ROWS} of {len(table.rows)} rows")
-        style.heading(figure, title, "share of points that overturn", *notes)
+        words = "overturned: share, number, 95 % interval"
+        style.heading(figure, title, over(table.pooled), words, *notes)
         axes = figure.subplots()
         shares = [[_share(cell) for cell in row] for row in cells]
         axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto", alpha=0.75)
-        for y, row in enumerate(shares):
-            for x, share in enumerate(row):
-                text = "-" if share != share else f"{share:.2f}"  # noqa: PLR0124 -- NaN
-                axes.text(x, y, text, ha="center", va="center")
+        for y, row in enumerate(cells):
+            for x, cell in enumerate(row):
+                first, second = _texts(cell)
+                axes.text(x, y, first, ha="center", va="bottom")
+                axes.text(x, y + 0.08, second, ha="center", va="top", fontsize=0.75 * style.small())
         axes.set_xticks(
             range(len(table.columns)),
             [_stacked(table.column_keys, values) for values in table.columns],
@@ -57,13 +69,21 @@ def overturning_figure(table: OverturningTable, title: str) -> bytes:
         axes.grid(visible=False)
 
     return style.picture(
-        draw, 1.1 + 0.28 * len(rows), min(style.WIDTH, 2.6 + 1.1 * len(table.columns))
+        draw, 1.1 + 0.34 * len(rows), min(style.WIDTH, 3.4 + 1.25 * len(table.columns))
     )
 
 
-def _share(cell: object) -> float:
-    fraction = getattr(cell, "fraction", None)
-    return float("nan") if fraction is None else float(fraction)
+def _share(cell: Cell | None) -> float:
+    fraction = cell.overturned.fraction if cell else None
+    return float("nan") if fraction is None else fraction
+
+
+def _texts(cell: Cell | None) -> tuple[str, str]:
+    """The share, and below it what it rests on."""
+    if cell is None or not cell.overturned.of:
+        return "-", ""
+    found = cell.overturned
+    return f"{found.fraction:.2f}", f"{found.number} of {found.of}, {found.interval}"
 
 
 def _stacked(keys: tuple[str, ...], values: tuple[object, ...]) -> str:
@@ -77,4 +97,5 @@ REPORT = Report(
     numbers=lambda study, options: overturning_table(study.table, options),
     tables={"": overturning_columns},
     figure=overturning_figure,
+    notes=lambda table: table.notes,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rpscli.report.figures import style
 from rpscli.report.figures.look import in_force
@@ -70,7 +70,7 @@ def panel_figure(
     title: str,
     x_label: str,
     y_label: str,
-    share_axes: bool = True,
+    share: Literal["both", "x"] = "both",
     limits: Callable[[Axes], object] | None = None,
     note: str = "",
 ) -> bytes:
@@ -80,6 +80,8 @@ def panel_figure(
     ----------
     draw
         Fills the axes of a panel.
+    share
+        Axes that all panels have in common.
     limits
         Sets the limits that shared axes have in common; each panel would set them for all others.
     note
@@ -95,7 +97,7 @@ def panel_figure(
 
     def fill(figure: Figure) -> None:
         style.heading(figure, title, note)
-        grid = figure.subplots(rows, columns, squeeze=False, sharex=share_axes, sharey=share_axes)
+        grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
         for place, axes in enumerate(grid.flat):
             if place >= len(shown):
                 axes.set_axis_off()
@@ -111,7 +113,7 @@ def panel_figure(
                 axes.set_ylabel(y_label)
         if limits is not None:
             limits(grid.flat[0])
-        _arrange(figure, grid, _legend_lines(figure, grid), share_axes=share_axes)
+        _arrange(figure, grid, _legend_lines(figure, grid), share_y=share == "both")
 
     width = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
     height = 3.8 if rows == 1 and columns == 1 else 1.0 + (2.6 if columns < 3 else 2.1) * rows
@@ -133,20 +135,21 @@ def _legend_lines(figure: Figure, grid: Any) -> int:
     return math.ceil(len(found) / columns)
 
 
-def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_axes: bool) -> None:
+def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> None:
     """Place the axes by hand: the automatic layout would take longer than the drawing."""
     rows, columns = grid.shape
     titles = [axes.get_title() for axes in grid.flat]
     title_lines = max(title.count("\n") for title in titles) + any(titles)
+    further_lines = figure.get_suptitle().count("\n")
     width, height = figure.get_size_inches()
-    height += LINE * max(legend_lines - 1, 0)
+    height += LINE * (max(legend_lines - 1, 0) + further_lines)
     figure.set_size_inches(width, height)
     left, right = 0.62, 0.14
     bottom = 0.52 + LINE * legend_lines + (0.06 if legend_lines else 0.0)
-    top = 0.32 + LINE * title_lines
+    top = 0.32 + LINE * (title_lines + further_lines)
     # Where axes are shared, room for half of the last number of one and of the first of the next.
-    across = 0.32 if share_axes else 0.36
-    down = 0.14 + LINE * title_lines + (0.0 if share_axes else 0.2)
+    across = 0.32 if share_y else 0.36
+    down = 0.14 + LINE * title_lines
     figure.suptitle(figure.get_suptitle(), y=1.0 - 0.08 / height, color=style.GREY)
     figure.subplots_adjust(
         left=left / width,
@@ -165,6 +168,20 @@ def _wrapped(names: Sequence[str], columns: int) -> list[str]:
     if widest * columns <= style.WIDTH * LETTERS_AN_INCH * 0.7:
         return list(names)
     return ["\n".join(name.rsplit(", ", 1)) for name in names]
+
+
+def over(pooled: Sequence[str]) -> str:
+    """A remark on what differs within a panel.
+
+    >>> over(("3 intensities", "4 members")), over(())
+    ('over 3 intensities and 4 members', '')
+    """
+    return f"over {' and '.join(pooled)}" if pooled else ""
+
+
+def remarks(*parts: str) -> str:
+    """All of them that say something, in one line."""
+    return "; ".join(filter(None, parts))
 
 
 def left_out(failed: int) -> str:

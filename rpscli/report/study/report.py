@@ -33,6 +33,8 @@ class Report(Generic[Options, Numbers]):
         Columns of each CSV file, by what follows the report's name in the file's.
     figure
         The file of its figure under a title.
+    drawable
+        Whether there is anything to draw.
     notes
         What the user should know about the numbers.
     check
@@ -50,6 +52,7 @@ class Report(Generic[Options, Numbers]):
     numbers: Callable[[StudyResults, Options], Numbers]
     tables: Mapping[str, Callable[[Numbers], list[Column]]]
     figure: Callable[[Numbers, str], bytes]
+    drawable: Callable[[Numbers], bool] = lambda _: True
     notes: Callable[[Numbers], Iterable[str]] = lambda _: ()
     check: Check = lambda *_: ()
     results: Callable[[Options], Iterable[str]] = lambda _: ()
@@ -62,4 +65,5 @@ class Report(Generic[Options, Numbers]):
         """Names and contents of its files."""
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns(numbers))
-        yield from figure_files({stem: partial(self.figure, numbers, title)}, look).items()
+        if self.drawable(numbers):
+            yield from figure_files({stem: partial(self.figure, numbers, title)}, look).items()

@@ -9,21 +9,22 @@ import numpy as np
 from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
-from rpscli.report.study.panels import by_values, left_out, panel_figure
+from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.sweep.reports.storey_shear import (
     StoreyProfile,
     StoreyShearOptions,
     StoreyShearReport,
     storey_shear_report,
+    unlike_buildings,
 )
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LOOKS = (
-    ("mean", "mean", style.BLACK, "-"),
-    ("largest", "largest", style.RED, "-"),
+    ("mean", "mean of survivors", style.BLACK, "-"),
+    ("largest", "largest of survivors", style.RED, "-"),
     ("fixed_mean", "mean, fixed base", style.BLACK, "--"),
     ("fixed_largest", "largest, fixed base", style.RED, "--"),
 )
@@ -46,29 +47,37 @@ def storey_shear_columns(report: StoreyShearReport) -> list[Column]:
 
 
 def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
-    """Mean and largest V_i/V_st; overturned points are left out."""
+    """Mean and largest shears of what stood, with both counts; the scale is common."""
+    in_kn = report.unit == "kN"
 
     def draw(axes: Axes, profile: StoreyProfile) -> None:
         edges = np.arange(len(profile.mean) + 1)
         for attribute, name, colour, line in LOOKS:
             values = getattr(profile, attribute)
+            if in_kn:
+                axes.locator_params(axis="x", nbins=3)  # long numbers
+                values = values * profile.static_base_shear * 1e-3
             # The shear is the same all the way up a storey.
             axes.stairs(
                 values, edges, orientation="horizontal", color=colour, ls=line, lw=1.3, label=name
             )
         axes.set_ylim(0.0, len(profile.mean))
         axes.locator_params(axis="y", integer=True)
-        axes.set_xlim(left=0.0)
+        axes.text(
+            0.96, 0.95, f"{profile.counted} of {profile.counted + profile.overturned} stood",
+            transform=axes.transAxes, ha="right", va="top", fontsize=0.9 * style.small(),
+        )  # fmt: skip
 
     return panel_figure(
         by_values(report.panel_keys, report.profiles),
         report.profiles,
         draw,
         title=title,
-        x_label="$V_i/V_{st}$ [-]",
+        x_label="$V_i$ [kN]" if in_kn else "$V_i/V_{st}$ [-]",
         y_label="level (0 = cap beam)",
-        share_axes=False,
-        note=left_out(sum(p.failed for p in report.profiles)),
+        share="x",
+        limits=lambda axes: axes.set_xlim(left=0.0),
+        note=remarks(over(report.pooled), left_out(sum(p.failed for p in report.profiles))),
     )
 
 
@@ -77,4 +86,6 @@ REPORT = Report(
     numbers=lambda study, options: storey_shear_report(study.table, study.fixed_base, options),
     tables={"": storey_shear_columns},
     figure=storey_shear_figure,
+    notes=lambda report: report.notes,
+    requires=unlike_buildings,
 )

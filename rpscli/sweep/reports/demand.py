@@ -9,7 +9,8 @@ from pydantic import Field
 
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
-from rpscli.sweep.fits.bilinear import Bilinear, bilinear_fit
+from rpscli.sweep.fits.bilinear import FEWEST, Bilinear, bilinear_fit
+from rpscli.sweep.statistics.pooling import INTENSITY, apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 
@@ -34,13 +35,14 @@ class DemandSeries:
 class DemandPanel:
     """Points that lifted off and stood, and the curve through all of them.
 
-    `fit` is None where there are too few points. `at_rest`, `overturned` and `failed` count the
-    points that were left out.
+    `fit` is None where there are too few points, and `note` says so. `at_rest`, `overturned` and
+    `failed` count the points that were left out.
     """
 
     values: tuple[object, ...]
     series: tuple[DemandSeries, ...]
     fit: Bilinear | None
+    note: str | None
     counted: int
     at_rest: int
     overturned: int
@@ -54,22 +56,50 @@ class DemandReport:
     panel_keys: tuple[str, ...]
     series_keys: tuple[str, ...]
     panels: tuple[DemandPanel, ...]
+    pooled: tuple[str, ...]
+    pooling: tuple[str, ...]
+
+    @property
+    def notes(self) -> list[str]:
+        """What is pooled, and where there is no curve."""
+        notes = list(self.pooling)
+        without = [panel.note for panel in self.panels if panel.note]
+        if without:
+            count = f"{len(without)} of {len(self.panels)} panels have no curve"
+            notes.append(f"{count}: {without[0]}")
+        return notes
 
 
 def demand_report(table: Table, options: DemandOptions) -> DemandReport:
     """Group the points and fit each panel.
 
-    By default the axis in the middle of three gives the colours, the others the panels.
+    By default the axis in the middle of three gives the colours, the others and the intensity give
+    the panels.
     """
-    leading = leading_keys(table.design)
+    design = table.design
+    leading = leading_keys(design)
     series = options.series if options.series is not None else leading[1:-1]
     panels = options.panels
     if panels is None:
         panels = tuple(key for key in leading if key not in series)
+        if INTENSITY not in series:
+            panels = apart(design, panels)
     found = tuple(
-        _panel(table, group.values, group.points, series) for group in groups(table.design, panels)
+        _panel(table, group.values, group.points, series) for group in groups(design, panels)
     )
-    return DemandReport(panels, series, found)
+    apart_by = (*panels, *series)
+    return DemandReport(
+        panel_keys=shown_keys(design, panels),
+        series_keys=shown_keys(design, series),
+        panels=found,
+        pooled=pooled(design, apart_by),
+        pooling=tuple(pooling_note(design, apart_by)),
+    )
+
+
+def too_few(points: int) -> str:
+    """Why there is no curve of two pieces."""
+    return f"{points} different rotations of what stood; the curve needs {2 * FEWEST}"
 
 
 def _panel(
@@ -83,7 +113,8 @@ def _panel(
             DemandSeries(group.values, group.points, x[group.points], y[group.points])
             for group in groups(table.design, series, kept)
         ),
-        fit=bilinear_fit(x[kept], y[kept]),
+        fit=(fit := bilinear_fit(x[kept], y[kept])),
+        note=None if fit else too_few(len(np.unique(x[kept]))),
         counted=len(kept),
         at_rest=int((table.outcomes[points] == "at_rest").sum()),
         overturned=int(table.overturned[points].sum()),

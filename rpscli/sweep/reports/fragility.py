@@ -17,6 +17,7 @@ from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import Keys, PositiveNumbers, Seed
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions
+from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 CURVE_POINTS = 101
@@ -73,7 +74,10 @@ class Observed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Fragility:
-    """Data and fit of one limit state of one group of systems; `failed` points are left out."""
+    """Data and fit of one limit state of one group of systems; `failed` points are left out.
+
+    `overturned` of the points that exceed the limit do so because they overturned.
+    """
 
     values: tuple[object, ...]
     limit: LimitState
@@ -82,7 +86,13 @@ class Fragility:
     observed: Observed
     counted: int
     exceeded: int
+    overturned: int
     failed: int
+
+    @property
+    def fitted(self) -> bool:
+        """Whether there is a curve."""
+        return self.fit.method != "none"
 
 
 @dataclass(frozen=True)
@@ -94,16 +104,33 @@ class FragilityReport:
     series_keys: tuple[str, ...]
     limits: tuple[LimitState, ...]
     curves: tuple[Fragility, ...]
+    pooled: tuple[str, ...]
+    pooling: tuple[str, ...]
+
+    def fitted(self, limit: LimitState) -> list[Fragility]:
+        """The curves of a limit state that could be fitted."""
+        return [curve for curve in self.curves if curve.limit == limit and curve.fitted]
 
     @property
     def notes(self) -> list[str]:
-        """What keeps fits from being ordinary ones."""
+        """What is pooled, what overturning does to limits, and what keeps fits from being plain."""
         named = ((c, zip(self.series_keys, c.values, strict=True)) for c in self.curves)
-        return [
+        return [*self.pooling, *self._overturning] + [
             f"{c.limit.label}{''.join(f', {key} = {value}' for key, value in keys)}: {c.fit.note}"
             for c, keys in named
             if c.fit.note
         ]
+
+    @property
+    def _overturning(self) -> list[str]:
+        """Limits that are exceeded by overturned histories, whatever their demands were."""
+        limited = [curve for curve in self.curves if curve.limit.threshold is not None]
+        fallen = sum(curve.overturned for curve in limited)
+        if not fallen:
+            return []
+        exceeded = sum(curve.exceeded for curve in limited)
+        counts = f"{fallen} of {exceeded} excesses of limits are overturned histories"
+        return [f"an overturned history exceeds every limit: {counts}"]
 
 
 def fragility_report(
@@ -118,7 +145,16 @@ def fragility_report(
         for limit in limits
         for group in systems
     )
-    return FragilityReport(measured, options.confidence, keys, limits, tuple(curves))
+    apart_by = (*keys, INTENSITY)
+    return FragilityReport(
+        intensity=measured,
+        confidence=options.confidence,
+        series_keys=shown_keys(table.design, keys),
+        limits=limits,
+        curves=tuple(curves),
+        pooled=pooled(table.design, apart_by),
+        pooling=tuple(pooling_note(table.design, apart_by)),
+    )
 
 
 def limit_states(options: FragilityOptions) -> Iterator[LimitState]:
@@ -164,6 +200,7 @@ def _fragility(
         observed=_observed(intensity, beyond),
         counted=len(kept),
         exceeded=int(beyond.sum()),
+        overturned=int(table.overturned[kept].sum()),
         failed=len(points) - len(kept),
     )
 

@@ -15,6 +15,8 @@ from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault
+from rpscli.sweep.statistics.fractiles import demand, fractiles
+from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 FRACTILES = (0.16, 0.50, 0.84)
@@ -65,6 +67,8 @@ class IdaReport:
     measure: str | None
     panel_keys: tuple[str, ...]
     panels: tuple[IdaPanel, ...]
+    pooled: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def ida_report(table: Table, options: IdaOptions) -> IdaReport:
@@ -79,19 +83,20 @@ def ida_report(table: Table, options: IdaOptions) -> IdaReport:
             _panel(table, options.demand, group.values, group.points)
             for group in groups(table.design, keys)
         ),
+        pooled=pooled(table.design, (*keys, INTENSITY)),
+        notes=tuple(pooling_note(table.design, (*keys, INTENSITY))),
     )
 
 
 def _panel(table: Table, name: str, values: tuple[object, ...], points: Indices) -> IdaPanel:
-    demand = np.where(table.overturned, np.inf, table.columns[name])
-    demand = np.where(table.failed, np.nan, demand)
+    demands = demand(table, table.columns[name])
     by_level = sorted(groups(table.design, ["scale"], points), key=_level)
-    curves = np.column_stack([demand[group.points] for group in by_level])
+    curves = np.column_stack([demands[group.points] for group in by_level])
     return IdaPanel(
         values=values,
         levels=np.array([_level(group) for group in by_level]),
         curves=curves,
-        fractiles=np.column_stack([_fractiles(column) for column in curves.T]),
+        fractiles=np.column_stack([fractiles(column, FRACTILES) for column in curves.T]),
         overturned=tuple(int(np.isinf(column).sum()) for column in curves.T),
         failed=int(table.failed[points].sum()),
     )
@@ -99,14 +104,6 @@ def _panel(table: Table, name: str, values: tuple[object, ...], points: Indices)
 
 def _level(group: tuple[tuple[object, ...], Indices]) -> float:
     return float(str(group[0][0]))
-
-
-def _fractiles(demands: Array) -> Array:
-    """Fractiles that are demands of the sample themselves, so that infinite ones may stand."""
-    known = np.sort(demands[~np.isnan(demands)])
-    if not len(known):
-        return np.full(len(FRACTILES), np.nan)
-    return np.quantile(known, FRACTILES, method="inverted_cdf")
 
 
 def single_intensity(

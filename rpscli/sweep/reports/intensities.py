@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,8 @@ from rpscli.case.schema.key_units import unit as key_unit
 from rpscli.case.study.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions
 from rpscli.case.study.schema import Measure
-from rpscli.errors import CaseError, RecordError
+from rpscli.errors import RecordError
+from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.table import Array, Table
 
@@ -45,6 +47,13 @@ class MeasureOptions(ReportOptions):
     damping: DampingRatio = Field(0.05, description="of Sa")
 
 
+def measure_without_period(design: Design, options: MeasureOptions) -> Iterator[str]:
+    """What keeps a report from having the measure that it asks for."""
+    at_first_period = options.measure == "Sa" and options.period is None
+    if at_first_period and any(system.period is None for system in design.properties):
+        yield "Sa at T1 needs storeys; give the report a `period`"
+
+
 class Intensity(NamedTuple):
     """A measure of the scaled records.
 
@@ -59,13 +68,7 @@ class Intensity(NamedTuple):
 
 
 def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> Intensity:
-    """The measure that a report asks for; by default the one that the study scales to, else PGV.
-
-    Raises
-    ------
-    CaseError
-        If it is Sa at T1 and a system has no storeys.
-    """
+    """The measure that a report asks for; by default the one that the study scales to, else PGV."""
     scaled = table.design.plan.measure
     measure, period, damping = options.measure, options.period, options.damping
     if measure is None and scaled is not None:
@@ -86,8 +89,7 @@ def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> I
         at = None
         if measure == "Sa":
             at = period or table.design.properties[point.system].period
-            if at is None:
-                raise CaseError("Sa at T1 needs storeys; give the report a `period`")
+            assert at is not None, "`measure_without_period` was asked before"
         try:
             unscaled = context.records.intensity(point.record, measure, at, damping)
         except RecordError:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
+import numpy as np
 from pydantic import Field, StrictBool
 
-from rpscli.case.schema.fields import Text
+from rpscli.case.schema.fields import Quantity, Text
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
@@ -17,6 +18,14 @@ from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed
 from rpscli.errors import nearest
 from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
+from rpscli.sweep.statistics.fractiles import fractiles
+from rpscli.sweep.statistics.pooling import (
+    INTENSITY,
+    apart,
+    pooled,
+    pooling_note,
+    shown_keys,
+)
 from rpscli.sweep.store import Stored
 from rpscli.sweep.table import Indices, Table, groups, leading_keys
 
@@ -32,6 +41,14 @@ class LinesOptions(ReportOptions):
     dashed: Keys = Field((), description="results drawn dashed, as a comparison")
     series: Keys | None = Field(None, description="varied keys, one line for each value")
     panels: Keys | None = Field(None, description="varied keys, one panel for each value")
+    statistic: Annotated[
+        float | Literal["mean", "median", "largest"],
+        Quantity(symbol="a fractile", above=0, below=1, words=("mean", "median", "largest")),
+    ] = Field(
+        "mean",
+        description="of points with one abscissa: the mean of survivors; or, with overturned"
+        " histories as larger than any demand, the median, the largest, or a fractile as 0.84",
+    )
     upright: StrictBool = Field(default=False, description="draw x upwards, as floors are")
     x_label: Text | None = Field(None, description="in place of the name of x")
     y_label: Text | None = Field(None, description="in place of the name of y")
@@ -40,7 +57,8 @@ class LinesOptions(ReportOptions):
 class Line(NamedTuple):
     """One line: a result of the points of one series.
 
-    `x` holds numbers, or words if the varied key has any.
+    `x` holds numbers, or words if the varied key has any. Where points share an abscissa,
+    `counted` of them stood and `overturned` did not, one number for each abscissa.
     """
 
     values: tuple[object, ...]
@@ -48,6 +66,8 @@ class Line(NamedTuple):
     dashed: bool
     x: tuple[Any, ...]
     y: tuple[float, ...]
+    counted: tuple[int, ...] = ()
+    overturned: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,6 +87,35 @@ class LinesReport:
     panel_keys: tuple[str, ...]
     panels: tuple[LinesPanel, ...]
     failed: int
+    x_name: str
+    pooled: tuple[str, ...]
+    pooling: tuple[str, ...]
+
+    @property
+    def statistic(self) -> str:
+        """What stands for points with one abscissa, in words; empty where each stands alone."""
+        lines = [line for panel in self.panels for line in panel.lines]
+        if not any(c + o > 1 for x in lines for c, o in zip(x.counted, x.overturned, strict=True)):
+            return ""
+        chosen = self.options.statistic
+        if chosen == "mean":
+            return "mean of survivors"
+        return chosen if isinstance(chosen, str) else f"{100.0 * chosen:g} % fractile"
+
+    @property
+    def notes(self) -> list[str]:
+        """What is pooled, and what means leave out."""
+        notes = list(self.pooling)
+        if self.statistic == "mean of survivors":
+            first = {(p.values, x.values): x for p in self.panels for x in reversed(p.lines)}
+            overturned = sum(sum(line.overturned) for line in first.values())
+            of = overturned + sum(sum(line.counted) for line in first.values())
+            if overturned:
+                notes.append(
+                    f"means are those of survivors: {overturned} of {of} histories overturned and"
+                    " are left out; `statistic: median` counts them"
+                )
+        return notes
 
     @property
     def results(self) -> tuple[str, ...]:
@@ -79,14 +128,16 @@ def lines_report(
 ) -> LinesReport:
     """The lines of every series of every panel.
 
-    Where several points share an abscissa (the records of a study) the line is their mean;
-    overturned and failed points are left out.
+    Where several points share an abscissa (the records of a study) the line is the statistic that
+    the options name; failed points are left out.
     """
     design = table.design
     panels, series = options.panels or (), options.series
     if series is None:
         taken = {*panels, *_together(table, options.x)}
         series = tuple(key for key in leading_keys(design) if key not in taken)
+        if INTENSITY not in taken:
+            series = apart(design, series)
     names = (*options.y, *options.dashed)
     varied = bool(_together(table, options.x))
     values = _collected(stored, names if varied else (*names, options.x))
@@ -99,7 +150,17 @@ def lines_report(
             for line in _lines(table, values, options, group.values, group.points, name)
         ]
         found.append(LinesPanel(panel.values, tuple(lines)))
-    return LinesReport(options, series, panels, tuple(found), int(table.failed.sum()))
+    keys = (options.x, *series, *panels)
+    return LinesReport(
+        options=options,
+        series_keys=shown_keys(design, series),
+        panel_keys=shown_keys(design, panels),
+        panels=tuple(found),
+        failed=int(table.failed.sum()),
+        x_name=shown_keys(design, (options.x,))[0],
+        pooled=pooled(design, keys) if varied else (),
+        pooling=tuple(pooling_note(design, keys)) if varied else (),
+    )
 
 
 def _together(table: Table, key: str) -> tuple[str, ...]:
@@ -138,14 +199,24 @@ def _lines(
         pairs = sorted(c for c in curves if c[0] is not None)
         x, y = ([pair[side] for pair in pairs] for side in (0, 1))
         return [Line(of_series, name, dashed, tuple(x), tuple(y))] if pairs else []
-    xs, ys = [], []
+    at = []
     for group in groups(table.design, [options.x], points):
-        kept = group.points[~table.overturned[group.points]].tolist()
-        known = [values[name][n] for n in kept if isinstance(values[name][n], int | float)]
-        if known:
-            xs.append(group.values[0])
-            ys.append(math.fsum(known) / len(known))
-    return [Line(of_series, name, dashed, tuple(xs), tuple(ys))] if xs else []
+        stood = group.points[~table.overturned[group.points]].tolist()
+        known = [values[name][n] for n in stood if isinstance(values[name][n], int | float)]
+        fallen = int(table.overturned[group.points].sum())
+        found = _statistic(known, fallen, options.statistic)
+        if not math.isnan(found):
+            at.append((group.values[0], found, len(known), fallen))
+    return [Line(of_series, name, dashed, *zip(*at, strict=True))] if at else []
+
+
+def _statistic(known: Sequence[float], fallen: int, wanted: float | str) -> float:
+    """Mean of what stood, or a fractile in which what overturned is larger than any; else NaN."""
+    if wanted == "mean":
+        return math.fsum(known) / len(known) if known else math.nan
+    share = {"median": 0.5, "largest": 1.0}.get(str(wanted)) or float(wanted)
+    demands = np.array([*known, *[math.inf] * fallen])
+    return float(fractiles(demands, [share])[0])
 
 
 def unknown_results(

@@ -9,6 +9,8 @@ from pydantic import Field
 
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
+from rpscli.sweep.statistics.pooling import INTENSITY, apart, pooled, pooling_note, shown_keys
+from rpscli.sweep.statistics.share import Share, share
 from rpscli.sweep.table import Indices, Table, groups, leading_keys
 
 
@@ -19,28 +21,27 @@ class OverturningOptions(ReportOptions):
     columns: Keys | None = Field(None, description="varied keys across; those of the last axis")
 
 
-class Share(NamedTuple):
+class Cell(NamedTuple):
     """Points of one cell. Failed ones are counted apart and enter no share."""
 
-    overturned: int
-    counted: int
+    overturned: Share
     failed: int
-
-    @property
-    def fraction(self) -> float | None:
-        """Overturned over counted; None without any."""
-        return self.overturned / self.counted if self.counted else None
 
 
 @dataclass(frozen=True)
 class OverturningTable:
-    """Shares by rows and columns; a cell is None where the study has no points."""
+    """Shares by rows and columns; a cell is None where the study has no points.
+
+    `pooled` says what differs within a cell besides the record, `notes` warn of it.
+    """
 
     row_keys: tuple[str, ...]
     column_keys: tuple[str, ...]
     rows: tuple[tuple[object, ...], ...]
     columns: tuple[tuple[object, ...], ...]
-    cells: tuple[tuple[Share | None, ...], ...]
+    cells: tuple[tuple[Cell | None, ...], ...]
+    pooled: tuple[str, ...]
+    notes: tuple[str, ...]
 
     @property
     def failed(self) -> int:
@@ -49,7 +50,7 @@ class OverturningTable:
 
 
 def overturning_table(table: Table, options: OverturningOptions) -> OverturningTable:
-    """Count the overturned points of each system over everything else that varies."""
+    """Count the overturned points of each system, at each intensity unless the study says else."""
     leading = leading_keys(table.design)
     columns = options.columns
     if columns is None:
@@ -57,17 +58,21 @@ def overturning_table(table: Table, options: OverturningOptions) -> OverturningT
     rows = options.rows
     if rows is None:
         rows = tuple(key for key in leading if not _together(table, key, columns))
+        if INTENSITY not in columns:
+            rows = apart(table.design, rows)
     across = groups(table.design, columns)
     lines = []
     for row in groups(table.design, rows):
         cells = {group.values: group.points for group in groups(table.design, columns, row.points)}
-        lines.append(tuple(_share(table, cells.get(group.values)) for group in across))
+        lines.append(tuple(_cell(table, cells.get(group.values)) for group in across))
     return OverturningTable(
-        row_keys=rows,
-        column_keys=columns,
+        row_keys=shown_keys(table.design, rows),
+        column_keys=shown_keys(table.design, columns),
         rows=tuple(group.values for group in groups(table.design, rows)),
         columns=tuple(group.values for group in across),
         cells=tuple(lines),
+        pooled=pooled(table.design, (*rows, *columns)),
+        notes=tuple(pooling_note(table.design, (*rows, *columns))),
     )
 
 
@@ -77,8 +82,8 @@ def _together(table: Table, key: str, keys: tuple[str, ...]) -> bool:
     return any(key in axis and set(axis) & set(keys) for axis in axes)
 
 
-def _share(table: Table, points: Indices | None) -> Share | None:
+def _cell(table: Table, points: Indices | None) -> Cell | None:
     if points is None:
         return None
     failed = int(table.failed[points].sum())
-    return Share(int(table.overturned[points].sum()), len(points) - failed, failed)
+    return Cell(share(int(table.overturned[points].sum()), len(points) - failed), failed)

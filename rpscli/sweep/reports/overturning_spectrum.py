@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
+from rpscli.case.schema.case_file import Time
+from rpscli.case.schema.fields import Quantity
+from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import CaseError
 from rpscli.records.query import Query, parse_query
+from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import RecordRequest
+from rpscli.sweep.statistics.pooling import shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 PULSE_OPTIONS = (
@@ -21,15 +29,34 @@ PULSE_OPTIONS = (
 )  # fmt: skip
 
 
+NEGLIGIBLE = 1e-6
+"""Rotation over the critical one below which a figure shows no uplift: at an amplitude of exactly
+g tan(alpha) rounding decides about the outcome."""
+
+
+class PulseSection(Section):
+    """What a record that is not made from a formula has for a pulse."""
+
+    period: Time = Field(description="of the pulse")
+    amplitude: Annotated[float, Quantity("m/s2", above=0)] | None = Field(
+        None, description="peak acceleration of the unscaled pulse; that of the record by default"
+    )
+
+
 class SpectrumOptions(ReportOptions):
     """Overturning spectrum of pulses: amplitude over g tan(alpha) against frequency over p."""
 
     panels: Keys | None = Field(None, description="varied keys, one panel for each value")
+    series: Keys | None = Field(None, description="varied keys, one colour for each value")
+    pulses: dict[str, PulseSection] = Field(
+        {},
+        description="period and amplitude of records that are files, by source or name",
+    )
 
 
 @dataclass(frozen=True, eq=False)
-class SpectrumPanel:
-    """Points of one group of systems, each (points,).
+class SpectrumSeries:
+    """Points of one colour, each (points,).
 
     Parameters
     ----------
@@ -52,82 +79,128 @@ class SpectrumPanel:
     boundary: Array
     failed: int
 
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """Outcomes for a figure: a negligible rotation is none."""
+        rotations = self.rotation_ratio.tolist()
+        return tuple(
+            "at_rest" if outcome == "survived" and rotation < NEGLIGIBLE else outcome
+            for outcome, rotation in zip(self.outcomes, rotations, strict=True)
+        )
+
+
+@dataclass(frozen=True)
+class SpectrumPanel:
+    """Series of one group of systems."""
+
+    values: tuple[object, ...]
+    series: tuple[SpectrumSeries, ...]
+
 
 @dataclass(frozen=True)
 class SpectrumReport:
     """All panels."""
 
     panel_keys: tuple[str, ...]
+    series_keys: tuple[str, ...]
     panels: tuple[SpectrumPanel, ...]
+
+    @property
+    def failed(self) -> int:
+        """Points left out."""
+        return sum(series.failed for panel in self.panels for series in panel.series)
 
 
 def spectrum_report(
     table: Table, context: StudyContext, options: SpectrumOptions
 ) -> SpectrumReport:
-    """Amplitude and frequency of every point, made dimensionless by its own system.
-
-    Raises
-    ------
-    CaseError
-        If a record of the study is no pulse.
-    """
-    keys = options.panels if options.panels is not None else leading_keys(table.design)
-    periods: dict[RecordRequest, float] = {}
+    """Amplitude and frequency of every point, made dimensionless by its own system."""
+    design = table.design
+    series = options.series or ()
+    panels = options.panels
+    if panels is None:
+        panels = tuple(key for key in leading_keys(design) if key not in series)
+    pulses: dict[RecordRequest, Pulse] = {}
     frequency, amplitude = np.full((2, len(table)), np.nan)
     for point in table.design:
         assert point.record is not None, "points of histories have a record"
         properties = table.design.properties[point.system]
-        if point.record not in periods:
-            periods[point.record] = pulse_period(point.record.source)
-        omega = 2.0 * math.pi / periods[point.record]
+        if point.record not in pulses:
+            pulses[point.record] = pulse_of(point.record.source, options)
+        pulse = pulses[point.record]
+        omega = 2.0 * math.pi / pulse.period
         frequency[point.number] = omega / properties.frequency_parameter
         if not table.failed[point.number]:
-            peak = context.records.intensity(point.record, "PGA")
+            peak = pulse.amplitude or context.records.intensity(point.record, "PGA")
             size = peak * abs(table.scale[point.number])
             amplitude[point.number] = size / properties.uplift_acceleration
-    panels = (
-        _panel(table, group.values, group.points, frequency, amplitude)
-        for group in groups(table.design, keys)
-    )
-    return SpectrumReport(keys, tuple(panels))
+    found = []
+    for panel in groups(design, panels):
+        inside = groups(design, series, panel.points)
+        one = [_series(table, g.values, g.points, frequency, amplitude) for g in inside]
+        found.append(SpectrumPanel(panel.values, tuple(one)))
+    return SpectrumReport(shown_keys(design, panels), shown_keys(design, series), tuple(found))
 
 
-def pulse_period(source: str) -> float:
-    """Period of a pulse [s].
+class Pulse(NamedTuple):
+    """Period [s] and peak acceleration [m/s2] of a pulse; None: that of the record."""
+
+    period: float
+    amplitude: float | None
+
+
+def pulse_of(source: str, options: SpectrumOptions) -> Pulse:
+    """The pulse of a record.
 
     Raises
     ------
     CaseError
-        If the source is no pulse.
+        If the source is no pulse, and the options do not say what it is.
 
     Examples
     --------
-    >>> pulse_period("pulse:sine?amplitude=0.4g&period=1.2")
-    1.2
+    >>> pulse_of("pulse:sine?amplitude=0.4g&period=1.2", SpectrumOptions())
+    Pulse(period=1.2, amplitude=None)
     """
+    given = options.pulses.get(source) or options.pulses.get(PurePath(source).name)
+    if given is not None:
+        return Pulse(given.period, given.amplitude)
     scheme, _, rest = source.partition(":")
     if scheme != "pulse":
         raise CaseError(
-            f"the report overturning_spectrum needs pulses as records, as in"
-            f" pulse:sine?amplitude=1 g&period=1; {source} is none"
+            f"{source} is no pulse with a period, as pulse:sine?amplitude=1g&period=1 is; say what"
+            f" a file holds: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
         )
     query: Query = parse_query(rest.partition("?")[2], source, PULSE_OPTIONS)
-    return query.quantity("period", "time")
+    return Pulse(query.quantity("period", "time"), None)
 
 
-def _panel(
+def records_without_period(design: Design, options: SpectrumOptions) -> Iterator[str]:
+    """Records of a study that have no place in a spectrum."""
+    requests = {properties.record for properties in design.properties}
+    wanted = [request or other for request in design.records for other in requests]
+    for request in dict.fromkeys(wanted):
+        try:
+            if request is not None:
+                pulse_of(request.source, options)
+        except CaseError as error:
+            yield str(error)
+            return
+
+
+def _series(
     table: Table,
     values: tuple[object, ...],
     points: Indices,
     frequency: Array,
     amplitude: Array,
-) -> SpectrumPanel:
+) -> SpectrumSeries:
     over = table.overturned[points]
     boundary = []
     for ratio in np.unique(frequency[points]):
         fell = points[over & (frequency[points] == ratio)]
         boundary.append((ratio, amplitude[fell].min() if len(fell) else math.nan))
-    return SpectrumPanel(
+    return SpectrumSeries(
         values=values,
         frequency_ratio=frequency[points],
         amplitude_ratio=amplitude[points],

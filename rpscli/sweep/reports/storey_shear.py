@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
-from rpscli.errors import CaseError
+from rpscli.sweep.design.layout import Design
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
+from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 
@@ -19,13 +21,17 @@ class StoreyShearOptions(ReportOptions):
     """Mean and largest storey shears against those on a fixed base."""
 
     panels: Keys | None = Field(None, description="varied keys, one panel for each value")
+    unit: Literal["V_st", "kN"] = Field(
+        "V_st", description="of the figure: the base shear at uplift, or kN to compare systems"
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class StoreyProfile:
     """Storey shears of a group of systems over V_st, each (n,) from the bottom.
 
-    Overturned and failed points are left out, of the fixed base too. `static_base_shear` is V_st
+    Means and largest values are those of survivors: overturned and failed points are left out, of
+    the fixed base too. `static_base_shear` is V_st
     [N]; NaN if the systems of the group differ in it.
     """
 
@@ -46,23 +52,66 @@ class StoreyShearReport:
 
     panel_keys: tuple[str, ...]
     profiles: tuple[StoreyProfile, ...]
+    unit: str
+    pooled: tuple[str, ...]
+    pooling: tuple[str, ...]
+
+    @property
+    def overturned(self) -> int:
+        """Points left out of all panels because the structure overturned."""
+        return sum(profile.overturned for profile in self.profiles)
+
+    @property
+    def notes(self) -> list[str]:
+        """What is pooled, and what is left out."""
+        notes = list(self.pooling)
+        if self.overturned:
+            of = self.overturned + sum(profile.counted for profile in self.profiles)
+            notes.append(
+                f"means and largest shears are those of survivors: {self.overturned} of {of}"
+                " histories overturned and are left out"
+            )
+        return notes
 
 
 def storey_shear_report(
     table: Table, fixed: FixedBaseReferences, options: StoreyShearOptions
 ) -> StoreyShearReport:
-    """Profiles of each system, or of each group of systems.
-
-    Raises
-    ------
-    CaseError
-        If the systems of a panel differ in their number of storeys.
-    """
-    keys = options.panels if options.panels is not None else leading_keys(table.design)
+    """Profiles of each system at each intensity, or of the groups that the study names."""
+    design = table.design
+    keys = panel_keys(design, options)
     profiles = (
-        _profile(table, fixed, group.values, group.points) for group in groups(table.design, keys)
+        _profile(table, fixed, group.values, group.points) for group in groups(design, keys)
     )
-    return StoreyShearReport(keys, tuple(profile for profile in profiles if profile))
+    return StoreyShearReport(
+        panel_keys=shown_keys(design, keys),
+        profiles=tuple(profile for profile in profiles if profile),
+        unit=options.unit,
+        pooled=pooled(design, keys),
+        pooling=tuple(pooling_note(design, keys)),
+    )
+
+
+def panel_keys(design: Design, options: StoreyShearOptions) -> tuple[str, ...]:
+    """What tells panels apart."""
+    return apart(design, leading_keys(design)) if options.panels is None else options.panels
+
+
+def unlike_buildings(design: Design, options: StoreyShearOptions) -> Iterator[str]:
+    """Panels whose systems differ in what their common profile would need."""
+    keys = panel_keys(design, options)
+    for group in groups(design, keys):
+        systems = [design.properties[i] for i in np.unique(group.points // design.points_of_system)]
+        named = ", ".join(f"{key} = {value}" for key, value in zip(keys, group.values, strict=True))
+        of = f"the panel of {named}" if named else "its one panel"
+        storeys = sorted({system.storeys for system in systems})
+        if len(storeys) > 1:
+            yield (
+                f"{of} holds buildings of {storeys} storeys; let `panels` name the key in which"
+                " they differ"
+            )
+        elif options.unit == "kN" and len({system.static_base_shear for system in systems}) > 1:
+            yield f"{of} holds systems of different V_st, so that `unit` must be V_st"
 
 
 def _profile(
@@ -70,13 +119,7 @@ def _profile(
 ) -> StoreyProfile | None:
     design = table.design
     systems = np.unique(points // design.points_of_system)
-    storeys = {design.properties[system].storeys for system in systems}
-    if len(storeys) > 1:
-        raise CaseError(
-            f"the report storey_shear: {values} holds buildings of {sorted(storeys)} storeys; let"
-            " `panels` name the key in which they differ"
-        )
-    n = storeys.pop()
+    n = design.properties[systems[0]].storeys
     if n == 0:
         return None
     statics = np.array([properties.static_base_shear for properties in design.properties])

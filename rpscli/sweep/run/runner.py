@@ -22,13 +22,26 @@ from rpscli.sweep.store import Entry, Store
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study is."""
+    """How far a study is.
+
+    Parameters
+    ----------
+    total, kept, computed, failed
+        Points of the study, stored before, of this run, and those of it that failed.
+    seconds
+        Since the run began.
+    first, first_seconds
+        Points that the first batch brought, and when: kernels may have been compiled before, which
+        says nothing about the rate of the others.
+    """
 
     total: int
     kept: int
     computed: int
     failed: int
     seconds: float
+    first: int = 0
+    first_seconds: float = 0.0
 
     @property
     def done(self) -> int:
@@ -37,8 +50,9 @@ class Progress:
 
     @property
     def rate(self) -> float:
-        """Points a second in this run; 0 before the first."""
-        return self.computed / self.seconds if self.seconds > 0.0 else 0.0
+        """Points a second after the first batch; 0 before there are any."""
+        seconds = self.seconds - self.first_seconds
+        return (self.computed - self.first) / seconds if seconds > 0.0 else 0.0
 
     @property
     def seconds_left(self) -> float | None:
@@ -71,6 +85,7 @@ def run(
     """
     began = time.monotonic()
     computed = failed = 0
+    first: tuple[int, float] | None = None
     with first_interrupt(announce) as interrupted:
         work = batches(design, start.pending, engine.jobs)
         for rows in engine.outcomes(_until(interrupted, work)):
@@ -88,7 +103,8 @@ def run(
             failed += sum(row.outcome == FAILED for row in rows)
             seconds = time.monotonic() - began
             total = start.kept + len(start.pending)
-            report(Progress(total, start.kept, computed, failed, seconds))
+            first = first or (computed, seconds)
+            report(Progress(total, start.kept, computed, failed, seconds, *first))
     seconds = time.monotonic() - began
     return Finish(computed, failed, seconds, computed < len(start.pending))
 
