@@ -91,7 +91,7 @@ def opened(text: str, folder: Path) -> Open:
     kept: dict[str, Figure] = {}
 
     def keep(figure: Figure, *_: object, **__: object) -> None:
-        kept[figure.get_suptitle().split("   |   ")[0]] = figure
+        kept[figure.get_suptitle().splitlines()[0].split("   |   ")[0]] = figure
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "savefig", keep)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,13 @@ from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.fits.probit import probit_fit, separated
 from rpscli.sweep.reports.fragility import FragilityOptions, LimitStates, fragility_report
 from rpscli.sweep.reports.intensities import intensity
-from rpscli.sweep.reports.overturning_spectrum import SpectrumOptions, pulse_of, spectrum_report
+from rpscli.sweep.reports.overturning_spectrum import (
+    PulseSection,
+    SpectrumOptions,
+    pulse_of,
+    records_without_period,
+    spectrum_report,
+)
 from rpscli.sweep.store import Stored
 from rpscli.sweep.table import tabulate
 from sweep.small_studies import STUDY, Make
@@ -250,3 +257,37 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
 def test_a_spectrum_of_earthquakes_is_refused() -> None:
     with pytest.raises(CaseError, match="is no pulse with a period"):
         pulse_of("fema_p695:farfield/1/a", SpectrumOptions())
+
+
+PULSES = """\
+records: [{source: "pulse:sine?amplitude=1g", period: [0.5, 1.0]}, mine.txt]
+scale: [0.2, 0.4]
+"""
+
+
+def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of: Make) -> None:
+    lines = [f"{0.01 * i} {math.sin(math.pi * i / 40.0)}" for i in range(81)]
+    Path("mine.txt").write_text("# Time (s) Acceleration (m/s2)\n" + "\n".join(lines) + "\n")
+    design = lay_out(study_of(STUDY[: STUDY.index("records:")] + PULSES))
+    missing = list(records_without_period(design, SpectrumOptions()))
+    assert len(missing) == 1
+    assert "mine.txt is no pulse with a period" in missing[0]
+    pulse = PulseSection(period=0.8, amplitude=1.0)
+    rho = "podium.bearing.curvature_ratio"
+    options = SpectrumOptions(pulses={"mine.txt": pulse}, series=(rho,))
+    assert not list(records_without_period(design, options))
+    # Rounding decides at the border of uplift: 1e-9 of the critical rotation is none in a figure.
+    results = {"scale": 0.4, "rotation_ratio": 1e-9}
+    table = tabulate(design, [Stored("survived", None, results) for _ in design])
+    report = spectrum_report(table, StudyContext(design.plan), options)
+    assert report.series_keys == (rho,)
+    assert [[s.values for s in panel.series] for panel in report.panels] == [
+        [("critical",), (0.5,), (0,)]
+    ] * 2
+    series, properties = report.panels[0].series[0], design.properties[0]
+    assert series.frequency_ratio[-1] == pytest.approx(
+        2.0 * math.pi / 0.8 / properties.frequency_parameter, rel=1e-12
+    )
+    assert series.amplitude_ratio[-1] == pytest.approx(0.4 / (9.80665 * 0.10), rel=1e-9)
+    assert set(series.outcomes) == {"survived"}
+    assert set(series.shown) == {"at_rest"}

@@ -247,3 +247,45 @@ def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> Non
     table = tabulate(design, [stored() if n else None for n in range(36)])
     shares: NDArray[np.bool_] = table.failed
     assert shares.tolist() == [True] + [False] * 35
+
+
+@pytest.mark.parametrize(
+    ("statistic", "values"),
+    [
+        ("mean", [1.5, 1.5]),
+        ("median", [2.0, math.inf]),
+        ("largest", [math.inf, math.inf]),
+        (0.3, [1.0, 2.0]),
+        (0.34, [2.0, 2.0]),
+    ],
+)
+def test_lines_say_what_stands_for_the_records(
+    study_of: Make, statistic: str | float, values: list[float]
+) -> None:
+    design = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        at = place(design, number)
+        record = int(str(at["record"]))
+        falls = record == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
+        return stored("overturned_rolling" if falls else "survived", max_rotation=float(record))
+
+    table = table_of(study_of, answer)
+    rows = [answer(number) for number in range(36)]
+    options = LinesOptions(x=ALPHA, y=("max_rotation",), statistic=statistic, series=("scale",))
+    report = lines_report(table, rows, options)
+    assert report.pooled == (f"3 values of {RHO}",)
+    (panel,) = report.panels
+    assert [line.values for line in panel.lines] == [(0.5,), (1.0,)]
+    line = panel.lines[0]
+    # 1, 1, 1, 2, 2, 2 and three overturned; 1, 1, 2, 2 and five overturned
+    assert (line.counted, line.overturned) == ((6, 4), (3, 5))
+    assert list(line.y) == values
+    assert any("survivors: 16 of 36" in note for note in report.notes) == (statistic == "mean")
+
+
+def test_lines_keep_intensities_apart(study_of: Make) -> None:
+    table = table_of(study_of, lambda _: stored())
+    rows = [stored() for _ in range(36)]
+    report = lines_report(table, rows, LinesOptions(x=ALPHA, y=("max_rotation",)))
+    assert (report.series_keys, report.pooled) == ((RHO, "scale"), ())

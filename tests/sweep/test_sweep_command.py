@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from rpscli.cli import program
+from rpscli.report.study.registry import REPORTS as REPORT_KINDS
 from rpscli.sweep.evaluation.results import SCALARS
 from sweep.small_studies import BASE, ROOT, STUDY, study_file
 
@@ -121,11 +123,40 @@ def test_a_dry_run_shows_the_points_and_writes_nothing(
     assert document["points"] == 36
     assert [point["point"] for point in document["first_points"]] == [1, 2, 3]
     assert document["last_points"][-1]["podium.bearing.curvature_ratio"] == 0
+    assert [point["scale"] for point in document["first_points"]] == [0.5, 1.0, 0.5]
     assert document["estimate"]["seconds"] > 0.0
     text = sweep("study.yaml", "--dry-run").stdout
     assert "Test [study]" in text
     assert "36" in text
     assert not (workplace / "results").exists()
+
+
+def test_a_report_that_cannot_be_drawn_is_refused_before_anything_runs(
+    sweep: Callable[..., Result], workplace: Path
+) -> None:
+    (workplace / "study.yaml").write_text(STUDY + "reports: [overturning, overturning_spectrum]\n")
+    for options in (("--dry-run",), ()):
+        result = sweep("study.yaml", *options)
+        assert result.exit_code == 3
+        assert "study.yaml:11:24" in result.stderr
+        assert "is no pulse with a period" in result.stderr
+    assert not (workplace / "results").exists()
+
+
+def test_a_report_that_fails_takes_nothing_with_it(
+    sweep_json: Document, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> object:
+        raise ZeroDivisionError("no reason")
+
+    monkeypatch.setitem(REPORT_KINDS, "ida", replace(REPORT_KINDS["ida"], numbers=broken))
+    (workplace / "study.yaml").write_text(STUDY + "reports: [ida, overturning]\n")
+    document = sweep_json("study.yaml", exit_code=1)
+    assert (document["status"], document["passed"]) == ("error", False)
+    assert "the report ida: ZeroDivisionError: no reason" in document["error"]["message"]
+    folder = workplace / "results/study/sweep"
+    for name in ("points.csv", "statistics.csv", "overturning.csv", "overturning.png"):
+        assert (folder / name).is_file()
 
 
 def test_an_invalid_study_ends_with_3(sweep: Callable[..., Result], workplace: Path) -> None:

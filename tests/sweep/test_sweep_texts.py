@@ -22,6 +22,14 @@ def test_a_line_has_rate_and_time_left() -> None:
     assert progress_line(progress(0)) == "20 of 100 points, 0 points/s"
 
 
+def test_the_wait_for_a_compilation_does_not_count() -> None:
+    # 40 s for the first 10 points, of which compiling took most; then 30 points in 6 s.
+    now = Progress(100, 20, computed=40, failed=0, seconds=46.0, first=10, first_seconds=40.0)
+    assert progress_line(now) == "60 of 100 points, 5 points/s, 8 s left"
+    begun = Progress(100, 20, computed=10, failed=0, seconds=40.0, first=10, first_seconds=40.0)
+    assert progress_line(begun) == "30 of 100 points, 0 points/s"
+
+
 def test_plain_lines_become_rarer(capsys: pytest.CaptureFixture[str]) -> None:
     with progress_report(Terminal(), 20, 100) as report:
         for second in range(1, 61):

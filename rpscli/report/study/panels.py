@@ -150,7 +150,9 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> 
     # Where axes are shared, room for half of the last number of one and of the first of the next.
     across = 0.32 if share_y else 0.36
     down = 0.14 + LINE * title_lines
-    figure.suptitle(figure.get_suptitle(), y=1.0 - 0.08 / height, color=style.GREY)
+    figure.suptitle(
+        figure.get_suptitle(), y=1.0 - 0.08 / height, fontsize=style.small(), color=style.GREY
+    )
     figure.subplots_adjust(
         left=left / width,
         right=1.0 - right / width,
