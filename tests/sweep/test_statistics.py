@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.fits.bilinear import bilinear_fit
+from rpscli.sweep.reports.contrast import ContrastOptions, contrast_report
 from rpscli.sweep.reports.demand import DemandOptions, demand_report
 from rpscli.sweep.reports.ida import IdaOptions, ida_report
 from rpscli.sweep.reports.lines import LinesOptions, lines_report
@@ -127,6 +128,36 @@ def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
     assert math.isinf(mine.reference[-1])
     other = rotation_report(table, RotationOptions(reference=0.5, panels=(ALPHA,)))
     assert (other.reference, len(other.panels)) == (0.5, 2)
+
+
+def test_contrasts_are_medians_over_the_motions(study_of: Make) -> None:
+    """Cells of the flat ends over rho = 0.5: what stood on both sides, the rest as shares."""
+    design = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        at = place(design, number)
+        flat = at[RHO] == 0
+        if flat and at["record"] == 3 and at["scale"] == 1.0:
+            return stored("overturned_rocking", max_rotation=9.0)
+        if at["record"] == 2 and at["scale"] == 0.5 and at[ALPHA] == 0.10:
+            return Stored("failed", "why", {})
+        size = (2.0 + float(str(at["record"]))) if flat else 2.0
+        return stored("survived", rotation_ratio=size, base_shear_ratio=3.0 if flat else 4.0)
+
+    options = ContrastOptions(
+        key=RHO, reference=0.5, value=0, panels=(ALPHA,), rows=(ALPHA,), columns=("scale",)
+    )
+    report = contrast_report(table_of(study_of, answer), options)
+    assert (report.reference, report.value, report.failed) == (0.5, 0, 1)
+    cells = {(cell.values[0], cell.values[2]): cell for cell in report.cells}
+    assert cells[0.10, 0.5].pairs == 2
+    assert cells[0.15, 0.5].ratios[:, 1] == pytest.approx([2.0, 0.75], rel=1e-15)  # 3, 4, 5 over 2
+    assert cells[0.10, 1.0].ratios[:, 1] == pytest.approx([1.75, 0.75], rel=1e-15)  # 3, 4 over 2
+    assert cells[0.10, 1.0].overturned == pytest.approx(1 / 3)
+    assert cells[0.10, 1.0].reference_overturned == 0.0
+    plain = ContrastOptions(rows=(ALPHA,), columns=("scale",))
+    first = contrast_report(table_of(study_of, answer), plain)
+    assert (first.key, first.reference, first.value) == (RHO, "critical", 0.5)
 
 
 def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rpscli.report.study import (
+    contrast,
     demand,
     fragility,
     ida,
@@ -19,6 +20,7 @@ from rpscli.report.study.report import Report
 REPORTS: dict[str, Report[Any, Any]] = {
     "overturning": overturning.REPORT,
     "rotation": rotation.REPORT,
+    "contrast": contrast.REPORT,
     "demand": demand.REPORT,
     "storey_shear": storey_shear.REPORT,
     "fragility": fragility.REPORT,

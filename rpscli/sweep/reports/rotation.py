@@ -73,7 +73,7 @@ def rotation_report(table: Table, options: RotationOptions) -> RotationReport:
     for panel in groups(table.design, panel_keys):
         found = []
         for other in others:
-            pairs = _paired(panel.points, other.points, reference.points)
+            pairs = paired(panel.points, other.points, reference.points)
             bad = table.failed[pairs[0]] | table.failed[pairs[1]]
             failed += int(bad.sum())
             mine, theirs = (side[~bad] for side in pairs)
@@ -91,7 +91,7 @@ def rotation_over_alpha(table: Table) -> Array:
     return np.where(table.overturned, np.inf, ratio)
 
 
-def _paired(within: Indices, mine: Indices, theirs: Indices) -> tuple[Indices, Indices]:
+def paired(within: Indices, mine: Indices, theirs: Indices) -> tuple[Indices, Indices]:
     """Points of both systems in the same place of all other axes, kept to a panel."""
     kept = np.isin(mine, within)
     return mine[kept], theirs[kept]
@@ -107,7 +107,9 @@ def unknown_reference(
     if options.key is not None:
         axis = next((axis for axis in axes if options.key in axis.keys), None)
     if axis is None:
-        yield Fault(request.path, "the report rotation needs a varied key: systems to compare")
+        yield Fault(
+            request.path, f"the report {request.kind} needs a varied key: systems to compare"
+        )
     elif options.reference is not None:
         place = axis.keys.index(options.key) if options.key else 0
         values = [row[place] for row in axis.rows]

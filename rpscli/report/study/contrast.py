@@ -1,0 +1,117 @@
+"""Maps of how far results change with one key: a colour for each pair of systems."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rpscli.analyses.result_quantities import LIMITED
+from rpscli.report.figures import style
+from rpscli.report.files.csv_text import Column
+from rpscli.report.study.labels import Values, key_columns, labels, plain, symbol
+from rpscli.report.study.panels import left_out
+from rpscli.report.study.report import Report
+from rpscli.sweep.reports.contrast import (
+    Contrast,
+    ContrastOptions,
+    ContrastReport,
+    contrast_report,
+)
+from rpscli.sweep.reports.rotation import unknown_reference
+from rpscli.sweep.table import Array
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STRONGEST = 30.0
+"""Change at which the colours end [%]."""
+
+NAMES = {quantity.name: quantity.label for quantity in LIMITED}
+
+
+def contrast_columns(report: ContrastReport) -> list[Column]:
+    """One row a cell: fractiles of the ratios, shares that overturn."""
+    options, cells = report.options, report.cells
+    keys = (*report.panel_keys, *options.rows, *options.columns)
+    columns = key_columns(keys, [cell.values for cell in cells])
+    columns.append(Column("pairs", "-", [cell.pairs for cell in cells]))
+    for place, name in enumerate(options.results):
+        for fractile, words in enumerate(("16 %", "median", "84 %")):
+            ratios = [float(cell.ratios[place, fractile]) for cell in cells]
+            columns.append(Column(f"ratio of {name}; {words}", "-", ratios))
+    return [
+        *columns,
+        Column("overturned", "-", [cell.overturned for cell in cells]),
+        Column("reference_overturned", "-", [cell.reference_overturned for cell in cells]),
+    ]
+
+
+def contrast_figure(report: ContrastReport, title: str) -> bytes:
+    """One map a result and group of systems; the last row of maps is overturning."""
+    options, ahead = report.options, len(report.panel_keys)
+    down = ahead + len(options.rows)
+    panels, rows, columns = (
+        list(dict.fromkeys(cell.values[part] for cell in report.cells))
+        for part in (slice(ahead), slice(ahead, down), slice(down, None))
+    )
+    names = [*(NAMES[name] for name in options.results), "overturned, points of 100"]
+    changes = np.full((len(names), len(panels), len(rows), len(columns)), np.nan)
+    for cell in report.cells:
+        values = cell.values
+        place = panels.index(values[:ahead]), rows.index(values[ahead:down])
+        changes[:, *place, columns.index(values[down:])] = _changes(cell)
+
+    def draw(figure: Figure) -> None:
+        about = f"{plain(report.value)} over {plain(report.reference)}, median over the motions"
+        style.heading(figure, title, about, left_out(report.failed))
+        grid = figure.subplots(len(names), len(panels), squeeze=False, sharex=True, sharey=True)
+        for (line, place), axes in np.ndenumerate(grid):
+            image = axes.imshow(
+                changes[line, place], cmap="RdBu_r", vmin=-STRONGEST, vmax=STRONGEST, aspect="auto"
+            )
+            axes.grid(visible=False)
+            axes.tick_params(length=0)
+            if line == 0:
+                axes.set_title(labels(report.panel_keys, panels[place]))
+            if place == 0:
+                axes.set_ylabel(f"{names[line]}\n{_named(options.rows)}")
+        grid[0, 0].set_yticks(
+            range(len(rows)), [_ticked(row) for row in rows], fontsize=style.small()
+        )
+        grid[0, 0].set_xticks(
+            range(len(columns)),
+            [_ticked(column) for column in columns],
+            fontsize=style.small(),
+            rotation=90,
+        )
+        for axes in grid[-1]:
+            axes.set_xlabel(_named(options.columns))
+        figure.colorbar(image, ax=grid, label="change [%]", shrink=0.6, extend="both")
+
+    return style.picture(draw, 1.0 + len(names) * max(1.4, 0.12 * len(rows)))
+
+
+def _changes(cell: Contrast) -> Array:
+    """Of each result and of the share that overturns [%]."""
+    overturning = cell.overturned - cell.reference_overturned
+    return 100.0 * np.append(cell.ratios[:, 1] - 1.0, overturning)
+
+
+def _named(keys: Sequence[str]) -> str:
+    return ", ".join(symbol(key) for key in keys)
+
+
+def _ticked(values: Values) -> str:
+    return ", ".join(plain(value) for value in values)
+
+
+REPORT = Report(
+    options=ContrastOptions,
+    numbers=lambda study, options: contrast_report(study.table, options),
+    tables={"": contrast_columns},
+    figure=contrast_figure,
+    check=unknown_reference,
+    results=lambda options: options.results,
+)

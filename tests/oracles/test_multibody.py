@@ -1,0 +1,79 @@
+"""Bodies in contact against the program: they know no impact law, and tell which one holds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_structures import Array, needs_compiled_kernels, oracle_system, stillness
+
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.impact import ImpactKind, ImpactLaw
+
+from .multibody import simulate
+from .resolved_contact import LAWS, structure_of
+from .storey_lagrangian import StoreyLagrangian
+
+pytest.importorskip(
+    "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
+)
+pytestmark = [pytest.mark.long, needs_compiled_kernels]
+
+RELEASED = 0.4 * math.atan(0.15)
+STILL = np.zeros(2)
+
+
+def turning_points(rotation: Array) -> Array:
+    """Largest |theta| of each swing, one a side."""
+    swings = np.split(rotation, np.flatnonzero(np.diff(np.sign(rotation))) + 1)
+    return np.array([np.max(np.abs(swing)) for swing in swings])
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.5, 1.5])
+@pytest.mark.parametrize("building", ["block", "frame"])
+def test_restitution_from_the_heights_of_swings(building: str, rho: float) -> None:
+    """e^2 is the ratio of lifts before and after an impact where nothing else takes energy."""
+    structure = structure_of(building, rho)
+    columns = 1 if building == "block" else 2
+    system = oracle_system(structure)
+    found = simulate(system, STILL, 1.0, 2.8, initial_rotation=RELEASED, columns=columns)
+    tops = turning_points(found.rotation)[:3]
+    storey = StoreyLagrangian(system)
+    lifts = np.array([storey.cap_beam(top, rolling=rho > 0.0)[0].imag for top in tops])
+    # contacts that close within 0.1 ms of swings of half a second
+    assert np.sqrt(lifts[1:] / lifts[:-1]) == pytest.approx(structure.restitution, abs=5e-4)
+
+
+def differences(building: str, rho: float, *, level: bool = True) -> dict[ImpactKind, float]:
+    """Root mean square difference of each law after a release, over the tilt at its start."""
+    structure = structure_of(building, rho)
+    resolved = simulate(
+        oracle_system(structure), STILL, 1.0, 2.4, initial_rotation=RELEASED, level=level
+    )
+    settings = TimeHistorySettings(free_vibration=2.4, initial_rotation=RELEASED)
+    found: dict[ImpactKind, float] = {}
+    for law in LAWS:
+        ours = replace(structure, impact_law=ImpactLaw(law))
+        trace = time_history(ours, stillness(2e-3), settings, with_fixed_base=False).trace
+        gap = np.interp(resolved.time, trace.time, trace.rotation) - resolved.rotation
+        found[law] = float(np.sqrt(np.mean(gap**2))) / RELEASED
+    return found
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.5])
+@pytest.mark.parametrize("building", ["1", "3", "6"])
+def test_floors_do_not_jump_with_the_beam(building: str, rho: float) -> None:
+    found = differences(building, rho)
+    # contacts have a width: impacts last 0.1 ms, and columns are apart for a few after them
+    assert found["flexible"] < 6e-4
+    assert found["rigid"] > 2.5 * found["flexible"]
+
+
+def test_the_columns_part_under_a_beam_that_may_tilt() -> None:
+    """Level floors are an assumption: without it the two columns soon move apart."""
+    level, tilting = differences("6", 0.0), differences("6", 0.0, level=False)
+    assert tilting["flexible"] > 3.0 * level["flexible"]
+    assert tilting["flexible"] < 0.03
