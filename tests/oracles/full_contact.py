@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import expm
@@ -11,6 +13,14 @@ from .crossings import Array, first_crossing, monotone_pieces
 from .storey_lagrangian import StoreyLagrangian
 
 _TAYLOR_ORDER = 20  # 1/21! of the leading term with sub-intervals of one radian of the fastest mode
+
+
+class Exit(NamedTuple):
+    """A way out of rest: direction * push passes lift * (gravity + a_v) + held."""
+
+    direction: int
+    lift: float
+    held: float
 
 
 @dataclass(frozen=True)
@@ -50,7 +60,6 @@ class FullContact:
             push[n : 2 * n] = lagrangian.drift_damping[0]
         push[2 * n] = -lagrangian.pushed_mass
         self.flow, self.fastest = flow, float(np.max(np.abs(np.linalg.eigvals(flow))))
-        self.hold = lagrangian.lifted_mass * system.tan_alpha
         self.gravity = system.gravity
         rows = [push]
         for order in range(1, _TAYLOR_ORDER + 1):
@@ -63,20 +72,27 @@ class FullContact:
             self._steps[tau] = expm(self.flow * tau)
         return self._steps[tau] @ z
 
-    def uplift(self, z: Array, ground: LinearGround, h: float) -> tuple[float, int] | None:
-        """First instant in [0, h] at which the push exceeds what the weight holds, and its side."""
+    def push(self, z: Array) -> float:
+        """Horizontal force on the cap beam towards theta > 0."""
+        return float(self.taylor[0] @ z)
+
+    def leaving(
+        self, z: Array, ground: LinearGround, h: float, exits: Sequence[Exit]
+    ) -> tuple[float, int] | None:
+        """First instant in [0, h] at which the push passes what holds the storey, and whither."""
         push = self.taylor @ z * h ** np.arange(_TAYLOR_ORDER + 1)
-        hold = self.hold * np.array([self.gravity + ground.vertical, h * ground.vertical_rate])
-        if np.sum(np.abs(push)) < hold[0] - abs(hold[1]):
-            return None
         found: list[tuple[float, int]] = []
-        for side in (1, -1):
-            excess = side * push
+        for way in exits:
+            hold = way.lift * np.array([self.gravity + ground.vertical, h * ground.vertical_rate])
+            hold[0] += way.held
+            if np.sum(np.abs(push)) < hold[0] - abs(hold[1]):
+                continue
+            excess = way.direction * push
             excess[:2] -= hold
             if excess[0] > 0.0:
-                return 0.0, side
+                return 0.0, way.direction
             pieces = monotone_pieces(excess)
             root = first_crossing(excess, pieces, 0.0, 1, end=float(np.sum(excess)))
             if root is not None:
-                found.append((root * h, side))
+                found.append((root * h, way.direction))
         return min(found, default=None)

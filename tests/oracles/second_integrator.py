@@ -4,19 +4,24 @@ Everything that can differ does: the unknowns are the tilt and the inter-storey 
 matrix is full and solved at each evaluation (`storey_lagrangian`), the steps are those of DOP853
 restarted at every sample of the record (the ground acceleration is linear in between, so that the
 right-hand side is smooth), and full contact is the matrix exponential. Events are searched between
-the turning points of the dense output, then met by a new integration that ends on them.
+the turning points of the dense output, then met by a new integration that ends on them. Devices
+(`devices`) are smooth between their own events; friction holds a tilted storey as the ground holds
+a standing one, with the same matrix exponential.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from scipy.integrate import DOP853
 
 from .crossings import NODES, Array, first_crossing, monotone_pieces, through_nodes
-from .full_contact import FullContact, LinearGround
+from .devices import Change, Equipment, OracleDevice, Stop
+from .full_contact import Exit, FullContact, LinearGround
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
 __all__ = ["OracleResult", "OracleSystem", "simulate"]
@@ -44,6 +49,23 @@ class OracleResult:
     uplifts: int
     overturned: bool
     energy_lost: float
+    device_work: Array
+    """What each device took up [J], in its stiffness or for good."""
+    plastic: tuple[float, ...]
+    """Of each tendon, the elongation that stays [m]."""
+    sticks: int
+    """Times that friction held the storey tilted."""
+    branches: int
+    """Times that a device changed its branch."""
+
+
+class Event(NamedTuple):
+    """When, as a fraction of the step, and what."""
+
+    at: float
+    kind: Literal["level", "change", "turn", "letting go", "none"]
+    level: float = 0.0
+    change: Change | None = None
 
 
 class _Simulation:
@@ -57,59 +79,103 @@ class _Simulation:
         overturning: float,
         locking: Literal["relative", "limit"],
         rtol: float,
+        devices: tuple[OracleDevice, ...] = (),
     ) -> None:
         self.lagrangian = StoreyLagrangian(system)
         self.full_contact = FullContact(self.lagrangian)
         self.negligible = recontact * np.arctan(system.tan_alpha)
         self.limit = overturning * self.lagrangian.critical_rotation
         self.locking, self.rtol = locking, rtol
-        self.y: Array = np.zeros(2 * self.lagrangian.storeys + 2)
+        self.equipment = Equipment(self.lagrangian, devices, self.limit)
+        self.y: Array = np.zeros(2 * self.lagrangian.storeys + 2 + len(devices))
         self.contact: Contact | None = None
+        self.stuck, self.direction = False, 1
         self.step = np.inf  # the last free step of DOP853
         self.max_rotation = self.energy_lost = 0.0
-        self.impacts = self.uplifts = 0
+        self.impacts = self.uplifts = self.sticks = self.branches = 0
         self.overturned = False
 
     def advance(self, ground: LinearGround, duration: float) -> None:
         """Through one interval of the record, however many events it holds."""
         tau = 0.0
         while duration - tau > _REMAINDER * duration and not self.overturned:
-            passed = self.stand if self.contact is None else self.move
+            passed = self.stand if self.contact is None or self.stuck else self.move
             tau += passed(ground.later(tau), duration - tau)
 
+    def exits(self) -> list[Exit]:
+        """Which push, in either direction, moves the storey that stands or is stuck."""
+        motion = self.lagrangian
+        ways: list[Exit] = []
+        for direction in (1, -1):
+            contact = self.contact or Contact(direction, rolling=motion.beta > 0.0)
+            theta = float(self.y[0])
+            slope = motion.cap_beam(abs(theta), rolling=contact.rolling)[1]
+            active, held = self.equipment.at_rest(contact, theta)
+            lift = direction * contact.side * motion.lifted_mass * slope.imag / slope.real
+            ways.append(Exit(direction, lift, (held - direction * active) / slope.real))
+        return ways
+
+    def ground_state(self, ground: LinearGround) -> Array:
+        """z of `full_contact`: drifts, their rates and the ground."""
+        n = self.lagrangian.storeys
+        drifts = np.r_[self.y[1 : n + 1], self.y[n + 2 : 2 * n + 2]]
+        return np.asarray(np.r_[drifts, ground.horizontal, ground.horizontal_rate])
+
     def stand(self, ground: LinearGround, duration: float) -> float:
-        """Full contact until uplift or the end; returns the time that passed."""
+        """No tilt rate, until uplift, sliding or the end; returns the time that passed."""
         n = self.lagrangian.storeys
         pieces = max(1, int(np.ceil(duration * self.full_contact.fastest)))
         h = duration / pieces
-        drifts = np.r_[self.y[1 : n + 1], self.y[n + 2 :]]
-        z = np.r_[drifts, ground.horizontal, ground.horizontal_rate]
+        z, exits = self.ground_state(ground), self.exits()
         for piece in range(pieces):
-            lifted = self.full_contact.uplift(z, ground.later(piece * h), h)
-            z = self.full_contact.over(z, h if lifted is None else lifted[0])
-            self.y[1 : n + 1], self.y[n + 2 :] = z[:n], z[n : 2 * n]
-            if lifted is not None:
-                self.uplifts += 1
-                self.contact = Contact(lifted[1], rolling=self.lagrangian.beta > 0.0)
-                return piece * h + lifted[0]
+            left = self.full_contact.leaving(z, ground.later(piece * h), h, exits)
+            z = self.full_contact.over(z, h if left is None else left[0])
+            self.y[1 : n + 1], self.y[n + 2 : 2 * n + 2] = z[:n], z[n : 2 * n]
+            if left is not None:
+                self.leave(left[1])
+                return piece * h + left[0]
         return duration
 
-    def solver(self, ground: LinearGround, contact: Contact, start: float, end: float) -> DOP853:
+    def leave(self, direction: int) -> None:
+        """Uplift, or the end of sticking."""
+        self.direction = direction
+        if self.contact is None:
+            self.uplifts += 1
+            self.contact = Contact(direction, rolling=self.lagrangian.beta > 0.0)
+        self.stuck = False
+        contact = self.contact
+        self.equipment.turn(
+            contact.side * float(self.y[0]),
+            outwards=direction == contact.side,
+            rolling=contact.rolling,
+        )
+
+    def rates(self, ground: LinearGround, contact: Contact) -> Callable[[float, Any], Any]:
+        """y' as a function of the time since `ground` and y."""
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
-        gravity = motion.system.gravity
+        gravity, direction = motion.system.gravity, self.direction
 
         def rates(tau: float, y: Any) -> Any:
             a_g = ground.horizontal + tau * ground.horizontal_rate
             g = gravity + ground.vertical + tau * ground.vertical_rate
-            return np.concatenate((y[n1:], motion.acceleration(contact, y, a_g, g)))
+            pairs = self.equipment.moments(contact, float(y[0]), float(y[n1]), direction)
+            moments = np.array([active + frictional for active, frictional in pairs])
+            moved = motion.acceleration(contact, y, a_g, g, float(np.sum(moments)))
+            return np.concatenate((y[n1 : 2 * n1], moved, -moments * y[n1]))
 
+        return rates
+
+    def solver(self, ground: LinearGround, contact: Contact, start: float, end: float) -> DOP853:
+        tolerance: Any = np.full(len(self.y), 1e-3 * self.rtol)
+        # the work of devices follows from the motion and shall not shorten its steps
+        tolerance[2 * self.lagrangian.storeys + 2 :] = np.inf
         return DOP853(
-            rates,
+            self.rates(ground, contact),
             start,
             self.y,
             end,
             rtol=self.rtol,
-            atol=1e-3 * self.rtol,
+            atol=tolerance,
             first_step=min(self.step, end - start),
         )
 
@@ -135,17 +201,19 @@ class _Simulation:
             assert solver.t_old is not None
             h = solver.t - solver.t_old
             x_end = contact.side * float(solver.y[0])
-            inner = solver.dense_output()(solver.t_old + h * NODES)[0]
-            curve = through_nodes(contact.side * float(self.y[0]), contact.side * inner)
+            inner = solver.dense_output()(solver.t_old + h * NODES)
+            curve = through_nodes(contact.side * float(self.y[0]), contact.side * inner[0])
             pieces = monotone_pieces(curve)
-            end, level = self.first_event(contact, curve, pieces, x_end)
-            turns = [z for z in pieces if z < end]
+            events = self.device_events(contact, inner, solver.y)
+            events.append(self.first_level(contact, curve, pieces, x_end))
+            event = min(events, key=lambda event: event.at)
+            turns = [z for z in pieces if z < event.at]
             peaks = np.polynomial.polynomial.polyval(np.array(turns), curve)
             self.max_rotation = max(self.max_rotation, float(np.max(peaks)))
-            if level is not None:
-                tau = self.meet(ground, contact, solver.t_old, solver.t_old + end * h, level)
-                self.max_rotation = max(self.max_rotation, level)
-                self.switch(contact, level, ground.later(tau))
+            if event.kind != "none":
+                tau = self.meet(ground, contact, solver.t_old, solver.t_old + event.at * h, event)
+                self.max_rotation = max(self.max_rotation, abs(float(self.y[0])))
+                self.switch(contact, event, ground.later(tau))
                 return tau
             self.y = solver.y.copy()
             self.max_rotation = max(self.max_rotation, x_end)
@@ -156,49 +224,128 @@ class _Simulation:
             self.step = max(h, min(self.step, 10.0 * h)) if cut else h
         return duration
 
-    def first_event(
+    def first_level(
         self, contact: Contact, curve: Array, pieces: list[float], x_end: float
-    ) -> tuple[float, float | None]:
-        """Fraction of the step and level of |theta|; (1, None) if the step runs to its end."""
+    ) -> Event:
+        """The first level of |theta| that is passed; none at the end of the step."""
         noise = 1e-12 * float(np.sum(np.abs(curve[1:])))
+        levels = [(level, way, None) for level, way in self.levels(contact)]
+        changes = [(change.level, change.direction, change) for change in self.equipment.changes()]
         crossings = [
-            (root, level)
-            for level, direction in self.levels(contact)
-            if (root := first_crossing(curve, pieces, level, direction, end=x_end, noise=noise))
+            Event(root, "change" if change else "level", level, change)
+            for level, way, change in (*levels, *changes)
+            if (root := first_crossing(curve, pieces, level, way, end=x_end, noise=noise))
             is not None
         ]
-        return min(crossings, default=(1.0, None))
+        return min(crossings, default=Event(1.0, "none"), key=lambda event: event.at)
+
+    def device_events(self, contact: Contact, inner: Array, end: Array) -> list[Event]:
+        """Where the rate changes its sign, or the damper of a stop its own."""
+        n1, events = self.lagrangian.storeys + 1, []
+
+        def zero(start: float, values: Array, last: float, direction: int) -> float | None:
+            curve = through_nodes(start, values)
+            noise = 1e-12 * float(np.sum(np.abs(curve[1:])))
+            return first_crossing(
+                curve, monotone_pieces(curve), 0.0, direction, end=last, noise=noise
+            )
+
+        if self.equipment.turns:
+            rate = self.direction * np.r_[self.y[n1], inner[n1], end[n1]]
+            at = zero(float(rate[0]), rate[1:-1], float(rate[-1]), -1)
+            events += [] if at is None else [Event(at, "turn")]
+        for k, stop in self.equipment.letting_go():
+            states = (self.y, *inner.T, end)
+            push = np.array([self.push(contact, stop, state) for state in states])
+            pushing = self.equipment.branches[k] == "pushing"
+            at = zero(float(push[0]), push[1:-1], float(push[-1]), -1 if pushing else 1)
+            change = Change(0.0, 0, k, "released" if pushing else "pushing")
+            events += [] if at is None else [Event(at, "letting go", 0.0, change)]
+        return events
+
+    def push(self, contact: Contact, stop: Stop, y: Array) -> float:
+        """Of a stop, spring and damper together, also where they would pull."""
+        side, rate = contact.side, float(y[self.lagrangian.storeys + 1])
+        shift, slope, _ = self.lagrangian.cap_beam(side * float(y[0]), rolling=contact.rolling)
+        return self.equipment.push(stop, shift.real, side * slope.real * rate)
+
+    def miss(self, contact: Contact, event: Event, y: Array) -> float:
+        """What vanishes at the event."""
+        if event.kind == "turn":
+            return float(y[self.lagrangian.storeys + 1])
+        if event.kind == "letting go":
+            assert event.change is not None
+            stop = self.equipment.devices[event.change.device]
+            assert isinstance(stop, Stop)
+            return self.push(contact, stop, y) / stop.stiffness
+        return contact.side * float(y[0]) - event.level
 
     def meet(
-        self, ground: LinearGround, contact: Contact, start: float, event: float, level: float
+        self, ground: LinearGround, contact: Contact, start: float, near: float, event: Event
     ) -> float:
-        """Integrate to |theta| = level itself: the dense output is less accurate than the step."""
-        tau = event
-        for _ in range(8):
+        """Integrate to the event itself: the dense output is less accurate than the step."""
+        tau, rates = near, self.rates(ground, contact)
+        for _ in range(12):
             arrival = self.solver(ground, contact, start, tau)
             while arrival.status == "running":
                 self.run(arrival)
-            miss = contact.side * float(arrival.y[0]) - level
+            y: Array = np.asarray(arrival.y, dtype=np.float64)
+            miss = self.miss(contact, event, y)
             if abs(miss) < 1e-15:
                 break
-            correction = -miss / (contact.side * float(arrival.y[self.lagrangian.storeys + 1]))
+            apart = 1e-6 * rates(tau, y)
+            change = self.miss(contact, event, y + apart) - self.miss(contact, event, y - apart)
+            correction = -miss * 2e-6 / change
             if abs(correction) < 1e-14:
                 break
             tau += correction
         else:
-            raise RuntimeError(f"no convergence to |theta| = {level}")
-        self.y = arrival.y.copy()
-        self.y[0] = contact.side * level
+            raise RuntimeError(f"no convergence to {event}")
+        self.y = y.copy()
+        if event.kind in ("level", "change"):
+            self.y[0] = contact.side * event.level
+        elif event.kind == "turn":
+            self.y[self.lagrangian.storeys + 1] = 0.0
         return tau
 
-    def switch(self, contact: Contact, level: float, ground: LinearGround) -> None:
-        """What an event does to the contact and to the velocities."""
-        if level == self.limit:
+    def switch(self, contact: Contact, event: Event, ground: LinearGround) -> None:
+        """What an event does to the contact, to the velocities and to the devices."""
+        if event.kind == "turn":
+            self.turn(ground)
+        elif event.change is not None:
+            self.change(event)
+        elif event.level == self.limit:
             self.overturned = True
-        elif level > 0.0:
+        elif event.level > 0.0:
             self.contact = Contact(contact.side, not contact.rolling)
         else:
             self.impact(contact, ground)
+
+    def change(self, event: Event) -> None:
+        """All devices that change here: two stops may have the same gap."""
+        assert event.change is not None
+        equipment, found = self.equipment, [event.change]
+        if event.kind == "change":
+            found = [
+                change
+                for change in equipment.changes()
+                if change.direction == event.change.direction
+                and abs(change.level - event.level) < 1e-13
+            ]
+        for change in found:
+            equipment.branches[change.device] = change.branch
+            self.branches += 1
+
+    def turn(self, ground: LinearGround) -> None:
+        """At rest for an instant, or for longer if friction holds what acts otherwise."""
+        push = self.full_contact.push(self.ground_state(ground))
+        gravity = self.lagrangian.system.gravity + ground.vertical
+        for way in self.exits():
+            if way.direction * push > way.lift * gravity + way.held:
+                self.leave(way.direction)
+                return
+        self.stuck = True
+        self.sticks += 1
 
     def impact(self, contact: Contact, ground: LinearGround) -> None:
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
@@ -206,31 +353,35 @@ class _Simulation:
         self.impacts += 1
         self.y = motion.after_impact(self.y)
         beyond = Contact(-contact.side, contact.rolling)
-        gravity = motion.system.gravity + ground.vertical
-        back = -beyond.side * float(
-            motion.acceleration(beyond, self.y, ground.horizontal, gravity)[0]
-        )
+        back = -beyond.side * float(self.rates(ground, beyond)(0.0, self.y)[n1])
         if back > 0.0 and self.y[n1] ** 2 / (2.0 * back) < self.negligible:
-            self.lock()
+            self.lock(beyond, back)
         else:
             self.contact = beyond
         self.energy_lost += before - sum(motion.energies(beyond, self.y))
 
-    def lock(self) -> None:
+    def lock(self, beyond: Contact, back: float) -> None:
         """Full contact instead of the endless rest of shrinking excursions.
 
         "relative" keeps the drift rates. "limit" adds what the excursions left out would have done
         to them: between impacts absolute floor velocities stay, so each excursion of speed w turns
-        u_b' = c w into -c w and the first drift rate gains 2 c w; over the alternating series with
-        ratio -e that is 2 c w/(1 + e) if impacts keep the drift rates, and c w if they do not.
+        u_b' = c w into -k c w, where k^2 is the ratio of the accelerations to zero and from it: 1
+        without friction, and 0 if that holds the storey where it stops. The first drift rate gains
+        (1 + k) c w; over the alternating series with ratio -e k that is (1 + k) c w/(1 + e k) if
+        impacts keep the drift rates, and c w if they do not.
         """
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         if self.locking == "limit" and motion.storeys > 0:
-            rigid = motion.system.law == "rigid"
-            share = 2.0 / (1.0 + motion.restitution) if rigid else 1.0
+            _, held = self.equipment.at_rest(beyond, 0.0)
+            slope = motion.cap_beam(0.0, rolling=beyond.rolling)[1]
+            friction = np.linalg.solve(motion.mass_matrix(slope), held * np.eye(n1)[0])[0]
+            k = math.sqrt(max(0.0, 1.0 - 2.0 * float(friction) / back))
+            e = motion.restitution
+            share = (1.0 + k) / (1.0 + e * k) if motion.system.law == "rigid" else 1.0
             self.y[n1 + 1] += share * 2.0 * motion.half_height * self.y[n1]
         self.y[n1] = 0.0
         self.contact, self.step = None, np.inf
+        self.equipment.stand()
 
 
 def simulate(
@@ -245,6 +396,7 @@ def simulate(
     rtol: float = 1e-10,
     initial_rotation: float = 0.0,
     locking: Literal["relative", "limit"] = "relative",
+    devices: tuple[OracleDevice, ...] = (),
 ) -> OracleResult:
     """Response to ground acceleration samples [m/s2], then to none for `free_vibration` seconds.
 
@@ -259,12 +411,14 @@ def simulate(
         overturning=overturning_limit,
         locking=locking,
         rtol=rtol,
+        devices=devices,
     )
     if initial_rotation:
         run.y[0] = initial_rotation
         tilt = abs(initial_rotation)
         run.max_rotation = tilt
         run.contact = Contact(1 if initial_rotation > 0.0 else -1, tilt < run.lagrangian.beta)
+        run.equipment.release(tilt, rolling=run.contact.rolling)
     vertical = np.zeros_like(ag) if av is None else av
     states = [run.y.copy()]
     for j in range(len(ag) - 1 + round(free_vibration / dt)):
@@ -272,6 +426,8 @@ def simulate(
         if j < len(ag) - 1:
             rates = [float(a[j + 1] - a[j]) / dt for a in (ag, vertical)]
             ground = LinearGround(float(ag[j]), rates[0], float(vertical[j]), rates[1])
+        if j == 0 and run.contact is not None:
+            run.turn(ground)
         run.advance(ground, dt)
         if run.overturned:
             break
@@ -292,4 +448,8 @@ def simulate(
         uplifts=run.uplifts,
         overturned=run.overturned,
         energy_lost=run.energy_lost,
+        device_work=run.y[2 * n + 2 :].copy(),
+        plastic=tuple(run.equipment.plastic),
+        sticks=run.sticks,
+        branches=run.branches,
     )

@@ -111,23 +111,30 @@ class StoreyLagrangian:
         matrix[1:, 1:] = self.drift_mass
         return matrix
 
-    def acceleration(self, contact: Contact, y: Array, a_g: float, gravity: float) -> Array:
-        """q'' of the uplifted system; y = [q, q'], `gravity` includes the ground's vertical a_v."""
+    def acceleration(
+        self, contact: Contact, y: Array, a_g: float, gravity: float, moment: float = 0.0
+    ) -> Array:
+        """q'' of the uplifted system under another moment on theta; y = [q, q', ...].
+
+        `gravity` includes the ground's vertical a_v.
+        """
         n, side = self.storeys, contact.side
         omega = float(y[n + 1])
         _, slope, bend = self.cap_beam(side * float(y[0]), rolling=contact.rolling)
         force = np.empty(n + 1)
         # of Lagrange's velocity terms only those in theta'^2 survive: M depends on theta alone
-        force[0] = -self.lifted_mass * (a_g * slope.real + gravity * side * slope.imag)
+        force[0] = moment - self.lifted_mass * (a_g * slope.real + gravity * side * slope.imag)
         force[0] -= self.moving_mass * side * (slope.conjugate() * bend).real * omega**2
         force[1:] = -self.carried * (a_g + side * bend.real * omega**2)
-        force[1:] -= self.system.stiffnesses * y[1 : n + 1] + self.drift_damping @ y[n + 2 :]
+        force[1:] -= (
+            self.system.stiffnesses * y[1 : n + 1] + self.drift_damping @ y[n + 2 : 2 * n + 2]
+        )
         return np.asarray(np.linalg.solve(self.mass_matrix(slope), force), dtype=np.float64)
 
     def energies(self, contact: Contact, y: Array) -> tuple[float, float]:
         """Kinetic and potential energy [J] relative to the ground; both zero at rest."""
         n = self.storeys
-        rate = y[n + 1 :]
+        rate = y[n + 1 : 2 * n + 2]
         shift, slope, _ = self.cap_beam(contact.side * float(y[0]), rolling=contact.rolling)
         springs = 0.5 * float(self.system.stiffnesses @ y[1 : n + 1] ** 2)
         kinetic = 0.5 * float(rate @ self.mass_matrix(slope) @ rate)
