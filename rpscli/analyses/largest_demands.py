@@ -132,6 +132,12 @@ class Demand:
         return float(max(self.history.friction))
 
     @property
+    def friction_ratio(self) -> float | None:
+        """friction_demand over the coefficient of friction; None where that is not given."""
+        coefficient = self.structure.friction
+        return None if coefficient is None else self.friction_demand / coefficient
+
+    @property
     def uplifts(self) -> int:
         """Number of uplifts from full contact."""
         return int(self.history.counts[state.UPLIFT])

@@ -94,7 +94,7 @@ HISTORY = (
         demand=True, meaning="largest rotation over critical rotation",
     ),
     ResultQuantity("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
-    ResultQuantity("critical_passage_time", "s", "first passage of the critical rotation"),
+    ResultQuantity("critical_passage_time", "s", "critical rotation passed at"),
     ResultQuantity(
         "max_cap_beam_displacement", "m", "cap beam displacement", limit="0.3", demand=True
     ),
@@ -119,6 +119,10 @@ HISTORY = (
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
     ResultQuantity("duration", "s", "duration"),
     ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
+    ResultQuantity(
+        "friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction in the case",
+        meaning="friction demand over podium.friction; columns slide above 1",
+    ),
 )  # fmt: skip
 """Scalars of a time history."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,9 @@ from rpscli.analyses.trace import Event, Trace
 from rpscli.physics import state
 from rpscli.physics.formulae import geometry
 from rpscli.records.ground_motion import GroundMotion
+
+NEAR_CRITICAL = 0.8
+"""Rotations above this part of the critical one are near it: a little more may overturn."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +66,30 @@ class TimeHistoryResult(Demand):
         return 2.0 * b.semi_diagonal * self.structure.weight * np.sign(theta) * arm
 
     @property
+    def is_near_critical(self) -> bool:
+        """Whether it survived after rotations near the critical one, or beyond."""
+        return self.outcome == "survived" and self.rotation_ratio > NEAR_CRITICAL
+
+    @property
+    def slides(self) -> bool | None:
+        """Whether the friction demand exceeds the coefficient; None where that is not given."""
+        return None if self.friction_ratio is None else self.friction_ratio > 1.0
+
+    @property
+    def sliding_time(self) -> float | None:
+        """When |F|/N first exceeded the coefficient at a sample [s]; None if never."""
+        coefficient, trace = self.structure.friction, self.trace
+        if coefficient is None:
+            return None
+        bottom = np.abs(trace.shear_bottom) > coefficient * trace.normal_bottom
+        top = np.abs(trace.shear_top) > coefficient * trace.normal_top
+        slides = np.flatnonzero(top | bottom)
+        return float(trace.time[slides[0]]) if len(slides) else None
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """What the user must know before trusting the numbers."""
-        notes = list(self.record.warnings)
+        notes = [*self.record.warnings, *self._near_the_limit()]
         least = min(self.history.least_normal)
         if least <= 0.0:
             notes.append(
@@ -87,3 +112,25 @@ class TimeHistoryResult(Demand):
             elif self.duration >= self.record.duration + LONGEST_FREE_VIBRATION:
                 notes.append(f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end")
         return tuple(notes)
+
+    def _near_the_limit(self) -> Iterator[str]:
+        """How near a structure that survived came to overturning, and whether columns slide."""
+        ratio, passed = self.rotation_ratio, self.critical_passage_time
+        if self.is_near_critical and passed is not None:
+            yield (
+                f"the critical rotation was passed at t = {passed:.4g} s (largest {ratio:.3g}"
+                " theta_cr): the weight no longer restored, only the ground fetched the storey"
+                " back; judge by many records"
+            )
+        elif self.is_near_critical:
+            yield (
+                f"the largest rotation is {ratio:.3g} of the critical one, above {NEAR_CRITICAL:g}:"
+                " a little more may overturn the structure; judge by many records"
+            )
+        if self.slides:
+            when = "" if self.sliding_time is None else f" from t = {self.sliding_time:.4g} s"
+            yield (
+                f"the columns slide{when}: the friction demand {self.friction_demand:.3g} exceeds"
+                f" podium.friction = {self.structure.friction:g}; the model assumes that they do"
+                " not, so the motion is not to be trusted from there on"
+            )

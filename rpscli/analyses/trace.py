@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,7 +65,8 @@ class Trace:
     are relative to the ground; `floor_accelerations` are absolute. `phase` is 0 in full contact,
     1 rolling, 2 rocking. `driving_moment` is what the ground and the building do about the
     contact points, 2 R C (V - (N m_c/2 + m_b) a_g); in slow motion it equals the restoring moment
-    2 R W s B(x) [N m]. Energies [J] are those of Theory, section 8.
+    2 R W s B(x) [N m]. Forces at the columns' ends [N] are those of all columns together: F to the
+    right on what is above, N upwards on it. They and energies [J] are those of Theory, section 8.
     """
 
     time: Array
@@ -79,6 +81,10 @@ class Trace:
     storey_shears: Array
     floor_accelerations: Array
     driving_moment: Array
+    shear_top: Array
+    shear_bottom: Array
+    normal_top: Array
+    normal_bottom: Array
     energy_input: Array
     energy_damped: Array
     energy_impact: Array
@@ -87,15 +93,16 @@ class Trace:
 
 def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trace:
     """Histories from what the kernel stored at samples every `dt` [s]."""
+    # Imported here: numba is slow, and the command line imports this module's classes.
+    from rpscli.physics.equation_of_motion import contact_forces  # noqa: PLC0415
+
     samples, ground = run.samples, run.ground
     theta, rate = samples.theta, samples.theta_dot
     u, du = run.floors[:, 0], run.floors[:, 1]
     b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
     base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
-    a_g = np.zeros(len(samples))
-    length = min(len(samples), len(ground))
-    a_g[:length] = ground[:length]
+    a_g = prolonged(ground, len(samples))
     drifts = np.diff(u, axis=1, prepend=base[:, None])
     shears, forces = np.zeros_like(u), np.zeros_like(u)
     if (building := structure.superstructure) is not None:
@@ -107,6 +114,20 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
     stored += 0.5 * tilting_inertia(structure, B, C, theta) * rate**2
     if building is not None:
         stored += 0.5 * du**2 @ building.masses
+    V = forces.sum(axis=1)
+    across, upwards = base_accelerations(structure, samples, B, C)
+    a_v = 0.0 if run.vertical is None else prolonged(run.vertical, len(samples))
+    forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
+    shear_top, shear_bottom, normal_top, normal_bottom = forces_of(
+        structure.cap_beam_mass,
+        structure.superstructure_mass,
+        structure.columns_mass,
+        across,
+        upwards,
+        V,
+        a_g,
+        structure.gravity + a_v,
+    )
     return Trace(
         time=np.arange(len(samples), dtype=np.float64) * dt,
         ground_acceleration=a_g,
@@ -119,12 +140,46 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
         drifts=drifts,
         storey_shears=shears,
         floor_accelerations=-forces / building.masses if building is not None else forces,
-        driving_moment=diameter * C * (forces.sum(axis=1) - beam * a_g),
+        driving_moment=diameter * C * (V - beam * a_g),
+        shear_top=shear_top,
+        shear_bottom=shear_bottom,
+        normal_top=normal_top,
+        normal_bottom=normal_bottom,
         energy_input=samples.energy_input,
         energy_damped=samples.energy_damped,
         energy_impact=samples.energy_lost,
         energy_stored=stored,
     )
+
+
+def prolonged(acceleration: Array, samples: int) -> Array:
+    """The acceleration at so many samples [m/s2]: zero after the record's end."""
+    length = min(samples, len(acceleration))
+    return np.pad(acceleration[:length], (0, samples - length))
+
+
+def base_accelerations(
+    structure: PodiumStructure, samples: state.Record, B: Array, C: Array
+) -> tuple[Array, Array]:
+    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8), 0 in full contact.
+
+    Parameters
+    ----------
+    structure
+        What moves.
+    samples
+        (samples,) `state.SAMPLE`.
+    B, C
+        Contact arm and contact height over R (samples,).
+    """
+    b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
+    theta, square = samples.theta, samples.theta_dot**2
+    side = np.sign(theta) + (theta == 0.0) * np.sign(samples.theta_ddot)
+    constant = np.where(samples.phase == state.ROLLING, b.rolling.c, b.rocking.c)
+    across = diameter * (C * samples.theta_ddot + side * B * square)
+    upwards = diameter * (side * B * samples.theta_ddot + (constant - C) * square)
+    moves = samples.phase != state.FULL_CONTACT
+    return np.where(moves, across, 0.0), np.where(moves, upwards, 0.0)
 
 
 def tilting_inertia(structure: PodiumStructure, B: Array, C: Array, theta: Array) -> Array:

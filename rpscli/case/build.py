@@ -128,6 +128,7 @@ def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
         gravity=file.analysis.gravity,
         devices=tuple(device_of(section) for section in file.podium.devices),
         columns=file.podium.columns or 1,
+        friction=file.podium.friction,
     )
 
 

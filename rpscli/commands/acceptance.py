@@ -13,12 +13,17 @@ from rpscli.errors import LimitExceeded, UsageError, nearest
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.case.schema.limits import LimitsSection
+    from rpscli.model.podium import PodiumStructure
 
 HAPPENED: dict[str, Callable[[TimeHistoryResult], float]] = {
     "overturning": lambda result: float(result.overturned),
     "uplift": lambda result: float(result.uplifts),
 }
 """How often each event happened."""
+
+
+FRICTION = "podium.friction"
+"""Source of the condition that the columns do not slide."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +87,11 @@ def case_conditions(limits: LimitsSection) -> list[Condition]:
     if not found or any(condition.name == "overturning" for condition in found):
         return list(found)
     return [Condition("overturning", 0.0, "limits of the case"), *found]
+
+
+def friction_conditions(structure: PodiumStructure) -> list[Condition]:
+    """Where a coefficient of friction is given, the friction demand is judged by it."""
+    return [] if structure.friction is None else [Condition("friction_ratio", 1.0, FRICTION)]
 
 
 def judge(result: TimeHistoryResult, conditions: Iterable[Condition]) -> list[Verdict]:

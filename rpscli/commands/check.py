@@ -68,5 +68,5 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RecordError | None]:
         "duration": found.duration,
         "pga": found.pga,
         "scale": motion.scale,
-        "warnings": found.warnings,
+        "warnings": [*found.warnings, *motion.scale_warnings],
     }, None

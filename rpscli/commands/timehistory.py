@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.commands.acceptance import Verdict, case_conditions, exceeded, judge, parse_condition
+from rpscli.commands.acceptance import (
+    Verdict,
+    case_conditions,
+    exceeded,
+    friction_conditions,
+    judge,
+    parse_condition,
+)
 from rpscli.commands.case_input import CaseInput, case_folder, case_heading, read_case, write
 from rpscli.commands.motion import MotionRequest, load_motion, motion_inputs
 from rpscli.commands.shell.compilation import announce_compilation
@@ -94,7 +101,8 @@ def command(
         verdicts: list[Verdict] = []
         error: RpsError | None = AnalysisError(result.failure)
     else:
-        verdicts = judge(result, [*case_conditions(given.case.limits), *conditions])
+        slides = friction_conditions(given.case.structure)
+        verdicts = judge(result, [*case_conditions(given.case.limits), *slides, *conditions])
         error = exceeded(verdicts)
     if animate is not None:
         from rpscli.report.figures.animation import animation_gif  # noqa: PLC0415
@@ -121,6 +129,6 @@ def _document(
         "verdicts": [asdict(verdict) for verdict in verdicts],
     }
     document["record"] |= {"scale": ground.scale}
-    vertical = ground.vertical.warnings if ground.vertical else ()
-    document["warnings"] = [*given.case.warnings, *document["warnings"], *vertical]
+    of_motion = (*(ground.vertical.warnings if ground.vertical else ()), *ground.scale_warnings)
+    document["warnings"] = [*given.case.warnings, *document["warnings"], *of_motion]
     return document

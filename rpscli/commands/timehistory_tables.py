@@ -38,7 +38,7 @@ def timehistory_tables(
 ) -> Iterator[RenderableType]:
     """What happened; the storeys, if there are any; the limits, if there are any."""
     yield heading_line(f"{title}, {result.record.name}")
-    yield f"outcome: {OUTCOMES[result.outcome]}"
+    yield f"outcome: {outcome_text(result)}"
     yield outcome_table(result)
     if result.structure.storeys:
         yield storeys_table(result)
@@ -46,11 +46,27 @@ def timehistory_tables(
         yield limits_table(verdicts)
 
 
+def outcome_text(result: TimeHistoryResult) -> str:
+    """How the history ended, how near to overturning, and whether the columns slide."""
+    parts, passed = [OUTCOMES[result.outcome]], result.critical_passage_time
+    if result.is_near_critical and passed is not None:
+        parts.append(f"passed the critical rotation at t = {shown(passed)} s")
+    elif result.is_near_critical:
+        parts.append(f"near the critical rotation ({shown(result.rotation_ratio)} of it)")
+    if result.slides:
+        when = result.sliding_time
+        parts.append("slides" if when is None else f"slides at t = {shown(when)} s")
+    elif result.friction_ratio:
+        parts.append(f"does not slide (margin {shown(1.0 / result.friction_ratio)})")
+    return "; ".join(parts)
+
+
 def outcome_table(result: TimeHistoryResult) -> Table:
     """The largest demands beside those of the fixed base."""
     rows = [
         _row(result, "max_rotation", f"{shown(result.rotation_ratio)} theta_cr"),
         _row(result, "max_rotation_time"),
+        *([] if result.critical_passage_time is None else [_row(result, "critical_passage_time")]),
         _row(result, "max_cap_beam_displacement"),
         _row(result, "max_lift"),
     ]
@@ -65,7 +81,10 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     if demands is not None and demands.drift_ratio is not None:
         rows.append(_row(result, "drift_ratio", fixed=float(max(demands.drift_ratio))))
     rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
-    rows += [_row(result, "friction_demand"), _row(result, "duration"), *_energy(result)]
+    friction = result.friction_ratio
+    of_friction = "" if friction is None else f"{shown(friction)} of mu"
+    rows.append(_row(result, "friction_demand", of_friction))
+    rows += [_row(result, "duration"), *_energy(result)]
     heads = ["", "on bearings", "normalised", "fixed base"]
     if result.fixed_base is None:
         return table(heads[:3], [row[:3] for row in rows])

@@ -38,7 +38,9 @@ class PodiumStructure:
     devices
         Dampers, stops and tendons between ground and cap beam.
     columns
-        N; only tendons, one in each column, ask for it.
+        N; only tendons, one in each column, and forces of one column ask for it.
+    friction
+        Coefficient of friction at both ends of the columns; None where it is not known.
 
     Raises
     ------
@@ -59,6 +61,7 @@ class PodiumStructure:
     gravity: float = STANDARD_GRAVITY
     devices: tuple[Device, ...] = ()
     columns: int = 1
+    friction: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""

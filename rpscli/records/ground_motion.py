@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
+from rpscli.records.scaling import is_usual, scale_warning
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +151,13 @@ class MotionComponents:
         """Both components times `factor`."""
         vertical = self.vertical and self.vertical.scaled(factor)
         return MotionComponents(self.horizontal.scaled(factor), vertical, self.scale * factor)
+
+    @property
+    def scale_warnings(self) -> tuple[str, ...]:
+        """What to say of the factor; a pulse is made for any."""
+        if self.horizontal.format == "pulse" or is_usual(self.scale):
+            return ()
+        return (scale_warning(self.horizontal.name, self.scale),)
 
     @property
     def of_one_length(self) -> tuple[GroundMotion, GroundMotion | None]:

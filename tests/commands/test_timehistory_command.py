@@ -254,3 +254,27 @@ def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> Non
     assert "steps of 3 modes" in long.stderr
     assert "analysis.free_vibration" in long.stderr
     assert "a long history" not in rps("timehistory", "small.yaml").stderr
+
+
+def test_a_coefficient_of_friction_is_judged(rps: Invoke, rps_json: InvokeJson) -> None:
+    document = rps_json("timehistory", "small.yaml", "--set", "podium.friction=0.9")
+    assert document["friction_ratio"] == pytest.approx(document["friction_demand"] / 0.9)
+    (verdict,) = (v for v in document["verdicts"] if v["source"] == "podium.friction")
+    assert (verdict["name"], verdict["limit"], verdict["exceeded"]) == (
+        "friction_ratio",
+        1.0,
+        False,
+    )
+    slides = rps("timehistory", "small.yaml", "--force", "--set", "podium.friction=0.01")
+    assert slides.exit_code == 10
+    assert "friction_ratio" in slides.stderr
+    assert "; slides at t = " in slides.stdout
+
+
+def test_an_unusual_scale_is_named(rps_json: InvokeJson) -> None:
+    record = "synthetic:?pga=0.1g&seed=7&duration=4"
+    for scale, named in (("4", False), ("4.5", True), ("-0.2", True)):
+        arguments = ("--record", record, "--scale", scale, "--force")
+        document = rps_json("timehistory", "small.yaml", *arguments)
+        told = [text for text in document["warnings"] if f"is scaled by {scale}" in text]
+        assert len(told) == named

@@ -17,6 +17,7 @@ from rpscli.case.conditions import Condition
 from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.pooling import apart, pooled
+from rpscli.sweep.statistics.scales import scale_notes
 from rpscli.sweep.statistics.share import share
 from rpscli.sweep.statistics.summary import Summary, summary
 from rpscli.sweep.statistics.verdicts import judged
@@ -238,3 +239,12 @@ def test_results_that_no_system_has_are_refused_before_anything_runs(
     result = sweep("study.yaml", "--fail-on", "drift_ratio=0.1")
     assert result.exit_code == 2
     assert "storey_height" in result.stderr
+
+
+def test_points_with_unusual_factors_are_counted(study_of: Make) -> None:
+    """Half of 36 points at 0.1 and half at 5: 5 is nearer to 1, in ratio."""
+    table = table_of(study_of, lambda _: stored(), ("scale: [0.5, 1.0]", "scale: [0.1, 5.0]"))
+    (note,) = scale_notes(table)
+    assert note.startswith("36 of 36 points scale their record beyond the usual 0.25 to 4")
+    assert note.endswith("by 0.1")
+    assert not list(scale_notes(table_of(study_of, lambda _: stored())))

@@ -143,13 +143,15 @@ def run_of(
 class SampledHistory:
     """A history with its samples and events, records of `physics.state`.
 
-    `ground` is the horizontal acceleration, as long as the longer component [m/s2]; `samples`
+    `ground` and `vertical` are the horizontal and the vertical acceleration, as long as the longer
+    component [m/s2]; `samples`
     (intervals + 1,), `floors` (intervals + 1, 2, n) displacements and velocities [m, m/s] relative
     to the ground, `log` (events,).
     """
 
     history: History
     ground: NDArray[np.float64]
+    vertical: NDArray[np.float64] | None
     samples: Record
     floors: NDArray[np.float64]
     log: Record
@@ -230,6 +232,7 @@ def sampled_history(
     return SampledHistory(
         history,
         along.acceleration,
+        None if upwards is None else upwards.acceleration,
         output.samples[kept].copy(),
         output.floors[kept].copy(),
         output.log[:seen],

@@ -174,6 +174,14 @@ class PodiumSection(PodiumMasses):
     impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = Field(
         ImpactSection(), description="impact law; a law's name alone may stand here"
     )
+    friction: (
+        Annotated[float, Quantity(symbol="of friction, at both ends of the columns", above=0)]
+        | None
+    ) = Field(
+        None,
+        description="coefficient of friction at both ends of the columns; the friction demand is"
+        " then judged",
+    )
     devices: tuple[DeviceSection, ...] = Field(
         (), description="dampers, stops and tendons between ground and cap beam, at most 8"
     )

@@ -76,6 +76,7 @@ def _with_statistics(
     found: Collected, results: StudyResults, conditions: Sequence[Condition], folder: OutputFolder
 ) -> Collected:
     from rpscli.report.study.statistics import summary_columns, verdict_columns  # noqa: PLC0415
+    from rpscli.sweep.statistics.scales import scale_notes  # noqa: PLC0415
     from rpscli.sweep.statistics.summary import summary  # noqa: PLC0415
     from rpscli.sweep.statistics.verdicts import judged  # noqa: PLC0415
 
@@ -84,7 +85,7 @@ def _with_statistics(
     folder.add("statistics.csv", csv_text(summary_columns(made)))
     if verdicts:
         folder.add("verdicts.csv", csv_text(verdict_columns(made.keys, verdicts)))
-    notes = [f"statistics: {note}" for note in made.notes]
+    notes = [f"statistics: {note}" for note in (*made.notes, *scale_notes(results.table))]
     return found._replace(summary=made, verdicts=verdicts, notes=notes)
 
 
