@@ -142,13 +142,17 @@ def test_verdicts(
     assert (verdict.beyond.number, verdict.beyond.of, verdict.overturned) == (beyond, 5, fallen)
 
 
-def test_limits_of_the_study_stand_above_those_of_its_case(study_of: Make) -> None:
+def test_limits_of_the_study_replace_those_of_its_case(study_of: Make) -> None:
     base = Path("base.yaml")
     base.write_text(BASE + "limits: {rotation_ratio: 0.5, drift_ratio: 0.01}\n", encoding="utf-8")
     given = STUDY + "limits: {rotation_ratio: {at_most: 0.4, share: 0.1}}\n"
     design = lay_out(study_of(given))
     assert design.properties[3].limits == (
         Condition("rotation_ratio", 0.4, "limits of the study", share=0.1),
+    )
+    assert lay_out(study_of(STUDY + "limits: {}\n")).properties[3].limits == ()
+    assert lay_out(study_of(STUDY)).properties[3].limits == (
+        Condition("rotation_ratio", 0.5, "limits of the case"),
         Condition("drift_ratio", 0.01, "limits of the case"),
     )
 

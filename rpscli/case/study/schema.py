@@ -121,7 +121,7 @@ class StudyFile(Section):
         None, description="small perturbations around every point"
     )
     limits: LimitsSection | None = Field(
-        None, description="judge the study, over those of its base; exceeded: exit code 10"
+        None, description="judge the study in place of those of its base; exceeded: exit code 10"
     )
     reports: tuple[str | dict[str, Any], ...] = Field(
         (), description="names of reports, or `name: {option: value}`"

@@ -50,7 +50,8 @@ def progress_line(progress: Progress) -> str:
     left = progress.seconds_left
     ahead = "" if left is None else f", {duration(left)} left"
     done = f"{progress.done} of {progress.total} points{failed}"
-    return f"{done}, {progress.rate:.3g} points/s{ahead}"
+    rate = f", {progress.rate:.3g} points/s" if progress.rate else ""
+    return f"{done}{rate}{ahead}"
 
 
 def duration(seconds: float) -> str:
@@ -79,7 +80,9 @@ def _bar(kept: int, total: int) -> Iterator[Report]:
         def report(progress: object) -> None:
             left = getattr(progress, "seconds_left", None)
             rate, failed = getattr(progress, "rate", 0.0), getattr(progress, "failed", 0)
-            text = f"{rate:.3g}/s" + ("" if left is None else f", {duration(left)} left")
+            text = f"{rate:.3g}/s" * bool(rate) + (
+                "" if left is None else f", {duration(left)} left"
+            )
             text += f", {failed} failed" if failed else ""
             bar.update(task, completed=getattr(progress, "done", 0), description=text)
 

@@ -104,7 +104,8 @@ def verdict_table(summary: Summary, verdicts: Sequence[StudyVerdict]) -> Table:
 def found(verdict: StudyVerdict) -> str:
     """What a verdict rests on."""
     if verdict.fractile is not None:
-        return f"{shown(verdict.fractile)} of {verdict.beyond.of} records"
+        demand = "overturned" if verdict.fractile == float("inf") else shown(verdict.fractile)
+        return f"{demand} there, n = {verdict.beyond.of}"
     fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
     return f"{verdict.beyond}{fallen}"
 

@@ -30,7 +30,7 @@ class SystemProperties(NamedTuple):
 
     `period` is T1 on a fixed base, `frequency_parameter` that of the rigid frame, p_hat;
     `building` is a digest of the superstructure, empty without one; `limits` are those of the study
-    and, where it sets none, of the case; `lacking` names results that the system cannot have.
+    or, where it has none, of the case; `lacking` names results that the system cannot have.
     """
 
     digest: bytes
@@ -103,12 +103,10 @@ def _properties(
 
 
 def _limits(study: Study, case: Case) -> tuple[Condition, ...]:
-    """Limits of the study, and those of the case that it does not set anew."""
-    mine = study.file.limits
-    own = () if mine is None else conditions_of(mine, "limits of the study")
-    named = {condition.name for condition in own}
-    others = conditions_of(case.limits, "limits of the case")
-    return (*own, *(condition for condition in others if condition.name not in named))
+    """Limits of the study or, where it has none of its own, of the case."""
+    if study.file.limits is not None:
+        return conditions_of(study.file.limits, "limits of the study")
+    return conditions_of(case.limits, "limits of the case")
 
 
 def lacks(case: Case, needs: str) -> bool:
