@@ -27,6 +27,7 @@ from rpscli.physics.state import (
     IS_OVER,
     LANES,
     NO_HISTORY,
+    NOT_ACCEPTED,
     NOTHING_NEW,
     ROCKING,
     ROLLING,
@@ -64,49 +65,90 @@ def integrate_lanes(state: Record, run: Run) -> None:
     What many samples need is handed on by itself: of each array in a tuple references are counted.
     """
     s = state[0]
-    systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block[0]
-    sampled = output.samples.shape[0] > 0
-    s.audited = 1 if sampled else 0
+    systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block
+    s.audited = 1 if output.samples.shape[0] > 0 else 0
+    s.waiting, active = 0, s.lanes
     for l in range(s.lanes):
         s.history[l], s.accepted[l] = NO_HISTORY, 0.0
-        s.waits[l], s.renew[l] = 1.0, NOTHING_NEW
-    waiting, active, started = 0, s.lanes, False
+        s.renew[l] = NOTHING_NEW
+        switch_lane(state, l, IS_OVER, run)
+        active -= s.history[l] == NO_HISTORY
     while active > 0:
-        if started:
-            take_steps(s)
-            check_steps(s)
-            observe_ends(s)
-            observe_lanes(s, systems, block, output.log)
-            accept_steps(s)
+        advance_lanes(state, systems, block, output.log)
         for l in range(s.lanes):
-            if s.waits[l] == 0.0 or (started and s.history[l] == NO_HISTORY):
+            if s.waits[l] == 0.0 or s.history[l] == NO_HISTORY:
                 continue
-            fate, system = IS_OVER, systems[s.system[l]]
+            fate = NOT_ACCEPTED
             if s.accepted[l] > 0.0:
                 fate = next_interval(s, l, acceleration)
-                if sampled:
-                    store_sample(s, l, system, output)
-            elif started:
-                fate = resolve_step(s, l, system, block, output.log)
-            while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
-                system = systems[s.system[l]]
-                if fate == GOES_ON:
-                    renew_accelerations(s, l)
-                    fate = go_on_renewed(s, l, system, output)
-                elif fate == STANDS:
-                    fate = stand(s, l, system, block, acceleration, output)
-                    plan_steps(s, l)
-                else:
-                    if s.history[l] != NO_HISTORY:
-                        finish_history(s, l, system, run.results)
-                    if waiting < run.requests.shape[0]:
-                        fate = begin_history(s, l, run, waiting)
-                        waiting += 1
-                    else:
-                        idle(s, l)
-                        fate = GOES_ON
-            active -= s.history[l] == NO_HISTORY
-        started = True
+                if s.audited > 0:
+                    store_sample(s, l, systems[s.system[l]], output)
+            if fate != GOES_ON or s.renew[l] != NOTHING_NEW:
+                switch_lane(state, l, fate, run)
+                active -= s.history[l] == NO_HISTORY
+
+
+@kernel
+def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -> None:
+    """A step of all lanes together, as far as it holds no event.
+
+    Parameters
+    ----------
+    state
+        The lanes, an array of one `state.STATE`.
+    systems
+        (S,) `state.SYSTEM`.
+    blocks
+        (1,) `state.BLOCK`: lends scratch to the search of the largest tilt.
+    log
+        (rows,) `state.EVENT`.
+    """
+    s = state[0]
+    take_steps(s)
+    check_steps(s)
+    observe_ends(s)
+    observe_lanes(s, systems, blocks[0], log)
+    accept_steps(s)
+
+
+@kernel
+def switch_lane(state: Record, l: int, fate: int, run: Run) -> None:
+    """What comes of a step that one lane cannot simply go on from.
+
+    It ends on an event, the storey stands until it uplifts, or the next history begins.
+
+    Parameters
+    ----------
+    state
+        The lanes, an array of one `state.STATE`.
+    l
+        Which of them.
+    fate
+        GOES_ON, NOT_ACCEPTED or IS_OVER.
+    run
+        The histories.
+    """
+    s, block, output = state[0], run.block[0], run.output
+    system = run.systems[s.system[l]]
+    if fate == NOT_ACCEPTED:
+        fate = resolve_step(s, l, system, block, output.log)
+    while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
+        system = run.systems[s.system[l]]
+        if fate == GOES_ON:
+            renew_accelerations(s, l)
+            fate = go_on_renewed(s, l, system, output)
+        elif fate == STANDS:
+            fate = stand(s, l, system, block, run.acceleration, output)
+            plan_steps(s, l)
+        else:
+            if s.history[l] != NO_HISTORY:
+                finish_history(s, l, system, run.results)
+            if s.waiting < run.requests.shape[0]:
+                fate = begin_history(s, l, run, s.waiting)
+                s.waiting += 1
+            else:
+                idle(s, l)
+                fate = GOES_ON
 
 
 @compiled

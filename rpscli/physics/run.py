@@ -7,7 +7,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.state import BLOCK, LANES, STATE, Floats, Record, records
+from rpscli.physics.state import (
+    BLOCK,
+    EVENT,
+    LANES,
+    REQUEST,
+    RESULT,
+    SAMPLE,
+    STATE,
+    SYSTEM,
+    Floats,
+    Record,
+    records,
+)
 
 
 class Output(NamedTuple):
@@ -69,3 +81,21 @@ def empty_block(storeys: int) -> Record:
     block = records(BLOCK, storeys)
     block.n = storeys
     return block
+
+
+def empty_run(storeys: int) -> Run:
+    """No history at all, of one structure of zeros."""
+    systems = records(SYSTEM, storeys)
+    systems.n = storeys
+    return Run(
+        systems=systems,
+        requests=records(REQUEST, storeys, count=0),
+        acceleration=np.empty(0),
+        results=records(RESULT, storeys, count=0),
+        output=Output(
+            samples=records(SAMPLE, storeys, count=0),
+            floors=np.empty((0, 2, storeys)),
+            log=records(EVENT, storeys, count=0),
+        ),
+        block=empty_block(storeys),
+    )

@@ -86,7 +86,7 @@ RUNNING = -1
 ) = range(5)
 
 # What becomes of a lane.
-GOES_ON, STANDS, IS_OVER = range(3)
+GOES_ON, STANDS, IS_OVER, NOT_ACCEPTED = range(4)
 
 # Steps in full contact whose maps are kept.
 WHOLE_STEP, SHORT_STEP = range(2)
@@ -286,6 +286,7 @@ STATE = (
     Field("n", "", WHOLE, "storeys, and modes: the same in all lanes", "run.empty_state"),
     Field("lanes", "", WHOLE, "lanes in use: 1 or all", "run.empty_state"),
     Field("audited", "", WHOLE, "1 where energy flows are integrated", "driver"),
+    Field("waiting", "", WHOLE, "number of the next request", "driver.switch_lane"),
 )
 
 BLOCK = (

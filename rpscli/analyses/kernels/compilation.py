@@ -41,6 +41,7 @@ def is_ready(storeys: int) -> bool:
 def compiled(storeys: int) -> Iterator[None]:
     """Around a call of a kernel: announce the compilation if there is one, and remember it."""
     from rpscli.physics.compile import remember_compiled  # noqa: PLC0415 -- numba is slow
+    from rpscli.physics.prepare import compile_beside  # noqa: PLC0415 -- numba is slow
 
     if is_ready(storeys):
         yield
@@ -53,6 +54,7 @@ def compiled(storeys: int) -> Iterator[None]:
         with ExitStack() as told:
             for listener in _listeners:
                 told.enter_context(listener(name))
+            compile_beside(storeys)
             yield
     else:
         yield
