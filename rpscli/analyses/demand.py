@@ -94,7 +94,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
     run = run_of(stacked_systems(systems.items), motions.items, histories)
     storeys = requests[0].structure.storeys
     lanes = LANES if len(requests) >= worth_lanes else 1
-    with compiled(storeys):
+    with compiled():
         integrate(run, lanes)
     return [history_of(result, storeys) for result in run.results]
 

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rpscli.constants import MOST_STOREYS
 from rpscli.model.damping import ModalDamping, RayleighDamping
 
 Profile = Literal["sine", "uniform", "linear", "flexural"]
@@ -141,6 +142,8 @@ class Superstructure:
         }
         if lengths != {self.storeys} or not self.storeys:
             raise ValueError(f"masses, stiffnesses and heights must have one length: {lengths}")
+        if self.storeys > MOST_STOREYS:
+            raise ValueError(f"{self.storeys} storeys: there is room for {MOST_STOREYS} at most")
 
     @property
     def storeys(self) -> int:

@@ -22,38 +22,38 @@ from rpscli.physics.run import empty_run, empty_state
 from rpscli.physics.state import GOES_ON
 
 
-def compile_beside(storeys: int) -> None:
-    """Compile both halves for buildings of so many storeys; what fails is left to the first call.
+def compile_beside() -> None:
+    """Compile both halves; what fails is left to the first call.
 
     Without a cache, or without machine code at all, there is nothing to prepare.
     """
     if cast("Any", numba.config).DISABLE_JIT or cache_folder() is None or not sys.executable:
         return
-    command = [sys.executable, "-m", __name__, str(storeys)]
+    command = [sys.executable, "-m", __name__]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     silent = subprocess.DEVNULL
     with subprocess.Popen(  # noqa: S603 -- this very program
         command, env=environment, stdin=silent, stdout=silent, stderr=silent
     ) as other:
         try:
-            compile_switches(storeys)
+            compile_switches()
         except BaseException:
             other.kill()
             raise
 
 
-def compile_switches(storeys: int) -> None:
+def compile_switches() -> None:
     """What is done for one lane."""
-    switch_lane(empty_state(storeys), 0, GOES_ON, empty_run(storeys))
+    switch_lane(empty_state(1), 0, GOES_ON, empty_run(1))
 
 
-def compile_steps(storeys: int) -> None:
+def compile_steps() -> None:
     """What is done for all lanes, and the building on a fixed base."""
-    run = empty_run(storeys)
-    advance_lanes(empty_state(storeys), run.systems, run.block, run.output.log)
-    floors, largest = np.empty((0, 2, storeys)), np.zeros((2, storeys))
+    run = empty_run(1)
+    advance_lanes(empty_state(1), run.systems, run.block, run.output.log)
+    floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
     integrate_fixed_base(run.acceleration, 1.0, run.systems, run.block, floors, largest)
 
 
 if __name__ == "__main__":
-    compile_steps(int(sys.argv[1]))
+    compile_steps()

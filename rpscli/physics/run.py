@@ -71,31 +71,31 @@ class Run(NamedTuple):
 
 def empty_state(storeys: int, lanes: int = LANES) -> Record:
     """Lanes with nothing to do, an array of one record; all of them are used, or one."""
-    state = records(STATE, storeys)
+    state = records(STATE)
     state.n, state.lanes = storeys, lanes
     return state
 
 
 def empty_block(storeys: int) -> Record:
     """Room for a block of steps in full contact, an array of one record."""
-    block = records(BLOCK, storeys)
+    block = records(BLOCK)
     block.n = storeys
     return block
 
 
 def empty_run(storeys: int) -> Run:
     """No history at all, of one structure of zeros."""
-    systems = records(SYSTEM, storeys)
+    systems = records(SYSTEM)
     systems.n = storeys
     return Run(
         systems=systems,
-        requests=records(REQUEST, storeys, count=0),
+        requests=records(REQUEST, count=0),
         acceleration=np.empty(0),
-        results=records(RESULT, storeys, count=0),
+        results=records(RESULT, count=0),
         output=Output(
-            samples=records(SAMPLE, storeys, count=0),
+            samples=records(SAMPLE, count=0),
             floors=np.empty((0, 2, storeys)),
-            log=records(EVENT, storeys, count=0),
+            log=records(EVENT, count=0),
         ),
         block=empty_block(storeys),
     )

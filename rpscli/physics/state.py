@@ -10,8 +10,10 @@ Five records, each with an owner:
 
 Lanes come last, so that a loop over them is one vector instruction; one record, so that the
 compiler sees that its fields never overlap. Sizes are part of a record's type: a number of lanes,
-and a capacity of modes of which the first ``n`` are used. There are two capacities, so that one
-compilation serves every building up to the first of them.
+and room for the modes of the highest building, of which the first ``n`` are used: memory that
+nobody touches costs nothing, and one compilation serves every building. Never two sizes of one
+record: numba names machine code after a number that the process gave to the type, so that code of
+two sizes, compiled by two processes, is taken for the same.
 
 Letters are those of Theory: x = |theta|, s its side, B and C the arms of contact over R. *By* says
 who writes a field: a module of this package, or a function in it.
@@ -24,6 +26,8 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rpscli.constants import MOST_STOREYS
 
 Floats = NDArray[np.float64]
 Record: TypeAlias = Any
@@ -39,9 +43,6 @@ INSTANTS = 32
 LANES = 32
 """Histories that one core follows at once. Loops over fewer are unrolled by the compiler before it
 looks for vector instructions; more do not fit into the processor's first cache."""
-
-CAPACITIES = (32, 200)
-"""Modes that there is room for: most buildings, and the most that a case may have."""
 
 SPREAD = 3
 PADDING = 8
@@ -371,11 +372,6 @@ EVENT = (
 )
 
 
-def capacity(storeys: int) -> int:
-    """Modes that records for so many storeys have room for."""
-    return next((size for size in CAPACITIES if storeys <= size), storeys)
-
-
 def _place(field: Field) -> tuple[bool, bool, int, str]:
     """Rows of lanes or instants first: each begins with a line of the cache."""
     names = field.sizes.split()
@@ -383,15 +379,15 @@ def _place(field: Field) -> tuple[bool, bool, int, str]:
 
 
 @cache
-def record_type(fields: tuple[Field, ...], storeys: int) -> np.dtype[Any]:
-    """The type of a record of one of the tables of this module, with room for so many storeys.
+def record_type(fields: tuple[Field, ...]) -> np.dtype[Any]:
+    """The type of a record of one of the tables of this module.
 
     Fields of one shape stand together, those of modes behind the others: a loop over a mode's lanes
     then writes either before or behind what it reads, which the compiler can check at once.
     """
     sizes = {
         "lanes": LANES + PADDING,
-        "modes": capacity(storeys) + SPREAD,
+        "modes": MOST_STOREYS + SPREAD,
         "terms": TERMS,
         "instants": INSTANTS,
         "ahead": INSTANTS + PADDING,
@@ -418,17 +414,17 @@ PAGE = 4096
 half as long again, as its rows fall on other lines of the processor's cache in each process."""
 
 
-def records(fields: tuple[Field, ...], storeys: int, count: int = 1) -> Record:
+def records(fields: tuple[Field, ...], count: int = 1) -> Record:
     """An array (count,) of records of zeros that begins with a page.
 
     Parameters
     ----------
-    fields, storeys
+    fields
         As of `record_type`.
     count
         Number of records.
     """
-    kind = record_type(fields, storeys)
+    kind = record_type(fields)
     size = kind.itemsize * count
     room = np.zeros(size + PAGE, np.uint8)
     first = -room.ctypes.data % PAGE

@@ -122,7 +122,7 @@ def test_the_energy_of_full_contact_is_accounted_for(above: Superstructure, dt: 
 def test_the_work_of_a_damper_is_that_of_its_motion(xi: float, angle: float) -> None:
     """The form of the start of a step, against a fine sum of the exact velocity's square."""
     w, h, slope = 7.0, angle / 7.0, -3.0
-    system, block = records(SYSTEM, 1)[0], empty_block(1)[0]
+    system, block = records(SYSTEM)[0], empty_block(1)[0]
     system.n, system.omega[0], system.xi[0] = 1, w, xi
     system.omega2[0], system.two_xi_omega[0] = w * w, 2.0 * xi * w
     fill_work(block, system, WHOLE_STEP, h)

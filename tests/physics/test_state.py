@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from rpscli.constants import MOST_STOREYS
 from rpscli.physics import state
 from rpscli.physics.run import empty_block, empty_state
 from rpscli.physics.state import (
     BLOCK,
-    CAPACITIES,
     EVENT,
     EVENT_KINDS,
     INSTANTS,
@@ -24,7 +24,6 @@ from rpscli.physics.state import (
     TERMS,
     WHOLE,
     Field,
-    capacity,
     describe,
     record_type,
     records,
@@ -62,9 +61,8 @@ def test_every_name_stands_for_one_field(fields: tuple[Field, ...]) -> None:
 
 
 @every_table
-@pytest.mark.parametrize("storeys", [0, 1, 32, 33, 200])
-def test_a_record_has_room(fields: tuple[Field, ...], storeys: int) -> None:
-    kind = record_type(fields, storeys)
+def test_a_record_has_room(fields: tuple[Field, ...]) -> None:
+    kind = record_type(fields)
     assert set(kind.names or ()) == {field.name for field in fields}
     sizes = {"terms": ORDER + 1, "instants": INSTANTS, "kinds": EVENT_KINDS}
     for field in fields:
@@ -73,22 +71,14 @@ def test_a_record_has_room(fields: tuple[Field, ...], storeys: int) -> None:
         named = field.sizes.split()
         assert len(inner.shape) == len(named)
         for name, size in zip(named, inner.shape, strict=True):
-            least = {"modes": storeys, "lanes": LANES}.get(name)
+            least = {"modes": MOST_STOREYS, "lanes": LANES}.get(name)
             assert size >= least if least is not None else size == sizes.get(name, size)
-
-
-def test_a_capacity_serves_all_buildings_up_to_it() -> None:
-    assert {capacity(n) for n in range(201)} == set(CAPACITIES)
-    for size in CAPACITIES:
-        assert capacity(size) == size
-        assert record_type(STATE, size) == record_type(STATE, size - 1)
-    assert capacity(CAPACITIES[-1] + 1) == CAPACITIES[-1] + 1
 
 
 @every_table
 @pytest.mark.parametrize("count", [1, 3])
 def test_records_are_zero_and_begin_with_a_page(fields: tuple[Field, ...], count: int) -> None:
-    made = records(fields, 3, count=count)
+    made = records(fields, count=count)
     assert made.shape == (count,)
     assert made.ctypes.data % PAGE == 0
     assert not any(made.tobytes())
@@ -100,7 +90,7 @@ def test_what_is_written_to_one_field_stands_in_that_field_only(
 ) -> None:
     """Attributes of a record are views, for numbers and for arrays."""
     for field in fields:
-        made = records(fields, 3)
+        made = records(fields)
         record = made[0]
         if field.sizes:
             getattr(record, field.name)[...] = 7

@@ -119,7 +119,7 @@ def run_of(
     """
     n = int(systems.n[0])
     starts = np.cumsum([0] + [motion.npts for motion in motions])
-    given = records(REQUEST, n, count=len(requests))
+    given = records(REQUEST, count=len(requests))
     for row, request in zip(given, requests, strict=True):
         motion, above = motions[request.record], request.vertical
         row.system, row.record = request.system, starts[request.record]
@@ -129,11 +129,11 @@ def run_of(
         systems=systems,
         requests=given,
         acceleration=np.concatenate([motion.acceleration for motion in motions]),
-        results=records(RESULT, n, count=len(requests)),
+        results=records(RESULT, count=len(requests)),
         output=Output(
-            samples=records(SAMPLE, n, count=rows),
+            samples=records(SAMPLE, count=rows),
             floors=np.empty((rows, 2, n)),
-            log=records(EVENT, n, count=events),
+            log=records(EVENT, count=events),
         ),
         block=empty_block(n),
     )
@@ -222,7 +222,7 @@ def sampled_history(
     events = FIRST_LOG
     while True:
         run = run_of(systems, motions, [request], rows=rows, events=events)
-        with compiled(structure.storeys):
+        with compiled():
             integrate(run, lanes=1)
         history = history_of(run.results[0], structure.storeys)
         if (seen := int(history.counts.sum())) <= events:

@@ -19,7 +19,7 @@ LEAST_SHAKEN = 1e-3
 
 def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
     """Structures with the same number of storeys, each with its settings: (S,) records."""
-    stacked = records(SYSTEM, systems[0][0].storeys, count=len(systems))
+    stacked = records(SYSTEM, count=len(systems))
     for record, (structure, settings) in zip(stacked, systems, strict=True):
         fill_podium(record, structure)
         fill_settings(record, structure, settings)
@@ -30,7 +30,7 @@ def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings
 
 def building_system(building: Superstructure) -> Record:
     """A building alone, (1,): what full contact on a fixed base reads."""
-    system = records(SYSTEM, building.storeys)
+    system = records(SYSTEM)
     fill_building(system[0], building)
     return system
 

@@ -13,10 +13,9 @@ from rpscli.case.schema.devices import DeviceSection
 from rpscli.case.schema.fields import ModePair, Quantity, Text, Whole
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.section import Section
-from rpscli.constants import STANDARD_GRAVITY
+from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
 
 FORMAT_VERSION = 1
-MOST_STOREYS = 200
 
 Ratio = Annotated[float, Quantity(at_least=0)]
 PositiveRatio = Annotated[float, Quantity(above=0)]

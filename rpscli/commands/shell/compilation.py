@@ -13,7 +13,7 @@ NOWHERE = f"no folder for it can be written; name one in {VARIABLE}"
 
 
 def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
-    """Say so whenever a kernel has to be compiled from now on.
+    """Say so if the kernel has to be compiled.
 
     Parameters
     ----------
@@ -25,11 +25,11 @@ def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
     from rpscli.analyses.kernels.compilation import announce_to  # noqa: PLC0415 -- numpy is slow
 
     @contextmanager
-    def told(name: str) -> Iterator[None]:
+    def told() -> Iterator[None]:
         from rpscli.physics.compile import cache_folder  # noqa: PLC0415 -- numba is slow
 
         often = "once for this version" if cache_folder() else f"each time: {NOWHERE}"
-        terminal.note(f"compiling the kernel for {name}, {often}: half a minute")
+        terminal.note(f"compiling the kernel, {often}: half a minute")
         if moving:
             with passing_time("compiling", terminal):
                 yield

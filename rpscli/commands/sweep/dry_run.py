@@ -68,11 +68,9 @@ def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
     from rpscli.analyses.kernels.compilation import is_ready  # noqa: PLC0415 -- numpy is slow
     from rpscli.sweep.run.estimate import estimated_seconds  # noqa: PLC0415
 
-    if given.design.plan.analysis == "timehistory" and not all(
-        is_ready(system.storeys) for system in given.design.properties
-    ):
+    if given.design.plan.analysis == "timehistory" and not is_ready():
         seconds = GUESSED_POINT_SECONDS * len(given.design) / jobs
-        return seconds, "a guess, since the kernels are not compiled yet"
+        return seconds, "a guess, since the kernel is not compiled yet"
     return estimated_seconds(given.design, given.context, jobs), "trying some of the points"
 
 
