@@ -346,6 +346,11 @@ def test_fragilities(histories: Open) -> None:
             levels = np.unique(pga)
             observed = list(markers(axes, hollow=False))[place]
             same(observed.get_data(), (levels, [beyond[pga == each].mean() for each in levels]))
+            data = chosen(histories("fragility_observed")[1], rho)
+            data = [row for row in data if row["limit"] == title]
+            same(numbers(data, "exceeded"), [beyond[pga == each].sum() for each in levels])
+            same(numbers(data, "exceeded_share"), observed.get_ydata())
+            assert all(float(row["exceeded_low"]) <= float(row["exceeded_high"]) for row in data)
         assert axes.get_ylim() == (-0.02, 1.02)
         assert axes.get_xlim()[0] == 0.0
     assert "bands: 90%; overturning exceeds every limit" in figure.get_suptitle()

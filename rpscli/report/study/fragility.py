@@ -16,6 +16,7 @@ from rpscli.report.study.panels import (
     remarks,
 )
 from rpscli.report.study.report import Report
+from rpscli.report.study.statistics import share_columns
 from rpscli.sweep.reports.fragility import (
     Fragility,
     FragilityOptions,
@@ -24,6 +25,7 @@ from rpscli.sweep.reports.fragility import (
     limit_states,
 )
 from rpscli.sweep.reports.intensities import Intensity, measure_without_period
+from rpscli.sweep.statistics.share import share
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,6 +70,27 @@ def curve_columns(report: FragilityReport) -> list[Column]:
         Column("low", "-", [c.fit.band[0][i] for c, i in rows]),
         Column("high", "-", [c.fit.band[1][i] for c, i in rows]),
     ]
+
+
+def observed_columns(report: FragilityReport) -> list[Column]:
+    """The data: one row an intensity of each curve, or a bin of intensities."""
+    rows = [(c, place) for c in report.curves for place in range(len(c.observed.intensity))]
+    shares = [share(round(c.observed.share[i] * n), n) for c, i in rows for n in [_points(c, i)]]
+    return [
+        *key_columns(report.series_keys, [c.values for c, _ in rows]),
+        Column("limit", "-", [quoted(c.limit.label) for c, _ in rows]),
+        Column(
+            report.intensity.measure,
+            report.intensity.unit,
+            [float(c.observed.intensity[i]) for c, i in rows],
+        ),
+        Column("counted", "-", [found.of for found in shares]),
+        *share_columns("exceeded", shares),
+    ]
+
+
+def _points(curve: Fragility, place: int) -> int:
+    return int(curve.observed.points[place])
 
 
 def fragility_figure(report: FragilityReport, title: str) -> bytes:
@@ -133,7 +156,7 @@ def measure_name(intensity: Intensity) -> str:
 REPORT = Report(
     options=FragilityOptions,
     numbers=lambda study, options: fragility_report(study.table, study.intensity(options), options),
-    tables={"": fragility_columns, "_curves": curve_columns},
+    tables={"": fragility_columns, "_curves": curve_columns, "_observed": observed_columns},
     figure=fragility_figure,
     drawable=lambda report: any(curve.fitted for curve in report.curves),
     notes=lambda report: report.notes,
