@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from paper_structures import FLAT, ground, needs_compiled_kernels, podium, waves
+from paper_structures import (
+    FLAT,
+    building,
+    ground,
+    needs_compiled_kernels,
+    podium,
+    stillness,
+    waves,
+)
 
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.model.damping import RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.state import FULL_CONTACT
@@ -87,3 +96,17 @@ def test_a_storey_that_never_lifts_waits_only_for_its_building() -> None:
     assert result.duration < 2.0
     assert result.storey_shears.tolist() == longer.storey_shears.tolist()
     assert result.floor_accelerations.tolist() == longer.floor_accelerations.tolist()
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize(("storeys", "period"), [(1, 0.3), (3, 0.05)])
+def test_undamped_stiff_buildings_do_not_drift(storeys: int, period: float) -> None:
+    """Two minutes of rocking, in which nothing but the steps takes energy from the fast modes."""
+    above = building(storeys, period, RayleighDamping(0.0))
+    structure = podium(storeys, superstructure=above, law=ImpactLaw("value", 0.9999))
+    released = 0.5 * structure.critical_rotation
+    settings = TimeHistorySettings(free_vibration=120.0, initial_rotation=released)
+    result = time_history(structure, stillness(0.02), settings, with_fixed_base=False)
+    assert result.outcome == "survived"
+    assert result.impacts > 70
+    assert abs(result.energy.residual) < 1e-6 * result.trace.energy_stored[0]

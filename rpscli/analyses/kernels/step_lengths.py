@@ -12,6 +12,10 @@ from rpscli.model.podium import PodiumStructure
 UPLIFTED_ANGLE = 0.6
 """Largest Taylor step times the highest uplifted frequency [rad], at accuracy 1."""
 
+MOST_LOST = 7e-5
+"""What steps may take from the energy of the fastest vibration, which has a hundredth of all at
+most. It shortens the steps of buildings with less than a per cent of damping only."""
+
 UPLIFTED_DECAY = 1.0
 """Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
 are unstable beyond about 4. Only strongly overdamped modes come near."""
@@ -32,8 +36,22 @@ STEP_SECONDS, MODE_SECONDS = 4e-7, 4e-8
 
 def uplifted_rate(structure: PodiumStructure) -> float:
     """Taylor steps a second that follow the uplifted structure at accuracy 1 [1/s]."""
-    by_angle = highest_frequency(structure) / UPLIFTED_ANGLE
+    by_angle = highest_frequency(structure) / uplifted_angle(structure)
     return max(by_angle, fastest_decay(structure) / UPLIFTED_DECAY)
+
+
+def uplifted_angle(structure: PodiumStructure) -> float:
+    """Largest Taylor step times the highest uplifted frequency [rad].
+
+    A step of the angle z loses z^8/8! of a vibration's energy, thus w t z^7/8! in the time t. What
+    the dampers do not take in 1/(2 xi w) goes on for as long as histories are followed.
+    """
+    if (building := structure.superstructure) is None:
+        return UPLIFTED_ANGLE
+    damped = float(2.0 * building.damping_ratios[-1] * building.frequencies[-1])
+    lasting = 1.0 / max(damped, 1.0 / LONGEST_FREE_VIBRATION)
+    drift = MOST_LOST * math.factorial(8) / (highest_frequency(structure) * lasting)
+    return float(min(UPLIFTED_ANGLE, drift ** (1.0 / 7.0)))
 
 
 def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, duration: float) -> float:
