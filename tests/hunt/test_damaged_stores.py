@@ -152,4 +152,4 @@ def test_killed_studies(long: bool) -> None:
         assert Path("hasty/points.csv").read_bytes() == table
         return f"{kills} killed, {'some' if stored else 'none'} stored"
 
-    hunt("killed studies", trial, 2, 80 if long else None)
+    hunt("killed studies", trial, 2, 160 if long else None)

@@ -65,7 +65,7 @@ def test_cases(long: bool) -> None:
         options = random.choice([(), ("--json",), ("-q",)]) if command == "check" else ("--json",)
         return judged(command, "case.yaml", *options, places=("case.yaml",), text=text)
 
-    hunt("cases", trial, 60, 6000 if long else None)
+    hunt("cases", trial, 60, 8000 if long else None)
 
 
 @shares
@@ -82,7 +82,7 @@ def test_values_of_cases(long: bool) -> None:
         text = " ".join([text, *changes])
         return judged("check", "case.yaml", *options, "--json", places=places, text=text)
 
-    hunt("values of cases", trial, 60, 4000 if long else None)
+    hunt("values of cases", trial, 60, 5000 if long else None)
 
 
 @shares
@@ -91,7 +91,7 @@ def test_studies(long: bool) -> None:
         written("study.yaml", mutated(random.choice(STUDY_TEXTS), random), random)
         return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", ".yaml:"))
 
-    hunt("studies", trial, 12, 3000 if long else None)
+    hunt("studies", trial, 12, 1200 if long else None)
 
 
 @shares
@@ -101,7 +101,7 @@ def test_values_of_studies(long: bool) -> None:
         change = f"{random.choice([*STUDY_KEYS, *CASE_KEYS])}={random.choice(VALUES)}"
         return judged("sweep", "study.yaml", "--dry-run", "--set", change)
 
-    hunt("values of studies", trial, 12, 2000 if long else None)
+    hunt("values of studies", trial, 12, 500 if long else None)
 
 
 def at2() -> str:
