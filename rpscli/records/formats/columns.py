@@ -8,10 +8,12 @@ for one column also the sampling interval) the user has to give.
 from __future__ import annotations
 
 import re
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.records.formats.record_text import RecordText
 from rpscli.records.formats.statements import (
@@ -43,8 +45,14 @@ _COLUMN_TITLE = re.compile(
 @dataclass(frozen=True)
 class _Table:
     header: tuple[Statement, ...]  # lines of text before the first number
-    rows: tuple[list[float], ...]
-    lines: tuple[int, ...]  # of the rows
+    values: NDArray[np.float64]  # (numbers,) of all rows, one after the other
+    widths: NDArray[np.int64]  # (rows,) numbers of each
+    lines: NDArray[np.int64]  # (rows,) of the file
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return self.widths.size
 
 
 def recognises_columns(text: RecordText) -> bool:
@@ -66,10 +74,10 @@ def read_columns(text: RecordText) -> GroundMotion:
     text.single_channel()
     table = _table(text)
     _check_count(text, table)
-    widths = {len(row) for row in table.rows}
-    if widths == {2}:
+    widths = np.unique(table.widths).tolist()
+    if widths == [2]:
         return _two_columns(text, table)
-    if widths == {1}:
+    if widths == [1]:
         return _sequence(text, table)
     return _wrapped_rows(text, table)
 
@@ -80,14 +88,14 @@ def _is_comment(line: str) -> bool:
 
 def _table(text: RecordText) -> _Table:
     header: list[Statement] = []
-    rows: list[list[float]] = []
-    lines: list[int] = []
+    values, widths, lines = array("d"), array("q"), array("q")  # of records there may be millions
     for index, line in enumerate(text.lines):
         row = numbers_in(line)
         if row:
-            rows.append(row)
+            values.extend(row)
+            widths.append(len(row))
             lines.append(index)
-        elif not rows:
+        elif not widths:
             words = text.heads[index].strip().lstrip("#%!/*|").strip()
             header.append(Statement("header", words, index))
         elif row is None and not _is_comment(line):
@@ -96,30 +104,36 @@ def _table(text: RecordText) -> _Table:
                 f"numbers{why_no_numbers(line)}; begin comments with #",
                 index,
             )
-    if len(rows) < 2:
+    if len(widths) < 2:
         why = next(filter(None, map(why_no_numbers, text.heads)), "")
         raise text.fault(
-            f"no known format of ground motions: {len(rows)} row(s) of numbers{why}; export the "
+            f"no known format of ground motions: {len(widths)} row(s) of numbers{why}; export the "
             f"record as PEER AT2, or as columns of time and acceleration"
         )
-    return _Table(tuple(line for line in header if line.value), tuple(rows), tuple(lines))
+    return _Table(
+        tuple(line for line in header if line.value),
+        np.array(values),
+        np.array(widths),
+        np.array(lines),
+    )
 
 
 def _check_count(text: RecordText, table: _Table) -> None:
     stated = agreed(text, _found(table.header, _COUNT, "npts"), stated_count)
     count = None if stated is None else stated_count(text, stated)
-    found = sum(len(row) for row in table.rows)
-    if count is not None and count not in (found, len(table.rows)):
+    found = table.values.size
+    if count is not None and count not in (found, table.rows):
         raise text.fault(
-            f"the header announces {count} values and the file holds {len(table.rows)} row(s) and "
+            f"the header announces {count} values and the file holds {table.rows} row(s) and "
             f"{found} number(s); fetch it again, or correct the header"
         )
 
 
 def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
     unit, factor = text.agreed_factor(_stated_units(text, table.header))
-    values = np.array(table.rows)
-    resolution = printed_resolution([numerals_in(text.lines[line])[0] for line in table.lines])
+    values = table.values.reshape(-1, 2)
+    numerals = (numerals_in(text.lines[line])[0] for line in table.lines)
+    resolution = printed_resolution(values[:, 0], numerals)
     try:
         step = uniform_step(values[:, 0], resolution)
     except ValueError as error:
@@ -130,7 +144,7 @@ def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
     header_step = _stated_step(text, table.header)
     # Rounded times know the step to one unit of their last digit over the whole record.
     coarsest = float(resolution.max())
-    known_to = max(1e-6, 2.0 * coarsest / (step * len(table.rows)))
+    known_to = max(1e-6, 2.0 * coarsest / (step * table.rows))
     if header_step is not None and abs(header_step - step) > known_to * step:
         raise text.fault(
             f"the header says dt = {header_step:g} s and the times advance by {step:g} s; "
@@ -154,12 +168,12 @@ def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
 def _sequence(text: RecordText, table: _Table, *warnings: str) -> GroundMotion:
     unit, factor = text.agreed_factor(_stated_units(text, table.header))
     dt = text.agreed_dt(_stated_step(text, table.header))
-    values = [value for row in table.rows for value in row]
+    values = table.values
     _refuse_leading_header(text, table, values)
     if values[0] == dt:
         warnings = (*warnings, f"the first value, {dt:g}, equals dt: see that it is no header")
     return GroundMotion(
-        np.array(values) * factor,
+        values * factor,
         dt,
         text.name,
         text.source,
@@ -169,29 +183,29 @@ def _sequence(text: RecordText, table: _Table, *warnings: str) -> GroundMotion:
     )
 
 
-def _refuse_leading_header(text: RecordText, table: _Table, values: list[float]) -> None:
+def _refuse_leading_header(text: RecordText, table: _Table, values: NDArray[np.float64]) -> None:
     # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
     numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]
     flagged = values[0] != 0.0 and numerals[0].isdigit() and not numerals[1].isdigit()
-    if flagged or values[0] == len(values) - 1 or values[1] == len(values) - 2 > 0:
+    if flagged or values[0] == values.size - 1 or values[1] == values.size - 2 > 0:
         raise text.fault(
             f"the first numbers, {numerals[0]} and {numerals[1]}, look like a header (a count or "
             f"the time step), not like accelerations; remove them or begin their lines with #",
-            table.lines[0],
+            int(table.lines[0]),
         )
 
 
 def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
-    width = len(table.rows[0])
-    ragged = next((i for i, row in enumerate(table.rows[:-1]) if len(row) != width), None)
-    if ragged is not None or len(table.rows[-1]) > width:
-        bad = len(table.rows) - 1 if ragged is None else ragged
+    width = int(table.widths[0])
+    ragged = np.flatnonzero(table.widths[:-1] != width)
+    if ragged.size or table.widths[-1] > width:
+        bad = int(ragged[0]) if ragged.size else table.rows - 1
         raise text.fault(
-            f"a row of {len(table.rows[bad])} numbers among rows of {width}; every row but the "
+            f"a row of {table.widths[bad]} numbers among rows of {width}; every row but the "
             f"last must be full: fetch the file again",
-            table.lines[bad],
+            int(table.lines[bad]),
         )
-    first = np.array([row[0] for row in table.rows])
+    first = table.values[::width]
     if width == 2 or (first.size > 2 and bool(np.all(np.diff(first) > 0.0))):
         raise text.fault(
             f"rows of {width} numbers whose first one increases look like time and several "

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +18,20 @@ _COARSEST = 0.25
 """Share of a step beyond which rounding can no longer tell uniform times from others."""
 
 
-def printed_resolution(numerals: Sequence[str]) -> NDArray[np.float64]:
+def printed_resolution(
+    printed: NDArray[np.float64], numerals: Iterable[str]
+) -> NDArray[np.float64]:
     """The unit of the last digit of each time of a column, dropped zeros included.
 
     Writers keep either a number of decimals or a number of significant digits: a unit holds for
     a whole decade of times, and from one decade to the next grows by no more than ten.
+
+    Parameters
+    ----------
+    printed : array, shape (n,) [s]
+        The times.
+    numerals : iterable of str
+        As they are printed.
 
     Returns
     -------
@@ -31,11 +39,11 @@ def printed_resolution(numerals: Sequence[str]) -> NDArray[np.float64]:
 
     Examples
     --------
-    >>> printed_resolution(["0", "0.5", "1", "1.5"]).tolist()
+    >>> printed_resolution(np.array([0.0, 0.5, 1.0, 1.5]), ["0", "0.5", "1", "1.5"]).tolist()
     [0.1, 0.1, 0.1, 0.1]
     """
-    times = np.abs([float(re.sub("[dD]", "E", numeral)) for numeral in numerals])
-    units = np.array([last_digit(numeral) for numeral in numerals])
+    times = np.abs(printed)
+    units = np.fromiter(map(last_digit, numerals), dtype=np.float64, count=times.size)
     decades = np.floor(np.log10(np.maximum(times, 1e-12)))
     result = np.empty_like(units)
     finest = math.inf
