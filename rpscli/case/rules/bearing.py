@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from typing import get_args
 
 from rpscli.case.build import Shape
 from rpscli.case.rules.partial_case import BEARING, IMPACT, PartialCase
 from rpscli.case.schema.case_file import BearingSection, ImpactSection
 from rpscli.case.text.faults import Fault, Path
+from rpscli.model.impact import ImpactKind
 
 RATIOS = ("semi_diagonal", "slenderness", "wedge_slenderness", "curvature_ratio")
 MEANINGS = {
@@ -120,7 +122,8 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
             )
             yield Fault((*IMPACT, "loss"), text, at_key=True)
     elif case.document.has(path):
-        law = law if isinstance(law, str) else ImpactSection().law
+        if law not in get_args(ImpactKind):
+            law = ImpactSection().law
         yield Fault(
             path,
             f"podium.impact.restitution does not go with law {law}{case.where((*IMPACT, 'law'))},"

@@ -9,6 +9,11 @@ Path = tuple[str | int, ...]
 """Where a value stands inside a document: keys, and indices of lists counted from 0."""
 
 
+def _cut(override: str) -> str:
+    """The `--set` that brought a value in, or a name, without most of a long value."""
+    return override if len(override) <= 160 else f"{override[:157]}..."
+
+
 @dataclass(frozen=True)
 class Place:
     """Where a key or a value was written.
@@ -29,12 +34,12 @@ class Place:
     rank: int = 0
 
     def __str__(self) -> str:
-        return f"{self.source}:{self.line}:{self.column}" if self.line else self.source
+        return f"{self.source}:{self.line}:{self.column}" if self.line else _cut(self.source)
 
     @property
     def short(self) -> str:
         """The place as a second one in a message: ``line 14``, or the source."""
-        return f"line {self.line}" if self.line else self.source
+        return f"line {self.line}" if self.line else _cut(self.source)
 
 
 @dataclass(frozen=True)

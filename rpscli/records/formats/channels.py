@@ -40,7 +40,7 @@ def chosen_channel(text: RecordText, channels: Sequence[Channel]) -> Channel:
             "no series of accelerations begins in this file; if it is of another format than its"
             " name says, give it another ending (.txt for columns of numbers)"
         )
-    listing = "; ".join(f"{channel.number}: {channel.label}" for channel in channels)
+    listing = "; ".join(f"{channel.number}: {channel.label[:60]}" for channel in channels)
     if text.channel is None:
         if len(channels) == 1:
             return channels[0]

@@ -52,6 +52,7 @@ _OTHER_QUANTITIES = {
     ".dt2": "displacement",
 }
 _STRONGEST, _WEAKEST = 4.0, 1e-3  # g
+_NONSENSE = 1e9  # g; raw counts taken for g have a hundredth, and squares stay finite
 _FINEST, _COARSEST = 1e-4, 0.1  # s
 
 
@@ -86,6 +87,11 @@ def read_record(
     _refuse_other_quantity(path)
     text = read_text(path, source, dt=dt, units=units, channel=channel)
     motion = (_by_content(text) or _by_extension(text)).read(text)
+    if motion.pga > _NONSENSE * STANDARD_GRAVITY:
+        raise text.fault(
+            f"the largest value is {motion.pga / STANDARD_GRAVITY:.3g} g, which is no acceleration"
+            " of the ground; the file is damaged, fetch it again"
+        )
     return replace(motion, warnings=(*motion.warnings, *_implausible(motion)))
 
 
