@@ -13,7 +13,7 @@ from random import Random
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from paper_structures import ground, needs_compiled_kernels, podium
+from paper_structures import needs_compiled_kernels
 
 from hunt.trials import hunt, shares
 from rpscli.analyses.kernels.step_lengths import contact_rate, uplifted_rate
@@ -161,6 +161,4 @@ def judged_history(random: Random) -> str:
 @shares
 @pytest.mark.parametrize("part", range(4))
 def test_histories(part: int, long: bool) -> None:
-    for storeys in (1, 40):  # a kernel that is compiled first takes longer than any trial
-        time_history(podium(storeys), ground(np.zeros(2), 0.01), TimeHistorySettings(0.0))
     hunt(f"histories {part}", judged_history, 6, 1000 if long else None)
