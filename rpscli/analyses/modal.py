@@ -60,6 +60,27 @@ class UpliftedModes:
     u_b first, then the floors, relative to the ground, scaled to 1 at the largest component."""
 
     @property
+    def own_period(self) -> float | None:
+        """T with which the storey itself swings [s]; None if it does not."""
+        rate = abs(float(self.eigenvalues[0].imag))
+        return 2.0 * math.pi / rate if rate > 0.0 else None
+
+    @property
+    def own_growth_time(self) -> float | None:
+        """Time in which a tilt that falls away grows e-fold [s]; None if it does not grow."""
+        rate = float(self.eigenvalues[0].real)
+        return 1.0 / rate if self.own_period is None and rate > 0.0 else None
+
+    @property
+    def own_motion(self) -> str:
+        """What the storey's own mode does, in words."""
+        if self.own_period is not None:
+            return f"swings with T = {self.own_period:.4g} s"
+        if self.own_growth_time is not None:
+            return f"falls away, e-fold in {self.own_growth_time:.4g} s"
+        return "creeps back" if self.eigenvalues[0] != 0.0 else "stays where it is put"
+
+    @property
     def elastic_shapes(self) -> Array:
         """(n, n + 1): floors relative to the cap beam, u_t - 1 u_b."""
         return np.asarray(self.shapes[1:] - self.shapes[0])

@@ -163,9 +163,16 @@ FREQUENCY_PARAMETERS = (
 )
 """Of the storey's own mode."""
 
+OWN_MOTION = (
+    ResultQuantity("own_motion", "", "what the storey's own mode does"),
+    ResultQuantity("own_period", "s", "its period, if it swings", "$T$"),
+    ResultQuantity("own_growth_time", "s", "time of e-fold growth, if it falls away"),
+)
+"""The same in words and times."""
+
 EIGENVALUES = ResultQuantity("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
 
-UPLIFTED = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS, EIGENVALUES)
+UPLIFTED = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS, *OWN_MOTION, EIGENVALUES)
 """All results of an uplifted state besides its shapes."""
 
 FIXED_BASE_SHAPES = (_SHAPES,)

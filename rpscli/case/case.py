@@ -16,6 +16,7 @@ from rpscli.case.rules.bearing import bearing_rules, impact_rules
 from rpscli.case.rules.devices import devices_rules
 from rpscli.case.rules.masses import masses_rules
 from rpscli.case.rules.partial_case import PartialCase
+from rpscli.case.rules.plausibility import doubts_of_storeys, doubts_of_structure
 from rpscli.case.rules.podium import overturning_rule, release_rule, restitution_rule
 from rpscli.case.rules.superstructure import (
     ignored_keys,
@@ -101,6 +102,11 @@ class Case:
             raise CaseError(f"{self.source}: {error}") from None
 
     @cached_property
+    def doubts(self) -> tuple[str, ...]:
+        """What is possible in the structure, but unusual."""
+        return tuple(doubts_of_structure(self.structure))
+
+    @cached_property
     def document(self) -> dict[str, Any]:
         """The case in SI units with all defaults written out; JSON-able, and a case again."""
         content = self.file.model_dump(mode="json", exclude_none=True)
@@ -175,7 +181,10 @@ def case_from_mapping(
     stem = Path(name.strip("<>")).stem or "case"
     podium = _podium(file, partial)
     ignored = ignored_keys(partial)
-    warnings = (ignored_text(ignored),) if ignored else ()
+    warnings = (
+        *((ignored_text(ignored),) if ignored else ()),
+        *doubts_of_storeys(file.superstructure, document),
+    )
     return Case(stem, name, folder or Path(), file, podium, warnings)
 
 

@@ -61,11 +61,16 @@ def command(request: CaseRequest, output: OutputRequest, terminal: Terminal, loo
 
 def _tables(result: ModalResult, title: str) -> Iterator[RenderableType]:
     storey = [
-        (name, shown(modes.frequency_parameter), shown(modes.frequency_parameter_rigid))
+        (
+            name,
+            modes.own_motion,
+            shown(modes.frequency_parameter),
+            shown(modes.frequency_parameter_rigid),
+        )
         for name, modes in result.uplifted.items()
     ]
     yield heading_line(title)
-    yield table(("storey's own mode", "p_ext rad/s", "rigid estimate rad/s"), storey)
+    yield table(("storey's own mode", "", "p_ext rad/s", "rigid estimate rad/s"), storey, words=2)
     if (fixed := result.fixed_base) is None:
         return
     rows = [

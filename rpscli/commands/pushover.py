@@ -117,4 +117,4 @@ def _tables(result: PushoverResult, title: str) -> Iterator[RenderableType]:
             )
             for curve in result.capacity
         ]
-        yield table(("pattern", "roof at uplift m", "largest base shear kN"), capacity)
+        yield table(("pattern", "roof at uplift m", "largest sum of floor forces kN"), capacity)

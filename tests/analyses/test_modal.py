@@ -176,3 +176,21 @@ def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() 
     generalised = modes.shapes.T @ np.diag(masses) @ modes.shapes
     off = generalised - np.diag(np.diag(generalised))
     assert np.abs(off).max() < 1e-9 * masses[0]
+
+
+def test_the_storeys_own_mode_in_words() -> None:
+    """Rigid frame: lambda^2 = -kappa p^2, kappa = 2 rho - 1, rocking -1.
+
+    With p^2 = (g/R)(1 + 2 gamma)/(Io + 4 gamma) and gamma = 10, Io = 4/3, R = 1.5 m:
+    p = sqrt(6.53777 * 21/41.3333) = 1.82253 rad/s.
+    """
+    swings = modal(podium(0, 0.15, 1.0)).rolling
+    assert swings is not None
+    assert swings.own_period == pytest.approx(2.0 * math.pi / 1.82253, rel=1e-5)
+    assert (swings.own_growth_time, swings.own_motion) == (None, "swings with T = 3.448 s")
+    falls = modal(podium(0, 0.15, 1.0)).rocking
+    assert falls.own_growth_time == pytest.approx(1.0 / 1.82253, rel=1e-5)
+    assert (falls.own_period, falls.own_motion) == (None, "falls away, e-fold in 0.5487 s")
+    neutral = modal(podium(0, 0.15, 0.5)).rolling
+    assert neutral is not None
+    assert neutral.own_motion == "stays where it is put"

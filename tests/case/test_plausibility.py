@@ -1,0 +1,85 @@
+"""What is possible but hardly meant: warnings with numbers by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from rpscli.case.case import parse_case
+
+CASE = """\
+rps: 1
+superstructure:
+  storeys: 3
+  storey_mass: [200 t, 200 t, 240 t]
+  storey_height: 3.0
+  stiffness: [850 kN/mm, 600 kN/mm, 400 kN/mm]
+  damping: {ratio: 0.05}
+podium:
+  bearing:
+    dimensions: {height: 2 m, width: 300 mm, wedge_width: 500 mm, radius: 800 mm}
+  cap_beam_mass_ratio: 10
+  superstructure_mass_ratio: 3
+"""
+
+
+def doubts(old: str = "", new: str = "") -> list[str]:
+    assert old in CASE
+    case = parse_case(CASE.replace(old, new), name="c.yaml")
+    return [*case.warnings, *case.doubts]
+
+
+def test_a_usual_building_raises_no_doubt() -> None:
+    assert doubts() == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        # R = sqrt(1000^2 + 150^2) = 1011 m: dimensions of millimetres without a unit
+        (
+            "height: 2 m, width: 300 mm, wedge_width: 500 mm, radius: 800 mm",
+            "height: 2000, width: 300, wedge_width: 500, radius: 800",
+            ["2H = 2000 m is unusual: 0.3 to 10 m is", "R = 1011 m is unusual"],
+        ),
+        # tonnes forgotten: 240 t beside 240 kg
+        (
+            "240 t",
+            "240",
+            [
+                "mixes numbers with a unit (200 t) and without (240)",
+                "storey 2 has 2e+05 kg, storey 3 240 kg",
+            ],
+        ),
+        ("400 kN/mm", "29 kN/mm", ["storey 2 has 6e+08 N/m, storey 3 2.9e+07 N/m"]),
+        # 240 t g 0.15 over 30 kN/mm is 11.8 mm of 0.5 m
+        ("400 kN/mm]\n", "30 kN/mm]\n", []),
+        ("storey_height: 3.0", "storey_height: 0.03", ["drifts by 0.0369 of its height at uplift"]),
+        # V_st/(M_tot g) = tan(alpha) = 0.9/2; flexible impacts on it hardly rebound
+        (
+            "width: 300 mm, wedge_width: 500 mm",
+            "width: 900 mm, wedge_width: 1 m",
+            ["is 0.45 of the building's weight", "e = 0.1189 is unusual"],
+        ),
+        (
+            "  cap_beam_mass_ratio",
+            "  impact: {law: value, restitution: 0.4}\n  cap_beam_mass_ratio",
+            ["e = 0.4 is unusual: 0.5 to 1 is"],
+        ),
+        ("  cap_beam_mass_ratio", "  friction: 5\n  cap_beam_mass_ratio", ["friction = 5 is"]),
+    ],
+)
+def test_slips_are_told_with_their_number(old: str, new: str, told: list[str]) -> None:
+    found = doubts(old, new)
+    assert len(found) == len(told), found
+    for part in told:
+        assert any(part in text for text in found), found
+
+
+def test_the_first_period_is_looked_at() -> None:
+    """One storey of 200 t on 900 N/m: T1 = 2 pi sqrt(200000/900) = 93.66 s."""
+    text = CASE.replace("storeys: 3", "storeys: 1").replace("[200 t, 200 t, 240 t]", "200 t")
+    text = text.replace("[850 kN/mm, 600 kN/mm, 400 kN/mm]", "900").replace(
+        "  storey_height: 3.0\n", ""
+    )
+    (doubt,) = parse_case(text, name="c.yaml").doubts
+    assert "T1 = 93.66 s is unusual: 0.02 to 5 s is" in doubt
