@@ -74,14 +74,17 @@ def simulate(
     columns: int = 2,
     time_step: float = TIME_STEP,
     level: bool = True,
+    closing_damping: float = 1.0,
 ) -> MultibodyResult:
     """Response to ground acceleration samples [m/s2] from rest, or after release from a tilt.
 
-    Unless `level`, the cap beam may tilt on its columns.
+    Unless `level`, the cap beam may tilt on its columns. `closing_damping` is that of contacts over
+    critical: at 1 they part again with exp(-2) = 0.135 of the speed at which they closed; more
+    than that keeps them closed.
     """
     import mujoco  # noqa: PLC0415 -- an extra
 
-    text = description(system, columns, time_step, level=level)
+    text = description(system, columns, time_step, closing_damping, level=level)
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     _place(data, system, columns, initial_rotation)
@@ -110,7 +113,9 @@ def simulate(
     )
 
 
-def description(system: OracleSystem, columns: int, time_step: float, *, level: bool) -> str:
+def description(
+    system: OracleSystem, columns: int, time_step: float, damping: float, *, level: bool
+) -> str:
     """The structure in the engine's language."""
     bodies = [_column(system, c, columns) for c in range(columns)]
     if system.cap_beam_mass:
@@ -120,8 +125,8 @@ def description(system: OracleSystem, columns: int, time_step: float, *, level: 
       <compiler angle="radian" inertiafromgeom="false"/>
       <option timestep="{time_step}" gravity="0 0 {-system.gravity}" {OPTIONS}/>
       <default>
-        <geom solref="{CLOSING_STEPS * time_step} 1" solimp="0.999 0.999 0.001" friction="3 0 0"
-              condim="3" mass="0"/>
+        <geom solref="{CLOSING_STEPS * time_step} {damping}" solimp="0.999 0.999 0.001"
+              friction="3 0 0" condim="3" mass="0"/>
       </default>
       <worldbody>
         <geom type="plane" size="0 0 1" contype="0" conaffinity="1"/>

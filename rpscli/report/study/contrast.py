@@ -77,16 +77,12 @@ def contrast_figure(report: ContrastReport, title: str) -> bytes:
                 axes.set_title(labels(report.panel_keys, panels[place]))
             if place == 0:
                 axes.set_ylabel(f"{names[line]}\n{_named(options.rows)}")
-        grid[0, 0].set_yticks(
-            range(len(rows)), [_ticked(row) for row in rows], fontsize=style.small()
-        )
-        grid[0, 0].set_xticks(
-            range(len(columns)),
-            [_ticked(column) for column in columns],
-            fontsize=style.small(),
-            rotation=90,
-        )
+        small = style.small()
+        ticks = [_ticked(column) for column in columns]
+        for axes in grid[:, 0]:
+            axes.set_yticks(range(len(rows)), [_ticked(row) for row in rows], fontsize=small)
         for axes in grid[-1]:
+            axes.set_xticks(range(len(columns)), ticks, fontsize=small, rotation=90)
             axes.set_xlabel(_named(options.columns))
         figure.colorbar(image, ax=grid, label="change [%]", shrink=0.6, extend="both")
 
