@@ -18,6 +18,7 @@ from rpscli.case.rules.masses import masses_rules
 from rpscli.case.rules.partial_case import PartialCase
 from rpscli.case.rules.plausibility import doubts_of_storeys, doubts_of_structure
 from rpscli.case.rules.podium import overturning_rule, release_rule, restitution_rule
+from rpscli.case.rules.record import record_rules
 from rpscli.case.rules.superstructure import (
     ignored_keys,
     ignored_text,
@@ -39,6 +40,7 @@ RULES = (
     bearing_rules,
     impact_rules,
     devices_rules,
+    record_rules,
     limits_rules,
 )
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import CaseError
 from rpscli.report.files.output_folder import OutputFolder, Run
 
 if TYPE_CHECKING:
@@ -41,16 +42,42 @@ def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
     return CaseInput(case, request)
 
 
+def read_cases(requests: Iterable[CaseRequest], terminal: Terminal) -> list[CaseInput]:
+    """Read and check several cases; the faults of all are raised together."""
+    cases, complaints = [], []
+    for request in requests:
+        try:
+            cases.append(read_case(request, terminal))
+        except CaseError as error:
+            complaints.append(str(error))
+    if complaints:
+        raise CaseError("\n".join(complaints))
+    return cases
+
+
 def case_folder(
-    given: CaseInput, output: OutputRequest, command: str, **inputs: Any
+    given: CaseInput,
+    output: OutputRequest,
+    command: str,
+    *,
+    record_source: Path | str | None = None,
+    **inputs: Any,
 ) -> OutputFolder:
-    """The folder of a command's results, claimed before the work begins."""
+    """The folder of a command's results, claimed before the work begins.
+
+    Parameters
+    ----------
+    record_source
+        The record that the results belong to besides the case, if they do.
+    inputs
+        Everything else that decides about them.
+    """
     resolved: Mapping[str, Any] = {
         "case": given.case.document,
         "overrides": list(given.request.overrides),
         **inputs,
     }
-    run = Run(command, given.case.name, given.file, given.case.digest, resolved)
+    run = Run(command, given.case.name, given.file, given.case.digest, resolved, record_source)
     place = output.place or RESULTS / given.case.name / command
     return OutputFolder(place, run, force=output.force)
 

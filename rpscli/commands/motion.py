@@ -1,15 +1,18 @@
-"""The ground motion that a time history runs on: the case's own, or that of the command line."""
+"""The ground motions that time histories run on: the case's own, or those of the command line."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rpscli.errors import UsageError
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
+    from rpscli.case.schema.scale_to import ScaleToSection
     from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 
@@ -20,6 +23,33 @@ class MotionRequest:
     record: str | None = None
     vertical: str | None = None
     scale: float | None = None
+    scale_to: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.scale is not None and self.scale_to is not None:
+            raise UsageError("--scale and --scale-to both fix the factor; keep one of them")
+        if self.scale is not None and not math.isfinite(self.scale):
+            raise UsageError(f"--scale {self.scale}: must be a finite number")
+
+
+def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator[MotionRequest]:
+    """One request for each motion that the sources stand for, sets and folders taken apart.
+
+    Raises
+    ------
+    UsageError
+        If several motions share one vertical component.
+    """
+    if not records:
+        yield request
+        return
+    from rpscli.records.source import expand_sources  # noqa: PLC0415 -- numpy is slow
+
+    single = expand_sources(records)
+    if len(single) > 1 and request.vertical is not None:
+        raise UsageError(f"--vertical {request.vertical}: belongs to one record, not {len(single)}")
+    for source in single:
+        yield replace(request, record=source)
 
 
 def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
@@ -34,15 +64,23 @@ def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
     }
 
 
+def motion_source(case: Case, request: MotionRequest) -> Path | str:
+    """Which record a motion is, whatever its scale: a file, or a source that is none."""
+    folder = case.folder if request.record is None else Path()
+    given = case.record.source if request.record is None and case.record else request.record or ""
+    file = folder / given.partition("?")[0]
+    return file if file.is_file() else given
+
+
 def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     """Read the motion; a `--record` stands in place of the whole `record` section of the case.
 
     Raises
     ------
     UsageError
-        If neither names a record, or the scale is not finite.
+        If neither names a record, or it is to be scaled to what the case cannot have.
     RecordError
-        If a record cannot be read, or the components have different time steps.
+        If a record cannot be read or scaled, or the components have different time steps.
     """
     from rpscli.records.ground_motion import MotionComponents  # noqa: PLC0415 -- numpy is slow
     from rpscli.records.source import load_record  # noqa: PLC0415
@@ -61,9 +99,42 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     if request.vertical is not None:
         vertical = load_record(request.vertical)
     motion = MotionComponents(horizontal, vertical)
-    scale = request.scale
-    if scale is None:
-        scale = 1.0 if given is None else given.scale
-    if not math.isfinite(scale):
-        raise UsageError(f"--scale {scale}: must be a finite number")
+    scale = _factor(case, request, horizontal)
     return motion if scale == 1.0 else motion.scaled(scale)
+
+
+def _factor(case: Case, request: MotionRequest, motion: GroundMotion) -> float:
+    """What the command line asks for, else the case, if the record is its own."""
+    if request.scale is not None:
+        return request.scale
+    own = case.record if request.record is None else None
+    if request.scale_to is not None:
+        target, source = _parsed_target(request.scale_to), f"--scale-to {request.scale_to}"
+    elif own is not None and own.scale_to is not None:
+        target, source = own.scale_to, f"{case.source}: record.scale_to"
+    else:
+        return 1.0 if own is None else own.scale
+    return _factor_to(case, target, motion, source)
+
+
+def _factor_to(case: Case, target: ScaleToSection, motion: GroundMotion, source: str) -> float:
+    from rpscli.records.measures.measure import factor_to, measured  # noqa: PLC0415
+
+    period = target.period
+    if target.measure == "Sa" and period is None:
+        building = case.structure.superstructure
+        if building is None:
+            raise UsageError(f"{source}: without storeys there is no T1 at which to take Sa")
+        period = float(building.periods[0])
+    unscaled = measured(motion, target.measure, period, target.damping)
+    return factor_to(target.value, unscaled, target.measure, motion.source)
+
+
+def _parsed_target(text: str) -> ScaleToSection:
+    """What `--scale-to` asks for: ``PGA=0.4g``, ``PGV=0.5 m/s``, or ``Sa(0.6 s)=1 g``."""
+    from rpscli.case.schema.scale_to import scale_to_of  # noqa: PLC0415 -- pydantic is slow
+
+    try:
+        return scale_to_of(text)
+    except ValueError as error:
+        raise UsageError(f"--scale-to {text}: {error}") from None

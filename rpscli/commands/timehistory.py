@@ -1,55 +1,60 @@
-"""`rps timehistory`: response of a case to a ground motion."""
+"""`rps timehistory`: response of cases to ground motions."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.commands.acceptance import (
-    Verdict,
-    case_conditions,
-    exceeded,
-    friction_conditions,
-    judge,
-    parse_condition,
-)
-from rpscli.commands.case_input import CaseInput, case_folder, case_heading, read_case, write
-from rpscli.commands.motion import MotionRequest, load_motion, motion_inputs
+from rpscli.case.conditions import Condition
+from rpscli.commands.acceptance import parse_condition
+from rpscli.commands.case_input import read_cases, write
+from rpscli.commands.motion import MotionRequest, single_motions
 from rpscli.commands.shell.compilation import announce_compilation
-from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
-    case_options,
     figure_options,
     output_options,
+    several_cases_options,
     terminal_options,
 )
-from rpscli.commands.shell.patience import patience
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.timehistory_tables import timehistory_tables
-from rpscli.errors import AnalysisError, RpsError, UsageError
-from rpscli.report.documents import heading, timehistory_document
+from rpscli.commands.timehistory_run import (
+    HistoryRequest,
+    add_summary,
+    compute,
+    history_requests,
+)
+from rpscli.errors import UsageError
 from rpscli.report.figures.drawing import artists
 from rpscli.report.figures.look import Look
-from rpscli.report.files.json_text import json_text
 
-if TYPE_CHECKING:
-    from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.records.ground_motion import MotionComponents
+FIGURES = 5
+"""Figures of a history, at most."""
 
 
 @click.command("timehistory")
-@case_options
+@several_cases_options
 @click.option(
-    "--record", metavar="SRC", help="Ground motion in place of the case's own: file, set, pulse."
+    "--record",
+    "records",
+    multiple=True,
+    metavar="SRC",
+    help="Ground motion in place of the case's own: file, folder, set, pulse; repeatable.",
 )
 @click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
 @click.option("--scale", type=float, metavar="FACTOR", help="Factor on the acceleration.")
+@click.option(
+    "--scale-to",
+    metavar="MEASURE=VALUE",
+    help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', PGD, CAV or Arias.",
+)
 @click.option(
     "--fail-on",
     "fail_on",
@@ -65,7 +70,8 @@ if TYPE_CHECKING:
 @output_options
 @terminal_options
 def command(
-    request: CaseRequest,
+    requests: list[CaseRequest],
+    records: tuple[str, ...],
     output: OutputRequest,
     terminal: Terminal,
     fail_on: tuple[str, ...],
@@ -73,62 +79,50 @@ def command(
     look: Look,
     **motion: Any,
 ) -> None:
-    """Response of CASE to its record, or to that of --record.
+    """Response of each CASE to its record, or to each --record.
 
     Overturning is a result, not an error: see --fail-on. The limits of the case count as well.
+    Several histories end with one table and one verdict; ask for their figures with --figures.
     """
     conditions = [parse_condition(text) for text in fail_on]
     if animate is not None and animate.suffix.lower() != ".gif":
         raise UsageError(f"--animate {animate}: must end with .gif, the only format there is")
-    given = read_case(request, terminal)
-    ground = load_motion(given.case, MotionRequest(**motion))
-    folder = case_folder(given, output, "timehistory", record=motion_inputs(ground))
-    with artists(5 * len(look.endings)) as drawing:
-        announce_compilation(terminal, moving=True)
-        from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
-        from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
+    motions = list(single_motions(records, MotionRequest(**motion)))
+    cases = read_cases(requests, terminal)
+    histories = history_requests(cases, motions, output)
+    if len(histories) == 1:
+        _one(histories[0], conditions, look, animate, terminal)
+        return
+    if animate is not None:
+        raise UsageError(f"--animate {animate}: shows one history, not {len(histories)}")
+    from rpscli.commands.timehistory_set import run_all  # noqa: PLC0415 -- numpy is slow
 
-        with patience(given.case, ground.horizontal.duration, terminal):
-            result = time_history(
-                given.case.structure,
-                ground.horizontal,
-                given.case.analysis,
-                vertical=ground.vertical,
-            )
-        for name, content in timehistory_files(result, given.case.title, look, drawing):
-            folder.add(name, content)
-    if result.failure:
-        verdicts: list[Verdict] = []
-        error: RpsError | None = AnalysisError(result.failure)
-    else:
-        slides = friction_conditions(given.case.structure)
-        verdicts = judge(result, [*case_conditions(given.case.limits), *slides, *conditions])
-        error = exceeded(verdicts)
+    chosen = look if look.formats is not None else replace(look, formats=())
+    with artists(len(histories) * FIGURES * len(chosen.endings)) as drawing:
+        announce_compilation(terminal, moving=True)
+        run_all(histories, conditions, chosen, drawing, output, terminal)
+
+
+def _one(
+    request: HistoryRequest,
+    conditions: Sequence[Condition],
+    look: Look,
+    animate: Path | None,
+    terminal: Terminal,
+) -> None:
+    from rpscli.commands.timehistory_tables import timehistory_tables  # noqa: PLC0415
+
+    title = request.given.case.title
+    with artists(FIGURES * len(look.endings)) as drawing:
+        announce_compilation(terminal, moving=True)
+        done, result = compute(request, conditions, look, drawing, terminal)
     if animate is not None:
         from rpscli.report.figures.animation import animation_gif  # noqa: PLC0415
 
         terminal.note("drawing the animation")
-        folder.add_at(animate, animation_gif(result, given.case.title))
-    document = concluded(_document(given, ground, result, verdicts), error)
-    document["files"] = [str(folder.folder / "summary.json"), *folder.files]
-    folder.add("summary.json", json_text(document))
-    write(folder, terminal)
-    terminal.warn(document["warnings"])
-    terminal.result(document, timehistory_tables(result, verdicts, given.case.title))
-    leave(error)
-
-
-def _document(
-    given: CaseInput, ground: MotionComponents, result: TimeHistoryResult, verdicts: list[Verdict]
-) -> dict[str, Any]:
-    document = {
-        **heading(),
-        "command": "timehistory",
-        "case": case_heading(given),
-        **timehistory_document(result),
-        "verdicts": [asdict(verdict) for verdict in verdicts],
-    }
-    document["record"] |= {"scale": ground.scale}
-    of_motion = (*(ground.vertical.warnings if ground.vertical else ()), *ground.scale_warnings)
-    document["warnings"] = [*given.case.warnings, *document["warnings"], *of_motion]
-    return document
+        request.folder.add_at(animate, animation_gif(result, title))
+    add_summary(request, done)
+    write(request.folder, terminal)
+    terminal.warn(done.document["warnings"])
+    terminal.result(done.document, timehistory_tables(result, done.verdicts, title))
+    leave(done.error)

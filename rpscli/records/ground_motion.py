@@ -100,6 +100,46 @@ class GroundMotion:
         digest.update(self.acceleration.astype("<f8").tobytes())
         return digest.hexdigest()
 
+    def resampled(self, dt: float) -> GroundMotion:
+        """The same motion, linear between its samples, sampled every `dt` seconds.
+
+        A step that is a whole part of the old one changes nothing but the number of samples; a
+        longer one loses what is between, and says so.
+
+        Parameters
+        ----------
+        dt : float [s]
+            Positive, and at most the duration.
+
+        Raises
+        ------
+        RecordError
+            If it is not.
+
+        Examples
+        --------
+        >>> motion = GroundMotion(np.array([0.0, 2.0, -2.0]), 0.5, "m", "m.at2", "PEER AT2")
+        >>> motion.resampled(0.25).acceleration.tolist()
+        [0.0, 1.0, 2.0, 0.0, -2.0]
+        """
+        if not (np.isfinite(dt) and 0.0 < dt <= self.duration):
+            raise RecordError(
+                f"{self.source}: cannot be sampled every {dt:g} s; give a step above 0 and up to"
+                f" its duration, {self.duration:g} s"
+            )
+        # A sample that rounding puts just behind the end is the last one.
+        count = int(np.floor(self.duration / dt * (1.0 + 1e-12))) + 1
+        times = np.minimum(np.arange(count) * dt, self.duration)
+        lost = dt > self.dt * (1.0 + 1e-12)
+        text = f"resampled from {self.dt:g} s to {dt:g} s: what was between the samples is lost"
+        return replace(
+            self,
+            acceleration=np.interp(times, self.time, self.acceleration),
+            dt=dt,
+            description=f"{self.description}; resampled from {self.dt:g} s".lstrip("; "),
+            warnings=(*self.warnings, text) if lost else self.warnings,
+        )
+
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion times `factor`, with a description that says so."""
         note = f"scaled by {factor:g}"
@@ -145,6 +185,7 @@ class MotionComponents:
             raise RecordError(
                 f"{self.vertical.source}: the vertical record has dt = {self.vertical.dt} s, the"
                 f" horizontal one {self.horizontal.dt} s: they must agree; resample one of them"
+                f" with `rps record convert {self.vertical.source} --resample {self.horizontal.dt}`"
             )
 
     def scaled(self, factor: float) -> MotionComponents:

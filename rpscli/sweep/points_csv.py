@@ -8,6 +8,7 @@ import json
 import math
 from collections.abc import Iterator
 
+from rpscli.case.schema.units import in_si
 from rpscli.sweep.design.described import described, identifying_columns
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.results import SCALARS
@@ -26,7 +27,7 @@ def points_csv(table: Table) -> Iterator[str]:
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(f"{name} [{of}]" for name, of in _columns(design))
     for number, point in enumerate(design):
-        cells = [_cell(value) for value in described(design, point).values()]
+        cells = [_cell(value, unit_of(name)) for name, value in described(design, point).items()]
         if histories:
             cells.append(_number(_scale(table, number)))
         cells.append(str(table.outcomes[number]))
@@ -67,12 +68,13 @@ def _number(value: float, *, whole: bool = False) -> str:
     return str(int(value)) if whole else repr(value)
 
 
-def _cell(value: object) -> str:
-    """A value as the study has it; lists and mappings as JSON.
+def _cell(value: object, unit: str) -> str:
+    """A value in the unit of its column; lists and mappings as JSON.
 
-    >>> _cell(0.1), _cell(3), _cell("critical"), _cell([1, 2])
-    ('0.1', '3', 'critical', '[1, 2]')
+    >>> _cell(0.1, "-"), _cell("critical", "-"), _cell([1, 2], "-"), _cell("500 mm", "m")
+    ('0.1', 'critical', '[1, 2]', '0.5')
     """
+    value = in_si(value, unit)
     if isinstance(value, str):
         return value
     return "" if value is None else json.dumps(value)

@@ -88,7 +88,7 @@ def test_closed_and_without_null() -> None:
     sections = [
         item for item in walk(SCHEMA) if isinstance(item, dict) and item.get("type") == "object"
     ]
-    assert len(sections) == 11 + len(LIMITED)  # a limit may be a mapping
+    assert len(sections) == 12 + len(LIMITED)  # a limit may be a mapping
     assert all(section["additionalProperties"] is False for section in sections)
     assert None not in [item for item in walk(SCHEMA) if not isinstance(item, dict | list)]
     assert "null" not in list(walk(SCHEMA))

@@ -50,7 +50,6 @@ def test_a_tonne_is_a_thousand_kilogrammes(mass: float) -> None:
     [
         ("200 kN", "kg", ["is a force", "must be a mass", "W/g"]),
         ("3 kg", "m", ["is a mass", "must be a length: m, cm, mm"]),
-        ("1 g", "m/s2", ["must be an acceleration", "g is the gram"]),
         ("3 kN m", "N/m", ["[length]", "must be a stiffness"]),
         ("3 kN/mmm", "N/m", ["'kN/mmm'", "did you mean kN/mm?"]),
         ("3 zorks", "m", ["unknown unit 'zorks'", "use m, cm"]),
@@ -101,7 +100,9 @@ def test_units_make_the_same_case(building: str) -> None:
     [(written, unit) for unit, factors in COMMON_UNITS.items() for written in factors],
 )
 def test_common_units_have_the_factors_of_pint(written: str, unit: str) -> None:
-    expected = float(_parsed(written).to(_parsed(unit).units).magnitude)
+    # Where an acceleration is meant, g is not the gram.
+    asked = "standard_gravity" if (written, unit) == ("g", "m/s2") else written
+    expected = float(_parsed(asked).to(_parsed(unit).units).magnitude)
     assert COMMON_UNITS[unit][written] == pytest.approx(expected, rel=ROUNDING)
 
 

@@ -22,7 +22,7 @@ from rpscli.records.source import load_record
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]
 
-FOLDER = Path("results/small/timehistory")
+FOLDER = Path("results/small/timehistory/half_sine_T0.6s_a0.3g")
 FIGURES = {
     "rotation.png", "displacements.png", "storey_shears.png", "moment_rotation.png", "energy.png"
 }  # fmt: skip
@@ -151,7 +151,8 @@ def test_fail_on(rps_json: InvokeJson, conditions: list[str], code: int) -> None
         text.partition("=")[0] for text in conditions
     ]
     assert any(row["exceeded"] for row in document["verdicts"]) == (code == 10)
-    assert (FOLDER / "timehistory.csv").is_file()
+    folders = list(Path("results/small/timehistory").iterdir())
+    assert [(folder / "timehistory.csv").is_file() for folder in folders] == [True]
 
 
 def test_limits_of_the_case(rps: Invoke) -> None:

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field
 from rpscli.case.schema.devices import DeviceSection
 from rpscli.case.schema.fields import ModePair, Quantity, Text, Whole
 from rpscli.case.schema.limits import LimitsSection
+from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.schema.section import Section
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
 
@@ -192,6 +193,9 @@ class RecordSection(Section):
     source: Text = Field(description="a file, a member of a record set, or a pulse")
     scale: Annotated[float, Quantity()] = Field(
         1.0, description="factor on the horizontal and the vertical acceleration"
+    )
+    scale_to: ScaleToSection | None = Field(
+        None, description="value of an intensity measure, in place of scale"
     )
     vertical: Text | None = Field(None, description="source of the vertical component")
     dt: Time | None = Field(None, description="time step of a file that does not state it")

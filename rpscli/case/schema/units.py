@@ -13,6 +13,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rpscli.case.text.faults import listed
+from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import nearest
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ KINDS = {
     "s": ("a time", ("s", "ms")),
     "N/m": ("a stiffness", ("N/m", "kN/m", "kN/mm", "MN/m", "kip/in")),
     "N s/m": ("a damping coefficient", ("N s/m", "kN s/m", "MN s/m", "kN s/mm")),
-    "m/s2": ("an acceleration", ("m/s2", "cm/s2", "ft/s2")),
+    "m/s2": ("an acceleration", ("m/s2", "cm/s2", "g")),
     "m/s": ("a velocity", ("m/s", "cm/s", "ft/s")),
     "N": ("a force", ("N", "kN", "MN", "kip")),
     "rad": ("an angle", ("rad", "mrad", "deg")),
@@ -67,7 +68,14 @@ COMMON_UNITS: dict[str, dict[str, float]] = {
         "kip/ft": 1e3 * POUND_FORCE / FOOT,
     },
     "N s/m": {"N s/m": 1.0, "kN s/m": 1e3, "MN s/m": 1e6, "kN s/mm": 1e6},
-    "m/s2": {"m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "ft/s2": FOOT, "in/s2": INCH},
+    "m/s2": {
+        "g": STANDARD_GRAVITY,
+        "m/s2": 1.0,
+        "cm/s2": 0.01,
+        "mm/s2": 1e-3,
+        "ft/s2": FOOT,
+        "in/s2": INCH,
+    },
     "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "ft/s": FOOT, "in/s": INCH},
     "N": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_FORCE, "kip": 1e3 * POUND_FORCE},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
@@ -101,6 +109,25 @@ def si_value(text: str, unit: str) -> float:
         raise ValueError(f"is text without a unit; write {number} ({unit}) without quotes")
     factor = _factor(written, unit)
     return float(number) * factor
+
+
+def in_si(value: object, unit: str) -> object:
+    """A value that a file gives at a key of this unit: texts with a unit as SI numbers.
+
+    What is no such text stays as it is, elements of lists too.
+
+    >>> in_si("50 t", "kg"), in_si(["1 m", 2.0], "m"), in_si("critical", "-"), in_si("auto", "s")
+    (50000.0, [1.0, 2.0], 'critical', 'auto')
+    """
+    if isinstance(value, list | tuple):
+        return [in_si(item, unit) for item in value]
+    if not isinstance(value, str) or unit not in KINDS:
+        return value
+    try:
+        # Twelve digits, so that 500 mm are 0.5 m.
+        return float(f"{si_value(value, unit):.12g}")
+    except ValueError:
+        return value
 
 
 def common_factor(written: str, unit: str) -> float | None:
@@ -158,8 +185,6 @@ def _kind(quantity: Any) -> str:
 def _hint(quantity: Any) -> str:
     if quantity.dimensionality == _parsed("N").dimensionality:
         return "; the mass of a weight W is W/g"
-    if str(quantity.units) == "gram":
-        return "; g is the gram here, write 9.80665 m/s2 for gravity"
     return ""
 
 

@@ -6,9 +6,11 @@ import math
 from numbers import Real
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema
+from pydantic import Field, PlainValidator, ValidationError, ValidationInfo, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
 from rpscli.case.schema.fields import Quantity, Whole, refuse
+from rpscli.case.schema.scale_to import measured_value
 from rpscli.case.schema.section import Section
 from rpscli.case.text.faults import shown
 
@@ -93,6 +95,22 @@ def _positive_numbers(value: object) -> tuple[float, ...]:
     return _numbers(value, above=0.0)
 
 
+def _measured_values(value: object, info: ValidationInfo) -> tuple[float, ...]:
+    """Values of the measure that stands before them, in SI: numbers, or texts with a unit."""
+
+    def in_si(item: object) -> object:
+        try:
+            return measured_value(item, info) if isinstance(item, str) else item
+        except PydanticCustomError as error:
+            refuse(f"has {shown(item)}, which {error}")
+
+    if isinstance(value, dict):
+        ends = {key: in_si(item) for key, item in value.items() if key in {"low", "high"}}
+        return _positive_numbers(value | ends)
+    listed = list(value) if isinstance(value, list | tuple) else [value]
+    return _positive_numbers([in_si(item) for item in listed])
+
+
 def _keys(value: object) -> tuple[str, ...]:
     listed = list(value) if isinstance(value, list | tuple) else [value]
     if not all(isinstance(item, str) and item.strip() for item in listed):
@@ -125,6 +143,21 @@ Numbers = Annotated[tuple[float, ...], PlainValidator(_numbers), _NUMBERS]
 
 PositiveNumbers = Annotated[tuple[float, ...], PlainValidator(_positive_numbers), _NUMBERS]
 """The same, each above zero."""
+
+MeasuredValues = Annotated[
+    tuple[float, ...],
+    PlainValidator(_measured_values),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": ["number", "string"]},
+                {"type": "array", "items": {"type": ["number", "string"]}},
+                _SPACED,
+            ]
+        }
+    ),
+]
+"""The same, of an intensity measure, with or without a unit."""
 
 Keys = Annotated[tuple[str, ...], PlainValidator(_keys), _schema("string")]
 """One key or several."""

@@ -16,17 +16,17 @@ from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import (
     DampingRatio,
+    MeasuredValues,
     Number,
     Numbers,
     Positive,
-    PositiveNumbers,
     Seed,
     Share,
     ValueRange,
 )
+from rpscli.records.measures.measure import Measure
 
 Analysis = Literal["timehistory", "modal", "pushover"]
-Measure = Literal["PGA", "PGV", "PGD", "Sa", "Arias", "CAV"]
 
 
 class MeasureScale(Section):
@@ -35,7 +35,7 @@ class MeasureScale(Section):
     measure: Measure = Field(
         description="PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"
     )
-    values: PositiveNumbers = Field(description="values to scale to, SI units")
+    values: MeasuredValues = Field(description="values to scale to, SI or with a unit")
     period: Time | None = Field(
         None, description="of Sa; left out: the fixed-base first period of each system"
     )

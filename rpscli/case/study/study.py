@@ -7,8 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
+from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Axis, axes_of
 from rpscli.case.study.reports import ReportKinds, ReportRequest
 from rpscli.case.study.requests import requests_of
@@ -22,7 +25,7 @@ from rpscli.case.study.rules import (
     twice,
     unknown_keys,
 )
-from rpscli.case.study.schema import StudyFile
+from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.case.study.sizes import size_faults
 from rpscli.case.study.sources import sources_of
 from rpscli.case.text.document import Document
@@ -79,9 +82,36 @@ class Study:
     digest: str
 
     @property
+    def scale(self) -> MeasureScale | tuple[float, ...] | None:
+        """What the study scales records by or to, else what the case at its base scales them to."""
+        if self.file.scale is not None or self.file.analysis != "timehistory":
+            return self.file.scale
+        return _scale_of_base(self.base)
+
+    @property
     def title(self) -> str:
         """Heading of reports; the name, if the file has no title."""
         return self.file.title or self.name
+
+
+def _scale_of_base(base: Document) -> MeasureScale | None:
+    """What the case at the base scales its record to, as a study says it."""
+    record = base.content.get("record")
+    target = record.get("scale_to") if isinstance(record, dict) else None
+    if target is None:
+        return None
+    try:
+        found = ScaleToSection.model_validate(target)
+    except ValidationError:
+        return None  # told with the other faults of the systems
+    return MeasureScale.model_validate(
+        {
+            "measure": found.measure,
+            "values": [found.value],
+            "period": found.period,
+            "damping": found.damping,
+        }
+    )
 
 
 def parse_study(

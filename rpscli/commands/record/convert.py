@@ -25,12 +25,23 @@ if TYPE_CHECKING:
     help="at2: PEER AT2, in g. text: two columns, s and m/s2. By default what the name after -o"
     " says, else at2.",
 )
+@click.option(
+    "--resample", type=float, metavar="S", help="Time step to sample it at, linear between [s]."
+)
 @output_options
 def command(
-    motion: GroundMotion, output: OutputRequest, terminal: Terminal, form: str | None
+    motion: GroundMotion,
+    output: OutputRequest,
+    terminal: Terminal,
+    form: str | None,
+    resample: float | None,
 ) -> None:
-    """Write SRC as a PEER AT2 file or as two columns of text.
+    """Write SRC as a PEER AT2 file or as two columns of text, with another time step if asked.
 
     The name after -o may also be that of a file: -o motion.at2, -o motion.txt.
     """
+    if resample is not None:
+        known = motion.warnings
+        motion = motion.resampled(resample)
+        terminal.warn(text for text in motion.warnings if text not in known)
     write_record("convert", motion, output, terminal, form)

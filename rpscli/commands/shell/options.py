@@ -50,18 +50,21 @@ def terminal_options(function: Command) -> Command:
     return command
 
 
+_overrides = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Put a value over the case's own, such as"
+    " --set podium.bearing.curvature_ratio=1.5; repeatable.",
+)
+
+
 def case_options(function: Command) -> Command:
     """CASE and --set, as `request`."""
 
     @click.argument("case", metavar="CASE")
-    @click.option(
-        "--set",
-        "overrides",
-        multiple=True,
-        metavar="KEY=VALUE",
-        help="Put a value over the case's own, such as"
-        " --set podium.bearing.curvature_ratio=1.5; repeatable.",
-    )
+    @_overrides
     @functools.wraps(function)
     def command(*, case: str, overrides: tuple[str, ...], **rest: Any) -> None:
         function(request=CaseRequest(case, overrides), **rest)
@@ -115,6 +118,20 @@ def _formats(text: str) -> tuple[str, ...]:
             hint = f"did you mean {close}?" if close else "write png, svg, pdf, svg,pdf or none"
             raise UsageError(f"--figures {text}: {word or 'nothing'} is no format; {hint}")
     return tuple(dict.fromkeys(words))
+
+
+def several_cases_options(function: Command) -> Command:
+    """CASE... and --set, as `requests`."""
+
+    @click.argument("cases", metavar="CASE...", nargs=-1, required=True)
+    @_overrides
+    @functools.wraps(function)
+    def command(*, cases: tuple[str, ...], overrides: tuple[str, ...], **rest: Any) -> None:
+        if cases.count("-") > 1:
+            raise UsageError("the standard input, -, can be read once only")
+        function(requests=[CaseRequest(case, overrides) for case in cases], **rest)
+
+    return command
 
 
 def output_options(function: Command) -> Command:

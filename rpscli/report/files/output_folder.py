@@ -16,7 +16,7 @@ from typing import Any
 from rpscli.errors import Refused
 from rpscli.report.files.json_text import SCHEMA_VERSION, json_text
 from rpscli.report.files.versions import versions
-from rpscli.report.files.whole_files import require_writable, write_whole
+from rpscli.report.files.whole_files import locked, require_writable, write_whole
 
 RUN_FILE = "run.json"
 
@@ -37,6 +37,8 @@ class Run:
         SHA-256 (hexadecimal) of the input's text.
     inputs
         Everything else that decides about the result, resolved.
+    record
+        The record besides the case that the results belong to: a file, or a source that is none.
     """
 
     command: str
@@ -44,6 +46,7 @@ class Run:
     file: Path | None
     digest: str
     inputs: Mapping[str, Any] = field(default_factory=dict)
+    record: Path | str | None = None
 
 
 class OutputFolder:
@@ -54,8 +57,8 @@ class OutputFolder:
     folder
         Made when the files are written.
     run
-        Identifies the owner. A later run of the same command on the same file may replace the
-        files, though the file's content or the options have changed.
+        Identifies the owner. A later run of the same command on the same file, under the same
+        record, may replace the files, though the file's content or the options have changed.
     force
         Overwrite whatever is in the way.
 
@@ -105,7 +108,13 @@ class OutputFolder:
         OutputError
             If the files cannot be written; none is then.
         """
-        self._refuse_strangers()
+        with locked(self.folder):
+            # Another process may have written here since this one began.
+            self._earlier = self._claimed()
+            self._refuse_strangers()
+            self._write()
+
+    def _write(self) -> None:
         contents = {**self._contents, self.folder / RUN_FILE: self._run_text().encode()}
         write_whole(contents)
         for stale in self._own - {self._known_as(path) for path in contents}:
@@ -119,6 +128,7 @@ class OutputFolder:
             "name": self.run.name,
             "file": self._subject,
             "sha256": self.run.digest,
+            "record": self._record,
             "inputs": self.run.inputs,
             "versions": versions(),
             "files": [self._known_as(path) for path in self._contents],
@@ -128,6 +138,11 @@ class OutputFolder:
     @property
     def _subject(self) -> str | None:
         return None if self.run.file is None else self._known_as(self.run.file)
+
+    @property
+    def _record(self) -> str | None:
+        record = self.run.record
+        return self._known_as(record) if isinstance(record, Path) else record
 
     def _known_as(self, path: Path) -> str:
         # Relative to the folder: a project that is moved as a whole keeps knowing its results.
@@ -151,7 +166,10 @@ class OutputFolder:
             return {}
         except (OSError, ValueError, TypeError, KeyError):
             return self._refuse(f"{place} is no description of a run of rps")
+        if record := earlier.get("record"):
+            owner = f"{owner} under {record}"
         same = earlier["command"] == self.run.command and earlier["file"] == self._subject
+        same = same and earlier.get("record") == self._record
         if same and self.run.file is None:  # what has no file is known by what it says
             same = earlier.get("sha256") == self.run.digest
         if same:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import secrets
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from rpscli.errors import OutputError
@@ -35,6 +36,31 @@ def write_whole(contents: Mapping[Path, bytes]) -> None:
     finally:
         for temporary in ready.values():
             temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Make the folder, and wait until no other process that asks writes there.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _not_written(folder, error) from None
+    with ExitStack() as lock:
+        # The system lets go when the process ends, however it ends. Where folders cannot be locked
+        # (Windows, some file systems of networks), two processes must not write to one.
+        with suppress(ImportError, OSError):
+            import fcntl  # noqa: PLC0415 -- not on every system
+
+            handle = os.open(folder, os.O_RDONLY)
+            lock.callback(os.close, handle)
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
 
 
 def require_writable(folder: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
+from rpscli.case.schema.units import in_si
 from rpscli.report.files.csv_text import Column
 from rpscli.sweep.reports.intensities import unit_of
 
@@ -67,7 +68,7 @@ def plain(value: object) -> str:
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
     """One column a key, from its values in each row."""
     return [
-        Column(key, unit_of(key), [quoted(row[place]) for row in rows])
+        Column(key, unit_of(key), [quoted(in_si(row[place], unit_of(key))) for row in rows])
         for place, key in enumerate(keys)
     ]
 

@@ -11,7 +11,9 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of
 from rpscli.case.overrides import Override
+from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Values
+from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
 from rpscli.case.text.faults import Fault, Path, Place
 from rpscli.errors import CaseError
@@ -167,8 +169,21 @@ def _refuse_missing(study: Study, plan: Plan, case: Case) -> None:
     if not study.sources and case.record is None:
         text = "no record: give the study `records`, or the case at its base a `record`"
         study.document.refuse([Fault((), text)])
+    own = None if case.record is None else case.record.scale_to
+    if own is not None and study.file.scale is None and not _is_of_base(own, plan.measure):
+        text = "record.scale_to cannot vary in a study; vary `scale: {measure: ..., values: [...]}`"
+        study.document.refuse([Fault((), text)])
     measure = plan.measure
     needs_period = measure is not None and measure.measure == "Sa" and measure.period is None
     if needs_period and case.structure.superstructure is None:
         text = "scale.period is missing: without storeys there is no T1 at which to take Sa"
         study.document.refuse([Fault(("scale",), text, at_key=True)])
+
+
+def _is_of_base(target: ScaleToSection, measure: MeasureScale | None) -> bool:
+    """Whether a case scales its record as the study scales all of them."""
+    return measure is not None and (measure.measure, measure.values, measure.period) == (
+        target.measure,
+        (target.value,),
+        target.period,
+    )

@@ -107,7 +107,8 @@ def lay_out(study: Study) -> Design:
         If a system is no valid case.
     """
     file, combinations = study.file, combinations_of(study)
-    measure = file.scale if isinstance(file.scale, MeasureScale) else None
+    scale = study.scale
+    measure = scale if isinstance(scale, MeasureScale) else None
     plan = Plan(
         analysis=file.analysis,
         keys=combinations.keys,
@@ -125,7 +126,7 @@ def lay_out(study: Study) -> Design:
         combinations=combinations,
         properties=check_systems(study, plan, combinations, members),
         records=tuple(RecordRequest(source, folder) for source in study.sources) or (None,),
-        scales=_scales(file.scale),
+        scales=_scales(scale),
         members=members,
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.analyses.demand import Request
-from rpscli.errors import AnalysisError
+from rpscli.records.measures.measure import factor_to
 from rpscli.sweep.evaluation.points import Plan, Point
 from rpscli.sweep.evaluation.record_cache import RecordCache
 from rpscli.sweep.evaluation.results import Results
@@ -33,10 +33,8 @@ class StudyContext:
         unscaled = self.records.intensity(
             point.record, measure.measure, point.period, measure.damping
         )
-        if unscaled <= 0.0:
-            raise AnalysisError(f"{measure.measure} of {point.record.source} is 0: cannot scale it")
-        ratio = point.scale / unscaled
-        return (ratio**0.5 if measure.measure == "Arias" else ratio) * point.scale_change
+        factor = factor_to(point.scale, unscaled, measure.measure, point.record.source)
+        return factor * point.scale_change
 
     def history(self, point: Point) -> Request:
         """The history of a point; its motion is shared, and scaled while it is used."""

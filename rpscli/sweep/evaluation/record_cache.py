@@ -9,11 +9,9 @@ from pathlib import Path
 from threading import RLock
 from typing import Generic, TypeVar
 
-from rpscli.case.study.schema import Measure
 from rpscli.errors import RecordError
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
-from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.measures.spectrum import spectral_acceleration
+from rpscli.records.ground_motion import MotionComponents
+from rpscli.records.measures.measure import Measure, measured
 from rpscli.records.source import load_record
 from rpscli.sweep.evaluation.points import RecordRequest
 
@@ -100,7 +98,7 @@ class RecordCache:
         """A measure of the unscaled horizontal motion, SI units."""
         key = (request, measure, period, damping)
         return self._intensities.value(
-            key, lambda: _intensity(self.motion(request).horizontal, measure, period, damping)
+            key, lambda: measured(self.motion(request).horizontal, measure, period, damping)
         )
 
 
@@ -123,12 +121,3 @@ def _load(request: RecordRequest) -> MotionComponents | str:
         return MotionComponents(horizontal, upwards)
     except (RecordError, OSError) as error:
         return str(error)
-
-
-def _intensity(
-    motion: GroundMotion, measure: Measure, period: float | None, damping: float
-) -> float:
-    if measure == "Sa":
-        assert period is not None, "Sa is asked for at a period"
-        return spectral_acceleration(motion, period, damping)
-    return float(getattr(intensity_measures(motion), measure.lower()))

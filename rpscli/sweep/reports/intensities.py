@@ -12,20 +12,11 @@ from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.key_units import unit as key_unit
 from rpscli.case.study.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions
-from rpscli.case.study.schema import Measure
 from rpscli.errors import RecordError
+from rpscli.records.measures.measure import MEASURE_UNITS, Measure
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.table import Array, Table
-
-UNITS: dict[Measure, str] = {
-    "PGA": "m/s2",
-    "PGV": "m/s",
-    "PGD": "m",
-    "Sa": "m/s2",
-    "Arias": "m/s",
-    "CAV": "m/s",
-}
 
 
 def unit_of(name: str) -> str:
@@ -34,7 +25,9 @@ def unit_of(name: str) -> str:
     >>> unit_of("PGA"), unit_of("superstructure.period"), unit_of("scale")
     ('m/s2', 's', '-')
     """
-    return next((unit for measure, unit in UNITS.items() if measure == name), key_unit(name))
+    return next(
+        (unit for measure, unit in MEASURE_UNITS.items() if measure == name), key_unit(name)
+    )
 
 
 class MeasureOptions(ReportOptions):
@@ -95,7 +88,7 @@ def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> I
         except RecordError:
             continue
         values[point.number] = unscaled * _effect(measure, table.scale[point.number])
-    return Intensity(measure, UNITS[measure], period, values)
+    return Intensity(measure, MEASURE_UNITS[measure], period, values)
 
 
 def _effect(measure: Measure, factor: float) -> float:

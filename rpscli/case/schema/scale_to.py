@@ -1,0 +1,101 @@
+"""What a record is scaled to: a value of an intensity measure."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Self
+
+from pydantic import (
+    Field,
+    PlainValidator,
+    ValidationError,
+    ValidationInfo,
+    WithJsonSchema,
+    model_validator,
+)
+
+from rpscli.case.schema.fields import Quantity, refuse
+from rpscli.case.schema.section import Section
+from rpscli.errors import nearest
+from rpscli.records.measures.measure import MEASURE_UNITS, Measure
+
+_TARGET = re.compile(r"\s*([A-Za-z]+)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
+
+
+def measured_value(value: object, info: ValidationInfo) -> float:
+    """A value of the measure that stands before it, in SI: a number, or text with a unit."""
+    measure = info.data.get("measure")
+    bounds = Quantity(MEASURE_UNITS[measure], symbol=measure, above=0) if measure else Quantity()
+    found = bounds.number(value)
+    assert isinstance(found, float), "there are no words in place of the number"
+    return found
+
+
+MeasuredValue = Annotated[
+    float,
+    PlainValidator(measured_value),
+    WithJsonSchema({"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "string"}]}),
+]
+
+
+class ScaleToSection(Section):
+    """A value of an intensity measure of the horizontal record, in place of a factor."""
+
+    measure: Measure = Field(
+        description="PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"
+    )
+    value: MeasuredValue = Field(description="what it is to be, SI or with a unit, such as 0.4 g")
+    period: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None, description="of Sa; left out: the fixed-base first period of the building"
+    )
+    damping: Annotated[float, Quantity(symbol="of critical damping", at_least=0, below=1)] = Field(
+        0.05, description="of Sa"
+    )
+
+    @model_validator(mode="after")
+    def _of_sa(self) -> Self:
+        if self.period is not None and self.measure != "Sa":
+            refuse(f"must have a period with the measure Sa only; {self.measure} has none")
+        return self
+
+
+def scale_to_of(text: str) -> ScaleToSection:
+    """What a text such as ``PGA=0.4g`` or ``Sa(0.6 s)=1 g`` asks for.
+
+    Raises
+    ------
+    ValueError
+        If it is not of this form; the message continues one that names the text.
+
+    Examples
+    --------
+    >>> scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period
+    (0.5, 0.6)
+    """
+    found = _TARGET.fullmatch(text)
+    if found is None:
+        raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")
+    name, period, value = found.groups()
+    measure = next((known for known in MEASURE_UNITS if known.lower() == name.lower()), None)
+    if measure is None:
+        close = nearest(name, MEASURE_UNITS, 0.6)
+        hint = f"did you mean {close}?" if close else f"known are {', '.join(MEASURE_UNITS)}"
+        raise ValueError(f"{name} is no measure; {hint}")
+    given: dict[str, Any] = {"measure": measure, "value": _number(value)}
+    if period is not None:
+        given["period"] = _number(period)
+    try:
+        return ScaleToSection.model_validate(given)
+    except ValidationError as error:
+        reasons = error.errors(include_url=False)
+        raise ValueError(
+            "; ".join(f"{reason['input']!r} {reason['msg']}" for reason in reasons)
+        ) from None
+
+
+def _number(text: str) -> float | str:
+    """A bare number, or the text with its unit."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

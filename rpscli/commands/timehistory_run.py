@@ -1,0 +1,170 @@
+"""One time history: what is asked for, and what it leaves behind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rpscli.case.conditions import Condition
+from rpscli.commands.acceptance import (
+    Verdict,
+    case_conditions,
+    exceeded,
+    friction_conditions,
+    judge,
+)
+from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, case_heading
+from rpscli.commands.motion import MotionRequest, load_motion, motion_inputs, motion_source
+from rpscli.commands.shell.failure import concluded
+from rpscli.commands.shell.options import OutputRequest
+from rpscli.commands.shell.patience import patience
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import AnalysisError, RecordError, RpsError
+from rpscli.report.documents import heading, timehistory_document
+from rpscli.report.figures.drawing import Artists
+from rpscli.report.figures.look import Look
+from rpscli.report.files.json_text import json_text
+from rpscli.report.files.output_folder import OutputFolder
+
+if TYPE_CHECKING:
+    from rpscli.analyses.results import TimeHistoryResult
+    from rpscli.records.ground_motion import MotionComponents
+
+COMMAND = "timehistory"
+
+
+@dataclass(frozen=True, eq=False)
+class HistoryRequest:
+    """A case, its motion, and the folder of the results."""
+
+    given: CaseInput
+    case_label: str
+    ground: MotionComponents
+    label: str
+    folder: OutputFolder
+
+
+class HistoryResult(NamedTuple):
+    """What is known of a history that is over."""
+
+    document: dict[str, Any]
+    verdicts: list[Verdict]
+    error: RpsError | None
+
+
+def history_requests(
+    cases: Sequence[CaseInput], motions: Sequence[MotionRequest], output: OutputRequest
+) -> list[HistoryRequest]:
+    """Every case under every motion, all read and all folders claimed before any is computed.
+
+    Without ``-o`` each goes to a folder of its record's name and scale. With it, several go to
+    folders of these names inside, below one of each case if there are several cases.
+
+    Raises
+    ------
+    RecordError
+        For all motions that cannot be had, one line for each.
+    """
+    requests = []
+    case_labels = unique([given.case.name for given in cases])
+    for given, case_label in zip(cases, case_labels, strict=True):
+        grounds = list(_grounds(given, motions))
+        labels = unique([_label(ground) for ground in grounds])
+        for motion, ground, label in zip(motions, grounds, labels, strict=True):
+            place = RESULTS / case_label / COMMAND / label
+            if output.place is not None:
+                inside = [case_label] * (len(cases) > 1) + [label] * (len(motions) > 1)
+                place = output.place.joinpath(*inside)
+            folder = case_folder(
+                given,
+                OutputRequest(place, output.force),
+                COMMAND,
+                record_source=motion_source(given.case, motion),
+                record=motion_inputs(ground),
+            )
+            requests.append(HistoryRequest(given, case_label, ground, label, folder))
+    return requests
+
+
+def _grounds(given: CaseInput, motions: Iterable[MotionRequest]) -> Iterator[MotionComponents]:
+    complaints = []
+    for motion in motions:
+        try:
+            yield load_motion(given.case, motion)
+        except RecordError as error:
+            complaints.append(str(error))
+    if complaints:
+        raise RecordError("\n".join(complaints))
+
+
+def _label(ground: MotionComponents) -> str:
+    scaled = "" if ground.scale == 1.0 else f"_x{ground.scale:.4g}"
+    return f"{ground.horizontal.name}{scaled}"
+
+
+def unique(names: Sequence[str]) -> list[str]:
+    """The names, numbered where one comes again.
+
+    >>> unique(["a", "b", "a"])
+    ['a', 'b', 'a_2']
+    """
+    taken: list[str] = []
+    for name in names:
+        numbered = (f"{name}_{number}" for number in range(2, len(names) + 2))
+        taken.append(name if name not in taken else next(n for n in numbered if n not in taken))
+    return taken
+
+
+def compute(
+    request: HistoryRequest,
+    conditions: Sequence[Condition],
+    look: Look,
+    drawing: Artists,
+    terminal: Terminal,
+) -> tuple[HistoryResult, TimeHistoryResult]:
+    """Run a history, judge it, and collect its files; the caller writes them."""
+    from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
+    from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
+
+    case, ground = request.given.case, request.ground
+    with patience(case, ground.horizontal.duration, terminal):
+        result = time_history(
+            case.structure, ground.horizontal, case.analysis, vertical=ground.vertical
+        )
+    for name, content in timehistory_files(result, case.title, look, drawing):
+        request.folder.add(name, content)
+    verdicts: list[Verdict] = []
+    error: RpsError | None
+    if result.failure:
+        error = AnalysisError(result.failure)
+    else:
+        slides = friction_conditions(case.structure)
+        verdicts = judge(result, [*case_conditions(case.limits), *slides, *conditions])
+        error = exceeded(verdicts)
+    document = concluded(_document(request, result, verdicts), error)
+    return HistoryResult(document, verdicts, error), result
+
+
+def add_summary(request: HistoryRequest, done: HistoryResult) -> None:
+    """`summary.json`, which names all files that were collected before it."""
+    folder = request.folder
+    done.document["files"] = [str(folder.folder / "summary.json"), *folder.files]
+    folder.add("summary.json", json_text(done.document))
+
+
+def _document(
+    request: HistoryRequest, result: TimeHistoryResult, verdicts: list[Verdict]
+) -> dict[str, Any]:
+    given, ground = request.given, request.ground
+    document = {
+        **heading(),
+        "command": COMMAND,
+        "case": case_heading(given),
+        **timehistory_document(result),
+        "verdicts": [asdict(verdict) for verdict in verdicts],
+    }
+    document["record"] |= {"scale": ground.scale}
+    of_motion = (*(ground.vertical.warnings if ground.vertical else ()), *ground.scale_warnings)
+    document["warnings"] = [*given.case.warnings, *document["warnings"], *of_motion]
+    return document

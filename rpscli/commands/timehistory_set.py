@@ -1,0 +1,249 @@
+"""Several time histories by one command: one table, one verdict, one exit code."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rpscli.case.conditions import EVENTS, Condition, condition_text, conditions_of
+from rpscli.commands.acceptance import friction_conditions
+from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, write
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.numbers import large, shown
+from rpscli.commands.shell.options import OutputRequest
+from rpscli.commands.shell.tables import table
+from rpscli.commands.shell.tables import title as heading_line
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.timehistory_run import (
+    COMMAND,
+    HistoryRequest,
+    HistoryResult,
+    add_summary,
+    compute,
+)
+from rpscli.errors import AnalysisError, LimitExceeded, RpsError
+from rpscli.report.documents import heading
+from rpscli.report.figures.drawing import Artists
+from rpscli.report.figures.look import Look
+from rpscli.report.files.csv_text import csv_text
+from rpscli.report.files.json_text import json_text
+from rpscli.report.files.output_folder import OutputFolder
+from rpscli.report.study.record_set import (
+    record_columns,
+    record_set_document,
+    set_verdict_document,
+    statistics_columns,
+)
+from rpscli.sweep.statistics.record_set import RecordSet, SetVerdict, record_set, set_verdicts
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.analyses.result_quantities import ResultQuantity
+
+WARNINGS_SHOWN = 5
+DIGITS = 4
+A_TABLE = 4
+"""Quantities side by side in a table that fits a page."""
+CODES = (
+    "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 (ASCE/SEI 7) and more, the"
+    " largest of fewer"
+)
+
+
+class Computed(NamedTuple):
+    """The histories of one case, what they say together, and the folder for it."""
+
+    requests: list[HistoryRequest]
+    histories: list[HistoryResult]
+    together: RecordSet
+    verdicts: tuple[SetVerdict, ...]
+    folder: OutputFolder | None
+
+    @property
+    def given(self) -> CaseInput:
+        """The case."""
+        return self.requests[0].given
+
+
+def run_all(
+    requests: Sequence[HistoryRequest],
+    conditions: Sequence[Condition],
+    look: Look,
+    drawing: Artists,
+    output: OutputRequest,
+    terminal: Terminal,
+) -> None:
+    """Compute all histories, and write each as soon as it is over."""
+    cases = [list(group) for _, group in groupby(requests, lambda request: request.case_label)]
+    folders = [_set_folder(group, output, alone=len(cases) == 1) for group in cases]
+    computed = []
+    for group, folder in zip(cases, folders, strict=True):
+        histories = [_written(request, conditions, look, drawing, terminal) for request in group]
+        scalars = [history.document for history in histories]
+        case = group[0].given.case
+        slides = friction_conditions(case.structure)
+        asked = [*conditions_of(case.limits, "limits of the case"), *slides, *conditions]
+        found = set_verdicts(scalars, asked)
+        computed.append(Computed(group, histories, record_set(scalars), found, folder))
+    error = _error(computed)
+    document = _document(computed, error)
+    for case in computed:
+        if case.folder is not None:
+            _add_set(case)
+            write(case.folder, terminal)
+        else:
+            terminal.note(f"written to {case.requests[0].folder.folder}")
+    warnings = document["warnings"]
+    terminal.warn(warnings[:WARNINGS_SHOWN])
+    if len(warnings) > WARNINGS_SHOWN:
+        terminal.note(f"... and {len(warnings) - WARNINGS_SHOWN} more in the documents")
+    terminal.result(document, _tables(computed))
+    leave(error)
+
+
+def _written(
+    request: HistoryRequest,
+    conditions: Sequence[Condition],
+    look: Look,
+    drawing: Artists,
+    terminal: Terminal,
+) -> HistoryResult:
+    done, _ = compute(request, conditions, look, drawing, terminal)
+    add_summary(request, done)
+    request.folder.write()
+    return done
+
+
+def _set_folder(
+    group: Sequence[HistoryRequest], output: OutputRequest, *, alone: bool
+) -> OutputFolder | None:
+    """Where the table of a case goes: each set of records has a place of its own."""
+    if len(group) == 1:
+        return None
+    first = group[0]
+    motions = "".join(request.ground.horizontal.digest for request in group)
+    name = f"{len(group)}_records_{hashlib.sha256(motions.encode()).hexdigest()[:6]}"
+    place = RESULTS / first.case_label / COMMAND / name
+    if output.place is not None:
+        place = output.place if alone else output.place / first.case_label
+    return case_folder(first.given, OutputRequest(place, output.force), COMMAND, record_source=name)
+
+
+def _add_set(case: Computed) -> None:
+    assert case.folder is not None, "the case has several records"
+    labels = [request.label for request in case.requests]
+    scalars = [history.document for history in case.histories]
+    case.folder.add("records.csv", csv_text(record_columns(labels, scalars)))
+    case.folder.add("statistics.csv", csv_text(statistics_columns(case.together)))
+    case.folder.add("summary.json", json_text({**heading(), **_set_document(case)}))
+
+
+def _error(computed: Sequence[Computed]) -> RpsError | None:
+    """What ends the command: failed histories, else limits that are exceeded."""
+    lines = [
+        f"{request.case_label}, {request.label}: {history.error}"
+        for case in computed
+        for request, history in zip(case.requests, case.histories, strict=True)
+        if isinstance(history.error, AnalysisError)
+    ]
+    if lines:
+        return AnalysisError("\n".join(lines))
+    lines = [
+        f"limit exceeded: {case.requests[0].case_label}: {verdict.condition.name}:"
+        f" {condition_text(verdict.condition)}; {verdict.beyond}, {verdict.condition.source}"
+        for case in computed
+        for verdict in case.verdicts
+        if verdict.exceeded
+    ]
+    return LimitExceeded("\n".join(lines)) if lines else None
+
+
+def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str, Any]:
+    histories = [history.document for case in computed for history in case.histories]
+    files = [file for history in histories for file in history["files"]]
+    files += [
+        str(case.folder.folder / name)
+        for case in computed
+        if case.folder is not None
+        for name in ("records.csv", "statistics.csv", "summary.json", "run.json")
+    ]
+    warnings = [
+        f"{request.case_label}, {request.label}: {text}"
+        for case in computed
+        for request, history in zip(case.requests, case.histories, strict=True)
+        for text in history.document["warnings"]
+    ]
+    document = {
+        **heading(),
+        "command": COMMAND,
+        "histories": histories,
+        "sets": [_set_document(case) for case in computed],
+        "warnings": warnings,
+        "files": files,
+    }
+    return concluded(document, error)
+
+
+def _set_document(case: Computed) -> dict[str, Any]:
+    labels = [request.label for request in case.requests]
+    return {
+        "case": case.histories[0].document["case"],
+        "records": labels,
+        **record_set_document(case.together),
+        "verdicts": [set_verdict_document(verdict, labels) for verdict in case.verdicts],
+    }
+
+
+def _tables(computed: Sequence[Computed]) -> Iterator[RenderableType]:
+    for case in computed:
+        yield heading_line(case.given.case.title)
+        main = [quantity for quantity in case.together.demands if quantity.demand]
+        for first in range(0, len(main), A_TABLE):
+            yield _records_table(case, main[first : first + A_TABLE])
+        if len(case.requests) > 1:
+            yield f"overturned: {case.together.overturned}; {CODES}"
+    if any(case.verdicts for case in computed):
+        yield _verdict_table(computed)
+
+
+def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> RenderableType:
+    rows = [
+        [request.label, _word(history.document["outcome"])]
+        + [shown(large(history.document[q.name], q.unit)[0], DIGITS) for q in quantities]
+        for request, history in zip(case.requests, case.histories, strict=True)
+    ]
+    if len(case.requests) > 1:
+        words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
+        for name, label in words.items():
+            values = [large(getattr(case.together.demands[q], name), q.unit)[0] for q in quantities]
+            rows.append([label, "", *(shown(value, DIGITS) for value in values)])
+    heads = [f"{q.label} {large(None, q.unit)[1]}".strip() for q in quantities]
+    return table(["record", "", *heads], rows, words=2)
+
+
+def _word(outcome: str) -> str:
+    return (
+        outcome.partition("_")[0] if outcome.startswith("overturned") else outcome.replace("_", " ")
+    )
+
+
+def _verdict_table(computed: Sequence[Computed]) -> RenderableType:
+    rows = []
+    for case in computed:
+        for verdict in case.verdicts:
+            event = verdict.condition.name in EVENTS
+            worst = case.requests[verdict.worst].label
+            largest = "" if event else f", largest {shown(verdict.value)} ({worst})"
+            rows.append(
+                [
+                    case.requests[0].case_label,
+                    verdict.condition.name,
+                    "EXCEEDED" if verdict.exceeded else "met",
+                    condition_text(verdict.condition),
+                    f"{verdict.beyond.number} of {verdict.beyond.of} beyond{largest}",
+                ]
+            )
+    return table(["case", "limit", "", "asked for", "found"], rows, words=5)

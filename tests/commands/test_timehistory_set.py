@@ -1,0 +1,226 @@
+"""Several records and cases by one command: nothing replaced, one table, one exit code."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+
+from rpscli.records.ground_motion import GroundMotion
+
+Invoke = Callable[..., Result]
+InvokeJson = Callable[..., dict[str, Any]]
+
+PULSES = [f"pulse:half_sine?amplitude={a}g&period=0.6" for a in (0.1, 0.2, 0.3)]
+OVERTURNING = "pulse:sine?amplitude=0.9g&period=1.5"
+
+
+def asked(records: list[str]) -> list[str]:
+    return [word for record in records for word in ("--record", record)]
+
+
+def test_each_record_leaves_its_own_results(rps: Invoke) -> None:
+    for record in PULSES:
+        assert rps("timehistory", "small.yaml", "--record", record).exit_code == 0
+    assert rps("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "1.5").exit_code == 0
+    folders = list(Path("results/small/timehistory").iterdir())
+    assert len(folders) == 4
+    ratios = [json.loads((f / "summary.json").read_bytes())["max_rotation"] for f in folders]
+    assert len(set(ratios)) >= 3  # the weakest does not uplift
+
+
+def test_a_folder_belongs_to_one_record(rps: Invoke) -> None:
+    assert rps("timehistory", "small.yaml", "--record", PULSES[0], "-o", "out").exit_code == 0
+    before = Path("out/summary.json").read_bytes()
+    other = rps("timehistory", "small.yaml", "--record", PULSES[1], "-o", "out")
+    assert other.exit_code == 7
+    assert f"on small (../small.yaml) under {PULSES[0]}" in other.stderr
+    assert Path("out/summary.json").read_bytes() == before
+    scaled = ("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "2", "-o", "out")
+    assert "replaces" in rps(*scaled).stderr
+
+
+def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None:
+    document = rps_json("timehistory", "small.yaml", *asked(PULSES))
+    histories = document["histories"]
+    assert len(histories) == 3
+    (together,) = document["sets"]
+    for name in ("rotation_ratio", "max_base_shear", "drift_ratio", "max_floor_acceleration"):
+        values = [history[name] for history in histories]
+        found = together["demands"][name]
+        assert found["mean_of_maxima"] == pytest.approx(np.mean(values), rel=1e-14)
+        assert found["largest"] == max(values)
+        assert found["median"] == sorted(values)[1]
+    # Exactly, by hand: without a success in 3 the limit solves (1 - p)^3 = 0.05.
+    assert together["overturned"]["count"] == 0
+    assert together["overturned"]["high"] == pytest.approx(1.0 - 0.05 ** (1 / 3), rel=1e-12)
+    assert document["passed"] is True
+    assert document["exit_code"] == 0
+    alone = rps_json("timehistory", "small.yaml", "--record", PULSES[2])
+    assert histories[2]["max_rotation"] == alone["max_rotation"]
+
+
+def test_the_tables_of_a_set_are_files(rps_json: InvokeJson) -> None:
+    document = rps_json("timehistory", "small.yaml", *asked(PULSES), "-o", "out")
+    with Path("out/records.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    shears = [float(row["max_base_shear [N]"]) for row in rows]
+    assert shears == pytest.approx([h["max_base_shear"] for h in document["histories"]], rel=1e-9)
+    with Path("out/statistics.csv").open(encoding="utf-8") as file:
+        statistics = {row["quantity [-]"]: row for row in csv.DictReader(file)}
+    assert float(statistics["max_base_shear"]["mean_of_maxima [SI]"]) == pytest.approx(
+        np.mean(shears), rel=1e-9
+    )
+    assert all(Path(file).is_file() for file in document["files"])
+    assert {Path(file).suffix for file in document["files"]} == {".csv", ".json"}
+
+
+def test_figures_of_a_set_are_drawn_on_request(rps_json: InvokeJson) -> None:
+    document = rps_json("timehistory", "small.yaml", *asked(PULSES[:2]), "--figures", "svg")
+    assert sum(file.endswith(".svg") for file in document["files"]) == 10
+
+
+def test_an_overturned_history_is_larger_than_any_demand(rps: Invoke, rps_json: InvokeJson) -> None:
+    words = ("timehistory", "small.yaml", *asked([PULSES[0], OVERTURNING]))
+    document = rps_json(*words)
+    (together,) = document["sets"]
+    assert together["demands"]["drift_ratio"]["mean_of_maxima"] is None
+    assert together["demands"]["drift_ratio"]["largest"] is None
+    assert together["demands"]["drift_ratio"]["median"] == document["histories"][0]["drift_ratio"]
+    shown = rps(*words).stdout
+    assert "inf" in next(line for line in shown.splitlines() if line.startswith("mean of maxima"))
+    assert "overturned: 1 of 2" in shown
+
+
+def test_limits_judge_the_set(rps_json: InvokeJson) -> None:
+    words = ("timehistory", "small.yaml", *asked([*PULSES, OVERTURNING]))
+    document = rps_json(*words, "--fail-on", "overturning", exit_code=10)
+    assert document["status"] == "ok"
+    assert document["passed"] is False
+    assert document["exit_code"] == 10
+    (verdict,) = document["sets"][0]["verdicts"]
+    assert verdict["beyond"]["count"] == 1
+    assert verdict["record"] == document["sets"][0]["records"][3]
+    assert rps_json(*words, "--fail-on", "overturning=0.25")["passed"] is True
+    limit = "limits.rotation_ratio={at_most: 1.0, fractile: 0.75}"
+    assert rps_json(*words, "--set", limit)["passed"] is True
+    limit = "limits.rotation_ratio={at_most: 1.0, fractile: 0.76}"
+    assert rps_json(*words, "--set", limit, exit_code=10)["passed"] is False
+
+
+def test_several_cases_are_judged_by_one_exit_code(rps: Invoke, rps_json: InvokeJson) -> None:
+    text = Path("small.yaml").read_text(encoding="utf-8")
+    Path("strict.yaml").write_text(text + "limits: {rotation_ratio: 1.0e-6}\n", encoding="utf-8")
+    document = rps_json("timehistory", "small.yaml", "strict.yaml", exit_code=10)
+    assert [history["case"]["name"] for history in document["histories"]] == ["small", "strict"]
+    assert [[v["exceeded"] for v in s["verdicts"]] for s in document["sets"]] == [[], [True]]
+    result = rps("timehistory", "small.yaml", "strict.yaml")
+    assert result.exit_code == 10
+    assert "limit exceeded: strict: rotation_ratio" in result.stderr
+    assert "EXCEEDED" in result.stdout
+
+
+def test_everything_is_read_before_anything_is_computed(rps: Invoke) -> None:
+    Path("bad.yaml").write_text("rps: 1\nsuperstructure: 3\n", encoding="utf-8")
+    Path("worse.yaml").write_text("rps: 2\n", encoding="utf-8")
+    result = rps("timehistory", "small.yaml", "bad.yaml", "worse.yaml")
+    assert result.exit_code == 3
+    assert "bad.yaml:2" in result.stderr
+    assert "worse.yaml:1" in result.stderr
+    result = rps("timehistory", "small.yaml", *asked([PULSES[0], "pulse:sine?period=1"]))
+    assert result.exit_code == 3
+    assert not Path("results").exists()
+
+
+def test_what_belongs_to_one_history_alone(rps: Invoke) -> None:
+    for words in (("--vertical", PULSES[0]), ("--animate", "film.gif")):
+        result = rps("timehistory", "small.yaml", *asked(PULSES), *words)
+        assert result.exit_code == 2
+        assert "not 3" in result.stderr
+    result = rps("timehistory", "small.yaml", "--scale", "2", "--scale-to", "PGA=1")
+    assert result.exit_code == 2
+    assert rps("timehistory", "-", "-").exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("target", "measure", "value"),
+    [("PGA=0.4g", "pga", 0.4 * 9.80665), ("pgv=20 cm/s", "pgv", 0.2), ("Arias=0.5", "arias", 0.5)],
+)
+def test_records_are_scaled_to_a_measure(
+    rps_json: InvokeJson, target: str, measure: str, value: float
+) -> None:
+    record = "synthetic:?pga=0.1g&seed=1&duration=3&dt=0.01"
+    document = rps_json("timehistory", "small.yaml", "--record", record, "--scale-to", target)
+    info = rps_json("record", "info", record, "--scale", repr(document["record"]["scale"]))
+    assert info[measure] == pytest.approx(value, rel=1e-12)
+
+
+def test_a_case_scales_its_record_too(rps_json: InvokeJson, rps: Invoke) -> None:
+    scaled = "record.scale_to={measure: PGA, value: 0.2 g}"
+    document = rps_json("timehistory", "small.yaml", "--set", scaled)
+    assert document["record"]["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
+    assert rps_json("check", "small.yaml", "--set", scaled)["record"]["scale"] == pytest.approx(
+        2 / 3
+    )
+    both = rps("check", "small.yaml", "--set", scaled, "--set", "record.scale=2")
+    assert both.exit_code == 3
+    assert "record.scale_to and record.scale" in both.stderr
+    again = rps_json("timehistory", "small.yaml", "--set", scaled, "--scale", "1")
+    assert again["record"]["scale"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("target", "reason"),
+    [
+        ("PGA", "write MEASURE=VALUE"),
+        ("PGB=1", "did you mean PG"),
+        ("PGA=0.4 m", "is a length"),
+        ("PGV=-1", "must be > 0 m/s"),
+        ("PGA(0.5 s)=1", "must have a period with the measure Sa only"),
+    ],
+)
+def test_a_target_that_cannot_be_meant(rps: Invoke, target: str, reason: str) -> None:
+    result = rps("timehistory", "small.yaml", "--scale-to", target)
+    assert result.exit_code == 2
+    assert reason in result.stderr
+
+
+def test_two_processes_may_write_to_one_new_folder(rps: Invoke, shell: Callable[..., Any]) -> None:
+    """Both compute; the second writes its results over those of the first, which are its own."""
+    if os.name == "nt":
+        pytest.skip("folders cannot be locked here")
+    line = "rps modal small.yaml -o out --figures none"
+    done = shell(f"{line} & first=$!; {line}; second=$?; wait $first && exit $second")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(Path("out/run.json").read_bytes())["command"] == "modal"
+
+
+def test_resampled_between_the_samples() -> None:
+    wave = GroundMotion(np.sin(np.arange(101) * 0.1), 0.01, "wave", "wave.at2", "made")
+    finer = wave.resampled(0.005)
+    assert finer.npts == 201
+    assert finer.duration == wave.duration
+    assert (finer.acceleration[::2] == wave.acceleration).all()
+    assert not finer.warnings
+    coarser = wave.resampled(0.03)
+    assert coarser.npts == 34
+    rounding = 1e-14  # of times, with slopes of 10 m/s3
+    assert coarser.acceleration == pytest.approx(wave.acceleration[::3], abs=rounding)
+    assert "is lost" in coarser.warnings[0]
+    assert wave.resampled(0.01).acceleration == pytest.approx(wave.acceleration, abs=rounding)
+
+
+def test_convert_resamples(rps: Invoke, rps_json: InvokeJson) -> None:
+    words = ("record", "convert", PULSES[2], "-o", "fine.txt", "--resample", "0.002")
+    assert rps(*words).exit_code == 0
+    assert rps_json("record", "info", "fine.txt")["dt"] == 0.002
+    result = rps("record", "convert", PULSES[2], "-o", "no.txt", "--resample", "-1")
+    assert result.exit_code == 3
+    assert "give a step above 0" in result.stderr
