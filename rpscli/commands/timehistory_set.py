@@ -83,9 +83,9 @@ def run_all(
     for group, folder in zip(cases, folders, strict=True):
         histories = [_written(request, conditions, look, drawing, terminal) for request in group]
         scalars = [history.document for history in histories]
-        case = group[0].given.case
-        slides = friction_conditions(case.structure)
-        asked = [*conditions_of(case.limits, "limits of the case"), *slides, *conditions]
+        judged = group[0].given.case
+        slides = friction_conditions(judged.structure)
+        asked = [*conditions_of(judged.limits, "limits of the case"), *slides, *conditions]
         found = set_verdicts(scalars, asked)
         computed.append(Computed(group, histories, record_set(scalars), found, folder))
     error = _error(computed)
