@@ -102,6 +102,7 @@ def motions(random: Random) -> tuple[GroundMotion, GroundMotion | None]:
 
 
 def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> TimeHistorySettings:
+    largest = 0.999 * system.bearing.largest_rotation / system.critical_rotation
     start = 0.0
     if random.random() < 0.15:
         share = random.choice([-1.0, 1.0]) * logarithmic(random, 1e-6, 0.95)
@@ -112,7 +113,7 @@ def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> T
         initial_rotation=start,
         recontact_tolerance=logarithmic(random, 1e-8, 1e-4),
         recontact_rule=random.choice(["limit", "relative"]),
-        overturning_limit=random.uniform(1.0, 2.0),
+        overturning_limit=min(random.uniform(1.0, 2.0), largest),
     )
     return (
         chosen if left > LONGEST_FREE_VIBRATION else replace(chosen, free_vibration=max(left, 0.0))

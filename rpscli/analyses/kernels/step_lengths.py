@@ -12,9 +12,9 @@ from rpscli.model.podium import PodiumStructure
 UPLIFTED_ANGLE = 0.6
 """Largest Taylor step times the highest uplifted frequency [rad], at accuracy 1."""
 
-MOST_LOST = 7e-5
+MOST_LOST = 5e-5
 """What steps may take from the energy of the fastest vibration, which has a hundredth of all at
-most. It shortens the steps of buildings with less than a per cent of damping only."""
+most. It shortens the steps of buildings with less than some 1.5 % of damping only."""
 
 UPLIFTED_DECAY = 1.0
 """Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
