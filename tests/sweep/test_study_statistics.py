@@ -62,7 +62,8 @@ def made(make: Make) -> tuple[Table, Summary]:
             return Stored("failed", "why", {})
         falls = at[RHO] == 0 and at["scale"] == 1.0 and record >= 4
         outcome = "overturned_rocking" if falls else "survived"
-        return stored(outcome, rotation_ratio=record / 10, uplifts=2.0, max_base_shear=1e6)
+        results = {"rotation_ratio": record / 10, "uplifts": 2.0, "max_base_shear": 1e6}
+        return stored(outcome, **results, residual_rotation=None)
 
     table = table_of(make, answer, FIVE)
     fixed = {
@@ -129,6 +130,7 @@ def test_what_is_pooled_is_said(study_of: Make) -> None:
         (Condition("overturning", 0.0, ""), True, 2, 0),
         (Condition("overturning", 0.0, "", share=0.4), False, 2, 0),
         (Condition("uplift", 0.0, "", share=0.9), True, 5, 0),
+        (Condition("residual_rotation", 1.0, ""), True, 5, 2),  # nobody knows it
     ],
 )
 def test_verdicts(
@@ -240,6 +242,9 @@ def test_results_that_no_system_has_are_refused_before_anything_runs(
         assert "storey_height" in result.stderr
     assert not (workplace / "results").exists()
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
+    result = sweep("study.yaml", "--set", "limits.friction_ratio=1")
+    assert result.exit_code == 3
+    assert "podium.friction" in result.stderr
     result = sweep("study.yaml", "--fail-on", "drift_ratio=0.1")
     assert result.exit_code == 2
     assert "storey_height" in result.stderr

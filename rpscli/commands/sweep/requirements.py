@@ -45,10 +45,13 @@ def _needs(name: str) -> str:
 def _limit_faults(given: StudyInput) -> Iterator[Fault]:
     from rpscli.case.text.faults import Fault  # noqa: PLC0415
 
-    limits = given.study.file.limits
-    for name in () if limits is None else limits.model_dump(exclude_none=True):
+    own = given.study.file.limits is not None
+    systems = given.design.properties
+    for name in dict.fromkeys(limit.name for system in systems for limit in system.limits):
         if lacking(given, name):
-            yield Fault(("limits", name), f"limits.{_needs(name)}", at_key=True)
+            yield Fault(
+                ("limits", name) if own else ("base",), f"limits.{_needs(name)}", at_key=own
+            )
 
 
 def _report_faults(given: StudyInput) -> Iterator[Fault]:

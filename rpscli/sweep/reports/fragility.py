@@ -18,6 +18,7 @@ from rpscli.case.study.fields import Keys, PositiveNumbers, Seed
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions
 from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note, shown_keys
+from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 CURVE_POINTS = 101
@@ -167,13 +168,6 @@ def limit_states(options: FragilityOptions) -> Iterator[LimitState]:
         yield LimitState("overturning", None)
 
 
-def exceeded(table: Table, limit: LimitState) -> NDArray[np.bool_]:
-    """(points,) which exceed a limit state."""
-    if limit.threshold is None:
-        return table.overturned
-    return np.asarray(table.overturned | (table.columns[limit.result] > limit.threshold))
-
-
 def _fragility(
     table: Table,
     measured: Intensity,
@@ -183,7 +177,10 @@ def _fragility(
     limit: LimitState,
 ) -> Fragility:
     kept = points[~table.failed[points] & (measured.values[points] > 0.0)]
-    intensity, beyond = measured.values[kept], exceeded(table, limit)[kept]
+    intensity, beyond = (
+        measured.values[kept],
+        exceeds(table, limit.result, limit.threshold or 0.0)[kept],
+    )
     grid = _grid(intensity)
     return Fragility(
         values=values,

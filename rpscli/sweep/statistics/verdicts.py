@@ -73,6 +73,8 @@ def judged(
 def exceeds(table: Table, name: str, limit: float) -> NDArray[np.bool_]:
     """(points,) in which a result is larger than a limit; overturned ones exceed every limit.
 
+    A history that has no such result does not keep the limit either.
+
     Parameters
     ----------
     name
@@ -84,7 +86,7 @@ def exceeds(table: Table, name: str, limit: float) -> NDArray[np.bool_]:
         return table.overturned
     if name == "uplift":
         return np.asarray(table.overturned | (table.columns["uplifts"] > 0.0))
-    return np.asarray(table.overturned | (table.columns[name] > limit))
+    return np.asarray(table.overturned | ~(table.columns[name] <= limit))
 
 
 def _verdict(table: Table, row: SummaryRow, condition: Condition) -> StudyVerdict:
