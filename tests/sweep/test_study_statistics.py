@@ -257,3 +257,9 @@ def test_points_with_unusual_factors_are_counted(study_of: Make) -> None:
     assert note.startswith("36 of 36 points scale their record beyond the usual 0.25 to 4")
     assert note.endswith("by 0.1")
     assert not list(scale_notes(table_of(study_of, lambda _: stored())))
+
+
+def test_no_report_takes_the_place_of_the_statistics(study_of: Make) -> None:
+    names = "reports: [ida: {name: statistics}, ida: {name: points}, ida]\n"
+    found = [request.stem for request in study_of(STUDY + names).reports]
+    assert found == ["statistics_2", "points_2", "ida"]

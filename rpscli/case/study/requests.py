@@ -10,6 +10,9 @@ from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
 from rpscli.errors import nearest
 
+OF_THE_STUDY = ("points", "failed", "statistics", "verdicts")
+"""Stems of files that every study leaves."""
+
 
 def requests_of(
     document: Document, kinds: ReportKinds
@@ -29,7 +32,8 @@ def requests_of(
             kind = item if isinstance(item, str) else next(iter(item))
             given = {} if isinstance(item, str) else item[kind] or {}
             options = kinds[kind].options.model_validate(given)
-            stem = _stem(options.name or kind, {request.stem for request in requests})
+            taken = {*OF_THE_STUDY, *(request.stem for request in requests)}
+            stem = _stem(options.name or kind, taken)
             requests.append(ReportRequest(kind, stem, options, path))
     return tuple(requests), faults
 
