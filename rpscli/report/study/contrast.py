@@ -56,7 +56,7 @@ def contrast_figure(report: ContrastReport, title: str) -> bytes:
         list(dict.fromkeys(cell.values[part] for cell in report.cells))
         for part in (slice(ahead), slice(ahead, down), slice(down, None))
     )
-    names = [*(NAMES[name] for name in options.results), "overturned, points of 100"]
+    names = [*(NAMES[name] for name in options.results), "overturned, of 100"]
     changes = np.full((len(names), len(panels), len(rows), len(columns)), np.nan)
     for cell in report.cells:
         values = cell.values
