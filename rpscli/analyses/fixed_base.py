@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.kernels.systems import building_system
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.measures.integration import velocity
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,6 +21,8 @@ class FixedBaseResponse:
     """(n,) largest k_i d_i [N], from the bottom."""
     floor_accelerations: NDArray[np.float64]
     """(n,) largest absolute accelerations [m/s2]."""
+    floor_velocities: NDArray[np.float64]
+    """(n,) largest absolute velocities [m/s]."""
     floor_displacements: NDArray[np.float64]
     """(samples, n) relative to the ground [m]."""
     drifts: NDArray[np.float64]
@@ -63,6 +66,23 @@ def fixed_base_response(
     return FixedBaseResponse(
         storey_shears=shears,
         floor_accelerations=accelerations,
+        floor_velocities=largest_velocities(floors[:, 1], record),
         floor_displacements=floors[:, 0],
         drifts=shears / building.stiffnesses,
     )
+
+
+def largest_velocities(relative: NDArray[np.float64], record: GroundMotion) -> NDArray[np.float64]:
+    """Largest absolute velocities of floors at the samples (n,) [m/s].
+
+    Parameters
+    ----------
+    relative
+        (samples, n) to the ground [m/s].
+    record
+        The ground starts at rest; after the record it keeps its last velocity.
+    """
+    ground = velocity(record.acceleration, record.dt)[: len(relative)]
+    ground = np.pad(ground, (0, len(relative) - len(ground)), mode="edge")
+    found: NDArray[np.float64] = np.max(np.abs(relative + ground[:, None]), axis=0)
+    return found

@@ -126,6 +126,17 @@ HISTORY = (
 )  # fmt: skip
 """Scalars of a time history."""
 
+SAMPLED = (
+    ResultQuantity("max_roof_displacement", "m", "roof displacement"),
+    ResultQuantity("max_floor_velocity", "m/s", "floor velocity"),
+    ResultQuantity("fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$"),
+    ResultQuantity("max_column_shear", "N", "shear of a column"),
+    ResultQuantity("max_column_force", "N", "normal force of a column"),
+    ResultQuantity("min_column_force", "N", "least normal force of a column"),
+    ResultQuantity("sliding_time", "s", "columns slide at"),
+)
+"""Scalars of a single history, from its samples: not among the results of a study."""
+
 IMPACTS = (
     ResultQuantity("energy_impact", "J", "energy lost at impacts"),
     ResultQuantity("energy_created", "J", "energy created at impacts"),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.fixed_base import FixedBaseResponse
+from rpscli.analyses.fixed_base import FixedBaseResponse, largest_velocities
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace
@@ -35,6 +35,15 @@ class Energy:
     stored: float
     residual: float
     created: float
+
+
+@dataclass(frozen=True)
+class ColumnForces:
+    """Envelope of the forces at one end of a column [N]; compression is positive."""
+
+    shear: float
+    largest_normal: float
+    least_normal: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +73,62 @@ class TimeHistoryResult(Demand):
         b, theta = self.structure.bearing, np.asarray(rotation)
         arm, *_ = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
         return 2.0 * b.semi_diagonal * self.structure.weight * np.sign(theta) * arm
+
+    @property
+    def floor_velocities(self) -> NDArray[np.float64]:
+        """(n,) largest absolute velocities at the samples [m/s], from the bottom."""
+        return largest_velocities(self.trace.floor_velocities, self.record)
+
+    @property
+    def max_floor_velocity(self) -> float | None:
+        """Largest of `floor_velocities` [m/s]; None without a superstructure."""
+        return float(np.max(self.floor_velocities)) if self.structure.storeys else None
+
+    @property
+    def max_roof_displacement(self) -> float | None:
+        """Largest displacement of the roof to the ground at the samples [m]."""
+        if self.structure.superstructure is None:
+            return None
+        return float(np.max(np.abs(self.trace.floor_displacements[:, -1])))
+
+    @property
+    def fixed_base_ratio(self) -> float | None:
+        """Base shear over that of the fixed base; None without it, or if that is 0."""
+        fixed = 0.0 if self.fixed_base is None else self.fixed_base.base_shear
+        return self.max_base_shear / fixed if fixed > 0.0 else None
+
+    @property
+    def column_forces(self) -> dict[str, ColumnForces]:
+        """Envelopes at the `top` and at the `bottom` of a column, at the samples.
+
+        All columns carry alike; where the case does not give their number, these are the forces of
+        all columns together.
+        """
+        t, columns = self.trace, self.structure.columns
+        ends = {"top": (t.shear_top, t.normal_top), "bottom": (t.shear_bottom, t.normal_bottom)}
+        return {
+            end: ColumnForces(
+                shear=float(np.max(np.abs(shear))) / columns,
+                largest_normal=float(np.max(normal)) / columns,
+                least_normal=float(np.min(normal)) / columns,
+            )
+            for end, (shear, normal) in ends.items()
+        }
+
+    @property
+    def max_column_shear(self) -> float:
+        """Largest horizontal force of a column at either end [N]."""
+        return max(forces.shear for forces in self.column_forces.values())
+
+    @property
+    def max_column_force(self) -> float:
+        """Largest normal force of a column at either end [N]."""
+        return max(forces.largest_normal for forces in self.column_forces.values())
+
+    @property
+    def min_column_force(self) -> float:
+        """Least normal force of a column, where it carries the cap beam [N]."""
+        return self.column_forces["top"].least_normal
 
     @property
     def is_near_critical(self) -> bool:

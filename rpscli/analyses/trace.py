@@ -62,11 +62,12 @@ class Trace:
     """Histories at the record's samples and on through the free vibration, SI units.
 
     Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements
-    are relative to the ground; `floor_accelerations` are absolute. `phase` is 0 in full contact,
-    1 rolling, 2 rocking. `driving_moment` is what the ground and the building do about the
-    contact points, 2 R C (V - (N m_c/2 + m_b) a_g); in slow motion it equals the restoring moment
-    2 R W s B(x) [N m]. Forces at the columns' ends [N] are those of all columns together: F to the
-    right on what is above, N upwards on it. They and energies [J] are those of Theory, section 8.
+    and velocities are relative to the ground; `floor_accelerations` are absolute. `phase` is 0 in
+    full contact, 1 rolling, 2 rocking. `driving_moment` is what the ground and the building do
+    about the contact points, 2 R C (V - (N m_c/2 + m_b) a_g); in slow motion it equals the
+    restoring moment 2 R W s B(x) [N m]. Forces at the columns' ends [N] are those of all columns
+    together: F to the right on what is above, N upwards on it. They and energies [J] are those of
+    Theory, section 8.
     """
 
     time: Array
@@ -77,6 +78,7 @@ class Trace:
     cap_beam_displacement: Array
     lift: Array
     floor_displacements: Array
+    floor_velocities: Array
     drifts: Array
     storey_shears: Array
     floor_accelerations: Array
@@ -137,6 +139,7 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
         cap_beam_displacement=base,
         lift=diameter * lift,
         floor_displacements=u,
+        floor_velocities=du,
         drifts=drifts,
         storey_shears=shears,
         floor_accelerations=-forces / building.masses if building is not None else forces,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rpscli.analyses.result_quantities import HISTORY
+from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import EVENTS
 from rpscli.commands.acceptance import Verdict
 from rpscli.commands.shell.numbers import measured, percent, shown
@@ -28,7 +28,7 @@ OUTCOMES = {
     "failed": "the analysis failed",
 }
 
-QUANTITIES = {quantity.name: quantity for quantity in HISTORY}
+QUANTITIES = {quantity.name: quantity for quantity in (*HISTORY, *SAMPLED)}
 
 Row = tuple[str, str, str, str]
 
@@ -77,6 +77,7 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     if result.fixed_base is not None:
         ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
         rows.append(_row(result, "max_base_shear", ratio, shear))
+        rows += [_row(result, "fixed_base_ratio"), _row(result, "max_roof_displacement")]
     demands = fixed_base_demands(result)
     if demands is not None and demands.drift_ratio is not None:
         rows.append(_row(result, "drift_ratio", fixed=float(max(demands.drift_ratio))))
@@ -84,6 +85,7 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     friction = result.friction_ratio
     of_friction = "" if friction is None else f"{shown(friction)} of mu"
     rows.append(_row(result, "friction_demand", of_friction))
+    rows += _columns(result)
     rows += [_row(result, "duration"), *_energy(result)]
     heads = ["", "on bearings", "normalised", "fixed base"]
     if result.fixed_base is None:
@@ -97,6 +99,15 @@ def _row(
     _, unit, label, *_ = QUANTITIES[name]
     beside = "" if fixed is None else measured(fixed, unit)
     return label, measured(getattr(result, name), unit), normalised, beside
+
+
+def _columns(result: TimeHistoryResult) -> list[Row]:
+    """Forces of one column, or of all where their number is not known."""
+    names = ("max_column_shear", "max_column_force", "min_column_force")
+    rows = [_row(result, name) for name in names]
+    if result.structure.columns > 1:
+        return rows
+    return [(row[0].replace("a column", "all columns"), *row[1:]) for row in rows]
 
 
 def _energy(result: TimeHistoryResult) -> list[Row]:
@@ -122,13 +133,14 @@ def storeys_table(result: TimeHistoryResult) -> Table:
     columns = [demands.shear * 1e-3 for demands in pair]
     columns += [d.drift * 1e3 if d.drift_ratio is None else d.drift_ratio for d in pair]
     columns += [demands.floor_acceleration for demands in pair]
+    columns += [demands.floor_velocity for demands in pair]
     rows = [
         [str(storey + 1), *(shown(float(column[storey])) for column in columns)]
         for storey in reversed(range(result.structure.storeys))
     ]
     drift = "drift ratio" if ratio else "drift mm"
-    heads = ["storey", "shear kN", "fixed", drift, "fixed", "acceleration m/s2", "fixed"]
-    return table(heads, rows)
+    heads = ["storey", "shear kN", "fixed", drift, "fixed", "acc. m/s2", "fixed", "vel. m/s"]
+    return table([*heads, "fixed"], rows)
 
 
 def limits_table(verdicts: Sequence[Verdict]) -> Table:

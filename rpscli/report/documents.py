@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rpscli.analyses.result_quantities import SAMPLED, values_of
 from rpscli.report.files.json_text import SCHEMA_VERSION
 from rpscli.report.files.versions import program_version
 
@@ -56,6 +57,8 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         },
         "failure": result.failure,
         **result.scalars(),
+        **values_of(result, SAMPLED),
+        "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},
         **_storeys(isolated),
         "fixed_base": None if fixed is None else _storeys(fixed),
         "energy": asdict(result.energy),
@@ -69,4 +72,5 @@ def _storeys(demands: StoreyDemands) -> Document:
         "storey_drifts": demands.drift,
         "storey_drift_ratios": demands.drift_ratio,
         "floor_accelerations": demands.floor_acceleration,
+        "floor_velocities": demands.floor_velocity,
     }

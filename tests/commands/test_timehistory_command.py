@@ -73,7 +73,9 @@ def check_history(table: dict[str, list[str]], result: TimeHistoryResult) -> Non
         "storey_1_drift [m]", "storey_2_drift [m]", "storey_3_drift [m]",
         "storey_1_shear [N]", "storey_2_shear [N]", "storey_3_shear [N]",
         "floor_1_acceleration [m/s2]", "floor_2_acceleration [m/s2]",
-        "floor_3_acceleration [m/s2]", "driving_moment [N m]", "energy_input [J]",
+        "floor_3_acceleration [m/s2]", "driving_moment [N m]", "column_shear_top [N]",
+        "column_shear_bottom [N]", "column_force_top [N]", "column_force_bottom [N]",
+        "energy_input [J]",
         "energy_damped [J]", "energy_impact [J]", "energy_stored [J]", "phase [-]",
     ]  # fmt: skip
     trace = result.trace
@@ -104,8 +106,9 @@ def check_events(table: dict[str, list[str]], result: TimeHistoryResult) -> None
 def check_storeys(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
     assert list(table) == [
         "storey [-]", "max_drift [m]", "drift_ratio [-]", "max_shear [N]",
-        "floor_acceleration [m/s2]", "fixed_base_max_drift [m]", "fixed_base_drift_ratio [-]",
-        "fixed_base_max_shear [N]", "fixed_base_floor_acceleration [m/s2]",
+        "floor_acceleration [m/s2]", "floor_velocity [m/s]", "fixed_base_max_drift [m]",
+        "fixed_base_drift_ratio [-]", "fixed_base_max_shear [N]",
+        "fixed_base_floor_acceleration [m/s2]", "fixed_base_floor_velocity [m/s]",
     ]  # fmt: skip
     fixed = result.fixed_base
     assert fixed is not None

@@ -24,11 +24,13 @@ class StoreyDemands:
     drift_ratio: Array | None
     shear: Array
     floor_acceleration: Array
+    floor_velocity: Array
 
 
 def isolated_demands(result: TimeHistoryResult) -> StoreyDemands:
     """Demands of the building on its bearings."""
-    return _demands(result, result.max_drifts, result.storey_shears, result.floor_accelerations)
+    floors = result.floor_accelerations, result.floor_velocities
+    return _demands(result, result.max_drifts, result.storey_shears, *floors)
 
 
 def fixed_base_demands(result: TimeHistoryResult) -> StoreyDemands | None:
@@ -36,7 +38,8 @@ def fixed_base_demands(result: TimeHistoryResult) -> StoreyDemands | None:
     fixed = result.fixed_base
     if fixed is None:
         return None
-    return _demands(result, fixed.drifts, fixed.storey_shears, fixed.floor_accelerations)
+    floors = fixed.floor_accelerations, fixed.floor_velocities
+    return _demands(result, fixed.drifts, fixed.storey_shears, *floors)
 
 
 def storey_columns(result: TimeHistoryResult) -> list[Column]:
@@ -49,12 +52,12 @@ def storey_columns(result: TimeHistoryResult) -> list[Column]:
 
 
 def _demands(
-    result: TimeHistoryResult, drift: Array, shear: Array, acceleration: Array
+    result: TimeHistoryResult, drift: Array, shear: Array, acceleration: Array, velocity: Array
 ) -> StoreyDemands:
     building = result.structure.superstructure
     heights = None if building is None else building.storey_heights
     ratio = None if heights is None else drift / heights
-    return StoreyDemands(drift, ratio, shear, acceleration)
+    return StoreyDemands(drift, ratio, shear, acceleration, velocity)
 
 
 def _columns(prefix: str, demands: StoreyDemands, count: int) -> list[Column]:
@@ -64,4 +67,5 @@ def _columns(prefix: str, demands: StoreyDemands, count: int) -> list[Column]:
         Column(f"{prefix}drift_ratio", "-", ratio),
         Column(f"{prefix}max_shear", "N", demands.shear),
         Column(f"{prefix}floor_acceleration", "m/s2", demands.floor_acceleration),
+        Column(f"{prefix}floor_velocity", "m/s", demands.floor_velocity),
     ]

@@ -16,9 +16,10 @@ def history_columns(result: TimeHistoryResult) -> list[Column]:
     """`timehistory.csv`: one row a sample; floors and storeys are counted from the bottom.
 
     `phase` is 0 in full contact, 1 rolling, 2 rocking. Displacements are relative to the ground,
-    floor accelerations absolute.
+    floor accelerations absolute. Forces are those of one column, F to the right and N upwards on
+    what is above; of all columns together where the case does not give their number.
     """
-    t = result.trace
+    t, columns = result.trace, result.structure.columns
     return [
         Column("time", "s", t.time),
         Column("ground_acceleration", "m/s2", t.ground_acceleration),
@@ -31,6 +32,10 @@ def history_columns(result: TimeHistoryResult) -> list[Column]:
         *_each("storey_{}_shear", "N", t.storey_shears),
         *_each("floor_{}_acceleration", "m/s2", t.floor_accelerations),
         Column("driving_moment", "N m", t.driving_moment),
+        Column("column_shear_top", "N", t.shear_top / columns),
+        Column("column_shear_bottom", "N", t.shear_bottom / columns),
+        Column("column_force_top", "N", t.normal_top / columns),
+        Column("column_force_bottom", "N", t.normal_bottom / columns),
         Column("energy_input", "J", t.energy_input),
         Column("energy_damped", "J", t.energy_damped),
         Column("energy_impact", "J", t.energy_impact),
