@@ -2,7 +2,7 @@
 
 Each trial draws from its own seed, so that one that fails is repeated by its number alone.
 `RPS_HUNT_SEED` sets the seed of all, `RPS_HUNT_TIMES` multiplies the counts of the long hunt, and
-`RPS_HUNT_TABLE` names a file to which each hunt adds a row.
+`RPS_HUNT_TABLE` names a file to which each hunt adds a row after so many trials.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ from rpscli.cli import program
 SEED = os.environ.get("RPS_HUNT_SEED", "1")
 TIMES = float(os.environ.get("RPS_HUNT_TIMES", "1"))
 TABLE = os.environ.get("RPS_HUNT_TABLE")
+
+EACH = 250
+"""Trials after which a row is written, so that a hunt that is stopped has not been for nothing."""
 
 PROMISED = {0, 3, 4, 5, 7, 10}
 """Exit codes that input may lead to; 1 is a fault of ours, 2 one of the command line."""
@@ -77,11 +80,11 @@ def hunt(name: str, trial: Trial, quick: int, long: int | None = None) -> None:
         except (Exception, TooSlow) as error:  # noqa: BLE001 -- it is what is looked for
             failures.append(f"{name} {number} of seed {seed}: {type(error).__name__}: {error}")
         slowest = max(slowest, time.process_time() - begin)
-    if TABLE:
-        row = {"name": name, "seed": seed, "tried": count, "failed": len(failures)}
-        row |= {"slowest": round(slowest, 1), "ends": dict(ends), "failures": failures}
-        with Path(TABLE).open("a", encoding="utf-8") as file:
-            file.write(json.dumps(row) + "\n")
+        if TABLE and (number % EACH == EACH - 1 or number == count - 1):
+            row = {"name": name, "seed": seed, "tried": number + 1, "failed": len(failures)}
+            row |= {"slowest": round(slowest, 1), "ends": dict(ends), "failures": failures}
+            with Path(TABLE).open("a", encoding="utf-8") as file:
+                file.write(json.dumps(row) + "\n")
     assert not failures, f"{len(failures)} of {count}:\n" + "\n".join(failures[:20])
 
 
