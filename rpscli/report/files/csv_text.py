@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
+
+_PIECE = 4096  # rows
 
 
 class Column(NamedTuple):
@@ -37,14 +40,19 @@ def csv_text(columns: Sequence[Column]) -> str:
     0.5,
     <BLANKLINE>
     """
-    cells = ([_cell(value) for value in _listed(column.values)] for column in columns)
+    cells = [map(_cell, _one_by_one(column.values)) for column in columns]
     lines = [",".join(column.title for column in columns)]
     lines += [",".join(row) for row in zip(*cells, strict=True)]
     return "\n".join(lines) + "\n"
 
 
-def _listed(values: Iterable[object]) -> Iterable[object]:
-    return values.tolist() if hasattr(values, "tolist") else values
+def _one_by_one(values: Iterable[object]) -> Iterator[object]:
+    if not isinstance(values, np.ndarray):
+        yield from values
+        return
+    # Piece by piece, since as objects numbers take four times the memory.
+    for start in range(0, len(values), _PIECE):
+        yield from values[start : start + _PIECE].tolist()
 
 
 def _cell(value: object) -> str:
