@@ -145,8 +145,10 @@ def judged_history(random: Random) -> str:
         return f"failed: {(here.failure or '')[:40]}"
     error = residual(here)
     assert error <= RESIDUAL, f"residual {error:.2g}, {here.outcome}"
-    if record.pga == 0.0 and chosen.initial_rotation == 0.0:
-        return here.outcome  # without gravity it uplifts, and nothing says to which side
+    falls = vertical is not None and float(vertical.acceleration.min()) < -system.gravity
+    if falls and (system.storeys == 0 or record.pga == 0.0):
+        # where nothing pushes, a frame without gravity uplifts, and nothing says to which side
+        return here.outcome
     mirrored = replace(chosen, initial_rotation=-chosen.initial_rotation)
     there = time_history(
         system, record.scaled(-1.0), mirrored, vertical=vertical, with_fixed_base=False
