@@ -78,6 +78,7 @@ def outcome_table(result: TimeHistoryResult) -> Table:
         ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
         rows.append(_row(result, "max_base_shear", ratio, shear))
         rows += [_row(result, "fixed_base_ratio"), _row(result, "max_roof_displacement")]
+        rows.append(_row(result, "max_floor_velocity"))
     demands = fixed_base_demands(result)
     if demands is not None and demands.drift_ratio is not None:
         rows.append(_row(result, "drift_ratio", fixed=float(max(demands.drift_ratio))))
@@ -133,14 +134,13 @@ def storeys_table(result: TimeHistoryResult) -> Table:
     columns = [demands.shear * 1e-3 for demands in pair]
     columns += [d.drift * 1e3 if d.drift_ratio is None else d.drift_ratio for d in pair]
     columns += [demands.floor_acceleration for demands in pair]
-    columns += [demands.floor_velocity for demands in pair]
     rows = [
         [str(storey + 1), *(shown(float(column[storey])) for column in columns)]
         for storey in reversed(range(result.structure.storeys))
     ]
     drift = "drift ratio" if ratio else "drift mm"
-    heads = ["storey", "shear kN", "fixed", drift, "fixed", "acc. m/s2", "fixed", "vel. m/s"]
-    return table([*heads, "fixed"], rows)
+    heads = ["storey", "shear kN", "fixed", drift, "fixed", "acceleration m/s2", "fixed"]
+    return table(heads, rows)
 
 
 def limits_table(verdicts: Sequence[Verdict]) -> Table:
