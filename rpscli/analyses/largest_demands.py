@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.device_results import DeviceDemand, device_demands, largest_force
 from rpscli.analyses.failure import failure_text
 from rpscli.analyses.kernels.history import History
 from rpscli.analyses.outcome import Outcome, outcome_of
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS, values_of
+from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
 
@@ -85,6 +87,38 @@ class Demand:
         """|u_b| at the end of the history [m]; 0 in full contact."""
         _, u, _ = self.structure.path(np.array([self.residual_rotation]))
         return float(u[0])
+
+    @property
+    def devices(self) -> tuple[DeviceDemand, ...]:
+        """Demands of each device, in the order of the structure's."""
+        return device_demands(self.structure, self.history)
+
+    @property
+    def max_damper_force(self) -> float | None:
+        """Largest force of a viscous or friction damper [N]; None without one."""
+        return largest_force(self.structure, self.history, ViscousDamper, FrictionDamper)
+
+    @property
+    def max_stop_force(self) -> float | None:
+        """Largest force of a stop [N]; None without one."""
+        return largest_force(self.structure, self.history, Stop)
+
+    @property
+    def lost_prestress(self) -> float | None:
+        """Largest part of its prestress that a tendon has lost; None without prestress."""
+        lost = [
+            1.0 - demand.remaining_prestress / device.prestress
+            for device, demand in zip(self.structure.devices, self.devices, strict=True)
+            if isinstance(device, Tendon)
+            and device.prestress > 0.0
+            and demand.remaining_prestress is not None
+        ]
+        return max(lost, default=None)
+
+    @property
+    def energy_devices(self) -> float:
+        """Energy dissipated in all devices [J]."""
+        return float(self.history.device_energy.sum())
 
     @property
     def storey_shears(self) -> NDArray[np.float64]:

@@ -115,6 +115,16 @@ HISTORY = (
     ),
     ResultQuantity("residual_rotation", "rad", "residual rotation", limit="0.001"),
     ResultQuantity("residual_displacement", "m", "residual displacement", limit="0.01"),
+    ResultQuantity(
+        "max_damper_force", "N", "damper force", limit="4e5", needs="a damper in podium.devices",
+    ),
+    ResultQuantity(
+        "max_stop_force", "N", "stop force", limit="1e6", needs="a stop in podium.devices",
+    ),
+    ResultQuantity(
+        "lost_prestress", "-", "lost prestress", limit="0.1",
+        needs="a prestressed tendon in podium.devices", meaning="share that a tendon has lost",
+    ),
     ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
     ResultQuantity("duration", "s", "duration"),
@@ -138,6 +148,7 @@ SAMPLED = (
 """Scalars of a single history, from its samples: not among the results of a study."""
 
 IMPACTS = (
+    ResultQuantity("energy_devices", "J", "energy dissipated in devices"),
     ResultQuantity("energy_impact", "J", "energy lost at impacts"),
     ResultQuantity("energy_created", "J", "energy created at impacts"),
     ResultQuantity("creating_impacts", "-", "impacts that created energy", whole=True),

@@ -19,10 +19,13 @@ from rpscli.records.ground_motion import GroundMotion
 NEAR_CRITICAL = 0.8
 """Rotations above this part of the critical one are near it: a little more may overturn."""
 
+RESTING = (state.FULL_CONTACT, state.STUCK)
+"""Phases in which the storey is at rest."""
+
 
 @dataclass(frozen=True)
 class Energy:
-    """Where the energy went [J]: input = damped + impact + stored + residual.
+    """Where the energy went [J]: input = damped + devices + impact + stored + residual.
 
     `impact` is the net loss at impacts and re-contacts; `created` the part of it that was gained
     where the rigid impact law sets floors in motion (Theory, section 4). `residual` is the error
@@ -35,6 +38,7 @@ class Energy:
     stored: float
     residual: float
     created: float
+    devices: float
 
 
 @dataclass(frozen=True)
@@ -61,8 +65,9 @@ class TimeHistoryResult(Demand):
         """The energy audit."""
         given, damped, lost, stored = (float(e) for e in self.history.energies)
         started = float(self.trace.energy_stored[0])
-        residual = given + started - damped - lost - stored
-        return Energy(given, damped, lost, stored, residual, self.energy_created)
+        devices = self.energy_devices
+        residual = given + started - damped - devices - lost - stored
+        return Energy(given, damped, lost, stored, residual, self.energy_created, devices)
 
     def restoring_moment(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
         """Static moment 2 R W s B(x) at rotations theta [N m], of the shape of `rotation`.
@@ -168,7 +173,7 @@ class TimeHistoryResult(Demand):
                 f"the rigid impact law created {share:.1%} of the energy supplied at impacts;"
                 " compare with `impact: {law: flexible}`"
             )
-        if self.outcome == "survived" and self.history.motion != state.FULL_CONTACT:
+        if self.outcome == "survived" and self.history.motion not in RESTING:
             if self.settings.free_vibration is not None:
                 notes.append(
                     "the storey still moves at the end; a longer `analysis.free_vibration`"

@@ -9,6 +9,7 @@ from typing import Literal, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.device_results import DeviceTrace, cap_beam_forces, device_trace
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
@@ -24,6 +25,13 @@ EventKind = Literal[
     "rocking_to_rolling",
     "critical_rotation_passed",
     "overturning",
+    "sticking",
+    "sliding",
+    "stop_met",
+    "stop_left",
+    "tendon_yielding",
+    "tendon_slack",
+    "tendon_taut",
 ]
 
 EVENT_NAMES: dict[int, EventKind] = {
@@ -34,6 +42,13 @@ EVENT_NAMES: dict[int, EventKind] = {
     state.ROCKING_TO_ROLLING: "rocking_to_rolling",
     state.CRITICAL_PASSAGE: "critical_rotation_passed",
     state.OVERTURNING: "overturning",
+    state.STICKING: "sticking",
+    state.SLIDING: "sliding",
+    state.STOP_MET: "stop_met",
+    state.STOP_LEFT: "stop_left",
+    state.TENDON_YIELDING: "tendon_yielding",
+    state.TENDON_SLACK: "tendon_slack",
+    state.TENDON_TAUT: "tendon_taut",
 }
 
 
@@ -63,11 +78,11 @@ class Trace:
 
     Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements
     and velocities are relative to the ground; `floor_accelerations` are absolute. `phase` is 0 in
-    full contact, 1 rolling, 2 rocking. `driving_moment` is what the ground and the building do
-    about the contact points, 2 R C (V - (N m_c/2 + m_b) a_g); in slow motion it equals the
-    restoring moment 2 R W s B(x) [N m]. Forces at the columns' ends [N] are those of all columns
-    together: F to the right on what is above, N upwards on it. They and energies [J] are those of
-    Theory, section 8.
+    full contact, 1 rolling, 2 rocking, 3 held by friction. `driving_moment` is what the ground and
+    the building do about the contact points, 2 R C (V - (N m_c/2 + m_b) a_g); in slow motion
+    without devices it equals the restoring moment 2 R W s B(x) [N m]. Forces at the columns' ends
+    [N] are those of all columns together: F to the right on what is above, N upwards on it. They
+    and energies [J] are those of Theory, section 8.
     """
 
     time: Array
@@ -91,6 +106,7 @@ class Trace:
     energy_damped: Array
     energy_impact: Array
     energy_stored: Array
+    devices: DeviceTrace
 
 
 def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trace:
@@ -113,12 +129,15 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
         forces = forces + (du - base_rate[:, None]) @ building.damping_matrix
     beam = 0.5 * structure.columns_mass + structure.cap_beam_mass
     stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
+    devices = device_trace(run.devices, len(structure.devices))
+    stored += devices.stored.sum(axis=1)
     stored += 0.5 * tilting_inertia(structure, B, C, theta) * rate**2
     if building is not None:
         stored += 0.5 * du**2 @ building.masses
     V = forces.sum(axis=1)
     across, upwards = base_accelerations(structure, samples, B, C)
     a_v = 0.0 if run.vertical is None else prolonged(run.vertical, len(samples))
+    push, pull = cap_beam_forces(structure, devices, theta)
     forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
     shear_top, shear_bottom, normal_top, normal_bottom = forces_of(
         structure.cap_beam_mass,
@@ -126,9 +145,10 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
         structure.columns_mass,
         across,
         upwards,
-        V,
+        V + push,
         a_g,
         structure.gravity + a_v,
+        pull,
     )
     return Trace(
         time=np.arange(len(samples), dtype=np.float64) * dt,
@@ -152,6 +172,7 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
         energy_damped=samples.energy_damped,
         energy_impact=samples.energy_lost,
         energy_stored=stored,
+        devices=devices,
     )
 
 

@@ -42,6 +42,8 @@ def timehistory_tables(
     yield outcome_table(result)
     if result.structure.storeys:
         yield storeys_table(result)
+    if result.devices:
+        yield devices_table(result)
     if verdicts:
         yield limits_table(verdicts)
 
@@ -74,6 +76,11 @@ def outcome_table(result: TimeHistoryResult) -> Table:
         residual = f"{shown(result.residual_rotation / result.critical_rotation)} theta_cr"
         rows.append(_row(result, "residual_rotation", residual))
         rows.append(_row(result, "residual_displacement"))
+    rows += [
+        _row(result, name)
+        for name in ("max_damper_force", "max_stop_force", "lost_prestress")
+        if getattr(result, name) is not None
+    ]
     if result.fixed_base is not None:
         ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
         rows.append(_row(result, "max_base_shear", ratio, shear))
@@ -113,9 +120,10 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
 
 def _energy(result: TimeHistoryResult) -> list[Row]:
     energy = result.energy
-    supplied = energy.damped + energy.impact + energy.stored + energy.residual
+    supplied = energy.damped + energy.devices + energy.impact + energy.stored + energy.residual
     parts = {
         "damped": energy.damped,
+        **({"in devices": energy.devices} if result.structure.devices else {}),
         "lost at impacts": energy.impact,
         "still stored": energy.stored,
         "residual": energy.residual,
@@ -141,6 +149,24 @@ def storeys_table(result: TimeHistoryResult) -> Table:
     drift = "drift ratio" if ratio else "drift mm"
     heads = ["storey", "shear kN", "fixed", drift, "fixed", "acceleration m/s2", "fixed"]
     return table(heads, rows)
+
+
+def devices_table(result: TimeHistoryResult) -> Table:
+    """Largest demands of each device, and what its prestress is at the end."""
+    rows = [
+        [
+            f"{index} {demand.kind}",
+            measured(demand.force, "N"),
+            measured(demand.stroke, "m"),
+            measured(demand.velocity, "m/s"),
+            measured(demand.energy, "J"),
+            ""
+            if demand.remaining_prestress is None
+            else f"prestress {measured(demand.remaining_prestress, 'N')} left",
+        ]
+        for index, demand in enumerate(result.devices)
+    ]
+    return table(["device", "force", "stroke", "velocity", "energy", ""], rows)
 
 
 def limits_table(verdicts: Sequence[Verdict]) -> Table:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.physics.formulae import geometry
 
@@ -195,3 +196,33 @@ class Bearing:
         roots = np.roots([1.0 - ratio, 2.0 * ratio, -(rise**2) - ratio]).real
         admissible = [t for t in roots if rise <= t <= 1.0]
         return 0.5 * float(min(admissible)) if admissible else math.nan
+
+    def tendon_elongation(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How much a tendon in the axis is longer at |theta| [m] (Theory, section 11)."""
+        across, upwards, _ = self._opening(rotation)
+        return 2.0 * np.hypot(across, upwards)
+
+    def tendon_lever(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+        """de/dx, the arm of a tendon's tension about the contacts at |theta| [m]."""
+        _, _, reach = self._opening(rotation)
+        _, rise = self.tendon_direction(rotation)
+        return 2.0 * rise * reach
+
+    def tendon_direction(
+        self, rotation: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Sine and cosine of the angle psi of the opening with the vertical at |theta|."""
+        across, upwards, _ = self._opening(rotation)
+        distance = np.hypot(across, upwards)
+        some = np.where(distance > 0.0, distance, 1.0)
+        return across / some, np.where(distance > 0.0, upwards / some, 1.0)
+
+    def _opening(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """How far the middle of an end moves across and upwards, and the contact from there [m]."""
+        x = np.abs(np.asarray(rotation, dtype=float))
+        rolled = np.minimum(x, self.beta)
+        r = 0.0 if self.is_flat else self.radius
+        along, above = self.half_width + r * np.sin(rolled), r * (1.0 - np.cos(rolled))
+        reach = self.half_width + r * rolled
+        across = reach - (along * np.cos(x) + above * np.sin(x))
+        return across, along * np.sin(x) - above * np.cos(x), reach

@@ -174,3 +174,9 @@ class PodiumStructure:
         B, C, u, v = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
         diameter = 2.0 * b.semi_diagonal
         return self.weight * B / C, diameter * u, diameter * v
+
+    def lever_arm(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+        """2 R C = |du_b/dtheta| at |theta| [rad]: the arm of a force at the cap beam [m]."""
+        b = self.bearing
+        _, C, _, _ = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
+        return 2.0 * b.semi_diagonal * C

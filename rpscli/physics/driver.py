@@ -12,8 +12,11 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled, kernel
+from rpscli.physics.devices.events import check_devices
+from rpscli.physics.devices.flows import book_devices, observe_devices
+from rpscli.physics.devices.rest import load_devices, release_devices
+from rpscli.physics.devices.samples import leave_devices
 from rpscli.physics.energy import book_energy, building_energy, uplifted_energy
-from rpscli.physics.equation_of_motion import renew_accelerations
 from rpscli.physics.full_contact.stand import stand
 from rpscli.physics.ground import set_ground
 from rpscli.physics.run import Run, empty_state
@@ -66,7 +69,7 @@ def integrate_lanes(state: Record, run: Run) -> None:
     """
     s = state[0]
     systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block
-    s.audited = 1 if output.samples.shape[0] > 0 else 0
+    s.audited, s.equipped = 1 if output.samples.shape[0] > 0 else 0, has_devices(systems)
     s.waiting, active = 0, s.lanes
     for l in range(s.lanes):
         s.history[l], s.accepted[l] = NO_HISTORY, 0.0
@@ -79,7 +82,10 @@ def integrate_lanes(state: Record, run: Run) -> None:
             if s.waits[l] == 0.0 or s.history[l] == NO_HISTORY:
                 continue
             fate = NOT_ACCEPTED
-            if s.accepted[l] > 0.0:
+            if s.accepted[l] > 0.0 and s.steps_left[l] > 0.0:
+                plan_steps(s, l)
+                fate = GOES_ON
+            elif s.accepted[l] > 0.0:
                 fate = next_interval(s, l, acceleration)
                 if s.audited > 0:
                     store_sample(s, l, systems[s.system[l]], output)
@@ -106,6 +112,8 @@ def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -
     s = state[0]
     take_steps(s)
     check_steps(s)
+    if s.equipped > 0:
+        check_devices(s)
     observe_ends(s)
     observe_lanes(s, systems, blocks[0], log)
     accept_steps(s)
@@ -135,7 +143,6 @@ def switch_lane(state: Record, l: int, fate: int, run: Run) -> None:
     while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
         system = run.systems[s.system[l]]
         if fate == GOES_ON:
-            renew_accelerations(s, l)
             fate = go_on_renewed(s, l, system, output)
         elif fate == STANDS:
             fate = stand(s, l, system, block, run.acceleration, output)
@@ -152,11 +159,23 @@ def switch_lane(state: Record, l: int, fate: int, run: Run) -> None:
 
 
 @compiled
+def has_devices(systems: Record) -> int:
+    """1 if any structure has devices."""
+    for i in range(systems.shape[0]):
+        if systems[i].devices > 0:
+            return 1
+    return 0
+
+
+@compiled
 def observe_lanes(s: Record, systems: Record, block: Record, log: Record) -> None:
     """What few steps ask for, lane by lane."""
     for l in range(s.lanes):
         if s.audited > 0 and s.accepted[l] > 0.0:
             book_energy(s, l, 1.0)
+        if s.devices[l] > 0 and s.accepted[l] > 0.0:
+            book_devices(s, l, 1.0)
+            observe_devices(s, l)
         if s.peak_inside[l] > 0.0:
             raise_peak(s, l, block, log)
         if s.demands_rise[l] > 0.0:
@@ -166,7 +185,7 @@ def observe_lanes(s: Record, systems: Record, block: Record, log: Record) -> Non
 @compiled
 def idle(s: Record, l: int) -> None:
     """Leave a lane without a history: it makes empty steps."""
-    s.history[l] = NO_HISTORY
+    s.history[l], s.devices[l], s.kinked[l] = NO_HISTORY, 0, 0.0
     s.renew[l], s.step[l] = NOTHING_NEW, 0.0
 
 
@@ -179,7 +198,8 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.history[l], s.system[l] = history, request.system
     s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
     s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
-    s.outcome[l], s.phase[l], s.renew[l] = RUNNING, FULL_CONTACT, NOTHING_NEW
+    load_devices(s, l, system)
+    s.outcome[l], s.renew[l] = RUNNING, NOTHING_NEW
     s.interval[l] = 0
     s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
     steps = max(math.ceil(request.dt * system.uplifted_rate), 1)
@@ -188,6 +208,8 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.contact_step[l], s.contact_steps[l] = request.dt / steps, steps
     s.side[l], s.theta[l], s.theta_dot[l], s.theta_ddot[l] = 1.0, 0.0, 0.0, 0.0
     s.no_event[l], s.stalled[l] = 0.0, 0
+    enter_phase(s, l, system, ROLLING if system.beta > 0.0 else ROCKING)
+    s.phase[l] = FULL_CONTACT
     clear_results(s, l)
     set_ground(s, l, run.acceleration)
     if system.initial_rotation != 0.0:
@@ -212,6 +234,8 @@ def load_system(s: Record, l: int, system: Record) -> None:
     s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
     s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
     s.theta_cr[l], s.last_term[l] = system.theta_cr, system.last_term
+    s.half_width[l], s.arc_end[l] = system.R * math.sin(system.alpha), system.beta
+    s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
     for r in range(s.n):
         s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[r], system.two_xi_omega[r]
         s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[r], system.shear_weight[r]
@@ -242,6 +266,7 @@ def release(s: Record, l: int, system: Record) -> None:
     s.side[l] = math.copysign(1.0, system.initial_rotation)
     s.theta[l], s.max_theta[l], s.renew[l] = theta, theta, AFTER_RELEASE
     enter_phase(s, l, system, ROLLING if theta < system.beta else ROCKING)
+    release_devices(s, l)
 
 
 @compiled
@@ -270,3 +295,4 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
         result.floor_acceleration[i] = s.floor_acceleration[l, i]
     for i in range(EVENT_KINDS):
         result.events[i] = s.events[l, i]
+    leave_devices(s, l, result)

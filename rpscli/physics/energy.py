@@ -11,13 +11,10 @@ from rpscli.physics.equation_of_motion import (
     phase_constants,
     tilting_energy,
 )
+from rpscli.physics.formulae.quadrature import NODES, WEIGHTS
 from rpscli.physics.formulae.taylor import integral, modal_terms, rotation_terms, value
 from rpscli.physics.formulae.trigonometry import sine_cosine
 from rpscli.physics.state import Record
-
-NODES = (0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263)
-WEIGHTS = (0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693)
-"""Gauss and Legendre's rule of order 8 over [0, 1]."""
 
 
 @compiled
@@ -41,7 +38,7 @@ def building_energy(s: Record, l: int, beam_velocity: float) -> float:
 
 @compiled
 def uplifted_energy(s: Record, l: int) -> float:
-    """Kinetic, strain and potential energy of the uplifted structure [J]."""
+    """Kinetic, strain and potential energy of the uplifted structure without devices [J]."""
     theta_dot, phase = s.theta_dot[l], phase_constants(s, l)
     sine, cosine = sine_cosine(s.theta[l])
     B, C = contact_arm(phase, cosine, sine), contact_height(phase, cosine, sine)

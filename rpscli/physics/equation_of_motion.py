@@ -4,15 +4,14 @@ The tilt is x = |theta| >= 0 and s = sign(theta); a motion to the left is the mi
 to the right, so only the horizontal action carries s. The building is followed in the modes of its
 fixed base, relative to the cap beam: v = Phi q with mass-normalised shapes and Gamma = Phi^T M 1.
 
-    A x'' + D x'^2 = -B (g + a_v)(1 + 2 gamma + 2 gamma eta)/R - C action
+    A x'' + D x'^2 = -B (g + a_v)(1 + 2 gamma + 2 gamma eta)/R - C action + G
     action = s (a_g (1 + 2 gamma)/R - 2 V/(N m_c R))
     q_r'' + f_r = -Gamma_r (a_g + u_b''),   f_r = w_r^2 q_r + 2 xi_r w_r q_r',   V = sum Gamma_r f_r
 
 What couples the modes is the motion of the cap beam alone, so a storey more costs one mode more and
 no matrix is formed. Everything that moves or weighs is written here, with its Taylor terms beside
-it: a horizontal force P on the cap beam takes 2 s P/(N m_c R) from `action`, in `horizontal_action`
-and in `action_term`. Kept beyond x = 0 and x = beta the right-hand side is smooth, which is what
-the event location needs.
+it; G is what `devices` add, 0 without them. Kept beyond x = 0 and x = beta the right-hand side is
+smooth, which is what the event location needs.
 
 Taylor terms over a step h: coefficients are those of powers of t/h, f = f_0 + f_1 t/h + ..., so
 that a term is what it adds to the end, and derivatives are m/h times the next term. With C' = B x'
@@ -107,7 +106,14 @@ def horizontal_action(s: Record, l: int, a_g: float, V: float) -> float:
 
 @compiled
 def rotation_acceleration(
-    per_A: float, B: float, C: float, D: float, theta_dot: float, weight: float, action: float
+    per_A: float,
+    B: float,
+    C: float,
+    D: float,
+    theta_dot: float,
+    weight: float,
+    action: float,
+    device: float = 0.0,
 ) -> float:
     """x'' of the equation of motion (paper, Eq. 2) [rad/s2].
 
@@ -123,8 +129,10 @@ def rotation_acceleration(
         (g + a_v)(1 + 2 gamma + 2 gamma eta)/R [1/s2].
     action
         See `horizontal_action` [1/s2].
+    device
+        G, what devices add [1/s2].
     """
-    return -((B * weight + D * (theta_dot * theta_dot)) + C * action) * per_A
+    return -(((B * weight + D * (theta_dot * theta_dot)) + C * action) - device) * per_A
 
 
 @compiled
@@ -180,7 +188,7 @@ def accelerate_rotation(s: Record, l: int, elapsed: float) -> None:
     D = inertia_slope(s.one_4gamma[l], s.four_gamma_eta[l], phase, B, C)
     action = horizontal_action(s, l, a_g, s.next_V[l])
     s.next_theta_ddot[l] = rotation_acceleration(
-        per_A, B, C, D, theta_dot, g_up * s.weight_over_R[l], action
+        per_A, B, C, D, theta_dot, g_up * s.weight_over_R[l], action, s.next_device[l]
     )
     s.next_B[l], s.next_C[l], s.next_per_A[l] = B, C, per_A
     s.next_a_g[l], s.next_g_up[l] = a_g, g_up
@@ -245,7 +253,7 @@ def extend_rotation(s: Record, lanes: int, m: int) -> None:
         part = h * (1.0 / m)
         B, C, c = s.B_terms[0, l], s.C_terms[0, l], s.phase_c[l]
         first, late = s.dtheta_terms[0, l], s.dtheta_terms[k, l]
-        falls, rises, pushes = 0.0, 0.0, 0.0
+        falls, rises, pushes = 0.0, 0.0, -s.device_terms[k, l]
         square, inertial, beam = 0.0, 0.0, 0.0
         for j in range(1, m):
             falls += s.C_terms[j, l] * s.dtheta_terms[k - j, l]
@@ -370,6 +378,7 @@ def contact_forces(
     V: float,
     a_g: float,
     g_up: float,
+    pull: float = 0.0,
 ) -> tuple[float, float, float, float]:
     """Forces of all columns together on the beam, and of the ground on the columns [N].
 
@@ -380,9 +389,11 @@ def contact_forces(
     across, upwards
         u_b'' and v_b'' relative to the ground [m/s2].
     V
-        Base shear of the building, springs and dampers [N].
+        Base shear of the building, springs and dampers, and what devices push the beam with [N].
     a_g, g_up
         a_g and g + a_v [m/s2].
+    pull
+        Vertical force of tendons on the beam, downwards [N].
 
     Returns
     -------
@@ -390,7 +401,7 @@ def contact_forces(
     """
     shear_top = cap_beam * (across + a_g) - V
     shear_bottom = shear_top + columns * (0.5 * across + a_g)
-    normal_top = (cap_beam + floors) * (g_up + upwards)
+    normal_top = (cap_beam + floors) * (g_up + upwards) + pull
     normal_bottom = normal_top + columns * (g_up + 0.5 * upwards)
     return shear_top, shear_bottom, normal_top, normal_bottom
 
@@ -412,6 +423,7 @@ def contact_measures(
     a_g: float,
     g_up: float,
     gravity: float,
+    pull: float = 0.0,
 ) -> tuple[float, float, float, float]:
     """Friction demands |F|/N and normal forces over the weight on them, upper and lower ends.
 
@@ -420,7 +432,7 @@ def contact_measures(
     """
     upper, lower = cap_beam + floors, cap_beam + floors + columns
     shear_top, shear_bottom, normal_top, normal_bottom = contact_forces(
-        cap_beam, floors, columns, across, upwards, V, a_g, g_up
+        cap_beam, floors, columns, across, upwards, V, a_g, g_up, pull
     )
     top = friction(shear_top, normal_top) if upper > 0.0 else 0.0
     light_top = normal_top / (upper * gravity) if upper > 0.0 else math.inf

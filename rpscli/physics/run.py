@@ -14,6 +14,7 @@ from rpscli.physics.state import (
     REQUEST,
     RESULT,
     SAMPLE,
+    SLOTS,
     STATE,
     SYSTEM,
     Floats,
@@ -35,11 +36,14 @@ class Output(NamedTuple):
         (rows, 2, n) displacements and velocities of the floors [m, m/s], relative to the ground.
     log
         (rows,) `state.EVENT`.
+    devices
+        (rows, 4, SLOTS) force [N], displacement [m], dissipated and stored energy [J] of devices.
     """
 
     samples: Record
     floors: NDArray[np.float64]
     log: Record
+    devices: NDArray[np.float64]
 
 
 class Run(NamedTuple):
@@ -96,6 +100,7 @@ def empty_run(storeys: int) -> Run:
             samples=records(SAMPLE, count=0),
             floors=np.empty((0, 2, storeys)),
             log=records(EVENT, count=0),
+            devices=np.empty((0, 4, SLOTS)),
         ),
         block=empty_block(storeys),
     )

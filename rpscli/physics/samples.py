@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled
+from rpscli.physics.devices.samples import store_devices
 from rpscli.physics.equation_of_motion import (
     cap_beam_displacement,
     contact_height,
@@ -38,6 +39,8 @@ def store_sample(s: Record, l: int, system: Record, output: Output) -> None:
             u += system.phi[r, i] * s.q[r, l]
             du += system.phi[r, i] * s.dq[0, r, l]
         output.floors[at, 0, i], output.floors[at, 1, i] = u, du
+    if s.devices[l] > 0:
+        store_devices(s, l, output.devices[at])
 
 
 @compiled

@@ -49,8 +49,24 @@ PADDING = 8
 """Rows that no mode uses, and entries that no lane uses. Without them the rows of one lane would
 all fall into a few lines of the processor's cache, and drive each other out."""
 
-# Phases of motion.
-FULL_CONTACT, ROLLING, ROCKING = range(3)
+SLOTS = 8
+"""Devices that a structure may have."""
+
+# Kinds of device, and what their constants are.
+(
+    VISCOUS,  # c, a
+    FRICTION,  # F_d
+    STOP,  # d, k_s, c_s
+    TENDON,  # P_0, k_t, P_y of one column
+    ROLLING_RESISTANCE,  # the moment 2 W f
+) = range(5)
+
+# Branches of a device's law: of a stop with its gap open, pushing back, let go before its gap; of
+# a tendon slack, elastic, yielding. The others have one.
+IDLE, WORKING, BEYOND = range(3)
+
+# Phases of motion; STUCK is held by friction while tilted.
+FULL_CONTACT, ROLLING, ROCKING, STUCK = range(4)
 
 # Kinds of event, in the log and in the counts.
 (
@@ -61,8 +77,15 @@ FULL_CONTACT, ROLLING, ROCKING = range(3)
     ROCKING_TO_ROLLING,
     CRITICAL_PASSAGE,
     OVERTURNING,
-) = range(7)
-EVENT_KINDS = 7
+    STICKING,
+    SLIDING,
+    STOP_MET,
+    STOP_LEFT,
+    TENDON_YIELDING,
+    TENDON_SLACK,
+    TENDON_TAUT,
+) = range(14)
+EVENT_KINDS = 14
 NO_EVENT = -1
 
 # How a history ended; it has not while RUNNING.
@@ -84,7 +107,8 @@ RUNNING = -1
     AFTER_UPLIFT,
     AFTER_IMPACT,
     AFTER_RELEASE,
-) = range(5)
+    AFTER_TURNING,  # x' = 0 under friction
+) = range(6)
 
 # What becomes of a lane.
 GOES_ON, STANDS, IS_OVER, NOT_ACCEPTED = range(4)
@@ -156,6 +180,11 @@ SYSTEM = (
     Field("initial_rotation", "", "rad", "theta at the start, released from rest"),
     Field("free_vibration", "", "s", "time after the record, at most"),
     Field("until_rest", "", WHOLE, "1 if it may end earlier, with nothing new to come"),
+    Field("columns", "", "-", "N"),
+    Field("devices", "", WHOLE, "number of devices"),
+    Field("device_kind", "slots", WHOLE, "VISCOUS to ROLLING_RESISTANCE"),
+    Field("device_constants", "slots four", "1", "of its law, see the kinds"),
+    Field("linear_speed", "", "m/s", "up to which |u_b'|^a is followed as linear"),
 )
 
 REQUEST = (
@@ -187,6 +216,18 @@ STATE = (
     Field("shear_weight", "modes lanes", "1", "see `system`"),
     Field("acceleration_weight", "modes lanes", "1", "see `system`"),
     Field("last_term", "lanes", "-", "see `system`"),
+    Field("columns", "lanes", "-", "N"),
+    Field("devices", "lanes", WHOLE, "number of devices"),
+    Field("device_kind", "slots lanes", WHOLE, "see `system`"),
+    Field("device_constants", "slots four lanes", "1", "see `system`"),
+    Field("linear_speed", "lanes", "m/s", "see `system`"),
+    Field("friction_force", "lanes", "N", "of all friction dampers"),
+    Field("friction_moment", "lanes", "N m", "of all rolling resistance"),
+    Field("tendons", "lanes", WHOLE, "number of tendons in a column"),
+    Field("half_width", "lanes", "m", "B of the flat part"),
+    Field("arc_radius", "lanes", "m", "r; 0 for flat ends"),
+    Field("arc_end", "lanes", "rad", "beta"),
+    Field("kinked", "lanes", "-", "1: a damper's force has a kink at u_b' = 0"),
     # The history and its record.
     Field("scale", "lanes", "-", "factor on the record", "driver.begin_history"),
     Field("history", "lanes", WHOLE, "number of the request, or NO_HISTORY", "driver"),
@@ -207,6 +248,13 @@ STATE = (
     Field("side", "lanes", "-", "s = sign(theta)", "transitions"),
     Field("theta_low", "lanes", "rad", "the phase ends below", "transitions.phases.enter_phase"),
     Field("theta_high", "lanes", "rad", "and above", "transitions.phases.enter_phase"),
+    # The devices.
+    Field("direction", "lanes", "-", "sign of x' for friction", "devices, transitions"),
+    Field("device_branch", "slots lanes", WHOLE, "IDLE, WORKING or BEYOND", "devices.events"),
+    Field("permanent", "slots lanes", "m", "plastic elongation of a tendon", "devices.events"),
+    Field("path", "lanes", "m", "|u_b| at the start of the step", "devices.series"),
+    Field("tension", "lanes", "N", "of all tendons at the start of the step", "devices.series"),
+    Field("tendon_stiffness", "lanes", "N/m", "of those that are elastic", "devices.series"),
     # The ground, linear over the interval; and time.
     Field("a_g", "lanes", "m/s2", "at the interval's start", "ground.set_ground"),
     Field("a_g_slope", "lanes", "m/s3", "over it", "ground.set_ground"),
@@ -241,6 +289,9 @@ STATE = (
     Field("next_V", "lanes", "N", "", "equation_of_motion"),
     Field("next_a_g", "lanes", "m/s2", "ground acceleration", "equation_of_motion"),
     Field("next_g_up", "lanes", "m/s2", "g + a_v", "equation_of_motion"),
+    Field("next_device", "lanes", "1/s2", "what devices add to A x''", "devices.forces"),
+    Field("next_push", "lanes", "N", "on the cap beam, to the right", "devices.forces"),
+    Field("next_pull", "lanes", "N", "on the cap beam, downwards", "devices.forces"),
     Field("next_q", "modes lanes", "m sqrt(kg)", ""),
     Field("next_dq", "modes lanes", "m sqrt(kg)/s", ""),
     # Taylor coefficients over the step, as powers of t/h.
@@ -249,6 +300,16 @@ STATE = (
     Field("C_terms", "terms lanes", "-", "of C"),
     Field("A_terms", "terms lanes", "-", "of A, from order 1"),
     Field("action_terms", "terms lanes", "1/s2", "of s (a_g (1 + 2 gamma)/R - 2 V/(N m_c R))"),
+    Field("device_terms", "terms lanes", "1/s2", "of what devices add to A x''", "devices.series"),
+    Field("advance_terms", "terms lanes", "m/s", "of |u_b|', 2 R C x'", "devices.series"),
+    Field("resistance_terms", "terms lanes", "N", "of -s P", "devices.series"),
+    Field("power_terms", "slots terms lanes", "1", "of |u_b'|^a", "devices.series"),
+    Field(
+        "lever_terms", "terms terms lanes", "m", "of de/dx and its derivatives", "devices.series"
+    ),
+    Field("opening_terms", "nine lanes", "m", "of a tendon's elongation e", "devices.series"),
+    Field("event_terms", "nine lanes", "1", "of what must not fall below zero", "devices.events"),
+    Field("local", "four nine", "1", "scratch: powers of x - x_0", "devices.elongation"),
     Field("dq", "terms modes lanes", "m sqrt(kg)/s", "of q'; dq[0] is q' at the start"),
     Field("modal_force", "modes lanes", "m sqrt(kg)/s2", "w^2 q + 2 xi w q' of the last order"),
     Field("beam_velocity_term", "lanes", "m/s", "what the last order adds to u_b' and the ground"),
@@ -284,6 +345,10 @@ STATE = (
     Field("stalled", "lanes", WHOLE, "events in a row at one instant", "uplifted.locate_event"),
     Field("creating_impacts", "lanes", WHOLE, "impacts that created energy", "transitions.impact"),
     Field("events", "lanes kinds", WHOLE, "of each kind", "transitions.log_event"),
+    Field("device_force", "slots lanes", "N", "largest |force|", "devices.flows"),
+    Field("device_velocity", "slots lanes", "m/s", "largest |rate|", "devices.flows"),
+    Field("device_energy", "slots lanes", "J", "dissipated", "devices.flows"),
+    Field("equipped", "", WHOLE, "1 if any structure has devices", "driver"),
     Field("n", "", WHOLE, "storeys, and modes: the same in all lanes", "run.empty_state"),
     Field("lanes", "", WHOLE, "lanes in use: 1 or all", "run.empty_state"),
     Field("audited", "", WHOLE, "1 where energy flows are integrated", "driver"),
@@ -323,6 +388,7 @@ BLOCK = (
     Field("friction_bottom", "instants", "-", "largest so far", "full_contact.demands"),
     Field("normal_top", "instants", "-", "least so far", "full_contact.demands"),
     Field("normal_bottom", "instants", "-", "least so far", "full_contact.demands"),
+    Field("push", "instants", "N", "of devices on the cap beam", "full_contact"),
     Field("piece", "map", "1", "scratch of the search for roots", "formulae.quintic"),
 )
 
@@ -349,6 +415,11 @@ RESULT = (
     Field("energy_stored", "", "J", "at the end"),
     Field("storey_shear", "modes", "N", "largest |k_i d_i|"),
     Field("floor_acceleration", "modes", "m/s2", "largest absolute one"),
+    Field("device_force", "slots", "N", "largest |force|"),
+    Field("device_velocity", "slots", "m/s", "largest |rate|"),
+    Field("device_energy", "slots", "J", "dissipated"),
+    Field("device_stored", "slots", "J", "at the end, over the start"),
+    Field("permanent", "slots", "m", "plastic elongation of a tendon"),
 )
 
 SAMPLE = (
@@ -396,6 +467,9 @@ def record_type(fields: tuple[Field, ...]) -> np.dtype[Any]:
         "steps": 2,
         "map": 8,
         "forms": 9,
+        "slots": SLOTS,
+        "four": 4,
+        "nine": TERMS + 1,
     }
     return np.dtype(
         [

@@ -62,6 +62,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         **_storeys(isolated),
         "fixed_base": None if fixed is None else _storeys(fixed),
         "energy": asdict(result.energy),
+        "devices": [asdict(demand) for demand in result.devices],
         "warnings": result.warnings,
     }
 

@@ -16,7 +16,7 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.run import Output, Run, empty_block
-from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, Record, records
+from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, SLOTS, Record, records
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 MOST_NUMBERS = 1e9
@@ -39,7 +39,9 @@ class History:
     `motion`, `rotation` and `time` are those of the end, after `intervals` of the record's steps.
     Times that never came are negative. `energies` are input, damped, lost at impacts, and stored at
     the end; the energy created at impacts counts negatively in what was lost. Input and damped are
-    known of sampled histories only.
+    known of sampled histories only. Arrays of devices have an entry for each slot: largest force
+    [N], largest rate [m/s] and dissipated energy [J], what is stored at the end over the start [J],
+    and the plastic elongation of a tendon [m].
     """
 
     outcome: int
@@ -59,6 +61,11 @@ class History:
     creating_impacts: int
     counts: NDArray[np.int64]
     steps: int
+    device_force: NDArray[np.float64]
+    device_velocity: NDArray[np.float64]
+    device_energy: NDArray[np.float64]
+    device_stored: NDArray[np.float64]
+    permanent: NDArray[np.float64]
 
 
 def history_of(result: Record, storeys: int) -> History:
@@ -77,12 +84,22 @@ def history_of(result: Record, storeys: int) -> History:
         friction=np.array([result.friction_top, result.friction_bottom]),
         least_normal=np.array([result.normal_top, result.normal_bottom]),
         energies=np.array(
-            [result.energy_input, result.energy_damped, result.energy_lost, result.energy_stored]
+            [
+                result.energy_input,
+                result.energy_damped,
+                result.energy_lost,
+                result.energy_stored + result.device_stored.sum(),
+            ]
         ),
         energy_created=float(result.energy_created),
         creating_impacts=int(result.creating_impacts),
         counts=result.events.copy(),
         steps=int(result.steps),
+        device_force=result.device_force.copy(),
+        device_velocity=result.device_velocity.copy(),
+        device_energy=result.device_energy.copy(),
+        device_stored=result.device_stored.copy(),
+        permanent=result.permanent.copy(),
     )
 
 
@@ -134,6 +151,7 @@ def run_of(
             samples=records(SAMPLE, count=rows),
             floors=np.empty((rows, 2, n)),
             log=records(EVENT, count=events),
+            devices=np.empty((rows, 4, SLOTS)),
         ),
         block=empty_block(n),
     )
@@ -146,7 +164,7 @@ class SampledHistory:
     `ground` and `vertical` are the horizontal and the vertical acceleration, as long as the longer
     component [m/s2]; `samples`
     (intervals + 1,), `floors` (intervals + 1, 2, n) displacements and velocities [m, m/s] relative
-    to the ground, `log` (events,).
+    to the ground, `log` (events,), `devices` (intervals + 1, 4, slots), see `physics.run.Output`.
     """
 
     history: History
@@ -155,6 +173,7 @@ class SampledHistory:
     samples: Record
     floors: NDArray[np.float64]
     log: Record
+    devices: NDArray[np.float64]
 
 
 def longest_history(settings: TimeHistorySettings, record: GroundMotion) -> int:
@@ -236,4 +255,5 @@ def sampled_history(
         output.samples[kept].copy(),
         output.floors[kept].copy(),
         output.log[:seen],
+        output.devices[kept].copy(),
     )

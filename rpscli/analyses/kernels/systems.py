@@ -2,16 +2,44 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import astuple
 
 import numpy as np
 
 from rpscli.analyses.kernels.step_lengths import LAST_TERM, contact_rate, uplifted_rate
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.errors import AnalysisError
+from rpscli.model.devices import (
+    Device,
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.state import ORDER, SYSTEM, Record, records
+from rpscli.physics.state import (
+    FRICTION,
+    ORDER,
+    ROLLING_RESISTANCE,
+    STOP,
+    SYSTEM,
+    TENDON,
+    VISCOUS,
+    Record,
+    records,
+)
+
+DEVICE_KINDS: dict[type[Device], int] = {
+    ViscousDamper: VISCOUS,
+    FrictionDamper: FRICTION,
+    Stop: STOP,
+    Tendon: TENDON,
+    RollingResistance: ROLLING_RESISTANCE,
+}
+"""Their codes in the kernels, whose constants are the devices' fields in their order."""
 
 LEAST_SHAKEN = 1e-3
 """Modes that hardly take part are not given more weight than those that take part so much."""
@@ -37,8 +65,6 @@ def building_system(building: Superstructure) -> Record:
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
     """The rocking storey."""
-    if structure.devices:
-        raise AnalysisError("time histories with podium.devices are not computed yet")
     b = structure.bearing
     record.n = structure.storeys
     record.R, record.alpha, record.beta = b.semi_diagonal, b.alpha, b.beta
@@ -51,6 +77,24 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record.gravity = structure.gravity
     record.restitution = structure.restitution
     record.floors_jump = structure.impact_law.floors_jump
+    fill_devices(record, structure)
+
+
+LINEAR_SPEED = 1e-8
+"""Of sqrt(g R): up to this velocity a power of it is taken as linear, too little to be felt."""
+
+
+def fill_devices(record: Record, structure: PodiumStructure) -> None:
+    """The devices, each with the constants of its law."""
+    record.columns, record.devices = structure.columns, len(structure.devices)
+    speed = math.sqrt(structure.gravity * structure.bearing.semi_diagonal)
+    record.linear_speed = LINEAR_SPEED * speed
+    for i, device in enumerate(structure.devices):
+        record.device_kind[i] = DEVICE_KINDS[type(device)]
+        constants = astuple(device)
+        record.device_constants[i, : len(constants)] = constants
+        if isinstance(device, RollingResistance):
+            record.device_constants[i, 0] = 2.0 * structure.weight * device.lever
 
 
 def fill_settings(

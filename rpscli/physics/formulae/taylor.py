@@ -78,6 +78,12 @@ def fraction_at(s: Record, l: int, level: float, guess: float) -> float:
 
 
 @compiled
+def tilt_at(s: Record, l: int, t: float) -> float:
+    """The tilt of a lane at a fraction t of its step."""
+    return float(s.theta[l] + s.step[l] * integral(rotation_terms(s, l), t))
+
+
+@compiled
 def end_step_at(s: Record, l: int, t: float, level: float) -> None:
     """Make a fraction t of the step of a lane its end, where the tilt is at a level."""
     h, terms = s.step[l], rotation_terms(s, l)

@@ -16,6 +16,7 @@ def clear_contacts(block: Record) -> None:
     for k in range(INSTANTS):
         block.friction_top[k], block.friction_bottom[k] = 0.0, 0.0
         block.normal_top[k], block.normal_bottom[k] = math.inf, math.inf
+        block.push[k] = 0.0
 
 
 @compiled
@@ -90,8 +91,11 @@ def add_three_modes(block: Record, system: Record, i: int, r: int) -> None:
 
 
 @compiled
-def observe_contacts(block: Record, system: Record) -> None:
-    """Raise friction demands and lower least normal forces, instant by instant."""
+def observe_contacts(block: Record, system: Record, pull: float) -> None:
+    """Raise friction demands and lower least normal forces, instant by instant.
+
+    Tendons pull the cap beam down with `pull` [N].
+    """
     for k in range(INSTANTS):
         top, bottom, light_top, light_bottom = contact_measures(
             system.cap_beam_mass,
@@ -99,10 +103,11 @@ def observe_contacts(block: Record, system: Record) -> None:
             system.columns_mass,
             0.0,
             0.0,
-            block.V[k],
+            block.V[k] + block.push[k],
             block.a_g[k],
             block.g_up[k],
             system.gravity,
+            pull,
         )
         seen = block.at_sample[k] > 0.0
         block.friction_top[k] = written(max(block.friction_top[k], top if seen else 0.0))

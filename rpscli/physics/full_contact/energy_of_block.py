@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.energy import NODES, WEIGHTS
 from rpscli.physics.formulae.oscillator import decay
+from rpscli.physics.formulae.quadrature import NODES, WEIGHTS
 from rpscli.physics.state import INSTANTS, Record
 
 GROWTH = 1.5

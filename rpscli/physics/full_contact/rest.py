@@ -39,7 +39,10 @@ def stays_down(system: Record, block: Record, margin: Margin) -> bool:
     for r in range(system.n):
         force = system.omega[r] + system.two_xi_omega[r]
         largest += abs(system.Gamma[r]) * force * modal_speed(system, block, r)
-    limit = system.gravity * margin.limit
+    limit = min(
+        system.gravity * margin.right + margin.held_right,
+        system.gravity * margin.left + margin.held_left,
+    )
     return system.n == 0 or bool(margin.shear_share * largest < limit)
 
 

@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics.compile import compiled
+from rpscli.physics.devices.rest import begin_excursion, hold_block, resting_pull, slide
 from rpscli.physics.full_contact.demands import (
     clear_contacts,
     hand_over_contacts,
@@ -40,6 +41,7 @@ from rpscli.physics.state import (
     INSTANTS,
     IS_OVER,
     SHORT_STEP,
+    STUCK,
     WHOLE_STEP,
     Floats,
     Record,
@@ -57,8 +59,7 @@ def modes_to_block(s: Record, l: int, block: Record) -> None:
 
 @compiled
 def modes_from_block(s: Record, l: int, block: Record) -> None:
-    """Take the modes over from full contact; the storey does not tilt."""
-    s.theta[l], s.theta_dot[l] = 0.0, 0.0
+    """Take the modes over from full contact; the tilt rests."""
     for r in range(s.n):
         s.q[r, l], s.dq[0, r, l] = block.q[r], block.dq[r]
 
@@ -147,6 +148,8 @@ def accept_block(
                 keep_state(block, k)
                 modes_from_block(s, l, block)
                 s.interval[l] = first + k // plan.each
+                s.next_V[l] = block.V[k]
+                s.next_a_g[l], s.next_g_up[l] = block.a_g[k], block.g_up[k]
                 store_sample(s, l, system, output)
     keep_state(block, taken)
     if passed == 0:
@@ -198,15 +201,20 @@ def leave_contact(
     keep_state(block, 1)
     s.time[l] += h
     modes_from_block(s, l, block)
-    uplift(s, l, system, output.log, side)
+    if s.phase[l] == STUCK:
+        slide(s, l, output.log, side)
+    else:
+        uplift(s, l, system, output.log, side)
+        begin_excursion(s, l)
 
 
 @compiled
 def stand(
     s: Record, l: int, system: Record, block: Record, acceleration: Floats, output: Output
 ) -> int:
-    """Follow a lane in full contact: GOES_ON when it uplifts, or IS_OVER."""
-    margin = margin_of(system)
+    """Follow a lane in full contact, or stuck: GOES_ON when it begins to move, or IS_OVER."""
+    margin = margin_of(s, l, system)
+    pull = resting_pull(s, l)
     modes_to_block(s, l, block)
     fill_map(block, system, WHOLE_STEP, s.contact_step[l])
     if output.samples.shape[0] > 0:
@@ -230,7 +238,8 @@ def stand(
         if may_raise(block, s.shear_harmless[l], s.acceleration_harmless[l]):
             raise_floors_of_block(block, system, s.storey_shear[l], s.floor_acceleration[l])
             set_harmless(s, l, system)
-        observe_contacts(block, system)
+        hold_block(s, l, block)
+        observe_contacts(block, system, pull)
         if not math.isfinite(block.ddV[taken]):
             s.outcome[l] = FAILED_NOT_FINITE
             over = True

@@ -6,8 +6,10 @@ The storey uplifts to the side s when the margin
     q(t) = -a_g (1 + 2 gamma) + 2 gamma eta V/M_tot
 
 leaves zero downwards (Theory, section 3): exactly where s theta'' of the uplifted equation would
-become positive. Steps that surely keep it positive are told by the quintic through the push q and
-its derivatives, for a whole block at once; the instant itself is found on the exact margin.
+become positive. Devices at rest add to the limit; a storey that friction holds tilted has another
+limit on either side (section 11). Steps that surely keep it positive are told by the quintic
+through the push q and its derivatives, for a whole block at once; the instant itself is found on
+the exact margin.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics.compile import compiled
+from rpscli.physics.devices.rest import arms, holding
 from rpscli.physics.equation_of_motion import uplift_push
 from rpscli.physics.formulae.quintic import (
     NO_PASSAGE,
@@ -26,33 +29,55 @@ from rpscli.physics.formulae.quintic import (
     quintic,
 )
 from rpscli.physics.full_contact.modal_block import fill_map, map_of, mapped
-from rpscli.physics.state import INSTANTS, SHORT_STEP, Record
+from rpscli.physics.state import INSTANTS, SHORT_STEP, STUCK, Record
 
 
 class Margin(NamedTuple):
     """What the margin against uplift is made of.
 
-    `ground_factor` is 1 + 2 gamma, `shear_share` 2 gamma eta/M_tot [1/kg], `limit` tan(alpha)
-    (1 + 2 gamma + 2 gamma eta), and `ground_damping` sum Gamma^2 2 xi w [kg/s]: what the slope of
-    the ground's acceleration adds to V''.
+    `ground_factor` is 1 + 2 gamma, `shear_share` 2 gamma eta/M_tot [1/kg], and `ground_damping`
+    sum Gamma^2 2 xi w [kg/s]: what the slope of the ground's acceleration adds to V''. To either
+    side the limit is `right` or `left`, tan(alpha) (1 + 2 gamma + 2 gamma eta) in full contact,
+    times g + a_v, and what devices hold, `held_right` or `held_left` [m/s2].
     """
 
     ground_factor: float
     shear_share: float
-    limit: float
+    right: float
+    left: float
+    held_right: float
+    held_left: float
     ground_damping: float
 
 
 @compiled
-def margin_of(system: Record) -> Margin:
-    """What the margin of a structure is made of."""
+def margin_of(s: Record, l: int, system: Record) -> Margin:
+    """What the margin of a structure at rest is made of, in full contact or stuck."""
     ground_factor, carried = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
     damping = 0.0
     for r in range(system.n):
         damping += system.Gamma[r] * system.Gamma[r] * system.two_xi_omega[r]
     share = carried / system.floors_mass if system.n > 0 else 0.0
     limit = math.tan(system.alpha) * (ground_factor + carried)
-    return Margin(ground_factor, share, limit, damping)
+    right, left, held_right, held_left = limit, limit, 0.0, 0.0
+    if s.devices[l] > 0:
+        elastic, friction = holding(s, l)
+        elastic, friction = elastic * 2.0 / s.columns_mass[l], friction * 2.0 / s.columns_mass[l]
+        held_right, held_left = elastic + friction, elastic + friction
+        if s.phase[l] == STUCK:
+            B, C = arms(s, l)
+            right = s.side[l] * B / C * (ground_factor + carried)
+            left, elastic = -right, s.side[l] * elastic
+            held_right, held_left = friction + elastic, friction - elastic
+    return Margin(ground_factor, share, right, left, held_right, held_left, damping)
+
+
+@compiled
+def limit_to(margin: Margin, side: float) -> tuple[float, float]:
+    """What multiplies g + a_v in the limit to a side, and what devices hold [m/s2]."""
+    if side > 0.0:
+        return margin.right, margin.held_right
+    return margin.left, margin.held_left
 
 
 @compiled
@@ -85,7 +110,7 @@ def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
 
 
 @compiled
-def margin_path(path: Quintic, limit: float, rise: float, side: float) -> Quintic:
+def margin_path(path: Quintic, limit: float, rise: float, side: float, held: float) -> Quintic:
     """The margin against uplift to a side: the limit is linear, its coefficients rise evenly.
 
     Parameters
@@ -96,14 +121,16 @@ def margin_path(path: Quintic, limit: float, rise: float, side: float) -> Quinti
         What q must exceed at the start of the step, and its change over it [m/s2].
     side
         1 to the right, -1 to the left.
+    held
+        What devices add to the limit [m/s2].
     """
     return (
-        limit - side * path[0],
-        limit + 0.2 * rise - side * path[1],
-        limit + 0.4 * rise - side * path[2],
-        limit + 0.6 * rise - side * path[3],
-        limit + 0.8 * rise - side * path[4],
-        limit + rise - side * path[5],
+        limit - (side * path[0] - held),
+        limit + 0.2 * rise - (side * path[1] - held),
+        limit + 0.4 * rise - (side * path[2] - held),
+        limit + 0.6 * rise - (side * path[3] - held),
+        limit + 0.8 * rise - (side * path[4] - held),
+        limit + rise - (side * path[5] - held),
     )
 
 
@@ -116,12 +143,13 @@ def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
     alarms = 0
     for k in range(INSTANTS):
         path = push_path(block, margin, h, k)
-        limit = margin.limit * block.g_up[k]
-        rise = margin.limit * (block.g_up_slope[k] * h)
-        right = margin_path(path, limit, rise, 1.0)
-        left = margin_path(path, limit, rise, -1.0)
+        g_up, change = block.g_up[k], block.g_up_slope[k] * h
+        to_right, to_left = margin.right * g_up, margin.left * g_up
+        right = margin_path(path, to_right, margin.right * change, 1.0, margin.held_right)
+        left = margin_path(path, to_left, margin.left * change, -1.0, margin.held_left)
         lowest = min(lower_hull(right), right[0], lower_hull(left), left[0])
-        safe = lowest >= least * limit
+        held = 0.5 * (margin.held_right + margin.held_left)
+        safe = lowest >= least * (0.5 * (to_right + to_left) + held)
         block.alarm[k] = 0.0 if safe else 1.0
         alarms |= 0 if safe else 1
     return alarms > 0
@@ -131,8 +159,6 @@ def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
 def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float, float]:
     """Fraction of the step after k others at which the storey uplifts, and the side (0: none)."""
     path = push_path(block, margin, h, k)
-    limit = margin.limit * block.g_up[k]
-    rise = margin.limit * (block.g_up_slope[k] * h)
     # Where gravity is lost both margins are negative at once: then the push decides.
     lean = 0.0
     for b in path:
@@ -140,7 +166,10 @@ def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float
     likelier = -1.0 if lean < 0.0 else 1.0
     first, side = NO_PASSAGE, 0.0
     for sign in (likelier, -likelier):
-        t = first_descent(margin_path(path, limit, rise, sign), SETTLED, block.piece)
+        factor, held = limit_to(margin, sign)
+        limit = factor * block.g_up[k]
+        rise = factor * (block.g_up_slope[k] * h)
+        t = first_descent(margin_path(path, limit, rise, sign, held), SETTLED, block.piece)
         if t < first:
             first, side = t, sign
     return first, side
@@ -181,8 +210,9 @@ def margin_after(
         dV += system.Gamma[r] * (system.omega2[r] * dq + system.two_xi_omega[r] * ddq)
     push = uplift_push(margin.ground_factor, margin.shear_share, a_g, V)
     push_slope = uplift_push(margin.ground_factor, margin.shear_share, slope, dV)
-    limit = margin.limit * (block.g_up[k] + block.g_up_slope[k] * h)
-    return limit - side * push, margin.limit * block.g_up_slope[k] - side * push_slope
+    factor, held = limit_to(margin, side)
+    limit = factor * (block.g_up[k] + block.g_up_slope[k] * h)
+    return limit - (side * push - held), factor * block.g_up_slope[k] - side * push_slope
 
 
 @compiled

@@ -57,7 +57,7 @@ def observe_ends(s: Record) -> None:
         across, upwards = cap_beam_acceleration(
             s, l, s.next_B[l], s.next_C[l], s.next_theta_dot[l], s.next_theta_ddot[l]
         )
-        raise_contacts(s, l, s.at_sample[l], across, upwards, s.next_V[l])
+        raise_contacts(s, l, s.at_sample[l], across, upwards, s.next_V[l] + s.next_push[l])
     for l in range(lanes):
         theta = s.next_theta[l]
         higher = (s.accepted[l] > s.peak_inside[l]) & (theta > s.max_theta[l])
@@ -79,7 +79,7 @@ def raise_contacts(s: Record, l: int, look: float, across: float, upwards: float
     across, upwards
         u_b'' and v_b'' relative to the ground [m/s2].
     V
-        Base shear of the building [N].
+        Base shear of the building, and what devices push the cap beam with [N].
     """
     top, bottom, light_top, light_bottom = contact_measures(
         s.cap_beam_mass[l],
@@ -91,6 +91,7 @@ def raise_contacts(s: Record, l: int, look: float, across: float, upwards: float
         s.next_a_g[l],
         s.next_g_up[l],
         s.gravity[l],
+        s.next_pull[l],
     )
     # What is not looked at counts as nothing; without branches, so that lanes go together.
     seen = look > 0.0

@@ -10,15 +10,21 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
+from rpscli.physics.devices.events import change_law, has_friction, locate_change
+from rpscli.physics.devices.flows import book_devices, observe_devices
+from rpscli.physics.devices.forces import set_devices
+from rpscli.physics.devices.rest import begin_excursion, turn
 from rpscli.physics.energy import book_energy
+from rpscli.physics.equation_of_motion import renew_accelerations
 from rpscli.physics.formulae.quintic import NEAR, NO_PASSAGE, first_descent, offset
-from rpscli.physics.formulae.taylor import end_step_at, fraction_at
+from rpscli.physics.formulae.taylor import end_step_at, fraction_at, tilt_at
 from rpscli.physics.run import Output
 from rpscli.physics.samples import enter_interval, store_sample
 from rpscli.physics.state import (
     AFTER_IMPACT,
     AFTER_PHASE_CHANGE,
     AFTER_RELEASE,
+    AFTER_TURNING,
     AFTER_UPLIFT,
     EVENT_KINDS,
     FAILED_NOT_FINITE,
@@ -43,19 +49,23 @@ from rpscli.physics.transitions.impact import apply_impact, comes_to_rest
 from rpscli.physics.transitions.log_event import log_event, time_of
 from rpscli.physics.transitions.phases import enter_phase, event_above, event_below
 from rpscli.physics.uplifted.peak import raise_peak
-from rpscli.physics.uplifted.steps import path_of, plan_steps
+from rpscli.physics.uplifted.steps import path_of, plan_steps, shorten_step
+
+CHANGE_OF_DEVICE = EVENT_KINDS
+"""Kind of an event that `devices.events` knows more of."""
 
 STALL = 100
 """So many events in a row without time passing: the step cannot be made small enough."""
 
 
 @compiled
-def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[float, float, int]:
+def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[float, float, int, int]:
     """Fraction of the step just taken at which its first event happens, and which.
 
     Returns
     -------
-    Fraction, level of the tilt, and kind of the event, or NO_EVENT: then the alarm was false.
+    Fraction, level of the tilt, kind of the event, or NO_EVENT: then the alarm was false; and, of
+    a CHANGE_OF_DEVICE, the function that it was watched by.
     """
     path, piece = path_of(s, l), block.piece
     first, level, kind = NO_PASSAGE, 0.0, NO_EVENT
@@ -67,7 +77,12 @@ def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[floa
         first, level, kind = t, s.theta_high[l], event_above(s, l, system)
     if kind != NO_EVENT:
         first = fraction_at(s, l, level, first)
-    return first, level, kind
+    which = -1
+    if s.devices[l] > 0:
+        t, found = locate_change(s, l, block)
+        if t < first:
+            first, level, kind, which = t, tilt_at(s, l, t), CHANGE_OF_DEVICE, found
+    return first, level, kind, which
 
 
 @compiled
@@ -80,6 +95,7 @@ def end_on_event(
     fraction: float,
     level: float,
     kind: int,
+    which: int,
 ) -> None:
     """End the step on an event, and switch.
 
@@ -95,15 +111,19 @@ def end_on_event(
         Fraction of the step at which the event happens.
     level
         The tilt there [rad].
-    kind
-        Kind of event, see `state`.
+    kind, which
+        Kind of event, see `state`, and the watched function of a device.
     """
     if s.audited > 0:
         book_energy(s, l, fraction)
+    if s.devices[l] > 0:
+        book_devices(s, l, fraction)
     end_step_at(s, l, fraction, level)
     turned = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
     if s.next_theta[l] > s.max_theta[l] or turned:
         raise_peak(s, l, block, log)
+    if s.devices[l] > 0:
+        observe_devices(s, l)
     s.theta[l], s.theta_dot[l] = s.next_theta[l], s.next_theta_dot[l]
     for r in range(s.n):
         s.q[r, l], s.dq[0, r, l] = s.next_q[r, l], s.next_dq[r, l]
@@ -112,6 +132,10 @@ def end_on_event(
     s.stalled[l] = s.stalled[l] + 1 if s.time[l] == before else 0
     if kind == IMPACT:
         apply_impact(s, l, system, log)
+        begin_excursion(s, l)
+        return
+    if kind == CHANGE_OF_DEVICE:
+        change_law(s, l, log, which)
         return
     rotation, rate = s.side[l] * s.theta[l], s.side[l] * s.theta_dot[l]
     log_event(s, l, log, time_of(s, l), kind, rotation, rate, rate, 0.0)
@@ -146,6 +170,8 @@ def next_interval(s: Record, l: int, acceleration: Floats) -> int:
     if s.interval[l] + 1 == s.npts[l]:
         s.renew[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
     s.step[l], s.steps_left[l] = s.uplifted_step[l], s.uplifted_steps[l]
+    if s.kinked[l] > 0.0:
+        shorten_step(s, l)
     return GOES_ON
 
 
@@ -158,29 +184,42 @@ def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) 
     """
     if s.too_long[l] > 0.0:
         s.step[l], s.steps_left[l] = 0.5 * s.step[l], 2.0 * s.steps_left[l]
+        if s.kinked[l] > 0.0:
+            s.steps_left[l] = 2.0
         return GOES_ON
     if not math.isfinite(s.next_theta[l] + s.next_theta_dot[l] + s.next_theta_ddot[l]):
         s.outcome[l] = FAILED_NOT_FINITE
         return IS_OVER
-    fraction, level, kind = locate_event(s, l, system, block)
+    fraction, level, kind, which = locate_event(s, l, system, block)
     if kind == NO_EVENT:
         s.no_event[l] = 1.0
         return GOES_ON
-    end_on_event(s, l, system, block, log, fraction, level, kind)
+    end_on_event(s, l, system, block, log, fraction, level, kind, which)
     plan_steps(s, l)
     return IS_OVER if s.outcome[l] >= 0 or too_many_events(s, l, system) else GOES_ON
 
 
 @compiled
 def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
-    """After accelerations were computed anew: GOES_ON, or STANDS if an impact was the last."""
+    """Compute accelerations anew: GOES_ON, or STANDS after the last impact or held by friction."""
+    if s.devices[l] > 0:
+        set_devices(s, l, s.theta[l], s.theta_dot[l])
+    renew_accelerations(s, l)
     after = s.renew[l]
     s.renew[l] = NOTHING_NEW
-    if after == AFTER_UPLIFT:
+    if after == AFTER_PHASE_CHANGE and s.theta_dot[l] == 0.0 and has_friction(s, l):
+        # It has just begun to slide: the same holds as at uplift, in either direction.
+        s.theta_ddot[l] = s.direction[l] * max(s.direction[l] * s.theta_ddot[l], 0.0)
+    elif after == AFTER_UPLIFT:
         # At the threshold theta'' is zero but for rounding, and about to grow.
         s.theta_ddot[l] = max(s.theta_ddot[l], 0.0)
-    elif after == AFTER_RELEASE:
-        store_sample(s, l, system, output)
+    elif after in (AFTER_RELEASE, AFTER_TURNING):
+        stuck = turn(s, l, output.log)
+        if after == AFTER_RELEASE:
+            store_sample(s, l, system, output)
+        return STANDS if stuck else GOES_ON
     elif after == AFTER_IMPACT and comes_to_rest(s, l, system, output.log):
         return STANDS
+    if s.kinked[l] > 0.0:
+        plan_steps(s, l)
     return GOES_ON

@@ -39,6 +39,23 @@ def plan_steps(s: Record, l: int) -> None:
     left = s.dt[l] - s.time[l]
     steps = max(math.ceil(left / s.uplifted_step[l] - 1e-9), 1)
     s.step[l], s.steps_left[l] = max(left, 0.0) / steps, steps
+    if s.kinked[l] > 0.0:
+        shorten_step(s, l)
+
+
+KINK = 0.25
+"""Largest change of |u_b'| over a step, where a damper has a kink at its zero."""
+
+
+@compiled
+def shorten_step(s: Record, l: int) -> None:
+    """Shorten the next step so that |u_b'| changes by a part of itself only, and plan one more."""
+    rate = abs(s.theta_dot[l]) * s.C[l]
+    change = abs(s.C[l] * s.theta_ddot[l] + s.B[l] * s.theta_dot[l] * s.theta_dot[l])
+    least = s.linear_speed[l] / s.diameter[l]
+    most = 2.0 * least if rate <= least else KINK * rate
+    if change * s.step[l] > most:
+        s.step[l], s.steps_left[l] = most / change, 2.0
 
 
 @compiled
@@ -99,6 +116,6 @@ def accept_steps(s: Record) -> None:
         s.time[l] += s.step[l] if accepted else 0.0
         left = s.steps_left[l] - (1.0 if accepted else 0.0)
         s.steps_left[l] = left
-        s.waits[l] = 0.0 if accepted & (left > 0.0) else 1.0
+        s.waits[l] = 0.0 if accepted & (left > 0.0) & (s.kinked[l] == 0.0) else 1.0
         s.no_event[l] = 0.0
         s.steps[l] += 1.0

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled, specialised
+from rpscli.physics.devices.forces import set_devices_at_ends
+from rpscli.physics.devices.series import begin_devices, extend_devices
 from rpscli.physics.equation_of_motion import (
     accelerate,
     begin_terms,
@@ -19,11 +21,15 @@ def take_steps(s: Record) -> None:
     Reads the motion at the start of the step, and leaves it; writes the Taylor terms and the end.
     """
     begin_terms(s)
+    if s.equipped > 0:
+        begin_devices(s)
     if s.lanes == 1:
         extend_all(s, 1)
     else:
         extend_all(s, LANES)
     add_terms(s)
+    if s.equipped > 0:
+        set_devices_at_ends(s)
     accelerate(s)
 
 
@@ -35,18 +41,32 @@ def extend_all(s: Record, lanes: int) -> None:
     """
     extend_rotation(s, lanes, 1)
     extend_modes(s, lanes, 1)
+    extend_equipped(s, 1)
     extend_rotation(s, lanes, 2)
     extend_modes(s, lanes, 2)
+    extend_equipped(s, 2)
     extend_rotation(s, lanes, 3)
     extend_modes(s, lanes, 3)
+    extend_equipped(s, 3)
     extend_rotation(s, lanes, 4)
     extend_modes(s, lanes, 4)
+    extend_equipped(s, 4)
     extend_rotation(s, lanes, 5)
     extend_modes(s, lanes, 5)
+    extend_equipped(s, 5)
     extend_rotation(s, lanes, 6)
     extend_modes(s, lanes, 6)
+    extend_equipped(s, 6)
     extend_rotation(s, lanes, 7)
     extend_modes(s, lanes, 7)
+    extend_equipped(s, 7)
+
+
+@compiled
+def extend_equipped(s: Record, m: int) -> None:
+    """Terms of order m of devices, where there are any."""
+    if s.equipped > 0:
+        extend_devices(s, m)
 
 
 @compiled

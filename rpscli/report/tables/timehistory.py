@@ -9,15 +9,17 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Event
+from rpscli.model.devices import name_of
 from rpscli.report.files.csv_text import Column, columns_of
 
 
 def history_columns(result: TimeHistoryResult) -> list[Column]:
     """`timehistory.csv`: one row a sample; floors and storeys are counted from the bottom.
 
-    `phase` is 0 in full contact, 1 rolling, 2 rocking. Displacements are relative to the ground,
-    floor accelerations absolute. Forces are those of one column, F to the right and N upwards on
-    what is above; of all columns together where the case does not give their number.
+    `phase` is 0 in full contact, 1 rolling, 2 rocking, 3 held by friction. Displacements are
+    relative to the ground, floor accelerations absolute. Forces are those of one column, F to the
+    right and N upwards on what is above; of all columns together where the case does not give
+    their number. Devices are counted from 0, as in `podium.devices`.
     """
     t, columns = result.trace, result.structure.columns
     return [
@@ -40,8 +42,19 @@ def history_columns(result: TimeHistoryResult) -> list[Column]:
         Column("energy_damped", "J", t.energy_damped),
         Column("energy_impact", "J", t.energy_impact),
         Column("energy_stored", "J", t.energy_stored),
+        *_devices(result),
         Column("phase", "-", t.phase),
     ]
+
+
+def _devices(result: TimeHistoryResult) -> Iterator[Column]:
+    """Force, displacement and energy of each device, named by its kind."""
+    trace = result.trace.devices
+    for index, device in enumerate(result.structure.devices):
+        name = f"device_{index}_{name_of(device)}"
+        yield Column(f"{name}_force", "N", trace.force[:, index])
+        yield Column(f"{name}_displacement", "m", trace.displacement[:, index])
+        yield Column(f"{name}_energy", "J", trace.energy[:, index])
 
 
 def event_columns(events: tuple[Event, ...]) -> list[Column]:

@@ -1,0 +1,116 @@
+"""Energy of devices, and the largest forces and rates that they see."""
+
+from __future__ import annotations
+
+from rpscli.physics.compile import compiled
+from rpscli.physics.devices.elongation import opening
+from rpscli.physics.devices.forces import cap_beam_path, resistance, tension
+from rpscli.physics.formulae.quadrature import NODES, WEIGHTS
+from rpscli.physics.formulae.taylor import integral, rotation_terms, value
+from rpscli.physics.state import (
+    BEYOND,
+    FRICTION,
+    ROLLING_RESISTANCE,
+    STOP,
+    TENDON,
+    VISCOUS,
+    WORKING,
+    Record,
+)
+
+
+@compiled
+def book_devices(s: Record, l: int, fraction: float) -> None:
+    """Book what the devices of a lane dissipate in the first part of its step."""
+    terms = rotation_terms(s, l)
+    for n in range(len(NODES)):
+        t = fraction * NODES[n]
+        theta_dot = value(terms, t)
+        theta = s.theta[l] + s.step[l] * integral(terms, t)
+        path, rate, _ = cap_beam_path(s, l, theta, theta_dot)
+        _, lever, _, _ = opening(s, l, theta)
+        for i in range(s.devices[l]):
+            kind, power = s.device_kind[i, l], 0.0
+            if kind in (VISCOUS, FRICTION):
+                power = resistance(s, l, i, path, rate) * rate
+            elif kind == STOP:
+                if s.device_branch[i, l] == WORKING:
+                    power = s.device_constants[i, 2, l] * rate * rate
+                elif s.device_branch[i, l] == BEYOND:  # it recovers by itself
+                    beyond = path - s.device_constants[i, 0, l]
+                    power = -s.device_constants[i, 1, l] * beyond * rate
+            elif kind == ROLLING_RESISTANCE:
+                power = s.direction[l] * s.device_constants[i, 0, l] * theta_dot
+            elif s.device_branch[i, l] == BEYOND:
+                power = s.columns[l] * s.device_constants[i, 2, l] * lever * theta_dot
+            s.device_energy[i, l] += fraction * s.step[l] * WEIGHTS[n] * power
+
+
+@compiled
+def observe_devices(s: Record, l: int) -> None:
+    """Raise the largest forces and rates of devices by those at the end of the step.
+
+    Where the tilt turns within it, also by those at the turning point.
+    """
+    raise_devices(s, l, s.next_theta[l], s.next_theta_dot[l])
+    if s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0:
+        terms, low, high = rotation_terms(s, l), 0.0, 1.0
+        for _ in range(50):
+            t = 0.5 * (low + high)
+            if value(terms, t) > 0.0:
+                low = t
+            else:
+                high = t
+        raise_devices(s, l, s.theta[l] + s.step[l] * integral(terms, low), 0.0)
+
+
+@compiled
+def raise_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
+    """Raise the largest forces and rates by those at a tilt and its rate."""
+    path, rate, C = cap_beam_path(s, l, theta, theta_dot)
+    e, lever, _, _ = opening(s, l, theta)
+    for i in range(s.devices[l]):
+        force, speed, _ = device_at(s, l, i, path, rate, C, e, lever * theta_dot)
+        s.device_force[i, l] = max(s.device_force[i, l], abs(force))
+        s.device_velocity[i, l] = max(s.device_velocity[i, l], abs(speed))
+
+
+@compiled
+def device_at(
+    s: Record, l: int, i: int, path: float, rate: float, C: float, e: float, e_rate: float
+) -> tuple[float, float, float]:
+    """Force of a device, the rate at which it is worked, and its displacement.
+
+    Of horizontal devices the resistance -s P with |u_b|; of a tendon the tension of one with its
+    elongation; of rolling resistance the horizontal force that does the same, M/(2 R C).
+
+    Parameters
+    ----------
+    s, l, i
+        The lanes, which of them, and which device.
+    path, rate, C
+        |u_b| [m], its rate [m/s], and C.
+    e, e_rate
+        Elongation of a tendon [m] and its rate [m/s].
+    """
+    kind = s.device_kind[i, l]
+    if kind == TENDON:
+        return tension(s, l, i, e), e_rate, e
+    if kind == ROLLING_RESISTANCE:
+        moment = s.direction[l] * s.device_constants[i, 0, l]
+        return moment / (s.diameter[l] * C), rate, path
+    return resistance(s, l, i, path, rate), rate, path
+
+
+@compiled
+def stored_in(s: Record, l: int, i: int, path: float, e: float) -> float:
+    """Energy stored in a device over that at the start [J]; a yielded tendon's may be negative."""
+    kind = s.device_kind[i, l]
+    if kind == STOP:
+        beyond = max(path - s.device_constants[i, 0, l], 0.0)
+        return float(0.5 * s.device_constants[i, 1, l] * beyond * beyond)
+    if kind == TENDON:
+        tense, prestress = tension(s, l, i, e), s.device_constants[i, 0, l]
+        change = tense * tense - prestress * prestress
+        return float(0.5 * s.columns[l] * change / s.device_constants[i, 1, l])
+    return 0.0
