@@ -9,12 +9,14 @@ import numba
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
+from oracles import devices as oracle_kinds
 from oracles.storey_lagrangian import OracleSystem
 
 from rpscli.analyses.kernels.step_lengths import uplifted_rate
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Profile, Superstructure, profile_stiffnesses
@@ -128,3 +130,21 @@ def oracle_system(structure: PodiumStructure) -> OracleSystem:
         law="flexible" if law.kind == "flexible" else "rigid",
         restitution=structure.restitution if law.kind == "value" or law.factor != 1.0 else None,
     )
+
+
+def oracle_devices(structure: PodiumStructure) -> tuple[oracle_kinds.OracleDevice, ...]:
+    """Its devices as the second integrator wants them."""
+    found: list[oracle_kinds.OracleDevice] = []
+    for device in structure.devices:
+        if isinstance(device, ViscousDamper):
+            found.append(oracle_kinds.Viscous(device.coefficient, device.exponent))
+        elif isinstance(device, FrictionDamper):
+            found.append(oracle_kinds.Friction(device.force))
+        elif isinstance(device, Stop):
+            found.append(oracle_kinds.Stop(device.gap, device.stiffness, device.damping))
+        elif isinstance(device, Tendon):
+            forces = device.prestress, device.stiffness, device.yield_force
+            found.append(oracle_kinds.Tendon(structure.columns, *forces))
+        else:
+            found.append(oracle_kinds.RollingResistance(device.lever))
+    return tuple(found)

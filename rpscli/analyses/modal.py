@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import FIXED_BASE_MODES, UPLIFTED, values_of
+from rpscli.model.linearised_devices import left_out, linear_damping, tendon_stiffness
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 
@@ -100,12 +101,17 @@ class ModalResult:
     rocking: UpliftedModes
 
     @property
+    def left_out(self) -> tuple[str, ...]:
+        """What of the devices is not linear, and therefore not in the modes."""
+        return tuple(left_out(self.structure))
+
+    @property
     def uplifted(self) -> dict[str, UpliftedModes]:
         """The uplifted states that exist, by name."""
         states = {"rolling": self.rolling, "rocking": self.rocking}
         return {name: modes for name, modes in states.items() if modes is not None}
 
-    def results(self) -> dict[str, dict[str, Any] | None]:
+    def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""
         fixed = self.fixed_base
         states = {name: values_of(modes, UPLIFTED) for name, modes in self.uplifted.items()}
@@ -113,6 +119,7 @@ class ModalResult:
             "fixed_base": None if fixed is None else values_of(fixed, FIXED_BASE_MODES),
             "rolling": None,
             **states,
+            "left_out": list(self.left_out),
         }
 
 
@@ -151,13 +158,16 @@ def linearised_matrices(
     Notes
     -----
     Paper, Table 2, where the sign of the (2 rho - 1) term must be +: with the printed one a larger
-    radius would soften the storey (Theory, section 9).
+    radius would soften the storey (Theory, section 9). Linear dampers and elastic tendons belong
+    to u_b (Theory, section 11).
     """
     n = structure.storeys
     M, C, K = (np.zeros((n + 1, n + 1)) for _ in range(3))
     columns = 0.25 * structure.columns_mass * structure.bearing.inertia_ratio
     M[0, 0] = columns + structure.cap_beam_mass + structure.superstructure_mass * angle**2
     K[0, 0] = structure.weight * kappa / (2.0 * structure.bearing.semi_diagonal)
+    K[0, 0] += tendon_stiffness(structure, kappa, angle)
+    C[0, 0] = linear_damping(structure)
     if (building := structure.superstructure) is not None:
         M[1:, 1:] = building.mass_matrix
         for whole, part in ((C, building.damping_matrix), (K, building.stiffness_matrix)):
@@ -172,10 +182,12 @@ def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> Uplifte
     size = len(M)
     state = np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
     values, vectors = np.linalg.eig(state)
-    own = _own_pair(values, kappa)
+    diameter = 2.0 * structure.bearing.semi_diagonal
+    kappa += tendon_stiffness(structure, kappa, angle) * diameter / structure.weight
+    own = _own_pair(values, kappa, linear_damping(structure) / M.sum())
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
     values, vectors = values[order].astype(complex), vectors[:size, order]
-    if kappa == 0.0:
+    if kappa == linear_damping(structure) == 0.0:
         # A defective double zero: rounding splits it into +-sqrt(eps), which is no frequency.
         values[:2], vectors[:, :2] = 0.0, 1.0
     pairs = _pairs(values[2:])
@@ -198,19 +210,20 @@ def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> Uplifte
     )
 
 
-def _own_pair(values: NDArray[np.complex128], kappa: float) -> tuple[int, int]:
-    """Indices of the storey's own eigenvalues, the growing one first.
+def _own_pair(values: NDArray[np.complex128], kappa: float, decay: float) -> tuple[int, int]:
+    """Indices of the storey's own eigenvalues, the growing or the slowest one first.
 
     With negative stiffness K_L has one negative eigenvalue, so exactly one root grows; its partner
-    is the real root nearest to its mirror image. Tall buildings have slower modes than these two,
-    so the smallest pair will not do. With positive stiffness the slow pair is the storey's.
+    is the real root nearest to its mirror image, shifted by the decay that dampers cause. Tall
+    buildings have slower modes than these two, so the smallest pair will not do. With positive
+    stiffness the slow pair is the storey's, unless dampers make one of its roots fast.
     """
-    if kappa >= 0.0:
-        first, second = np.argsort(np.abs(values), kind="stable")[:2]
-        return int(first), int(second)
-    growing = int(np.argmax(values.real))
-    real = [i for i, v in enumerate(values) if v.imag == 0.0 and i != growing]
-    return growing, min(real, key=lambda i: abs(values[i] + values[growing]))
+    slow = np.argsort(np.abs(values), kind="stable")[:2]
+    if kappa >= 0.0 and (decay == 0.0 or values[slow[0]].imag != 0.0):
+        return int(slow[0]), int(slow[1])
+    first = int(np.argmax(values.real)) if kappa < 0.0 else int(slow[0])
+    real = [i for i, v in enumerate(values) if v.imag == 0.0 and i != first]
+    return first, min(real, key=lambda i: abs(values[i] + values[first] + decay))
 
 
 def _over(M: Array, X: Array) -> Array:

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
+from rpscli.model.linearised_devices import stiffness_after_uplift
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.recentring import friction_force, restoring_force
 from rpscli.model.superstructure import Superstructure
 
 Array = NDArray[np.float64]
@@ -28,9 +30,12 @@ class StoreyCurve:
     displacement: Array
     """(points,) u_b [m]."""
     force: Array
-    """(points,) F = W B/C [N]."""
+    """(points,) that holds it on the way out: F = W B/C, stops, tendons and friction [N]."""
     lift: Array
     """(points,) v_b [m]."""
+    unloading_force: Array
+    """(points,) on the way back from the end, negative where it must be drawn back; without
+    friction and yielding tendons the same as `force` [N]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,22 +104,29 @@ def pushover(
 
     Notes
     -----
-    F(theta) = W B/C; after uplift lambda sum(p) = F(theta) and the floors stand at
-    1 u_b + lambda K^-1 p (Theory, section 5; paper, Figure 1c).
+    F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the floors
+    stand at 1 u_b + lambda K^-1 p (Theory, section 5; paper, Figure 1c).
     """
     end, beta = structure.critical_rotation, structure.bearing.beta
     rotation = np.linspace(0.0, end, points)
     if 0.0 < beta < end:
         rotation = np.sort(np.append(rotation, beta))
-    force, displacement, lift = structure.path(rotation)
-    curve = StoreyCurve(rotation, displacement, force, lift)
+    _, displacement, lift = structure.path(rotation)
+    held = friction_force(structure, rotation)
+    curve = StoreyCurve(
+        rotation=rotation,
+        displacement=displacement,
+        force=restoring_force(structure, rotation) + held,
+        lift=lift,
+        unloading_force=restoring_force(structure, rotation, farthest=end) - held,
+    )
     building = structure.superstructure
     return PushoverResult(
         structure=structure,
-        uplift_force=structure.uplift_force,
+        uplift_force=float(curve.force[0]),
         critical_rotation=end,
         critical_displacement=float(displacement[-1]),
-        initial_stiffness=structure.initial_stiffness,
+        initial_stiffness=structure.initial_stiffness + stiffness_after_uplift(structure),
         curve=curve,
         capacity=tuple(_capacity(building, curve, p) for p in patterns) if building else (),
     )

@@ -215,6 +215,7 @@ STOREY_CURVE = (
     ResultQuantity("displacement", "m", "cap beam displacement", "$u_b$"),
     ResultQuantity("force", "N", "force at the cap beam"),
     ResultQuantity("lift", "m", "lift", "$v_b$"),
+    ResultQuantity("unloading_force", "N", "force on the way back"),
 )
 """Lists along the storey's curve."""
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from rpscli.case.conditions import conditions_of
 from rpscli.commands.case_input import case_heading, read_case
+from rpscli.commands.check_device_tables import device_tables
 from rpscli.commands.check_tables import check_tables
 from rpscli.commands.motion import MotionRequest, load_motion
 from rpscli.commands.shell.failure import concluded, leave
@@ -30,9 +32,11 @@ def command(request: CaseRequest, terminal: Terminal) -> None:
     line for each of them; so does a record that cannot be read.
     """
     given = read_case(request, terminal)
+    from rpscli.model.device_consequences import device_consequences  # noqa: PLC0415
     from rpscli.report.tables.derived import derived_quantities  # noqa: PLC0415 -- numpy is slow
 
-    derived = derived_quantities(given.case.structure)
+    structure = given.case.structure
+    derived = derived_quantities(structure) | device_consequences(structure)
     record, error = _record(given.case)
     document = {
         **heading(),
@@ -45,7 +49,8 @@ def command(request: CaseRequest, terminal: Terminal) -> None:
     }
     terminal.warn((record or {}).get("warnings", ()))
     limits = conditions_of(given.case.limits, "limits of the case")
-    terminal.result(concluded(document, error), check_tables(document, limits))
+    tables = chain(check_tables(document, limits), device_tables(structure))
+    terminal.result(concluded(document, error), tables)
     leave(error)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from rpscli.case.text.faults import listed
 from rpscli.commands.case_input import case_folder, case_heading, read_case, write
 from rpscli.commands.shell.numbers import shown
 from rpscli.commands.shell.options import (
@@ -17,7 +18,7 @@ from rpscli.commands.shell.options import (
     output_options,
     terminal_options,
 )
-from rpscli.commands.shell.tables import table
+from rpscli.commands.shell.tables import sentence, table
 from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.report.documents import heading
@@ -71,6 +72,8 @@ def _tables(result: ModalResult, title: str) -> Iterator[RenderableType]:
     ]
     yield heading_line(title)
     yield table(("storey's own mode", "", "p_ext rad/s", "rigid estimate rad/s"), storey, words=2)
+    if result.left_out:
+        yield sentence(f"Not linear, and left out: {listed(result.left_out, 'and')}.")
     if (fixed := result.fixed_base) is None:
         return
     rows = [

@@ -14,10 +14,19 @@ POINTS = 400
 """Rotations that are looked at; the curve has no more than a few bends."""
 
 
-def restoring_force(structure: PodiumStructure, rotation: Array) -> Array:
+def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float = 0.0) -> Array:
     """Horizontal force at the cap beam that holds rotations > 0 at rest without friction [N].
 
-    F = W B/C with what stops and tendons add, the latter as if they had never yielded.
+    F = W B/C with what stops and tendons add.
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    rotation
+        Rotations > 0, of any shape [rad].
+    farthest
+        Rotation up to which tendons were drawn before, perhaps beyond yielding [rad].
     """
     x = np.asarray(rotation, dtype=float)
     force, path, _ = structure.path(x)
@@ -27,10 +36,19 @@ def restoring_force(structure: PodiumStructure, rotation: Array) -> Array:
         if isinstance(device, Stop):
             force = force + device.stiffness * np.maximum(path - device.gap, 0.0)
         elif isinstance(device, Tendon):
-            tension = device.prestress + device.stiffness * elongation
-            tension = np.minimum(tension, device.yield_force)
+            tension = device.prestress + device.stiffness * (
+                elongation - yielded(structure, device, farthest)
+            )
+            tension = np.clip(tension, 0.0, device.yield_force)
             force = force + structure.columns * tension * lever / arm
     return np.asarray(force)
+
+
+def yielded(structure: PodiumStructure, tendon: Tendon, farthest: float) -> float:
+    """What a tendon keeps of its elongation after it was drawn to a rotation [m]."""
+    elastic = (tendon.yield_force - tendon.prestress) / tendon.stiffness
+    drawn = structure.bearing.tendon_elongation(np.array([farthest]))
+    return max(0.0, float(drawn[0]) - elastic)
 
 
 def friction_force(structure: PodiumStructure, rotation: Array) -> Array:
@@ -57,10 +75,10 @@ def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> 
         stops or tendons hold it.
     """
     x = np.linspace(rotation / POINTS, rotation, POINTS)
-    return float(np.min(restoring_force(structure, x)))
+    return float(np.min(restoring_force(structure, x, rotation)))
 
 
 def recentres(structure: PodiumStructure, rotation: float) -> bool:
     """Whether the structure comes back to full contact from rest at a rotation [rad], slowly."""
     x = np.linspace(rotation / POINTS, rotation, POINTS)
-    return bool(np.all(restoring_force(structure, x) > friction_force(structure, x)))
+    return bool(np.all(restoring_force(structure, x, rotation) > friction_force(structure, x)))

@@ -122,7 +122,8 @@ def test_pushover(rps_json: InvokeJson, case: Path) -> None:
     result = pushover(load_case(case).structure)
     for key in ("uplift_force", "critical_rotation", "critical_displacement", "initial_stiffness"):
         assert document[key] == getattr(result, key)
-    assert set(document["curve"]) == {"rotation", "displacement", "force", "lift"}
+    quantities = {"rotation", "displacement", "force", "lift", "unloading_force"}
+    assert set(document["curve"]) == quantities
     assert document["curve"]["force"] == result.curve.force.tolist()
     names = {Path(file).name for file in document["files"]}
     building = {"capacity.csv", "capacity.png"} if result.capacity else set()
@@ -136,7 +137,9 @@ def test_tables_of_the_pushover(rps: Invoke) -> None:
     folder = Path("results/small/pushover")
     result = pushover(load_case("small.yaml").structure, patterns=["uniform", (1.0, 2.0, 3.0)])
     curve = columns(folder / "storey_curve.csv")
-    assert list(curve) == ["rotation [rad]", "displacement [m]", "force [N]", "lift [m]"]
+    assert list(curve) == [
+        "rotation [rad]", "displacement [m]", "force [N]", "lift [m]", "unloading_force [N]"
+    ]  # fmt: skip
     force = [float(value) for value in curve["force [N]"]]
     # Ten digits of each; at theta_cr the force is zero but for rounding.
     assert force == pytest.approx(result.curve.force, rel=TEN_DIGITS, abs=1e-6)

@@ -14,7 +14,7 @@ What it cannot do: a sphere goes on rolling where an arc would end, so tilts mus
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +22,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .crossings import Array
+from .devices import OracleDevice, RollingResistance
+from .multibody_devices import (
+    anchors,
+    beam_joint,
+    contact_friction,
+    ducts,
+    holds,
+    springs,
+)
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
 TIME_STEP = 2e-5
@@ -45,10 +54,11 @@ SPACING = 6.0
 THICKNESS = 0.5
 """Of the cap beam [m]; without influence."""
 
-OPTIONS = (
-    'integrator="implicitfast" cone="elliptic" impratio="100" tolerance="1e-12" iterations="100"'
-)
-"""Friction a hundred times as stiff as the normal direction, so that contacts do not creep."""
+OPTIONS = 'integrator="implicitfast" cone="elliptic" tolerance="1e-12" iterations="100"'
+
+STIFF_FRICTION = 100
+"""Over that of the normal direction (`impratio`), so that contacts do not creep; where they resist
+rolling it is 1, or columns that come down after the others stay behind for good."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +85,7 @@ def simulate(
     time_step: float = TIME_STEP,
     level: bool = True,
     closing_damping: float = 1.0,
+    devices: Sequence[OracleDevice] = (),
 ) -> MultibodyResult:
     """Response to ground acceleration samples [m/s2] from rest, or after release from a tilt.
 
@@ -84,7 +95,7 @@ def simulate(
     """
     import mujoco  # noqa: PLC0415 -- an extra
 
-    text = description(system, columns, time_step, closing_damping, level=level)
+    text = description(system, columns, time_step, closing_damping, level=level, devices=devices)
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     _place(data, system, columns, initial_rotation)
@@ -114,25 +125,36 @@ def simulate(
 
 
 def description(
-    system: OracleSystem, columns: int, time_step: float, damping: float, *, level: bool
+    system: OracleSystem,
+    columns: int,
+    time_step: float,
+    damping: float,
+    *,
+    level: bool,
+    devices: Sequence[OracleDevice] = (),
 ) -> str:
     """The structure in the engine's language."""
     bodies = [_column(system, c, columns) for c in range(columns)]
+    bodies += [anchors(c, _place_of(c, columns)) for c in range(columns)]
     if system.cap_beam_mass:
-        bodies.append(_cap_beam(system, columns, level=level))
+        joint = beam_joint(devices, time_step)
+        bodies.append(_cap_beam(system, columns, joint, level=level))
+    stiff = 1 if any(isinstance(d, RollingResistance) for d in devices) else STIFF_FRICTION
+    tendons = [*_storeys(system), *springs(devices, columns, _half_sizes(system)[0])]
     return f"""
     <mujoco>
       <compiler angle="radian" inertiafromgeom="false"/>
-      <option timestep="{time_step}" gravity="0 0 {-system.gravity}" {OPTIONS}/>
+      <option timestep="{time_step}" gravity="0 0 {-system.gravity}"
+              impratio="{stiff}" {OPTIONS}/>
       <default>
         <geom solref="{CLOSING_STEPS * time_step} {damping}" solimp="0.999 0.999 0.001"
-              friction="3 0 0" condim="3" mass="0"/>
+              {contact_friction(devices)} mass="0"/>
       </default>
       <worldbody>
         <geom type="plane" size="0 0 1" contype="0" conaffinity="1"/>
         {"".join(bodies)}
       </worldbody>
-      <tendon>{"".join(_storeys(system))}</tendon>
+      <tendon>{"".join(tendons)}</tendon>
     </mujoco>"""
 
 
@@ -160,7 +182,7 @@ def _column(system: OracleSystem, number: int, columns: int) -> str:
       <joint name="across {number}" type="slide" axis="1 0 0"/>
       <joint name="up {number}" type="slide" axis="0 0 1"/>
       <joint name="tilt {number}" type="hinge" axis="0 1 0"/>
-      {ends}
+      {ends}{ducts(number, H)}
     </body>"""
 
 
@@ -168,7 +190,7 @@ def _place_of(number: int, columns: int) -> float:
     return (number - 0.5 * (columns - 1)) * SPACING
 
 
-def _cap_beam(system: OracleSystem, columns: int, *, level: bool) -> str:
+def _cap_beam(system: OracleSystem, columns: int, joint: str, *, level: bool) -> str:
     H, half, reach = _half_sizes(system)[0], 0.5 * THICKNESS, 0.5 * columns * SPACING
     spin = system.cap_beam_mass * (half**2 + reach**2) / 3.0
     # Rayleigh damping: what is left of C after the storeys' dampers acts against the beam.
@@ -183,10 +205,11 @@ def _cap_beam(system: OracleSystem, columns: int, *, level: bool) -> str:
     return f"""
     <body pos="0 0 {2.0 * H + half}">
       <inertial pos="0 0 0" mass="{system.cap_beam_mass}" diaginertia="{spin} {spin} {spin}"/>
-      <joint name="beam across" type="slide" axis="1 0 0"/>
+      <joint name="beam across" type="slide" axis="1 0 0" {joint}/>
       <joint name="beam up" type="slide" axis="0 0 1"/>
       {"" if level else '<joint name="beam tilt" type="hinge" axis="0 1 0"/>'}
       <geom type="box" size="{reach} 1 {half}" contype="0" conaffinity="2"/>
+      {"".join(holds(c, _place_of(c, columns), -half) for c in range(columns))}
       {floors}
     </body>"""
 

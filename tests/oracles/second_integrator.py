@@ -351,6 +351,7 @@ class _Simulation:
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         before = sum(motion.energies(contact, self.y))
         self.impacts += 1
+        self.equipment.stand()
         self.y = motion.after_impact(self.y)
         beyond = Contact(-contact.side, contact.rolling)
         back = -beyond.side * float(self.rates(ground, beyond)(0.0, self.y)[n1])
@@ -381,7 +382,6 @@ class _Simulation:
             self.y[n1 + 1] += share * 2.0 * motion.half_height * self.y[n1]
         self.y[n1] = 0.0
         self.contact, self.step = None, np.inf
-        self.equipment.stand()
 
 
 def simulate(

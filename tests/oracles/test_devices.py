@@ -321,6 +321,36 @@ def test_a_tendon_that_yields_loses_prestress_or_all_of_it(reach: float) -> None
     assert run.equipment.branches[0] == ("elastic" if reach < 1.0 else "slack")
 
 
+@pytest.mark.parametrize("share", [0.2, 0.4])
+def test_locking_in_the_limit_with_friction_needs_no_small_tolerance(share: float) -> None:
+    system = replace(podium(2, 0.15, 0.0), restitution=0.6)
+    force = share * StoreyLagrangian(system).lifted_mass * GRAVITY * 0.15
+
+    def vibration(tolerance: float, locking: Literal["relative", "limit"]) -> Array:
+        result = simulate(
+            system,
+            np.zeros(1),
+            0.02,
+            free_vibration=2.0,
+            recontact_tolerance=tolerance,
+            initial_rotation=0.02,
+            locking=locking,
+            devices=(Friction(force),),
+        )
+        assert result.theta[-1] == 0.0
+        return result.drifts[-20:]
+
+    exact = vibration(1e-12, "limit")
+
+    def missed(tolerance: float, locking: Literal["relative", "limit"]) -> float:
+        return float(np.max(np.abs(vibration(tolerance, locking) - exact)) / np.max(np.abs(exact)))
+
+    # what "relative" leaves out is of the order of w, what "limit" does of that of w^2
+    assert missed(1e-8, "limit") < 1e-4
+    for tolerance in (1e-6, 1e-8):
+        assert missed(tolerance, "limit") < 0.1 * missed(tolerance, "relative")
+
+
 @pytest.mark.parametrize("law", ["rigid", "flexible"])
 def test_energy_with_every_device(law: Literal["rigid", "flexible"]) -> None:
     base = podium(2, 0.15, 0.4)

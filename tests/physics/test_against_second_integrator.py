@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from paper_structures import (
     RecordLoader,
     building,
     needs_compiled_kernels,
+    oracle_devices,
     oracle_system,
     podium,
     waves,
@@ -21,6 +23,14 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.devices import (
+    Device,
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
@@ -79,6 +89,7 @@ def agree(
         av=None if vertical is None else vertical.acceleration,
         free_vibration=free_vibration,
         locking=rule,
+        devices=oracle_devices(structure),
     )
     assert (result.impacts, result.uplifts) == (other.impacts, other.uplifts)
     assert result.overturned == other.overturned
@@ -91,6 +102,17 @@ def agree(
         assert result.storey_shears == pytest.approx(shears, rel=10.0 * tolerance)
     supplied = max(abs(result.energy.input), 1.0)
     assert result.energy.impact == pytest.approx(other.energy_lost, abs=10.0 * tolerance * supplied)
+    if structure.devices and not other.overturned:
+        found = result.trace.devices
+        taken = found.energy[-1] + found.stored[-1]
+        assert taken == pytest.approx(other.device_work, abs=10.0 * tolerance * supplied)
+        for device, demand, plastic in zip(
+            structure.devices, result.devices, other.plastic, strict=True
+        ):
+            if isinstance(device, Tendon):
+                left = max(0.0, device.prestress - device.stiffness * plastic)
+                force = device.stiffness * float(result.structure.bearing.half_width)
+                assert demand.remaining_prestress == pytest.approx(left, abs=tolerance * force)
     return result
 
 
@@ -101,6 +123,60 @@ def test_both_roads_lead_to_the_same_history(name: str) -> None:
     vertical = waves(1.6, DT, 3.0, seed=99) if shaken_upwards else None
     # both converge to 1e-9 before impacts multiply that by up to a hundred
     assert agree(structure, record, vertical, 0.6, 1e-7).impacts >= 1
+
+
+def with_devices(structure: PodiumStructure, *kinds: str) -> PodiumStructure:
+    """The structure with devices that matter to it."""
+    F, W, B = structure.uplift_force, structure.weight, structure.bearing.half_width
+    known: dict[str, Device] = {
+        "linear damper": ViscousDamper(0.4 * F),
+        "damper of 0.5": ViscousDamper(0.3 * F, 0.5),
+        "damper of 1.6": ViscousDamper(0.5 * F, 1.6),
+        "friction": FrictionDamper(0.3 * F),
+        "much friction": FrictionDamper(1.1 * F),
+        "rolling resistance": RollingResistance(0.1 * B),
+        "stop": Stop(0.04, 20.0 * F),
+        "damped stop": Stop(0.03, 20.0 * F, F),
+        "stop without gap": Stop(0.0, 2.0 * F, 0.1 * F),
+        "tendon": Tendon(0.03 * W, W),
+        "yielding tendon": Tendon(0.02 * W, 3.0 * W, 0.04 * W),
+        "loose tendon": Tendon(0.005 * W, 3.0 * W, 0.02 * W),
+    }
+    return replace(structure, devices=tuple(known[kind] for kind in kinds), columns=4)
+
+
+EQUIPPED = {
+    "linear damper": (podium(3, 0.15, 0.5, law=FLEXIBLE), 3.0),
+    "damper of 0.5": (podium(1, 0.15, FLAT), 3.0),
+    "damper of 1.6": (podium(2, 0.15, 1.5), 3.0),
+    "friction": (podium(3, 0.15, 0.5), 3.0),
+    "much friction": (podium(3, 0.15, 0.5, law=FLEXIBLE), 4.0),
+    "much friction, rolling resistance": (podium(2, 0.10, 0.3, law=FLEXIBLE), 4.0),
+    "rolling resistance": (podium(0, 0.15, 0.5), 3.0),
+    "stop": (podium(3, 0.10, FLAT, law=FLEXIBLE), 3.0),
+    "damped stop": (podium(3, 0.15, 0.5), 3.0),
+    "stop without gap": (podium(2, 0.15, 0.26), 3.0),
+    "tendon": (podium(3, 0.15, 0.26), 3.0),
+    "yielding tendon": (podium(3, 0.10, FLAT, law=FLEXIBLE), 3.0),
+    "loose tendon": (podium(0, 0.10, 1.5), 4.0),
+    "friction, damped stop": (podium(3, 0.15, 0.5, law=FLEXIBLE), 3.0),
+    "friction, linear damper, stop, yielding tendon": (podium(3, 0.10, 0.5, law=FLEXIBLE), 4.0),
+}
+
+
+@pytest.mark.parametrize("names", EQUIPPED)
+def test_both_roads_with_devices(names: str) -> None:
+    bare, peak = EQUIPPED[names]
+    structure = with_devices(bare, *names.split(", "))
+    record = waves(1.6, DT, peak * structure.uplift_acceleration, seed=len(names))
+    vertical = waves(1.6, DT, 3.0, seed=99) if len(names) % 2 else None
+    result = agree(structure, record, vertical, 0.6, 1e-7, "limit")
+    assert result.uplifts >= 1
+    kinds = {event.kind for event in result.events}
+    assert ("sticking" in kinds) >= ("much friction" in names)
+    assert ("stop_met" in kinds) >= ("stop" in names and "gap" not in names)
+    assert ("tendon_yielding" in kinds) >= ("yielding" in names or "loose" in names)
+    assert ("tendon_slack" in kinds) >= ("loose" in names)
 
 
 SOON_AT_REST = [

@@ -21,6 +21,13 @@ def title(text: str) -> Text:
     return Text(text, style="bold")
 
 
+def sentence(text: str) -> Text:
+    """A remark between tables."""
+    from rich.text import Text  # noqa: PLC0415
+
+    return Text(text)
+
+
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1) -> Table:
     """A table of texts.
 

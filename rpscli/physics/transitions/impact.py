@@ -54,13 +54,35 @@ def change_edge(s: Record, l: int, system: Record) -> float:
 
 
 @compiled
+def bounces_left_out(s: Record, l: int, system: Record) -> float:
+    """What the bounces left out add to the floors' velocity, over u_b', as the rule asks for.
+
+    Friction lets the beam come back with k of the rate with which it left: k = 1 without it, 0 if
+    it holds the beam where it turns (Theory, section 11).
+    """
+    bounces = system.bounces
+    if (
+        bounces > 0.0
+        and system.floors_jump > 0
+        and s.friction_force[l] + s.friction_moment[l] > 0.0
+    ):
+        C = s.phase_c[l] - s.phase_q[l]
+        moment = C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
+        friction = s.per_A[l] * s.shear_factor[l] * moment
+        k = math.sqrt(max(0.0, 1.0 + 2.0 * friction / s.theta_ddot[l]))
+        bounces = (1.0 + k) / (1.0 + system.restitution * k)
+    return float(bounces)
+
+
+@compiled
 def lock(s: Record, l: int, system: Record) -> float:
     """Full contact from now on; returns the energy lost [J].
 
     The floors lose the cap beam's velocity u_b' and keep the relative one; the bounces that are
-    left out would have changed it by `bounces` u_b', which is added where asked for.
+    left out would have changed it, by a multiple of u_b', which is added where asked for. The
+    acceleration of the lane is that after the last impact.
     """
-    kept = system.bounces
+    kept = bounces_left_out(s, l, system)
     beam = s.side[l] * 2.0 * system.R * math.cos(system.alpha) * s.theta_dot[l]
     carried = relative_momentum(s, l) + 0.5 * (1.0 + kept) * s.floors_mass[l] * beam
     lost = upright_energy(s, l) + (1.0 - kept) * beam * carried

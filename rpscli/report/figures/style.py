@@ -122,7 +122,7 @@ def heading(figure: Figure, *parts: str) -> None:
 
     What does not fit beside the first part, the title, stands below it; lines are cut to the width.
     """
-    title, *others = (part for part in parts if part)
+    title, *others = [part for part in parts if part] or [""]
     most = int(LETTERS_PER_INCH * figure.get_figwidth() * 8.0 / small())
     lines = ["   |   ".join((title, *others))]
     if others and len(lines[0]) > most:

@@ -1,0 +1,55 @@
+"""What follows from the devices of a case as tables for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rpscli.commands.shell.numbers import large, shown
+from rpscli.commands.shell.tables import table
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.model.podium import PodiumStructure
+
+
+def device_tables(structure: PodiumStructure) -> Iterator[RenderableType]:
+    """Each device's numbers, uplift with all of them, and from where the storey re-centres."""
+    if not structure.devices:
+        return
+    from rpscli.model.device_consequences import (  # noqa: PLC0415 -- numpy is slow
+        consequences,
+        returns,
+        uplift_acceleration,
+        uplift_force,
+    )
+    from rpscli.model.devices import name_of  # noqa: PLC0415
+
+    found = [
+        (f"{index} {name_of(device)}", item.label, item.value, item.unit)
+        for index, device in enumerate(structure.devices)
+        for item in consequences(structure, device)
+    ]
+    found.append(("all", "uplift force at the cap beam", uplift_force(structure), "N"))
+    found.append(("all", "quasi-static uplift at", uplift_acceleration(structure), "m/s2"))
+    rows = []
+    for device, label, value, unit in found:
+        number, name = large(value, unit)
+        rows.append((device, label, "never" if number is None else shown(number), name))
+    yield table(("device", "", "value", "unit"), rows, words=2)
+    if back := returns(structure):
+        yield table(
+            ("from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"),
+            [
+                (
+                    shown(row.rotation),
+                    shown(row.rotation / structure.critical_rotation, 2),
+                    shown(row.displacement),
+                    shown(1e-3 * row.friction),
+                    shown(1e-3 * row.largest_friction),
+                    "yes" if row.recentres else "no",
+                )
+                for row in back
+            ],
+        )

@@ -1,0 +1,182 @@
+"""Statics of devices against the second integrator's generalised forces, and closed forms."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.devices import Equipment
+from oracles.storey_lagrangian import Contact, StoreyLagrangian
+from paper_structures import FLAT, oracle_devices, oracle_system, podium
+
+from rpscli.analyses.modal import linearised_matrices, modal
+from rpscli.analyses.pushover import pushover
+from rpscli.model.device_consequences import device_consequences, returns, uplift_force
+from rpscli.model.devices import (
+    Device,
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
+from rpscli.model.podium import PodiumStructure
+
+DEVICES: tuple[Device, ...] = (
+    FrictionDamper(1.2e5),
+    RollingResistance(0.02),
+    Stop(0.15, 2e6, 1e5),
+    Stop(0.0, 3e4),
+    Tendon(3e4, 5e5, 4e4),
+    Tendon(1e4, 2e5),
+    ViscousDamper(1e5, 0.5),
+)
+
+
+def equipped(rho: float, *devices: Device, tan_alpha: float = 0.15) -> PodiumStructure:
+    return replace(podium(2, tan_alpha, rho), devices=devices, columns=6)
+
+
+@pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])
+def test_both_branches_of_the_storey_curve(rho: float) -> None:
+    structure = equipped(rho, *DEVICES)
+    curve = pushover(structure, points=50).curve
+    motion = StoreyLagrangian(oracle_system(structure))
+    end = structure.critical_rotation
+    returning = Equipment(motion, oracle_devices(structure), 2.0 * end)
+    returning.release(end, rolling=end < motion.beta)
+    assert max(returning.plastic) > 0.0
+    for index, x in enumerate(curve.rotation):
+        contact = Contact(1, rolling=bool(x < motion.beta))
+        shift, slope, _ = motion.cap_beam(float(x), rolling=contact.rolling)
+        weight = motion.lifted_mass * structure.gravity * slope.imag
+        gear = Equipment(motion, oracle_devices(structure), 2.0 * end)
+        gear.release(float(x), rolling=contact.rolling)
+        active, held = gear.at_rest(contact, float(x))
+        assert curve.displacement[index] == pytest.approx(shift.real, abs=1e-14)
+        assert curve.force[index] == pytest.approx((weight - active + held) / slope.real, rel=1e-12)
+        # on the way back tendons are longer by what they yielded; slack if nothing is left
+        for k, device in enumerate(returning.devices):
+            gap = getattr(device, "gap", None)
+            if gap is not None:
+                returning.branches[k] = "pushing" if shift.real > gap else "open"
+            if hasattr(device, "prestress"):
+                returning.branches[k] = "elastic"
+                e = returning.elongation(float(x), rolling=contact.rolling)[0]
+                if returning.tension(k, device, e) < 0.0:  # type: ignore[arg-type]
+                    returning.branches[k] = "slack"
+        active, held = returning.at_rest(contact, float(x))
+        back = (weight - active - held) / slope.real
+        assert curve.unloading_force[index] == pytest.approx(back, rel=1e-11)
+
+
+@pytest.mark.parametrize("rho", [FLAT, 0.5, 1.5])
+def test_uplift_force_and_the_stiffness_after_it(rho: float) -> None:
+    structure = equipped(rho, *DEVICES)
+    found = pushover(structure)
+    bearing = structure.bearing
+    tan, H = bearing.slenderness, bearing.half_height
+    by_hand = (structure.weight + 6 * 4e4) * tan + 1.2e5 + structure.weight * 0.02 / H
+    assert found.uplift_force == pytest.approx(by_hand, rel=1e-12)
+    assert uplift_force(structure) == pytest.approx(by_hand, rel=1e-12)
+    path = pushover(structure, points=20_001).curve
+    slope = np.diff(path.force[:3]) / np.diff(path.displacement[:3])
+    # extrapolated to zero: a parabola through three points, 1e-4 of the curve
+    size = structure.weight / (2.0 * bearing.semi_diagonal)
+    assert found.initial_stiffness == pytest.approx(
+        1.5 * slope[0] - 0.5 * slope[1], abs=1e-5 * size
+    )
+
+
+def test_without_devices_the_way_back_is_the_way_out() -> None:
+    curve = pushover(podium(2, 0.15, 0.4)).curve
+    assert np.array_equal(curve.force, curve.unloading_force)
+
+
+def test_a_slender_storey_recentres_below_its_constant_force() -> None:
+    base = equipped(0.5, tan_alpha=1e-3)
+    base = replace(base, bearing=replace(base.bearing, wedge_slenderness=0.5))
+    constant = base.weight * 1e-3
+    for share, comes_back in ((0.98, True), (1.01, False)):
+        held = replace(base, devices=(FrictionDamper(share * constant),))
+        found = returns(held)[0]
+        assert found.recentres is comes_back
+        # B = sin(alpha) cos(x), and C = cos(alpha) but for alpha x
+        least = constant * math.cos(found.rotation)
+        assert found.largest_friction == pytest.approx(least, rel=1e-3)
+    lever = base.bearing.half_width
+    assert returns(replace(base, devices=(RollingResistance(0.98 * lever),)))[0].recentres
+    assert not returns(replace(base, devices=(RollingResistance(1.01 * lever),)))[0].recentres
+
+
+def test_consequences_by_hand() -> None:
+    structure = equipped(FLAT, Stop(0.1, 1e6), Tendon(3e4, 5e5, 4e4), ViscousDamper(4e4, 2.0))
+    stop, tendon, viscous = device_consequences(structure)["devices"]
+    x, bearing = stop["met_rotation"], structure.bearing
+    alpha, R = bearing.alpha, bearing.semi_diagonal
+    assert 2.0 * R * (math.sin(alpha) - math.sin(alpha - x)) == pytest.approx(0.1, rel=1e-12)
+    assert stop["met_rotation_ratio"] == pytest.approx(x / structure.critical_rotation)
+    stretch = 4.0 * bearing.half_width * math.sin(tendon["yield_rotation"] / 2.0)
+    assert stretch == pytest.approx(1e4 / 5e5, rel=1e-12)
+    assert tendon["uplift_share"] == pytest.approx(6 * 3e4 / structure.weight)
+    plastic = 4.0 * bearing.half_width * math.sin(structure.critical_rotation / 2.0) - 0.02
+    left = max(0.0, 3e4 - 5e5 * plastic)
+    assert tendon["prestress_after_critical"] == pytest.approx(left)
+    speed = viscous["velocity_at_uplift_force"]
+    assert 4e4 * speed**2 == pytest.approx(structure.uplift_force)
+    far = equipped(FLAT, Stop(5.0, 1e6))
+    assert device_consequences(far)["devices"][0]["met_rotation"] is None
+
+
+@pytest.mark.parametrize("rolling", [True, False])
+def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None:
+    structure = equipped(0.7, Tendon(3e4, 5e5), tan_alpha=1e-3)
+    structure = replace(structure, bearing=replace(structure.bearing, wedge_slenderness=2e-3))
+    kappa, angle = (0.4, 1e-3) if rolling else (-1.0, 2e-3)
+    bare = replace(structure, devices=())
+    added = linearised_matrices(structure, kappa, angle)[2][0, 0]
+    added -= linearised_matrices(bare, kappa, angle)[2][0, 0]
+    motion = StoreyLagrangian(oracle_system(structure))
+    gear = Equipment(motion, oracle_devices(structure), 1.0)
+    x = np.array([1e-5, 3e-5]) + (0.0 if rolling else motion.beta)
+    contact = Contact(1, rolling=rolling)
+    moments = [-gear.at_rest(contact, float(tilt))[0] for tilt in x]
+    slope = (moments[1] - moments[0]) / (x[1] - x[0]) / (2.0 * structure.bearing.semi_diagonal) ** 2
+    # first order in alpha, of which e is one itself: 1e-3 of what prestress and stiffness add
+    size = 6 * (3e4 / structure.bearing.semi_diagonal + 5e5 * 1e-6)
+    assert added == pytest.approx(slope, abs=3e-3 * size)
+
+
+@pytest.mark.parametrize("c", [0.0, 2e5, 3e6])
+@pytest.mark.parametrize("stiffness", [0.0, 3e7])
+def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(c: float, stiffness: float) -> None:
+    devices: tuple[Device, ...] = (FrictionDamper(1e4),)
+    devices += (ViscousDamper(c),) if c else ()
+    devices += (Tendon(0.0, stiffness),) if stiffness else ()
+    structure = replace(podium(0, 0.15, 0.4), devices=devices, columns=6)
+    result = modal(structure)
+    for kappa, angle, modes in (
+        (-0.2, structure.bearing.alpha, result.rolling),
+        (-1.0, structure.bearing.alpha_wedge, result.rocking),
+    ):
+        assert modes is not None
+        mass = structure.columns_mass / 3.0 + structure.cap_beam_mass
+        spring = structure.weight * kappa / 3.0 + 6 * stiffness * angle**2
+        roots = np.sort_complex(np.roots([mass, c, spring]))
+        assert np.sort_complex(modes.eigenvalues) == pytest.approx(roots, rel=1e-10)
+        product = math.sqrt(abs(roots[0] * roots[1]))
+        assert modes.frequency_parameter == pytest.approx(product, rel=1e-10)
+        assert modes.frequency_parameter_rigid == pytest.approx(product, rel=1e-10)
+    assert result.left_out[0] == "friction"
+
+
+@pytest.mark.parametrize("c", [2e5, 5e6])
+def test_a_damper_leaves_each_building_mode_a_pair(c: float) -> None:
+    structure = equipped(0.4, ViscousDamper(c))
+    for modes in modal(structure).uplifted.values():
+        growing, partner = modes.eigenvalues[:2]
+        assert growing.real > 0.0 > partner.real
+        assert growing.imag == partner.imag == 0.0
+        assert np.all(modes.damping > 0.0)
