@@ -41,6 +41,11 @@ class Demand:
         return self.outcome.startswith("overturned")
 
     @property
+    def stays_tilted(self) -> bool:
+        """Whether friction holds the storey tilted at the end."""
+        return self.history.motion == state.STUCK
+
+    @property
     def max_rotation(self) -> float:
         """Largest |theta|, turning points between samples included [rad]."""
         return self.history.max_rotation

@@ -51,6 +51,8 @@ def timehistory_tables(
 def outcome_text(result: TimeHistoryResult) -> str:
     """How the history ended, how near to overturning, and whether the columns slide."""
     parts, passed = [OUTCOMES[result.outcome]], result.critical_passage_time
+    if result.stays_tilted:
+        parts = ["uplifts and stays tilted, held by friction"]
     if result.is_near_critical and passed is not None:
         parts.append(f"passed the critical rotation at t = {shown(passed)} s")
     elif result.is_near_critical:

@@ -136,7 +136,7 @@ DEVICES: dict[str, type[Device]] = {
     "tendon": Tendon,
     "rolling_resistance": RollingResistance,
 }
-"""By their names in a case."""
+"""By their names in a case, in the order of the kernels' codes."""
 
 
 def name_of(device: Device) -> str:

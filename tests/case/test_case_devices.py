@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from rpscli.analyses.kernels.systems import DEVICE_KINDS
 from rpscli.case.case import parse_case
 from rpscli.case.schema.devices import DEVICE_KEYS, DeviceSection
 from rpscli.case.schema.key_units import unit
@@ -20,6 +21,7 @@ from rpscli.model.devices import (
     ViscousDamper,
     name_of,
 )
+from rpscli.physics import state
 
 from .conftest import Faults
 
@@ -106,11 +108,19 @@ def test_an_index_beyond_the_list(equipped: str) -> None:
         parse_case(equipped, name="c.yaml", overrides=["podium.devices.5.force=1"])
 
 
-def test_kinds_have_the_fields_of_the_model() -> None:
+def test_kinds_and_keys_are_those_of_the_model() -> None:
     kinds = DeviceSection.model_fields["kind"].annotation
-    assert tuple(DEVICE_KEYS) == tuple(DEVICES) == kinds.__args__  # type: ignore[union-attr]
-    for kind, (needed, optional) in DEVICE_KEYS.items():
-        assert (*needed, *optional) == tuple(DEVICES[kind].__dataclass_fields__)
+    assert tuple(DEVICES) == kinds.__args__  # type: ignore[union-attr]
+    needed, optional = DEVICE_KEYS["stop"]
+    assert (needed, optional) == (("gap", "stiffness"), ("damping",))
+    known = {key for pair in DEVICE_KEYS.values() for keys in pair for key in keys}
+    assert known == set(DeviceSection.model_fields) - {"kind"}
+
+
+def test_codes_of_the_kernels() -> None:
+    assert [DEVICE_KINDS[DEVICES[name]] for name in DEVICES] == [
+        getattr(state, name.upper()) for name in DEVICES
+    ]
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,13 @@ from paper_structures import FLAT, podium, waves
 from rpscli.analyses.kernels.history import Request, run_of
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.physics.driver import integrate
 from rpscli.physics.run import Run
@@ -24,8 +32,20 @@ SETTINGS = TimeHistorySettings(free_vibration=0.5, recontact_tolerance=1e-3)
 STRUCTURES = [
     podium(STOREYS, 0.10, 0.5, R=0.4),
     podium(STOREYS, 0.15, FLAT, R=0.4, law=ImpactLaw("flexible")),
+    replace(
+        podium(STOREYS, 0.10, 0.5, R=0.4),
+        devices=(
+            FrictionDamper(6e5),
+            Tendon(1e4, 2e6, 2e4),
+            ViscousDamper(5e4, 0.5),
+            Stop(0.02, 1e7, 1e5),
+            RollingResistance(1e-4),
+        ),
+        columns=4,
+    ),
 ]
 REQUESTS = [
+    Request(2, 0),
     Request(0, 0),
     Request(0, 0, vertical=1),
     Request(1, 0, scale=0.25),
@@ -55,12 +75,14 @@ def demands_of_all(lanes: int) -> list[dict[str, Any]]:
 
 
 def sampled_history() -> dict[str, Any]:
-    """The first one with its samples and events."""
+    """The first one, with devices, with its samples and events."""
     run = integrated(REQUESTS[:1], lanes=1, rows=ROWS)
     kept = int(run.results.intervals[0]) + 1
     samples, log = run.output.samples[:kept], run.output.log[: int(run.results.events[0].sum())]
     found = {f"sampled {name}": samples[name].tolist() for name in samples.dtype.names}
     found |= {f"event {name}": log[name].tolist() for name in log.dtype.names}
+    count = len(STRUCTURES[-1].devices)
+    found |= {"devices": run.output.devices[:kept, :, :count].ravel().tolist()}
     return found | {"floors": run.output.floors[:kept].ravel().tolist()}
 
 

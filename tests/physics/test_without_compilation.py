@@ -13,7 +13,17 @@ import numpy as np
 import pytest
 from paper_structures import needs_compiled_kernels
 
-from rpscli.physics.state import IMPACT, LANES, RECONTACT, UPLIFT
+from rpscli.physics.state import (
+    IMPACT,
+    LANES,
+    RECONTACT,
+    SLIDING,
+    STICKING,
+    STOP_LEFT,
+    STOP_MET,
+    TENDON_YIELDING,
+    UPLIFT,
+)
 
 from . import history_without_compilation
 
@@ -62,4 +72,6 @@ def test_the_histories_compared_are_not_trivial(
     assert np.count_nonzero(events[:, IMPACT]) >= 4
     assert events[:, IMPACT].sum() >= 10
     assert events[:, RECONTACT].any()
+    for kind in (STICKING, SLIDING, STOP_MET, STOP_LEFT, TENDON_YIELDING):
+        assert events[0, kind] > 0
     assert not events[-1].any()  # one stays in full contact

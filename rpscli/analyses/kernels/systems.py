@@ -10,35 +10,17 @@ import numpy as np
 
 from rpscli.analyses.kernels.step_lengths import LAST_TERM, contact_rate, uplifted_rate
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.model.devices import (
-    Device,
-    FrictionDamper,
-    RollingResistance,
-    Stop,
-    Tendon,
-    ViscousDamper,
-)
+from rpscli.model.devices import DEVICES, RollingResistance
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.state import (
-    FRICTION,
     ORDER,
-    ROLLING_RESISTANCE,
-    STOP,
     SYSTEM,
-    TENDON,
-    VISCOUS,
     Record,
     records,
 )
 
-DEVICE_KINDS: dict[type[Device], int] = {
-    ViscousDamper: VISCOUS,
-    FrictionDamper: FRICTION,
-    Stop: STOP,
-    Tendon: TENDON,
-    RollingResistance: ROLLING_RESISTANCE,
-}
+DEVICE_KINDS = {kind: code for code, kind in enumerate(DEVICES.values())}
 """Their codes in the kernels, whose constants are the devices' fields in their order."""
 
 LEAST_SHAKEN = 1e-3

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import MISSING, fields
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
 from rpscli.case.schema.fields import Quantity
 from rpscli.case.schema.section import Section
+from rpscli.model.devices import DEVICES
 
 DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "viscous": (("coefficient",), ("exponent",)),
-    "friction": (("force",), ()),
-    "stop": (("gap", "stiffness"), ("damping",)),
-    "tendon": (("prestress", "stiffness"), ("yield_force",)),
-    "rolling_resistance": (("lever",), ()),
+    kind: (
+        tuple(field.name for field in fields(device) if field.default is MISSING),
+        tuple(field.name for field in fields(device) if field.default is not MISSING),
+    )
+    for kind, device in DEVICES.items()
 }
-"""Keys that a device of each kind must have, and may have; its fields in `model.devices`."""
+"""Keys that a device of each kind must have, and may have: the fields of its law."""
 
 
 def _device_schema(schema: dict[str, Any]) -> None:

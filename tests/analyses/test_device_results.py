@@ -1,0 +1,131 @@
+"""What a history says of its devices: samples, largest demands, energy, tables."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_structures import podium, waves
+
+from rpscli.analyses.demand import demand
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.commands.timehistory_tables import timehistory_tables
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
+from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
+from rpscli.report.documents import timehistory_document
+from rpscli.report.tables.timehistory import history_columns
+
+F_D, P, K_T, P_Y, C, A, GAP, K_S, C_S = 3e5, 5e4, 1e7, 1.5e5, 3e5, 0.5, 0.05, 2e7, 3e5
+STRUCTURE = replace(
+    podium(3, 0.15, 0.5),
+    devices=(
+        FrictionDamper(F_D),
+        Tendon(P, K_T, P_Y),
+        ViscousDamper(C, A),
+        Stop(GAP, K_S, C_S),
+        RollingResistance(2e-3),
+    ),
+    columns=4,
+)
+RECORD = waves(6.0, 0.01, 6.0, seed=12)
+SETTINGS = TimeHistorySettings(free_vibration=1.0)
+
+
+@pytest.fixture(scope="module")
+def result() -> TimeHistoryResult:
+    return time_history(STRUCTURE, RECORD, SETTINGS)
+
+
+def test_everything_happens(result: TimeHistoryResult) -> None:
+    kinds = {event.kind for event in result.events}
+    assert {"sticking", "sliding", "stop_met", "stop_left", "tendon_yielding"} <= kinds
+    assert {FULL_CONTACT, ROLLING, ROCKING, STUCK} >= set(result.trace.phase.tolist())
+    assert STUCK in result.trace.phase
+
+
+def test_the_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
+    t = result.trace
+    given = t.energy_input + t.energy_stored[0]
+    gone = t.energy_damped + t.energy_impact + t.devices.energy.sum(axis=1)
+    left = np.abs(given - gone - t.energy_stored)
+    assert np.max(left) < 2e-8 * np.max(np.abs(t.energy_input))
+    assert result.energy.devices == pytest.approx(t.devices.energy[-1].sum())
+
+
+def test_forces_obey_the_laws(result: TimeHistoryResult) -> None:
+    t = result.trace
+    moves = (t.phase == ROLLING) | (t.phase == ROCKING)
+    friction, tension, viscous, stop, rolling = t.devices.force.T
+    rate = t.rotation_rate
+    velocity = STRUCTURE.lever_arm(np.abs(t.rotation)) * rate
+    assert friction[moves] == pytest.approx(-F_D * np.sign(rate[moves]))
+    assert np.all(np.abs(friction) <= F_D * (1.0 + 1e-12))
+    assert not friction[t.phase == FULL_CONTACT].any()
+    assert viscous == pytest.approx(-C * np.sign(velocity) * np.abs(velocity) ** A, abs=1e-3)
+    assert np.all((tension >= 0.0) & (tension <= P_Y * (1.0 + 1e-9)))
+    u = t.cap_beam_displacement
+    assert not stop[np.abs(u) < GAP].any()
+    assert np.all(stop * u <= 0.0)
+    assert np.all(np.abs(rolling[moves]) > 0.0)
+    elongation = STRUCTURE.bearing.tendon_elongation(t.rotation)
+    assert t.devices.displacement[:, 1] == pytest.approx(elongation, abs=1e-12)
+    assert t.devices.displacement[:, 0] == pytest.approx(u, abs=1e-12)
+
+
+def test_contact_forces_are_those_of_the_kernel(result: TimeHistoryResult) -> None:
+    """The kernel looks at the same samples, and at both ends of what is stuck."""
+    t = result.trace
+    top = np.max(np.abs(t.shear_top / t.normal_top))
+    assert result.history.friction[0] == pytest.approx(top, rel=1e-6)
+    weight = (STRUCTURE.cap_beam_mass + STRUCTURE.superstructure_mass) * STRUCTURE.gravity
+    least = np.min(t.normal_top) / weight
+    assert result.history.least_normal[0] == pytest.approx(least, rel=1e-6)
+    assert t.normal_top[0] == pytest.approx(weight + 4.0 * P)
+
+
+def test_largest_demands_cover_the_samples(result: TimeHistoryResult) -> None:
+    t = result.trace.devices
+    demands = result.devices
+    assert [d.kind for d in demands][:2] == ["friction", "tendon"]
+    for i, found in enumerate(demands):
+        assert found.force >= np.max(np.abs(t.force[:, i])) * (1.0 - 1e-9)
+        assert found.stroke >= np.max(np.abs(t.displacement[:, i])) * (1.0 - 1e-9)
+        assert found.energy == pytest.approx(t.energy[-1, i])
+    assert demands[1].force == pytest.approx(P_Y)
+    tendon = demands[1]
+    assert tendon.remaining_prestress is not None
+    assert result.lost_prestress == pytest.approx(1.0 - tendon.remaining_prestress / P)
+    assert result.max_stop_force == demands[3].force
+    assert result.max_damper_force == max(demands[0].force, demands[2].force)
+
+
+def test_a_study_sees_the_same_numbers(result: TimeHistoryResult) -> None:
+    alone = demand(STRUCTURE, RECORD, SETTINGS)
+    assert alone.scalars() == result.scalars()
+    assert alone.devices == result.devices
+
+
+def test_tables_and_documents(result: TimeHistoryResult) -> None:
+    names = {column.name: list(column.values) for column in history_columns(result)}
+    assert names["device_1_tendon_force"] == result.trace.devices.force[:, 1].tolist()
+    document = timehistory_document(result)
+    assert [entry["kind"] for entry in document["devices"]] == [d.kind for d in result.devices]
+    assert document["energy"]["devices"] == result.energy.devices
+    assert len(list(timehistory_tables(result, [], "x"))) >= 4
+
+
+def test_without_devices_there_is_nothing_to_tell() -> None:
+    bare = time_history(podium(1), RECORD, SETTINGS)
+    assert bare.devices == ()
+    assert bare.max_damper_force is bare.max_stop_force is bare.lost_prestress is None
+    assert bare.energy.devices == 0.0
+    assert timehistory_document(bare)["devices"] == []
