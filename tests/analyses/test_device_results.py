@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import podium, waves
+from paper_structures import needs_compiled_kernels, podium, waves
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.results import TimeHistoryResult
@@ -14,6 +14,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.commands.timehistory_tables import timehistory_tables
 from rpscli.model.devices import (
+    Device,
     FrictionDamper,
     RollingResistance,
     Stop,
@@ -129,3 +130,20 @@ def test_without_devices_there_is_nothing_to_tell() -> None:
     assert bare.max_damper_force is bare.max_stop_force is bare.lost_prestress is None
     assert bare.energy.devices == 0.0
     assert timehistory_document(bare)["devices"] == []
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("device", [None, *STRUCTURE.devices])
+def test_the_default_steps_are_as_good_as_without_devices(device: Device | None) -> None:
+    """Order 7 holds through the events of every device."""
+    devices = STRUCTURE.devices if device is None else (device,)
+    structure = replace(STRUCTURE, devices=devices)
+    coarse, fine = (
+        time_history(structure, RECORD, TimeHistorySettings(free_vibration=0.0, accuracy=accuracy))
+        for accuracy in (1.0, 4.0)
+    )
+    assert coarse.max_rotation == pytest.approx(fine.max_rotation, rel=1e-8)
+    assert coarse.max_base_shear == pytest.approx(fine.max_base_shear, rel=1e-7)
+    residuals = [abs(result.energy.residual) / result.energy.input for result in (coarse, fine)]
+    assert residuals[0] < 1e-8
+    assert residuals[1] < residuals[0] / 4.0**5

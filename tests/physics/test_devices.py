@@ -252,6 +252,23 @@ def falling(structure: PodiumStructure) -> tuple[Array, Array]:
     return result.trace.time[kept], result.trace.cap_beam_displacement[kept]
 
 
+def test_tendons_make_the_frame_swing_with_their_frequency() -> None:
+    bare = frame(SLENDER, FLAT)
+    R, W, alpha = bare.bearing.semi_diagonal, bare.weight, bare.bearing.alpha
+    K = 40.0 * W / (2.0 * R)  # of all tendons against u_b: N k_t (B/R)^2
+    P = 0.3 * W / 4.0
+    structure = replace(bare, devices=(Tendon(P, K / (4.0 * alpha**2)),))
+    M_e = 0.25 * bare.columns_mass * (bare.bearing.inertia_ratio + 4.0 * bare.gamma)
+    left = K - W / (2.0 * R)
+    omega, centre = math.sqrt(left / M_e), (W + 4.0 * P) * alpha / left
+    start = 0.5 * alpha
+    settings = TimeHistorySettings(initial_rotation=start, free_vibration=2.0)
+    result = time_history(structure, stillness(0.01), settings)
+    impact = next(event.time for event in result.events if event.kind == "impact")
+    swing = math.acos(centre / (2.0 * R * start + centre)) / omega
+    assert impact == pytest.approx(swing, rel=SMALL)
+
+
 @pytest.mark.parametrize("coefficient", [2e3, 2e5, 5e6])
 def test_a_linear_damper_falls_exponentially(coefficient: float) -> None:
     structure, F_0, M_e = slender(ViscousDamper(coefficient))
