@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from paper_structures import building, needs_compiled_kernels, steps_an_interval, stillness
 
-from rpscli.analyses.kernels import systems
+from rpscli.analyses.kernels import step_lengths, systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
@@ -48,6 +48,8 @@ def drift(structure: PodiumStructure, rotation: float, accuracy: float) -> tuple
 def test_steps_are_halved_where_the_tilt_is_fast(
     structure: PodiumStructure, rotation: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    # undamped buildings would have short steps anyway
+    monkeypatch.setattr(step_lengths, "MOST_LOST", math.inf)
     kept, steps = drift(structure, rotation, 1.0)
     with monkeypatch.context() as patch:
         patch.setattr(systems, "LAST_TERM", math.inf)

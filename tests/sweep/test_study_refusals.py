@@ -55,7 +55,7 @@ def sampled(distribution: str) -> tuple[str, str]:
             ("record.scale must not vary beside", "take one of them out"),
         ),
         # scale
-        (SCALE, "scale: {measure: PGV, values: [one]}", ("numbers", "one")),
+        (SCALE, "scale: {measure: PGV, values: [one]}", ("a number in m/s", "one")),
         (SCALE, "scale: {low: 1, high: 2, cnt: 3}", ("study.yaml:10", "cnt")),
         (SCALE, "scale: {low: 0, high: 2, count: 3, spacing: log}", ("equal ratios",)),
         # reports
