@@ -11,6 +11,7 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.spectrum import ResponseSpectrum
 from rpscli.report.figures.capacity import capacity_figure
+from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.displacement import displacement_figure
 from rpscli.report.figures.drawing import Artists, Draw, figure_files
 from rpscli.report.figures.energy import energy_figure
@@ -65,6 +66,8 @@ def timehistory_files(
     }
     if result.structure.storeys:
         figures["storey_shears"] = profile_figure
+    if result.structure.devices:
+        figures["devices"] = devices_figure
     draws = {stem: partial(draw, result, title) for stem, draw in figures.items()}
     yield from figure_files(draws, look, artists).items()
 

@@ -41,6 +41,13 @@ DT = 0.02
 FLEXIBLE = ImpactLaw("flexible")
 
 
+def piece_of(whole: GroundMotion) -> GroundMotion:
+    """Two seconds around the largest acceleration of a recorded motion."""
+    peak = int(np.argmax(np.abs(whole.acceleration)))
+    piece = whole.acceleration[max(peak - 100, 0) : peak + 100]
+    return GroundMotion(piece, whole.dt, "piece", "made", "made")
+
+
 class Case(NamedTuple):
     """A structure, the peak acceleration [g tan alpha], and whether the ground also rises."""
 
@@ -179,6 +186,19 @@ def test_both_roads_with_devices(names: str) -> None:
     assert ("tendon_slack" in kinds) >= ("loose" in names)
 
 
+@pytest.mark.parametrize(
+    "names",
+    [names if "," in names else pytest.param(names, marks=pytest.mark.long) for names in EQUIPPED],
+)
+def test_both_roads_with_devices_under_a_piece_of_an_earthquake(
+    names: str, fema_record: RecordLoader
+) -> None:
+    bare, _ = EQUIPPED[names]
+    structure = with_devices(bare, *names.split(", "))
+    record = piece_of(fema_record("farfield/1/b"))
+    assert agree(structure, record, None, 0.5, 1e-7, "limit").uplifts >= 1
+
+
 SOON_AT_REST = [
     podium(0, 0.15, FLAT, law=ImpactLaw("value", 0.4)),
     podium(1, 0.15, 0.5, law=ImpactLaw("rigid", factor=0.6)),
@@ -213,11 +233,7 @@ def test_both_roads_lock_in_the_limit_alike(structure: PodiumStructure) -> None:
 def test_both_roads_under_a_piece_of_an_earthquake(
     rho: float, law: str, fema_record: RecordLoader
 ) -> None:
-    """Two seconds around the largest acceleration of a recorded motion."""
-    whole = fema_record("farfield/1/b")
-    peak = int(np.argmax(np.abs(whole.acceleration)))
-    piece = whole.acceleration[max(peak - 100, 0) : peak + 100]
-    record = GroundMotion(piece, whole.dt, "piece", "made", "made")
+    record = piece_of(fema_record("farfield/1/b"))
     structure = podium(3, 0.10, rho, law=ImpactLaw("rigid" if law == "rigid" else "flexible"))
     assert agree(structure, record, None, 0.5, 1e-7).impacts >= 1
 

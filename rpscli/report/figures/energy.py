@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rpscli.model.devices import name_of
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
@@ -14,8 +15,15 @@ if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
 
 
+DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)
+"""Of what each device dissipates, from the first on."""
+
+
 def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
-    """Input against what was damped, lost at impacts and is stored, one on top of the other."""
+    """Input against what was damped, dissipated by each device, lost at impacts and is stored.
+
+    One stands on top of the other.
+    """
     trace = result.trace
     factor, prefix = style.engineering(
         float(np.nanmax(np.abs([trace.energy_input, trace.energy_stored])))
@@ -24,6 +32,10 @@ def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
         (trace.energy_impact, "lost at impacts (net)", style.ORANGE),
         (trace.energy_stored, "kinetic, elastic and of lift", style.GREEN),
     ]
+    for index, device in enumerate(result.structure.devices):
+        energy = trace.devices.energy[:, index]
+        name = f"{index} {name_of(device).replace('_', ' ')}"
+        parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
     if result.structure.storeys:
         parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))
 
