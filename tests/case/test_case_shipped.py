@@ -13,7 +13,10 @@ from rpscli.case.text.files import starter_text
 from rpscli.model.podium import PodiumStructure
 
 FOLDER = Path(__file__).parents[2] / "cases"
-NAMES = ["acceptance", "free_standing_block", "measured_column", "rigid_frame", "six_storey"]
+NAMES = [
+    "acceptance", "free_standing_block", "friction_dampers", "measured_column", "rigid_frame",
+    "six_storey",
+]  # fmt: skip
 
 
 def numbers(structure: PodiumStructure) -> list[float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,12 +29,16 @@ from report.small_results import (
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import PushoverResult, pushover
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
+from rpscli.model.devices import Device, FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.records.measures import integration
 from rpscli.records.measures.spectrum import response_spectrum
 from rpscli.records.source import load_record
 from rpscli.report.figures.animation import animation_gif, frame_plan
 from rpscli.report.figures.capacity import capacity_figure
+from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.displacement import displacement_figure
 from rpscli.report.figures.energy import energy_figure
 from rpscli.report.figures.levels import level_heights
@@ -181,6 +186,54 @@ def test_energy(drawn: Drawn, result: TimeHistoryResult) -> None:
         assert reach(axes, name) == pytest.approx((np.nanmin(both), np.nanmax(both)), rel=1e-12)
         below = above
     assert legend(axes) == [*(name for name, _ in parts), "input"]
+
+
+DEVICES: tuple[Device, ...] = (
+    FrictionDamper(1e5),
+    Stop(0.02, 4e6, 1e5),
+    Tendon(2e4, 1e6, 3e4),
+    ViscousDamper(2e5),
+)
+
+
+@pytest.fixture(scope="module")
+def equipped() -> TimeHistoryResult:
+    made = replace(structure(CURVED, 3), devices=DEVICES, columns=4)
+    record = load_record("pulse:sine?amplitude=0.4g&period=0.8&dt=0.01")
+    return time_history(made, record, TimeHistorySettings(free_vibration=2.0))
+
+
+def test_loops_of_devices(drawn: Drawn, equipped: TimeHistoryResult) -> None:
+    trace = equipped.trace.devices
+    panels = drawn(devices_figure, equipped, "").axes
+    names = ["0 friction", "1 stop", "2 tendon", "3 viscous"]
+    assert [axes.get_title() for axes in panels[:4]] == names
+    for index, axes in enumerate(panels[:4]):
+        tendon = index == 2
+        factor = prefix(axes.get_ylabel(), "N")
+        assert axes.get_ylabel().startswith("tension of one [" if tendon else "resistance [")
+        assert axes.get_xlabel() == ("elongation of one [m]" if tendon else "$u_b$ [m]")
+        force = trace.force[:, index] * (1.0 if tendon else -1.0)
+        x, y = (np.asarray(line, dtype=float) for line in axes.lines[0].get_data())
+        is_drawn((x, y), trace.displacement[:, index], factor * force)
+        # a loop that dissipates runs clockwise: what it encloses is not negative
+        work = np.trapezoid(force, trace.displacement[:, index])
+        taken = trace.energy[-1, index] / (4.0 if tendon else 1.0)
+        stored = trace.stored[-1, index] / (4.0 if tendon else 1.0)
+        size = float(np.max(np.abs(force)) * np.max(np.abs(trace.displacement[:, index])))
+        assert work == pytest.approx(taken + stored, abs=0.05 * size)
+
+
+def test_energy_of_devices_stands_between(drawn: Drawn, equipped: TimeHistoryResult) -> None:
+    trace = equipped.trace
+    (axes,) = drawn(energy_figure, equipped, "").axes
+    names = ["0 friction", "1 stop", "2 tendon", "3 viscous"]
+    assert legend(axes)[1:5] == names
+    factor, top = prefix(axes.get_ylabel(), "J"), trace.energy_damped
+    for index, name in enumerate(names):
+        below, top = top, top + trace.devices.energy[:, index]
+        both = factor * np.concatenate([below, top])
+        assert reach(axes, name) == pytest.approx((np.min(both), np.max(both)), rel=1e-12)
 
 
 def test_moment(drawn: Drawn, result: TimeHistoryResult) -> None:

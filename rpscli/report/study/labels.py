@@ -49,6 +49,8 @@ def label(key: str, value: object) -> str:
         known = CURVATURES.get(value) if isinstance(value, str | int | float) else None
         if known:
             return known
+    if key == "podium.devices":
+        return plain(value) if value else "no devices"
     unit = unit_of(key) if isinstance(value, int | float) else "-"
     return f"{symbol(key)} = {plain(value)}{'' if unit == '-' else f' {unit}'}"
 
@@ -59,10 +61,22 @@ def labels(keys: Iterable[str], values: Values) -> str:
 
 
 def plain(value: object) -> str:
-    """A value as text: numbers short, lists as the study has them."""
+    """A value as text: numbers short, devices by their kinds, lists as the study has them.
+
+    >>> plain(0.25), plain([]), plain([{"kind": "stop", "gap": 0.2, "stiffness": 1e6}])
+    ('0.25', 'none', 'stop 0.2')
+    """
     if isinstance(value, float):
         return f"{value:g}"
+    if isinstance(value, list) and all(isinstance(item, dict) and "kind" in item for item in value):
+        return ", ".join(_device(item) for item in value) or "none"
     return value if isinstance(value, str) else json.dumps(value)
+
+
+def _device(device: dict[str, object]) -> str:
+    """The kind of a device and the first of its values."""
+    values = [plain(value) for key, value in device.items() if key != "kind"]
+    return " ".join([str(device["kind"]).replace("_", " "), *values[:1]])
 
 
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:

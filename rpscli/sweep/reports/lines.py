@@ -107,7 +107,7 @@ class LinesReport:
         """What is pooled, and what means leave out."""
         notes = list(self.pooling)
         if self.statistic == "mean of survivors":
-            first = {(p.values, x.values): x for p in self.panels for x in reversed(p.lines)}
+            first = {repr((p.values, x.values)): x for p in self.panels for x in reversed(p.lines)}
             overturned = sum(sum(line.overturned) for line in first.values())
             of = overturned + sum(sum(line.counted) for line in first.values())
             if overturned:

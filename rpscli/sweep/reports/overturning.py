@@ -63,8 +63,11 @@ def overturning_table(table: Table, options: OverturningOptions) -> OverturningT
     across = groups(table.design, columns)
     lines = []
     for row in groups(table.design, rows):
-        cells = {group.values: group.points for group in groups(table.design, columns, row.points)}
-        lines.append(tuple(_cell(table, cells.get(group.values)) for group in across))
+        # by their text: a value may be a list, of devices or of masses
+        cells = {
+            repr(group.values): group.points for group in groups(table.design, columns, row.points)
+        }
+        lines.append(tuple(_cell(table, cells.get(repr(group.values))) for group in across))
     return OverturningTable(
         row_keys=shown_keys(table.design, rows),
         column_keys=shown_keys(table.design, columns),
