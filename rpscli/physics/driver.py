@@ -74,7 +74,9 @@ def integrate_lanes(state: Record, run: Run) -> None:
     for l in range(s.lanes):
         s.history[l], s.accepted[l] = NO_HISTORY, 0.0
         s.renew[l] = NOTHING_NEW
-        switch_lane(state, l, IS_OVER, run)
+        # Not the constant by itself: numba would compile once more, for it alone.
+        fate = IS_OVER if s.history[l] == NO_HISTORY else GOES_ON
+        switch_lane(state, l, fate, run)
         active -= s.history[l] == NO_HISTORY
     while active > 0:
         advance_lanes(state, systems, block, output.log)
