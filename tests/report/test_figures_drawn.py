@@ -438,6 +438,24 @@ def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
     assert (high - low) / (right - left) == pytest.approx(axes.get_box_aspect(), rel=1e-12)
 
 
+def test_a_scene_with_devices(equipped: TimeHistoryResult) -> None:
+    trace = equipped.trace
+    scene = Scene(Figure().subplots(), equipped, "a title", 0.5)
+    ((_, posts),) = scene.devices.stops
+    half = 0.5 * scene.width
+    for post, side in zip(posts, (-1.0, 1.0), strict=True):
+        assert post.get_xdata()[0] == pytest.approx(side * (half + 0.02))  # type: ignore[attr-defined]
+    for sample in (0, int(np.argmax(np.abs(trace.rotation)))):
+        scene.show(sample)
+        shift = trace.cap_beam_displacement[sample]
+        for foot, tendon in zip(scene.feet, scene.devices.tendons, strict=True):
+            assert np.asarray(tendon.get_xdata()).tolist() == pytest.approx([foot, foot + shift])
+        red = [post.get_color() == "#D55E00" for post in posts]  # type: ignore[attr-defined]
+        assert red == [shift < -0.02, shift > 0.02]
+    assert any(red)
+    assert scene.devices.brace is not None
+
+
 def test_an_animation_runs_along_the_record(monkeypatch: pytest.MonkeyPatch) -> None:
     cursors: list[float] = []
     seen: list[Axes] = []

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from rpscli.report.study.labels import label
 from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.reports.contrast import ContrastOptions, contrast_report
@@ -82,6 +83,21 @@ def test_groups_cover_the_study_once_in_its_order(study_of: Make) -> None:
     )
     pair = groups(design, [ALPHA, "podium.bearing.wedge_slenderness"])
     assert [group.values for group in pair] == [(0.10, 0.20), (0.15, 0.30)]
+
+
+def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
+    """Values of a study may be lists, which are no keys of a dictionary."""
+    friction = "[{kind: friction, force: 300 kN}]"
+    swap = "podium.bearing.curvature_ratio: [critical, 0.5, 0]"
+    changes = (swap, f"podium.devices: [[], {friction}]")
+    table = table_of(study_of, lambda _: stored(), changes)
+    found = overturning_table(table, OverturningOptions())
+    assert found.column_keys == ("podium.devices",)
+    assert [label("podium.devices", values[0]) for values in found.columns] == [
+        "no devices",
+        "friction 300 kN",
+    ]
+    assert all(cell is not None for row in found.cells for cell in row)
 
 
 def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from rpscli.report.figures import style
 from rpscli.report.figures.column_outline import leaning_outline
 from rpscli.report.figures.levels import level_heights
+from rpscli.report.figures.scene_devices import SceneDevices
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,6 +46,8 @@ class Scene:
         self.beam = axes.fill([], [], fc=style.BLUE, ec=style.BLACK, lw=0.8)[0]
         self.floors = [axes.plot([], [], color=style.BLUE, lw=3.0)[0] for _ in self.levels[1:]]
         self.sides = [axes.plot([], [], **look)[0] for _ in (-1, 1)] if self.floors else []
+        base = float(self.levels[0])
+        self.devices = SceneDevices(axes, result, self.feet, 0.5 * self.width, base)
         self.clock = axes.set_title("", loc="right", fontsize=8.0)
         axes.figure.suptitle(title, fontsize=9.0, parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
@@ -91,6 +94,7 @@ class Scene:
                 floor.set_data([at - half, at + half], [height, height])
             for side, line in zip((-half, half), self.sides, strict=True):
                 line.set_data(x + side, y)
+        self.devices.show(sample, shift, lift)
         self.clock.set_text(f"t = {trace.time[sample]:.2f} s")
 
 
