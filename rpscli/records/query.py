@@ -22,6 +22,7 @@ _UNITS = {
     "frequency": {"": 1.0, "hz": 1.0},
     "velocity": {"": 1.0, "m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001},
     "angle": {"": 1.0, "rad": 1.0, "deg": math.pi / 180.0},
+    "direction": {"": 1.0, "deg": 1.0, "rad": 180.0 / math.pi},
     "ratio": {"": 1.0, "%": 0.01},
 }
 
@@ -59,7 +60,8 @@ class Query:
         key : str
             Name of the option.
         kind : str
-            What it measures: "time", "frequency", "velocity", "angle" or "ratio".
+            What it measures: "time", "frequency", "velocity", "angle", "ratio", or "direction",
+            which is an angle in degrees.
         default : float, optional [SI]
             Its value where it is not written.
 

@@ -9,10 +9,11 @@ PGV normalisation factor.
 from __future__ import annotations
 
 import importlib.util
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,7 +21,8 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.formats.time_axis import uniform_step
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.query import hint
+from rpscli.records.pair import angle_of, rotated
+from rpscli.records.query import hint, parse_query
 
 SCHEME = "fema_p695"
 
@@ -36,6 +38,26 @@ COMPONENTS = tuple(
     for side in "ab"
 )
 """The 100 components, `farfield/1/a` to `nearfield_no_pulse/28/b`."""
+
+PAIRS = tuple(component[:-2] for component in COMPONENTS[::2])
+"""The 50 pairs, `farfield/1` to `nearfield_no_pulse/28`, which an angle turns."""
+
+
+class _Wanted(NamedTuple):
+    """A component or a pattern of them; of pairs, if there is an angle [deg]."""
+
+    place: str
+    options: str
+    normalised: bool
+    angle: float | None
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        return COMPONENTS if self.angle is None else PAIRS
+
+    @property
+    def word(self) -> str:
+        return "component" if self.angle is None else "pair"
 
 
 def expand_set(rest: str, source: str) -> list[str]:
@@ -58,24 +80,25 @@ def expand_set(rest: str, source: str) -> list[str]:
     >>> expand_set("farfield/1/*?normalised", "")
     ['fema_p695:farfield/1/a?normalised', 'fema_p695:farfield/1/b?normalised']
     """
-    pattern, normalised = _split(rest, source)
-    found = [component for component in COMPONENTS if fnmatchcase(component, pattern)]
+    wanted = _split(rest, source)
+    found = [place for place in wanted.known if fnmatchcase(place, wanted.place)]
     if not found:
+        others = f"sets: {', '.join(_SETS)}"
+        remedy = others if "*" in wanted.place else hint(wanted.place, wanted.known)
         raise RecordError(
-            f"{source}: no component of FEMA P695 fits {pattern!r}; "
-            f"{hint(pattern, COMPONENTS) if '*' not in pattern else 'sets: ' + ', '.join(_SETS)}"
+            f"{source}: no {wanted.word} of FEMA P695 fits {wanted.place!r}; {remedy}"
         )
-    suffix = "?normalised" if normalised else ""
-    return [f"{SCHEME}:{component}{suffix}" for component in found]
+    return [f"{SCHEME}:{place}{wanted.options}" for place in found]
 
 
 def load_component(rest: str, source: str) -> GroundMotion:
-    """Read one component.
+    """Read one component, or a pair turned to a direction.
 
     Parameters
     ----------
     rest : str
-        What follows `fema_p695:`, such as `farfield/1/b` or `farfield/1/b?normalised`.
+        What follows `fema_p695:`: `farfield/1/b`, `farfield/1/b?normalised`, or a pair at an angle
+        from its first component towards the second [deg], `farfield/1?angle=30`.
     source : str
         The whole source, for messages.
 
@@ -84,18 +107,37 @@ def load_component(rest: str, source: str) -> GroundMotion:
     RecordError
         If there is no such component or the package is not installed.
     """
-    component, normalised = _split(rest, source)
-    if component not in COMPONENTS:
-        remedy = "load one component at a time" if "*" in component else hint(component, COMPONENTS)
-        raise RecordError(f"{source}: FEMA P695 has no component {component!r}; {remedy}")
-    return _component(_package_folder(source), component, source, normalised=normalised)
+    place, _, normalised, angle = wanted = _split(rest, source)
+    if place not in wanted.known:
+        remedy = f"load one {wanted.word} at a time" if "*" in place else hint(place, wanted.known)
+        if place in PAIRS:
+            remedy = f"name {place}/a or {place}/b, or turn the pair: {place}?angle=30"
+        elif place in COMPONENTS:
+            remedy = f"an angle turns a pair: {place[:-2]}?angle={angle:g}"
+        raise RecordError(f"{source}: FEMA P695 has no {wanted.word} {place!r}; {remedy}")
+    folder = _package_folder(source)
+    if angle is None:
+        return _component(folder, place, source, normalised=normalised)
+    first, second = (
+        _component(folder, f"{place}/{side}", source, normalised=normalised) for side in "ab"
+    )
+    motion = rotated(first, second, angle)
+    return replace(motion, name=motion.name.replace("_a", f"_{angle:g}deg", 1))
 
 
-def _split(rest: str, source: str) -> tuple[str, bool]:
-    component, mark, option = rest.partition("?")
-    if mark and option not in {"normalised", "normalized"}:
-        raise RecordError(f"{source}: option {option!r} is not known; did you mean normalised?")
-    return component, bool(mark)
+def _split(rest: str, source: str) -> _Wanted:
+    place, _, written = rest.partition("?")
+    options = [option.strip() for option in written.split("&") if option.strip()]
+    flags = [option for option in options if option in {"normalised", "normalized"}]
+    others = [option for option in options if option not in flags]
+    if unknown := [o for o in others if not o.startswith("angle=")]:
+        raise RecordError(
+            f"{source}: option {unknown[0]!r} is not known; did you mean normalised or angle=30?"
+        )
+    query = parse_query("&".join(others), source, ("angle",))
+    kept = ["normalised"] * bool(flags) + others
+    suffix = f"?{'&'.join(kept)}" if kept else ""
+    return _Wanted(place, suffix, bool(flags), angle_of(query) if query.values else None)
 
 
 def _package_folder(source: str) -> Path:

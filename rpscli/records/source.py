@@ -6,14 +6,16 @@ import glob
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from rpscli.errors import RecordError, nearest
 from rpscli.records import sets
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.made import pulses, synthetic
+from rpscli.records.pair import angle_of, rotated
 from rpscli.records.quantities import canonical_unit, unit_factor
-from rpscli.records.query import LIKENESS, hint, parse_query
+from rpscli.records.query import LIKENESS, Query, hint, parse_query
 
 _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
     sets.SCHEME: sets.load_component,
@@ -39,7 +41,9 @@ def load_record(
     ----------
     source : str
         A file, with options if it needs them (`rec.txt?dt=0.005&units=g`, `rec.V2?channel=1`), or
-        `fema_p695:farfield/1/b`, `pulse:sine?...`, `synthetic:?...`.
+        `fema_p695:farfield/1/b`, `pulse:sine?...`, `synthetic:?...`. Two components at an angle
+        from the first towards the second [deg]: `x.at2?second=y.at2&angle=30`,
+        `fema_p695:farfield/1?angle=30`.
     folder : Path, optional
         Where relative paths start (the folder of the case file); else the working directory.
     dt : float, optional [s]
@@ -63,14 +67,32 @@ def _loaded(source: str, folder: Path | None, dt: float | None, units: str | Non
             raise RecordError(f"{source}: dt and units describe files; leave them out here")
         return _MAKERS[scheme](rest, source)
     place, options = _split_options(source)
-    query = parse_query(options, source, ("dt", "units", "channel"))
+    query = parse_query(options, source, ("dt", "units", "channel", "second", "angle"))
+    path = _located(place, folder)
+    motion = _read(path, source, query, dt, units)
+    second, angle = query.values.get("second"), query.values.get("angle")
+    if (second is None) != (angle is None):
+        raise RecordError(
+            f"{source}: two components need both options: second=FILE, seen from the folder of the"
+            " first one, and angle=30, in degrees"
+        )
+    if second is None:
+        return motion
+    # Beside the first one, so that a source means the same from wherever it is seen.
+    turn = angle_of(query)
+    motion = rotated(motion, _read(_located(second, path.parent), source, query, dt, units), turn)
+    return replace(motion, name=f"{motion.name}_{turn:g}deg")
+
+
+def _read(
+    path: Path, source: str, query: Query, dt: float | None, units: str | None
+) -> GroundMotion:
     in_source = query.quantity("dt", "time") if "dt" in query.values else None
     if dt is not None and in_source not in {None, dt}:
         raise RecordError(f"{source}: dt = {dt} s contradicts the {in_source} s in the source")
     spelled = query.values.get("units")
     if units is not None and spelled is not None and _differ(units, spelled):
         raise RecordError(f"{source}: units = {units} contradicts the {spelled} in the source")
-    path = _located(place, folder)
     if path.is_dir():
         raise RecordError(f"{path}: a folder; name one of its files")
     _require_file(path, source)

@@ -7,6 +7,7 @@ from typing import Any
 from rpscli.report.study import (
     contrast,
     demand,
+    directions,
     fragility,
     ida,
     lines,
@@ -22,6 +23,7 @@ REPORTS: dict[str, Report[Any, Any]] = {
     "rotation": rotation.REPORT,
     "contrast": contrast.REPORT,
     "demand": demand.REPORT,
+    "directions": directions.REPORT,
     "storey_shear": storey_shear.REPORT,
     "fragility": fragility.REPORT,
     "ida": ida.REPORT,

@@ -1,0 +1,98 @@
+"""Two horizontal components of one motion, turned to a direction between them."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from rpscli.errors import RecordError
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.query import Query, parse_query
+
+HALF_TURN = 180.0
+"""Directions half a turn apart are the same motion with the other sign [deg]."""
+
+_ANGLE = re.compile(r"(?<=[?&])angle=([^&]*)(&|$)")
+
+
+class Direction(NamedTuple):
+    """A source with an angle: what it is without, and the angle [deg]."""
+
+    pair: str
+    angle: float
+
+
+def direction_of(source: str) -> Direction | None:
+    """The pair and the angle of a source; None if it names no angle.
+
+    >>> direction_of("fema_p695:farfield/1?normalised&angle=30")
+    Direction(pair='fema_p695:farfield/1?normalised', angle=30.0)
+    >>> direction_of("fema_p695:farfield/1/a") is None
+    True
+    """
+    match = _ANGLE.search(source)
+    if match is None:
+        return None
+    angle = angle_of(parse_query(match[0].rstrip("&"), source, ("angle",)))
+    return Direction((source[: match.start()] + source[match.end() :]).rstrip("?&"), angle)
+
+
+def angle_of(query: Query) -> float:
+    """The option `angle` of a source [deg]."""
+    return query.quantity("angle", "direction")
+
+
+def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMotion:
+    """What a structure sees whose plane stands at an angle to the first component.
+
+    Parameters
+    ----------
+    first, second : GroundMotion
+        At right angles to each other, with the same time step; the shorter one goes on as zero.
+    angle : float [deg]
+        From the first towards the second.
+
+    Returns
+    -------
+    GroundMotion
+        first cos(angle) + second sin(angle), with the texts of the first one.
+
+    Raises
+    ------
+    RecordError
+        If the time steps differ.
+
+    Examples
+    --------
+    >>> north = GroundMotion(np.array([2.0, 0.0]), 0.1, "n", "n.at2", "PEER AT2")
+    >>> east = GroundMotion(np.array([0.0, 4.0]), 0.1, "e", "e.at2", "PEER AT2")
+    >>> rotated(north, east, 30.0).acceleration.round(6).tolist()
+    [1.732051, 2.0]
+    """
+    if first.dt != second.dt:
+        raise RecordError(
+            f"{first.source}: the components have dt = {first.dt} s and {second.dt} s; resample one"
+            f" of them with `rps record convert FILE --resample {min(first.dt, second.dt)}`"
+        )
+    cosine, sine = _exact_at_right_angles(angle)
+    values = np.zeros(max(first.npts, second.npts))
+    values[: first.npts] += cosine * first.acceleration
+    values[: second.npts] += sine * second.acceleration
+    note = f"turned by {angle:g} deg towards {second.name}"
+    return replace(
+        first,
+        acceleration=values,
+        description=f"{first.description}; {note}".lstrip("; "),
+        warnings=tuple(dict.fromkeys((*first.warnings, *second.warnings))),
+    )
+
+
+def _exact_at_right_angles(angle: float) -> tuple[float, float]:
+    """Cosine and sine of an angle [deg]; a component itself is not changed by rounding."""
+    quarters, rest = divmod(angle, 90.0)
+    c, s = math.cos(math.radians(rest)), math.sin(math.radians(rest))
+    return ((c, s), (-s, c), (-c, -s), (s, -c))[int(quarters) % 4]

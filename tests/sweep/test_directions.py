@@ -1,0 +1,148 @@
+"""Studies over directions: the worst one and RotD50, from made-up and from real histories."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import Result
+from paper_structures import needs_compiled_kernels
+
+from rpscli.report.study.directions import directions_figure, pair_columns, spread_columns
+from rpscli.report.study.registry import REPORTS
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.reports.directions import (
+    NO_BOUND,
+    DirectionsOptions,
+    directions_report,
+    without_directions,
+)
+from rpscli.sweep.store import Stored
+from rpscli.sweep.table import tabulate
+from sweep.made_up import RHO, stored
+from sweep.small_studies import Make
+
+ANGLES = (0, 45, 90, 135)
+STUDY = f"""\
+rps: 1
+base: base.yaml
+vary:
+  - {RHO}: [0.5, 0]
+records:
+  - {{source: "one_x.txt?dt=0.01&units=g&second=one_y.txt", angle: {list(ANGLES)}}}
+  - {{source: "two_x.txt?dt=0.01&units=g&second=two_y.txt", angle: {list(ANGLES)}}}
+  - "one_x.txt?dt=0.01&units=g"
+"""
+ROTATION = {"one": (0.1, 0.4, 0.2, 0.3), "two": (0.5, 0.5, 9.0, 0.6)}
+
+
+@pytest.fixture
+def records(workplace: Path) -> None:
+    """Two pairs of components: one of 0.4 g at 0.8 s along 60 degrees, one twice as long."""
+    t = np.arange(0.0, 1.6, 0.01)
+    wave = 0.4 * np.sin(2.0 * np.pi * t / 0.8)
+    for name, values in {
+        "one_x": wave * np.cos(np.pi / 3.0),
+        "one_y": wave * np.sin(np.pi / 3.0),
+        "two_x": wave,
+        "two_y": 0.5 * wave,
+    }.items():
+        text = "\n".join(f"{value:.9f}" for value in values)
+        (workplace / f"{name}.txt").write_text(text, encoding="utf-8")
+
+
+def answer(source: str) -> Stored:
+    if "angle" not in source:
+        return stored()
+    name = source[:3]
+    angle = int(source.rpartition("=")[2])
+    value = ROTATION[name][ANGLES.index(angle)]
+    if value > 1.0:
+        return stored("overturned_rocking", rotation_ratio=2.0)
+    return stored(rotation_ratio=value)
+
+
+@pytest.mark.usefixtures("records")
+def test_worst_direction_and_median(study_of: Make) -> None:
+    design = lay_out(study_of(STUDY))
+    table = tabulate(design, (answer(point.record.source) for point in design if point.record))
+    report = directions_report(table, DirectionsOptions())
+    assert [panel.values for panel in report.panels] == [(0.5,), (0,)]
+    one, two = report.panels[0].curves
+    assert one.pair == "one_x.txt?dt=0.01&units=g&second=one_y.txt"
+    assert one.angles.tolist() == list(ANGLES)
+    found = {c.pair[:3]: {r.quantity.name: r for r in c.results} for c in (one, two)}
+    rotation = found["one"]["rotation_ratio"]
+    assert rotation[1:] == (0.4, 45.0, 0.25)
+    rotation = found["two"]["rotation_ratio"]
+    assert rotation[1:3] == (np.inf, 90.0)
+    assert rotation.rotd50 == pytest.approx(0.55)
+    assert (two.overturned, one.overturned) == (1, 0)
+    spread = next(s for s in report.panels[0].spreads if s.quantity.name == "rotation_ratio")
+    assert spread.worst.tolist() == [0.4, np.inf]
+    assert spread.rotd50.tolist() == pytest.approx([0.25, 0.55])
+    assert report.notes == (NO_BOUND,)
+    cells = {column.name: list(column.values) for column in spread_columns(report)}
+    assert cells["worst_84"][cells["result"].index("rotation_ratio")] == "inf"
+    assert set(cells["overturned"]) == {1}
+    assert len(list(pair_columns(report)[0].values)) == sum(
+        len(c.results) for p in report.panels for c in p.curves
+    )
+    assert directions_figure(report, "title").startswith(b"\x89PNG")
+
+
+@pytest.mark.usefixtures("records")
+def test_directions_that_are_not_even_are_named(study_of: Make) -> None:
+    design = lay_out(study_of(STUDY, (str(list(ANGLES)), "[0, 90, 180]")))
+    report = directions_report(tabulate(design, [None] * len(design)), DirectionsOptions())
+    assert "one_x.txt" in report.notes[1]
+    assert "not spread evenly over 180 deg" in report.notes[1]
+    assert not report.panels[0].spreads
+    assert report.failed == 12
+
+
+@pytest.mark.usefixtures("records")
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (str(list(ANGLES)), "30", "no pair of components stands at several angles"),
+        ("vary:", "perturb: {members: 2}\nvary:", "several histories for each direction"),
+    ],
+)
+def test_studies_without_directions(study_of: Make, old: str, new: str, message: str) -> None:
+    design = lay_out(study_of(STUDY, (old, new)))
+    (text,) = without_directions(design, DirectionsOptions())
+    assert message in text
+    assert REPORTS["directions"].requires is without_directions
+
+
+@needs_compiled_kernels
+@pytest.mark.usefixtures("records")
+def test_a_motion_along_one_line_is_worst_along_it(
+    workplace: Path, sweep: Callable[..., Result]
+) -> None:
+    """Across its own direction nothing moves, and at equal angles to it both sides are alike."""
+    text = STUDY.replace(str(list(ANGLES)), "{low: 0, high: 150, count: 6}")
+    (workplace / "study.yaml").write_text(f"{text}reports: [directions]\n", encoding="utf-8")
+    made = sweep("study.yaml", "-o", "made")
+    assert made.exit_code == 0, made.stderr
+    with (workplace / "made/directions_pairs.csv").open(encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["pair [-]"].startswith("one")]
+    shears = [row for row in rows if row["result [-]"] == "max_base_shear"]
+    shears = [row for row in shears if row[f"{RHO} [-]"] == "0.5"]
+    assert [row["worst_angle [deg]"] for row in shears] == ["60"]
+    with (workplace / "made/points.csv").open(encoding="utf-8") as file:
+        points = list(csv.DictReader(file))
+    of_one = [p for p in points if "one_x" in p["record [-]"] and "angle" in p["record [-]"]]
+    shear = {
+        p["record [-]"].rpartition("=")[2]: float(p["max_base_shear [N]"])
+        for p in of_one
+        if p[f"{RHO} [-]"] == "0.5"
+    }
+    # 1e-6: the components are printed with nine digits.
+    assert shear["150"] <= 1e-6 * shear["60"]
+    assert shear["30"] == pytest.approx(shear["90"], rel=1e-6)
+    assert shear["0"] == pytest.approx(shear["120"], rel=1e-6)
