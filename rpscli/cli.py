@@ -20,6 +20,9 @@ COMMANDS = {
     "sweep": Member(
         "rpscli.commands.sweep.command", "all points of a study, stored as they end; reports"
     ),
+    "report": Member(
+        "rpscli.commands.report.command", "one page to check, print and keep, from all of these"
+    ),
     "record": Member("rpscli.commands.record.group", "look at ground motions, convert, make them"),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
 }

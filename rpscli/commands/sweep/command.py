@@ -29,9 +29,8 @@ from rpscli.commands.sweep.input import (
 )
 from rpscli.commands.sweep.points import begin, compute
 from rpscli.commands.sweep.requirements import require_results
-from rpscli.commands.sweep.results import Collected, Failure, collect, outcome_counts
-from rpscli.commands.sweep.tables import summary_tables, verdict_lines, verdict_table
-from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
+from rpscli.commands.sweep.results import Collected, collect, first_error, outcome_counts
+from rpscli.commands.sweep.tables import summary_tables, verdict_table
 from rpscli.report.documents import failure_document, heading
 from rpscli.report.figures.look import Look
 
@@ -44,7 +43,6 @@ if TYPE_CHECKING:
     from rpscli.sweep.run.runner import Finish
     from rpscli.sweep.store import Store
 
-FAILURES_SHOWN = 10
 WARNINGS_SHOWN = 5
 
 
@@ -151,7 +149,7 @@ def _conclude(
     results = StudyResults(table, start.keys, store, given.context, available_cores())
     found = collect(given, results, conditions, folder)
     failures, notes = found.failures, found.notes
-    error = _first_error(found, len(table))
+    error = first_error(found, len(table))
     store.require()
     write(folder, terminal)
     terminal.warn(notes[:WARNINGS_SHOWN])
@@ -191,31 +189,6 @@ def _statistics(found: Collected) -> dict[str, Any]:
         "statistics": summary_document(found.summary),
         "verdicts": [verdict_document(keys, verdict) for verdict in found.verdicts],
     }
-
-
-def _first_error(found: Collected, total: int) -> RpsError | None:
-    """The gravest of what went wrong, whose exit code counts; its text tells of all."""
-    exceeded = verdict_lines(found.summary.keys, found.verdicts) if found.summary else []
-    lines = [f"limit exceeded: {line}" for line in exceeded[:FAILURES_SHOWN]]
-    if len(exceeded) > FAILURES_SHOWN:
-        lines.append(f"... and {len(exceeded) - FAILURES_SHOWN} more, all in verdicts.csv")
-    limits = LimitExceeded("\n".join(lines)) if lines else None
-    all_errors = [*found.broken, _incomplete(found.failures, total), limits]
-    errors = [error for error in all_errors if error is not None]
-    if not errors:
-        return None
-    return type(errors[0])("\n".join(map(str, errors)))
-
-
-def _incomplete(failures: list[Failure], total: int) -> StudyIncomplete | None:
-    if not failures:
-        return None
-    lines = [f"{len(failures)} of {total} points failed; they enter no statistic"]
-    for failure in failures[:FAILURES_SHOWN]:
-        lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
-    if len(failures) > FAILURES_SHOWN:
-        lines.append(f"... and {len(failures) - FAILURES_SHOWN} more, all in failed.csv")
-    return StudyIncomplete("\n".join(lines))
 
 
 def _tables(document: dict[str, Any], found: Collected) -> Iterator[RenderableType]:

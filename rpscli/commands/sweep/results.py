@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.commands.sweep.input import StudyInput
-from rpscli.errors import RpsError
+from rpscli.commands.sweep.tables import verdict_lines
+from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.report.files.output_folder import OutputFolder
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rpscli.sweep.table import Table
 
 BASE = "base.yaml"
+FAILURES_SHOWN = 10
 
 
 @dataclass(frozen=True)
@@ -130,3 +132,28 @@ def _failure_columns(failures: list[Failure]) -> list[Column]:
 def outcome_counts(table: Table) -> dict[str, Any]:
     """How many points ended in which way, the commonest first."""
     return dict(Counter(table.outcomes.tolist()).most_common())
+
+
+def first_error(found: Collected, total: int) -> RpsError | None:
+    """The gravest of what went wrong, whose exit code counts; its text tells of all."""
+    exceeded = verdict_lines(found.summary.keys, found.verdicts) if found.summary else []
+    lines = [f"limit exceeded: {line}" for line in exceeded[:FAILURES_SHOWN]]
+    if len(exceeded) > FAILURES_SHOWN:
+        lines.append(f"... and {len(exceeded) - FAILURES_SHOWN} more, all in verdicts.csv")
+    limits = LimitExceeded("\n".join(lines)) if lines else None
+    all_errors = [*found.broken, _incomplete(found.failures, total), limits]
+    errors = [error for error in all_errors if error is not None]
+    if not errors:
+        return None
+    return type(errors[0])("\n".join(map(str, errors)))
+
+
+def _incomplete(failures: list[Failure], total: int) -> StudyIncomplete | None:
+    if not failures:
+        return None
+    lines = [f"{len(failures)} of {total} points failed; they enter no statistic"]
+    for failure in failures[:FAILURES_SHOWN]:
+        lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
+    if len(failures) > FAILURES_SHOWN:
+        lines.append(f"... and {len(failures) - FAILURES_SHOWN} more, all in failed.csv")
+    return StudyIncomplete("\n".join(lines))

@@ -83,6 +83,11 @@ class OutputFolder:
         return [str(path) for path in (*self._contents, self.folder / RUN_FILE)]
 
     @property
+    def contents(self) -> Mapping[Path, bytes]:
+        """What was collected."""
+        return self._contents
+
+    @property
     def replaces_other_inputs(self) -> bool:
         """Whether earlier results are there, and come from other inputs."""
         earlier = {key: self._earlier.get(key) for key in ("sha256", "inputs")}

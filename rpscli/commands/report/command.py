@@ -1,0 +1,163 @@
+"""`rps report`: one page for whoever checks, prints or keeps the results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rpscli.commands.acceptance import parse_condition
+from rpscli.commands.case_input import RESULTS, read_case
+from rpscli.commands.motion import MotionRequest
+from rpscli.commands.report.case_page import PageDone, case_page
+from rpscli.commands.report.subject import HISTORY, earlier_case, earlier_results, is_study
+from rpscli.commands.shell.failure import leave
+from rpscli.commands.shell.options import CaseRequest, terminal_options
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import Refused, UsageError
+from rpscli.report.figures.look import Look, read_style
+from rpscli.report.files.versions import program_version
+from rpscli.report.files.whole_files import require_writable, write_whole
+
+
+@click.command("report")
+@click.argument("subject", metavar="CASE|STUDY|FOLDER")
+@click.option(
+    "-o",
+    "--output",
+    "place",
+    type=click.Path(path_type=Path),
+    metavar="FILE.html",
+    help="The page; results/<name>/report.html by default.",
+)
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Put a value over the case's or the study's own; repeatable.",
+)
+@click.option("--record", metavar="SRC", help="Ground motion in place of the case's own.")
+@click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
+@click.option("--scale", type=float, metavar="FACTOR", help="Factor on the acceleration.")
+@click.option("--scale-to", metavar="MEASURE=VALUE", help="Scale to a measure, as PGA=0.4g.")
+@click.option(
+    "--fail-on",
+    "fail_on",
+    multiple=True,
+    metavar="WHAT",
+    help="A limit besides those of the case or study, as in `rps timehistory`; repeatable.",
+)
+@click.option(
+    "--style",
+    "style_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE.mplstyle",
+    help="matplotlib's settings for the figures.",
+)
+@click.option("--force", is_flag=True, help="Overwrite a file that is no report.")
+@terminal_options
+def command(
+    subject: str,
+    place: Path | None,
+    overrides: tuple[str, ...],
+    fail_on: tuple[str, ...],
+    style_file: Path | None,
+    terminal: Terminal,
+    *,
+    force: bool,
+    **motion: Any,
+) -> None:
+    """One page about a CASE, a STUDY or a FOLDER of results.
+
+    It has the structure, the input, the formulas with their numbers, the ground motions, verdicts,
+    tables and figures, and the command that repeats it. It needs no network and no scripts, and
+    prints on A4. The history of a CASE is computed; so are points of a STUDY that are not stored
+    yet. That of a FOLDER is computed again and held against what is stored.
+    """
+    conditions = [parse_condition(text) for text in fail_on]
+    look = Look(style={} if style_file is None else read_style(style_file))
+    request, asked = CaseRequest(subject, overrides), MotionRequest(**motion)
+    earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None
+    history = earlier is not None and earlier.run["command"] == HISTORY
+    study = not history and (earlier is not None or is_study(subject))
+    _require_sense(subject, asked, overrides, study=study, stored=earlier is not None)
+    name: str
+    make: Callable[[], PageDone]
+    if study:
+        from rpscli.commands.report.study_page import read_subject, study_page  # noqa: PLC0415
+
+        made = read_subject(request, earlier, look, terminal)
+        folder = None if earlier is None else earlier.folder
+        name, make = made.study.name, partial(study_page, made, folder, conditions, terminal)
+    else:
+        if earlier is not None:
+            given, asked = earlier_case(earlier)
+        else:
+            given = read_case(request, terminal)
+        name = given.case.name
+        make = partial(case_page, given, asked, conditions, look, earlier, terminal)
+    file = place or RESULTS / name / "report.html"
+    _require_free(file, name, force=force)
+    done = make()
+    _write(file, name, done, terminal)
+    leave(done.error)
+
+
+def _require_sense(
+    subject: str,
+    motion: MotionRequest,
+    overrides: tuple[str, ...],
+    *,
+    study: bool,
+    stored: bool,
+) -> None:
+    """Refuse options that the subject does not take."""
+    if stored and overrides:
+        raise UsageError(f"{subject}: stored results keep the values they have; leave --set out")
+    if (study or stored) and motion != MotionRequest():
+        reason = "a study has records of its own" if study else "a stored history has its record"
+        raise UsageError(f"{subject}: {reason}; leave --record, --vertical and --scale out")
+
+
+def _require_free(file: Path, name: str, *, force: bool) -> None:
+    """Refuse to replace what is no earlier page about the same.
+
+    Raises
+    ------
+    Refused
+        If another file is in the way.
+    OutputError
+        If nothing can be written there.
+    """
+    require_writable(file.parent)
+    if force or not file.exists():
+        return
+    from rpscli.report.html.page import is_about  # noqa: PLC0415 -- matplotlib's style is slow
+
+    try:
+        own = is_about(file.read_bytes(), name)
+    except OSError:
+        own = False
+    if not own:
+        raise Refused(
+            f"{file} exists and is no report of {name}; name another file with -o, or overwrite it"
+            " with --force"
+        )
+
+
+def _write(file: Path, name: str, done: PageDone, terminal: Terminal) -> None:
+    from rpscli.report.html.page import MOST_BYTES, page  # noqa: PLC0415
+
+    made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
+    subtitle = f"{done.subtitle}. Made by rps {program_version()} on {made}."
+    content = page(done.title, subtitle, done.sections, name)
+    write_whole({file: content})
+    if len(content) > MOST_BYTES:
+        terminal.warn([f"{file} has {1e-6 * len(content):.1f} MB: too many figures for a page"])
+    terminal.note(f"written to {file}, {1e-3 * len(content):.0f} kB")
+    terminal.result({**done.document, "command": "report", "files": [str(file)]}, [str(file)])

@@ -1,0 +1,136 @@
+"""Sections that pages of cases and of studies share."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from importlib import resources
+from typing import TYPE_CHECKING, Any
+
+from rpscli.case.schema.key_units import unit
+from rpscli.report.figures.drawing import figure_files
+from rpscli.report.figures.look import Look
+from rpscli.report.figures.structure import structure_figure
+from rpscli.report.html.page import Block, Section, Table
+from rpscli.report.html.pictures import Picture, page_look
+from rpscli.report.tables.derivation import derivations, first_shape
+
+if TYPE_CHECKING:
+    from rpscli.model.podium import PodiumStructure
+
+DIGITS = 6
+THEORY = "THEORY.md"
+HIDDEN = "| assumed |"
+"""Begins the table of the theory that says what the model cannot tell."""
+
+
+def structure_section(structure: PodiumStructure, title: str, look: Look) -> Section:
+    """The drawing, and the storeys."""
+    files = figure_files({"s": lambda: structure_figure(structure, title)}, page_look(look))
+    drawing = Picture(
+        {name.removeprefix("s."): content for name, content in files.items()},
+        "The structure at rest, and one of its columns enlarged. R runs from the middle of the"
+        " column to the edge of the flat part of its end.",
+    )
+    blocks: list[Block] = [drawing]
+    if structure.superstructure is not None:
+        blocks += ["Storeys, the roof on top:", _storeys(structure)]
+    return Section("The structure", blocks)
+
+
+def _storeys(structure: PodiumStructure) -> Table:
+    building = structure.superstructure
+    assert building is not None, "there are storeys"
+    shape, heights = first_shape(building), building.storey_heights
+    rows = [
+        (
+            str(storey + 1),
+            "-" if heights is None else _number(heights[storey]),
+            _number(building.masses[storey]),
+            _number(building.stiffnesses[storey]),
+            _number(shape[storey]),
+        )
+        for storey in reversed(range(building.storeys))
+    ]
+    heads = ("storey", "height [m]", "mass m_i [kg]", "stiffness k_i [N/m]", "first mode φ_i")
+    return Table(heads, rows, words=1)
+
+
+def input_table(content: Mapping[str, Any]) -> Table:
+    """Every key of a case in SI units, defaults written out."""
+    rows = []
+    for key, value in _leaves(content):
+        of_key = unit(key)
+        rows.append((key, _plain(value), "" if of_key == "-" else of_key))
+    return Table(("key", "value", "unit"), rows, words=3)
+
+
+def derived_section(structure: PodiumStructure, podium: Mapping[str, Any]) -> Section:
+    """Derived quantities with formulas, and with the numbers put in."""
+    rows = [
+        (
+            row.label,
+            row.symbol,
+            row.formula or "from the case",
+            row.numbers,
+            _number(row.value),
+            "" if row.unit == "-" else row.unit,
+        )
+        for row in derivations(structure, podium)
+    ]
+    text = (
+        "Angles are in radians, everything else in SI units. The numbers put in are rounded to"
+        f" {DIGITS} digits; the values follow from unrounded ones. The formulas are derived in"
+        f" {THEORY}, sections 1 to 7. f, κ and e_given are factor, loss and restitution of"
+        " podium.impact, I is podium.bearing.inertia_ratio."
+    )
+    return Section(
+        "Derived quantities",
+        [
+            text,
+            Table(
+                ("quantity", "symbol", "formula", "with numbers", "value", "unit"), rows, words=4
+            ),
+        ],
+    )
+
+
+def hidden_section(*more: Block) -> Section:
+    """What the model leaves out, in the words of the theory."""
+    text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
+    lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
+    head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    return Section("What the model leaves out", [Table(head, _bare(rows), words=2), *more])
+
+
+def _bare(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    return [[cell.replace("`", "") for cell in row] for row in rows]
+
+
+def listing(*rows: tuple[str, str | None]) -> Table:
+    """Names and what they stand for; without those that stand for nothing."""
+    return Table((), [(name, text) for name, text in rows if text], words=2)
+
+
+def _leaves(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values; lists of sections are numbered from 0, as --set has them."""
+    for name, value in content.items():
+        key = f"{prefix}{name}"
+        if isinstance(value, dict) and value:
+            yield from _leaves(value, f"{key}.")
+        elif isinstance(value, list) and any(isinstance(part, dict) for part in value):
+            yield from _leaves(
+                dict(zip(map(str, range(len(value))), value, strict=True)), f"{key}."
+            )
+        else:
+            yield key, value
+
+
+def _plain(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+def _number(value: float) -> str:
+    return f"{value:.{DIGITS}g}"

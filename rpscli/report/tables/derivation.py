@@ -1,0 +1,276 @@
+"""The quantities of `rps check` with their formulas and the numbers put in.
+
+A formula is written once, as an expression that can be evaluated. Its letters become symbols in one
+column and numbers in another, so that a checker can follow with a pocket calculator.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY, Derived
+
+if TYPE_CHECKING:
+    from rpscli.model.bearing import Bearing
+    from rpscli.model.podium import PodiumStructure
+    from rpscli.model.superstructure import Superstructure
+
+DIGITS = 6
+
+SYMBOLS = {
+    "alpha": "α", "alpha_w": "α′", "beta": "β", "rho": "ρ", "gamma": "γ", "eta": "η", "kappa": "κ",
+    "theta_cr": "θ_cr", "tan_alpha": "tan α", "tan_alpha_w": "tan α′", "rho_cr": "ρ_cr",
+    "height": "2H", "width": "2B", "radius": "r", "m_column": "m_c", "m_c": "N m_c", "M": "M_tot",
+    "gamma_t": "γ(1 + η)", "pi": "π", "sum_m": "Σ m_i φ_i²", "sum_k": "Σ k_i (φ_i − φ_i₋₁)²",
+}  # fmt: skip
+"""Letters that are written otherwise than in an expression."""
+
+FUNCTIONS = ("sin", "cos", "tan", "asin", "atan", "sqrt")
+
+
+class Derivation(NamedTuple):
+    """One quantity: its words and symbol, value and unit, formula, and formula with numbers.
+
+    `formula` is empty for what the case gives.
+    """
+
+    name: str
+    label: str
+    symbol: str
+    value: float
+    unit: str
+    formula: str
+    numbers: str
+
+
+def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterator[Derivation]:
+    """All derived quantities that are numbers, in the order in which they follow from each other.
+
+    Parameters
+    ----------
+    structure
+        The structure.
+    podium
+        The section of the case, which says what is given and what follows.
+    """
+    letters = _letters(structure)
+    formulas = _formulas(structure, podium)
+    for row in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD):
+        yield from _before(row, structure, letters)
+        value = row.value(structure)
+        if isinstance(value, float | int):
+            yield _derivation(row, float(value), formulas.get(row.name, ""), letters)
+
+
+def _derivation(
+    row: Derived, value: float, expression: str, letters: Mapping[str, float]
+) -> Derivation:
+    formula, numbers = symbolic(expression), numeric(expression, letters)
+    return Derivation(row.name, row.label, greek(row.symbol), value, row.unit, formula, numbers)
+
+
+def _before(
+    row: Derived, structure: PodiumStructure, letters: Mapping[str, float]
+) -> Iterator[Derivation]:
+    """What is no result of its own, but stands in the next formula."""
+    law = structure.impact_law
+    if row.name == "restitution":
+        inertia = Derived("inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", lambda _: None)
+        yield _derivation(inertia, structure.bearing.inertia_ratio, "", letters)
+    if row.name == "restitution" and law.kind != "value":
+        edge = Derived("e_edge", "restitution, impulse at the edges", "e_edge", "-", lambda _: None)
+        yield _derivation(edge, letters["e_edge"], EDGES[law.kind], letters)
+    if row.name == "uplift_force":
+        weight = Derived("weight", "weight that is lifted", "W", "N", lambda _: None)
+        yield _derivation(weight, structure.weight, "(m_c / 2 + m_b + M) * g", letters)
+
+
+EDGES = {
+    "flexible": (
+        "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha) - 4 * gamma * eta * sin(alpha)^2)"
+        " / (I + 4 * gamma + 4 * gamma * eta * sin(alpha)^2)"
+    ),
+    "rigid": "1 - 2 * sin(alpha)^2 * (1 + 4 * gamma_t) / (I + 4 * gamma_t)",
+}
+"""Restitution beside an impulse at the edges of the flat part (Theory, section 4)."""
+
+
+def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
+    """Expressions by the names of the quantities; empty for what the case gives."""
+    return {**_of_shape(structure.bearing, podium["bearing"]), **_of_masses(structure, podium)} | {
+        "restitution": _restitution(structure),
+        "uplift_acceleration": "g * tan_alpha",
+        "uplift_force": "W * tan_alpha",
+        "static_base_shear": "M * g * tan_alpha",
+        "initial_stiffness": "-W / (2 * R * cos(alpha)^3)"
+        if structure.bearing.is_flat
+        else "-W * (1 - 2 * rho * cos(alpha)^2) / (2 * R * cos(alpha)^3)",
+        "p_hat": "sqrt(g / R * (1 + 2 * gamma_t) / (I + 4 * gamma_t))",
+        "T1": "2 * pi * sqrt(sum_m / sum_k)",
+    }
+
+
+def _of_shape(bearing: Bearing, given: Mapping[str, Any]) -> dict[str, str]:
+    flat, sizes = bearing.is_flat, "dimensions" in given
+    first_order = "(1 - tan_alpha / tan_alpha_w) / 2"
+    return {
+        "semi_diagonal": "sqrt((height)^2 + (width)^2) / 2" if sizes else "",
+        "column_height": "" if sizes else "2 * R * cos(alpha)",
+        "flat_width": "" if sizes else "2 * R * sin(alpha)",
+        "arc_radius": "" if sizes else "rho * height",
+        "alpha": "atan(width / height)" if sizes else "atan(tan_alpha)",
+        "alpha_wedge": "atan(tan_alpha_w)",
+        "beta": "0" if flat else "asin((tan_alpha_w - tan_alpha) / (2 * rho))",
+        "curvature_ratio": "radius / height" if sizes else "",
+        "rho_cr_paper": first_order,
+        "rho_cr_exact": "0"
+        if flat
+        else "tan_alpha / (1 - 2 * rho_cr) = tan(asin((tan_alpha_w - tan_alpha) / (2 * rho_cr)))",
+        "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
+        "critical_rotation_paper": _critical(
+            flat=flat,
+            rolls=bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper,
+        ),
+    } | ({"curvature_ratio": first_order} if given.get("curvature_ratio") == "critical" else {})
+
+
+def _of_masses(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
+    building, beam = structure.superstructure, structure.cap_beam_mass > 0.0
+    floors = [] if building is None else building.masses.tolist()
+    total = (
+        "n * m_i" if len(set(floors)) == 1 else " + ".join(f"m_{i + 1}" for i in range(len(floors)))
+    )
+    by_eta = building is not None and "superstructure_mass_ratio" in podium
+    by_gamma = beam and "column_mass" not in podium
+    return {
+        "columns_mass": "m_b / gamma" if by_gamma else "N * m_column",
+        "cap_beam_mass": "M / eta"
+        if by_eta
+        else ""
+        if "cap_beam_mass" in podium
+        else "gamma * m_c",
+        "superstructure_mass": total or "0",
+        "gamma": "" if "cap_beam_mass_ratio" in podium else "m_b / (m_c)",
+        "eta": "" if by_eta else "M / m_b" if beam else "0",
+        "gamma_total": "gamma * (1 + eta)",
+    }
+
+
+def _critical(*, flat: bool, rolls: bool) -> str:
+    if flat:
+        return "atan(tan_alpha)"
+    if rolls:
+        return "atan(tan_alpha / (1 - 2 * rho))"
+    return "atan(tan_alpha_w / (1 - 2 * rho * (1 - cos(beta))))"
+
+
+def _restitution(structure: PodiumStructure) -> str:
+    law = structure.impact_law
+    if law.kind == "value":
+        return "f * e_given"
+    return "f * (1 - kappa * (1 - e_edge))"
+
+
+def _letters(structure: PodiumStructure) -> dict[str, float]:
+    """Numbers for the letters of all expressions, SI units."""
+    b, law, building = structure.bearing, structure.impact_law, structure.superstructure
+    flat = b.is_flat
+    letters = {
+        "R": b.semi_diagonal,
+        "height": 2.0 * b.half_height,
+        "width": 2.0 * b.half_width,
+        "radius": b.radius,
+        "N": structure.columns,
+        "m_column": structure.columns_mass / structure.columns,
+        "alpha": b.alpha,
+        "alpha_w": b.alpha_wedge,
+        "tan_alpha": b.slenderness,
+        "tan_alpha_w": b.slenderness if flat else b.wedge_slenderness,
+        "beta": b.beta,
+        "rho": b.curvature_ratio,
+        "rho_cr": b.critical_curvature_ratio,
+        "I": b.inertia_ratio,
+        "m_c": structure.columns_mass,
+        "m_b": structure.cap_beam_mass,
+        "M": structure.superstructure_mass,
+        "gamma": structure.gamma,
+        "eta": structure.eta,
+        "gamma_t": structure.gamma_total,
+        "g": structure.gravity,
+        "W": structure.weight,
+        "f": law.factor,
+        "kappa": law.loss,
+    }
+    if law.kind == "value":
+        letters["e_given"] = structure.restitution / law.factor
+    else:
+        # With all of the loss and no factor, the law gives the restitution at the edges.
+        edges = replace(law, factor=1.0, loss=1.0)
+        letters["e_edge"] = edges.ratio(b, structure.gamma, structure.eta)
+    if building is not None:
+        shape = first_shape(building)
+        steps = np.diff(shape, prepend=0.0)
+        letters["n"] = building.storeys
+        letters |= {f"m_{i + 1}": mass for i, mass in enumerate(building.masses.tolist())}
+        letters["m_i"] = letters["m_1"]
+        letters["sum_m"] = float(building.masses @ shape**2)
+        letters["sum_k"] = float(building.stiffnesses @ steps**2)
+    return letters
+
+
+def first_shape(building: Superstructure) -> NDArray[np.float64]:
+    """First mode on a fixed base, (n,), 1 at the roof."""
+    return np.asarray(building.shapes[:, 0] / building.shapes[-1, 0])
+
+
+def symbolic(expression: str) -> str:
+    r"""An expression with its symbols.
+
+    >>> symbolic("atan(tan_alpha / (1 - 2 * rho))"), symbolic("sin(alpha)^2")
+    ('atan(tan α / (1 − 2 ρ))', 'sin(α)²')
+    """
+    text = _LETTER.sub(lambda found: SYMBOLS.get(found[0], found[0]), expression)
+    return _printed(text.replace(" * ", " "))
+
+
+def numeric(expression: str, letters: Mapping[str, float]) -> str:
+    r"""An expression with numbers for its letters.
+
+    >>> numeric("2 * R * cos(alpha)", {"R": 1.5, "alpha": 0.1488899})
+    '2 · 1.5 · cos(0.14889)'
+    """
+
+    def number(found: re.Match[str]) -> str:
+        name = found[0]
+        return name if name in FUNCTIONS else f"{letters.get(name, math.pi):.{DIGITS}g}"
+
+    return _printed(_LETTER.sub(number, expression).replace(" * ", " · "))
+
+
+def greek(text: str) -> str:
+    """Letters that are written out, as they are.
+
+    >>> greek("gamma (1 + eta)"), greek("alpha'")
+    ('γ (1 + η)', 'α′')
+    """
+    return _printed(re.sub("alpha|beta|gamma|theta|rho|eta", lambda f: GREEK[f[0]], text))
+
+
+GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "eta": "η", "rho": "ρ", "theta": "θ",
+}  # fmt: skip
+
+
+def _printed(text: str) -> str:
+    text = text.replace("'", "′").replace("^2", "²").replace("^3", "³")
+    return text.replace("sqrt", "√").replace(" - ", " − ").replace("-W", "−W")
+
+
+_LETTER = re.compile(r"[A-Za-z_]\w*")

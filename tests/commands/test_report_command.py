@@ -1,0 +1,182 @@
+"""`rps report`: pages of cases, of studies, and of folders of results."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import Result
+
+from rpscli.commands.shell.numbers import shown
+
+Invoke = Callable[..., Result]
+
+STUDY = """\
+rps: 1
+title: A small study
+base: small.yaml
+vary: [{podium.bearing.curvature_ratio: [0.5, 0]}]
+records: [{source: "synthetic:?pga=0.5g&duration=4&dt=0.02", seed: [1, 2]}]
+limits: {rotation_ratio: 0.5}
+reports: [overturning]
+"""
+
+DRAWING = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 2 1"/>'
+
+
+@pytest.fixture(autouse=True)
+def _drawings_cost_nothing(figures: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Real figures on a page are looked at in tests/report."""
+    monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: DRAWING)
+
+
+def text_of(file: str | Path) -> str:
+    """The page without its tags."""
+    text = Path(file).read_text(encoding="utf-8")
+    text = re.sub(r"<style>.*?</style>|<svg.*?</svg>", "", text, flags=re.DOTALL)
+    return " ".join(re.sub(r"<[^>]*>", " ", text).split())
+
+
+@pytest.fixture
+def study(workplace: Path) -> str:
+    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
+    return "study.yaml"
+
+
+def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: Callable[..., Any]) -> None:
+    document = rps_json("report", "small.yaml", "-o", "out.html", "--set", "limits.drift_ratio=0.9")
+    assert document["command"] == "report"
+    assert document["files"] == ["out.html"]
+    text = text_of("out.html")
+    for title in ("In short", "The structure", "Input", "Derived quantities", "Ground motion"):
+        assert title in text
+    for part in ("superstructure.storey_height 3", "atan(0.15)", "no sliding at either end"):
+        assert part in text
+    assert "rps timehistory small.yaml --set limits.drift_ratio=0.9" in text
+    assert Path("out.html").stat().st_size < 1_000_000
+    # The same numbers as those of the history itself.
+    history = rps_json("timehistory", "small.yaml", "-o", "history")
+    assert document["max_rotation"] == history["max_rotation"]
+    assert f"{shown(history['max_rotation'])} rad" in text
+
+
+def test_a_case_without_a_record_ends_with_statics(rps: Invoke) -> None:
+    given = Path("small.yaml").read_text(encoding="utf-8")
+    without = "".join(line for line in given.splitlines(True) if not line.startswith("record"))
+    Path("bare.yaml").write_text(without, encoding="utf-8")
+    result = rps("report", "bare.yaml", "-o", "out.html")
+    assert result.exit_code == 0, result.stderr
+    text = text_of("out.html")
+    assert "The case names no ground motion" in text
+    assert "Derived quantities" in text
+    assert "rps timehistory" not in text
+
+
+def test_limits_are_judged_and_the_page_is_there_all_the_same(rps: Invoke) -> None:
+    result = rps("report", "small.yaml", "-o", "out.html", "--fail-on", "rotation_ratio=1e-6")
+    assert result.exit_code == 10
+    assert "1 of 1 limits exceeded" in text_of("out.html")
+    assert "EXCEEDED" in text_of("out.html")
+
+
+def test_a_folder_is_computed_anew_and_compared(rps: Invoke) -> None:
+    options = ("--scale", "1.2", "--set", "podium.bearing.slenderness=0.14")
+    rps("timehistory", "small.yaml", "-o", "old", *options)
+    result = rps("report", "old", "-o", "out.html")
+    assert result.exit_code == 0, result.stderr
+    text = text_of("out.html")
+    same = re.search(r"(\d+) of (\d+) stored results are the same to the last digit", text)
+    assert same
+    assert int(same[1]) == int(same[2]) > 40
+    assert "--set podium.bearing.slenderness=0.14" in text
+    assert "--scale 1.2" in text
+
+
+def test_a_folder_whose_numbers_or_case_have_changed_says_so(rps: Invoke) -> None:
+    rps("timehistory", "small.yaml", "-o", "old")
+    summary = Path("old/summary.json")
+    document = json.loads(summary.read_text(encoding="utf-8"))
+    summary.write_text(json.dumps(document | {"max_rotation": 0.5}), encoding="utf-8")
+    case = Path("small.yaml")
+    changed = case.read_text(encoding="utf-8").replace("0.15", "0.12")
+    case.write_text(changed, encoding="utf-8")
+    assert rps("report", "old", "-o", "out.html").exit_code == 0
+    text = text_of("out.html")
+    assert "1 differ;" in text
+    assert "max_rotation 0.5" in text
+    assert "small.yaml has changed since" in text
+    assert "podium.bearing.slenderness 0.15" in text
+
+
+def test_the_record_of_the_command_line_is_found_again(rps: Invoke) -> None:
+    pulse = "pulse:sine?amplitude=0.2g&period=0.8"
+    rps("timehistory", "small.yaml", "-o", "old", "--record", pulse)
+    rps("report", "old", "-o", "out.html")
+    text = text_of("out.html")
+    assert "same to the last digit" in text
+    assert not re.search(r"\d+ differ;", text)
+    assert "any more" not in text
+
+
+def test_a_study_is_computed_once(rps: Invoke, study: str, rps_json: Callable[..., Any]) -> None:
+    first = rps("report", study, "-o", "out.html")
+    assert first.exit_code in {0, 10}, first.stderr
+    assert "computed 4 points" in first.stderr
+    document = rps_json("report", study, "-o", "out.html", exit_code=first.exit_code)
+    assert document["points"] == {"total": 4, "failed": 0}
+    text = text_of("out.html")
+    assert "The first of 2 systems: ρ = 0.5." in text
+    for part in ("Statistics", "synthetic:?pga=0.5g", "at most 0.5 in every record", "rps sweep"):
+        assert part in text
+    # The folder of the study holds points that `rps sweep` goes on with, and no files of it.
+    swept = rps("sweep", study, "--report-only", "--figures", "none")
+    assert swept.exit_code == first.exit_code
+    of_folder = rps("report", "results/study/sweep", "-o", "again.html")
+    assert of_folder.exit_code == first.exit_code, of_folder.stderr
+    assert text_of("again.html").replace("again", "out")[200:400] == text[200:400]
+
+
+def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
+    Path("mine.html").write_text("my notes", encoding="utf-8")
+    assert rps("report", "small.yaml", "-o", "mine.html").exit_code == 7
+    assert Path("mine.html").read_text(encoding="utf-8") == "my notes"
+    assert rps("report", "small.yaml", "-o", "mine.html", "--force").exit_code == 0
+    assert rps("report", "small.yaml", "-o", "mine.html").exit_code == 0
+    Path("other.yaml").write_text(Path("small.yaml").read_text("utf-8"), encoding="utf-8")
+    assert rps("report", "other.yaml", "-o", "mine.html").exit_code == 7
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("old", "--set", "podium.bearing.slenderness=0.2"), "leave --set out"),
+        (("old", "--scale", "2"), "a stored history has its record"),
+        (("study.yaml", "--record", "x.at2"), "a study has records of its own"),
+        (("empty",), "has no run.json of rps"),
+        (("above",), "name one of the folders in it"),
+        (("modes",), "holds results of `rps modal`"),
+    ],
+)
+def test_what_makes_no_page_is_said(
+    rps: Invoke, study: str, arguments: tuple[str, ...], said: str
+) -> None:
+    rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
+    rps("timehistory", "small.yaml", "-o", "above/one", "--figures", "none")
+    rps("modal", "small.yaml", "-o", "modes", "--figures", "none")
+    Path("empty").mkdir()
+    result = rps("report", *arguments)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert not list(Path().rglob("*.html"))
+
+
+def test_titles_with_tags_are_harmless(rps: Invoke) -> None:
+    text = Path("small.yaml").read_text(encoding="utf-8")
+    hostile = text.replace("Three storeys [test]", "<script>x</script> & co")
+    Path("small.yaml").write_text(hostile, encoding="utf-8")
+    assert rps("report", "small.yaml", "-o", "out.html").exit_code == 0
+    assert "<script" not in Path("out.html").read_text(encoding="utf-8")

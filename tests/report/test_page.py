@@ -1,0 +1,154 @@
+"""A page holds together: text stays text, names are used once, and nothing is fetched."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from functools import partial
+from html.parser import HTMLParser
+
+import pytest
+
+from report.small_results import KINDS, structure
+from rpscli.report.bundles import timehistory_files
+from rpscli.report.figures.look import USUAL
+from rpscli.report.html.elements import element, written
+from rpscli.report.html.page import MOST_BYTES, Block, Code, Notice, Section, Table, is_about, page
+from rpscli.report.html.pictures import Picture, page_look, pictures
+from rpscli.report.html.sections import derived_section, hidden_section, structure_section
+
+HOSTILE = """<script>alert("x")</script> & 'quotes' "too" </style></title> \x00 $a_b$"""
+
+
+class Parsed(HTMLParser):
+    """Tags with their attributes, and the text between them."""
+
+    def __init__(self, content: bytes) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str]]] = []
+        self.texts: list[str] = []
+        self.feed(content.decode())
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, {name: value or "" for name, value in attrs}))
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append(data)
+
+    def all(self, attribute: str) -> Iterator[str]:
+        return (of[attribute] for _, of in self.tags if attribute in of)
+
+
+@pytest.fixture(scope="module")
+def figures_of_history() -> list[Block]:
+    files = timehistory_files(KINDS["rolls"](), HOSTILE, page_look(USUAL))
+    return [Picture(found, f"{stem} {HOSTILE}") for stem, found in pictures(files)]
+
+
+def test_text_is_never_taken_for_tags() -> None:
+    blocks: list[Block] = [
+        HOSTILE,
+        Notice(HOSTILE),
+        Code(HOSTILE),
+        Table([HOSTILE], [[HOSTILE]]),
+        *structure_section(structure(), HOSTILE, USUAL).blocks,
+    ]
+    parsed = Parsed(page(HOSTILE, HOSTILE, [Section(HOSTILE, blocks)], HOSTILE))
+    assert "script" not in {tag for tag, _ in parsed.tags}
+    shown = [text for text in parsed.texts if "alert" in text]
+    # Title, heading, subtitle, contents, section, four blocks (a table has two): no letter is lost
+    # but the control character, which no page may hold.
+    assert len(shown) == 10
+    for text in shown:
+        assert HOSTILE.replace("\x00", "\ufffd") in text
+
+
+def test_names_are_used_once_and_lead_somewhere(figures_of_history: list[Block]) -> None:
+    # The same drawings twice: matplotlib gives them the same names.
+    twice = [*figures_of_history, *figures_of_history]
+    content = page("a", "b", [Section("c", twice)], "d")
+    parsed = Parsed(content)
+    names = Counter(parsed.all("id"))
+    assert len(names) > 50
+    assert set(names.values()) == {1}
+    of_attributes = " ".join(value for _, of in parsed.tags for value in of.values())
+    used = set(re.findall(r"url\(#([^)]+)\)", of_attributes))
+    used |= {link[1:] for link in parsed.all("href")}
+    assert len(used) > 50
+    assert used <= set(names)
+
+
+def test_nothing_is_fetched_and_nothing_runs(figures_of_history: list[Block]) -> None:
+    content = page("a", "b", [Section("c", figures_of_history)], "d")
+    parsed = Parsed(content)
+    assert not re.search(rb"https?:|@import|url\((?!#)", content)
+    assert not {"script", "link", "iframe", "object"} & {tag for tag, _ in parsed.tags}
+    assert all(link.startswith("#") for link in parsed.all("href"))
+    assert all(source.startswith("data:image/png;base64,") for source in parsed.all("src"))
+
+
+def test_figures_have_texts_in_place_of_them(figures_of_history: list[Block]) -> None:
+    parsed = Parsed(page("a", "b", [Section("c", figures_of_history)], "d"))
+    drawn = [of for tag, of in parsed.tags if tag == "svg"]
+    assert len(drawn) == len(figures_of_history) == 5
+    assert all(of["role"] == "img" and of["aria-label"] and of["viewbox"] for of in drawn)
+    assert not any("width" in of or "height" in of for of in drawn)
+
+
+def test_a_figure_of_many_points_is_an_image_and_the_page_stays_small() -> None:
+    marks = b"".join(b'<circle r="1" cx="%d" cy="2"/>' % n for n in range(20_000))
+    start = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
+    heavy = Picture({"svg": start + marks + b"</svg>", "png": b"\x89PNG" * 100}, "many points")
+    light = Picture({"svg": start + b"</svg>", "png": b"\x89PNG" * 100}, "few points")
+    content = page("a", "b", [Section("c", [heavy] * 20 + [light])], "d")
+    tags = Counter(tag for tag, _ in Parsed(content).tags)
+    assert (tags["img"], tags["svg"]) == (19, 2)  # as many drawings as there is room for
+    assert len(content) < MOST_BYTES
+
+
+def test_coordinates_are_rounded_and_factors_are_not() -> None:
+    drawing = (
+        b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
+        b'<path d="M 1.23456 -0.00049" transform="scale(0.015625)"/></svg>'
+    )
+    content = page("a", "b", [Section("c", [Picture({"svg": drawing, "png": b""}, "x")])], "d")
+    assert b'd="M 1.23 -0.00"' in content
+    assert b"scale(0.015625)" in content
+
+
+def test_a_page_knows_what_it_is_about() -> None:
+    made = partial(page, "a title", "b", [Section("c", ["d"])])
+    assert is_about(made('six "storeys" & <more>'), 'six "storeys" & <more>')
+    assert not is_about(made("six"), "six_storeys")
+    assert not is_about(b"notes of mine about six", "six")
+
+
+def test_empty_sections_are_left_out_and_the_others_numbered() -> None:
+    parsed = Parsed(page("a", "b", [Section("none", []), Section("some", ["text"])], "c"))
+    assert "none" not in parsed.texts
+    assert "1  some" in parsed.texts
+
+
+def test_what_the_model_leaves_out_is_read_from_the_theory() -> None:
+    (table,) = hidden_section().blocks
+    assert isinstance(table, Table)
+    assert list(table.heads) == ["assumed", "so the model cannot tell"]
+    assert len(table.rows) >= 8
+    assert all(len(row) == 2 and all(row) for row in table.rows)
+    assert any("friction_demand" in row[1] for row in table.rows)
+
+
+def test_every_derived_number_has_a_row() -> None:
+    made = structure()
+    podium = {"bearing": {"semi_diagonal": 1.5}, "cap_beam_mass": 2e5, "column_mass": 2e4}
+    table = derived_section(made, podium).blocks[-1]
+    assert isinstance(table, Table)
+    values = {row[0]: row[4] for row in table.rows}
+    assert values["critical rotation"] == f"{made.critical_rotation:.6g}"
+    assert values["first period on a fixed base"] == "0.2"
+
+
+def test_elements_nest() -> None:
+    made = element("p", "a", element("b", "c"), None, ["d", element("i")], "e")
+    assert written(made) == "<p>a<b>c</b>d<i></i>e</p>"
