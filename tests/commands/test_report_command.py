@@ -159,13 +159,16 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
         (("empty",), "has no run.json of rps"),
         (("above",), "name one of the folders in it"),
         (("modes",), "holds results of `rps modal`"),
+        (("set",), "name one of the folders in it, such as set/"),
     ],
 )
 def test_what_makes_no_page_is_said(
     rps: Invoke, study: str, arguments: tuple[str, ...], said: str
 ) -> None:
+    pulses = [f"--record=pulse:sine?amplitude={size}g&period=1" for size in (0.1, 0.2)]
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     rps("timehistory", "small.yaml", "-o", "above/one", "--figures", "none")
+    rps("timehistory", "small.yaml", "-o", "set", *pulses, "--figures", "none")
     rps("modal", "small.yaml", "-o", "modes", "--figures", "none")
     Path("empty").mkdir()
     result = rps("report", *arguments)

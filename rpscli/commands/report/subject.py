@@ -40,14 +40,19 @@ def earlier_results(folder: Path) -> Earlier:
     UsageError
         If it holds nothing that a page can be made of.
     """
+    command = None
     try:
         run = json.loads((folder / RUN_FILE).read_text(encoding="utf-8"))
         command, inputs = run["command"], run["inputs"]
-        known = isinstance(inputs, dict) and "file" in run and "overrides" in inputs
+        needed = [*(run[key] for key in ("file", "name", "sha256")), inputs["overrides"]]
+        if command == HISTORY:
+            record = inputs["record"]
+            needed += [inputs["case"], record["scale"], record["vertical"]]
+            needed += [record["horizontal"][key] for key in ("source", "sha256")]
+        if command in {HISTORY, SWEEP}:
+            return Earlier(folder, run)
     except (OSError, ValueError, TypeError, KeyError):
-        command, known = None, False
-    if command in {HISTORY, SWEEP} and known and ("case" in inputs or command == SWEEP):
-        return Earlier(folder, run)
+        pass  # told below, together with folders of other commands
     inside = sorted(path.parent for path in folder.glob(f"*/{RUN_FILE}"))
     hint = f"; name one of the folders in it, such as {inside[0]}" if inside else ""
     what = f"holds results of `rps {command}`" if command else f"has no {RUN_FILE} of rps"

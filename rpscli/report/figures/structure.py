@@ -113,7 +113,7 @@ def _draw_column(axes: Axes, bearing: Bearing) -> None:
     _measure(axes, (-B, -gap), (B, -gap), f"2B = {2.0 * B:.4g} m")
     title = "a column to scale, with flat ends"
     if not bearing.is_flat:
-        _measure(axes, (-half, -3.0 * gap), (half, -3.0 * gap), f"2B' = {2.0 * half:.4g} m")
+        _measure(axes, (-half, -4.2 * gap), (half, -4.2 * gap), f"2B' = {2.0 * half:.4g} m")
         end = (half, bearing.radius * (1.0 - math.cos(bearing.beta)))
         axes.annotate(
             f"r = {bearing.radius:.4g} m\nup to β = {math.degrees(bearing.beta):.4g}°",
@@ -126,7 +126,7 @@ def _draw_column(axes: Axes, bearing: Bearing) -> None:
         title = "a column to scale"
     axes.set_title(title, fontsize=style.small(), color=style.GREY)
     axes.margins(x=0.22)
-    axes.set_ylim(-6.0 * gap, 2.0 * H + gap)
+    axes.set_ylim(-7.5 * gap, 2.0 * H + gap)
 
 
 def _measure(axes: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:

@@ -15,10 +15,6 @@ from rpscli.report.html.elements import element, printable, written
 FORMATS = ("svg", "png")
 """What a page asks for: the second where the first takes too much room."""
 
-PAGE_LOOK = {
-    "path.simplify_threshold": 0.5,  # points; what a page shows at its own size
-    "font.family": ["DejaVu Sans"],
-}
 _NUMBER = re.compile(r"-?\d+\.\d{3,}")
 _REFERENCE = re.compile(r"#([\w.-]+)")
 
@@ -32,8 +28,8 @@ class Picture:
 
 
 def page_look(look: Look) -> Look:
-    """The look of figures of a page: the user's own style goes over that of the page."""
-    return Look(FORMATS, look.columns, {**PAGE_LOOK, **look.style})
+    """The user's look, in the formats of a page."""
+    return Look(FORMATS, look.columns, look.style)
 
 
 def pictures(files: Iterable[tuple[str, str | bytes]]) -> Iterator[tuple[str, dict[str, bytes]]]:
