@@ -11,9 +11,10 @@ import click
 from rpscli.commands.shell.lazy import LazyGroup, Member
 
 COMMANDS = {
-    "init": Member("rpscli.commands.init", "write a commented case to start from"),
+    "init": Member("rpscli.commands.init", "write a commented case or study to start from"),
     "check": Member("rpscli.commands.check", "what follows from a case, and what is wrong in it"),
-    "schema": Member("rpscli.commands.schema", "the case format as a JSON schema"),
+    "explain": Member("rpscli.commands.explain", "what a key, a result, a report or a word means"),
+    "schema": Member("rpscli.commands.schema", "the formats of case and study as JSON schemas"),
     "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
     "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
     "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
@@ -24,6 +25,7 @@ COMMANDS = {
         "rpscli.commands.report.command", "one page to check, print and keep, from all of these"
     ),
     "record": Member("rpscli.commands.record.group", "look at ground motions, convert, make them"),
+    "completion": Member("rpscli.commands.completion", "let your shell complete what you type"),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
 }
 

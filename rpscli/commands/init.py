@@ -1,4 +1,4 @@
-"""`rps init`: a case to start from."""
+"""`rps init`: a case or a study to start from."""
 
 from __future__ import annotations
 
@@ -7,28 +7,50 @@ from pathlib import Path
 
 import click
 
+from rpscli.commands.schema import schema_of
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
-from rpscli.errors import Refused
+from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import heading
+from rpscli.report.files.json_text import json_text
 from rpscli.report.files.whole_files import write_whole
 
 
 @click.command("init")
-@click.argument("file", default="case.yaml", type=click.Path(path_type=Path))
-@click.option("--force", is_flag=True, help="Overwrite FILE if it exists.")
+@click.argument("file", required=False, type=click.Path(path_type=Path))
+@click.option("--study", is_flag=True, help="A study in place of a case.")
+@click.option(
+    "--editor",
+    is_flag=True,
+    help="Also write the schema beside FILE, and a first line by which editors that know the YAML"
+    " language server check and complete what is typed.",
+)
+@click.option("--force", is_flag=True, help="Overwrite files that exist.")
 @terminal_options
-def command(file: Path, *, force: bool, terminal: Terminal) -> None:
-    """Write a commented case to FILE (case.yaml by default; - is the standard output)."""
+def command(
+    file: Path | None, *, study: bool, editor: bool, force: bool, terminal: Terminal
+) -> None:
+    """Write a commented case to FILE (case.yaml or study.yaml by default; - prints it)."""
     from rpscli.case.text.files import starter_text  # noqa: PLC0415
 
-    text = starter_text()
+    text = starter_text(study=study)
+    kind = "study" if study else "case"
+    file = file or Path(f"{kind}.yaml")
     if str(file) == "-":
+        if editor:
+            raise UsageError("--editor writes the schema beside FILE; name a file in place of -")
         emit(text, sys.stdout)
         return
-    if file.exists() and not force:
-        raise Refused(f"{file} exists; name another file, or overwrite it with --force")
-    write_whole({file: text.encode()})
-    terminal.note(f"written to {file}; next: rps check {file}")
+    files = {file: text}
+    if editor:
+        schema = file.with_name(f"rps-{kind}.schema.json")
+        files[file] = f"# yaml-language-server: $schema={schema.name}\n{text}"
+        files[schema] = json_text(schema_of(study=study))
+    for each in files:
+        if each.exists() and not force:
+            raise Refused(f"{each} exists; name another file, or overwrite it with --force")
+    write_whole({each: content.encode() for each, content in files.items()})
+    check = f"rps sweep {file} --dry-run" if study else f"rps check {file}"
+    terminal.note(f"written to {file}; next: {check}")
     if terminal.as_json:
-        terminal.result({**heading(), "command": "init", "files": [str(file)]})
+        terminal.result({**heading(), "command": "init", "files": [str(each) for each in files]})

@@ -15,6 +15,7 @@ from rpscli.commands.acceptance import parse_condition
 from rpscli.commands.case_input import read_cases, write
 from rpscli.commands.motion import MotionRequest, single_motions
 from rpscli.commands.shell.compilation import announce_compilation
+from rpscli.commands.shell.completions import FILE, condition_names
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     CaseRequest,
@@ -46,9 +47,12 @@ FIGURES = 5
     "records",
     multiple=True,
     metavar="SRC",
+    type=FILE,
     help="Ground motion in place of the case's own: file, folder, set, pulse; repeatable.",
 )
-@click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
+@click.option(
+    "--vertical", metavar="SRC", type=FILE, help="Vertical component, with the same time step."
+)
 @click.option("--scale", type=float, metavar="FACTOR", help="Factor on the acceleration.")
 @click.option(
     "--scale-to",
@@ -60,6 +64,7 @@ FIGURES = 5
     "fail_on",
     multiple=True,
     metavar="WHAT",
+    shell_complete=condition_names,
     help="End with exit code 10 on overturning, on uplift, or if a result exceeds a value, such as"
     f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units); repeatable.",
 )

@@ -1,13 +1,22 @@
-"""rps init and rps schema."""
+"""rps init, schema, explain and completion; cases and studies that are taken for each other."""
 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import jsonschema
+import pytest
 from click.testing import Result
+
+from commands.conftest import ROOT
+from rpscli.case.schema.case_file import CaseFile
+from rpscli.case.schema.known_keys import known_paths
+from rpscli.case.text.files import read_text
+from rpscli.case.text.yaml_text import read_yaml
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]
@@ -42,3 +51,131 @@ def test_the_schema_is_json_and_nothing_else(rps: Invoke) -> None:
     schema = json.loads(plain.stdout)
     assert "superstructure" in schema["properties"]
     assert plain.stderr == ""
+
+
+def test_the_starter_of_a_study_is_one(rps: Invoke) -> None:
+    rps("init")
+    assert rps("init", "--study").exit_code == 0
+    result = rps("sweep", "study.yaml", "--dry-run")
+    assert result.exit_code == 0, result.stderr
+    assert "30" in result.stdout  # 3 shapes x 5 motions x 2 scales
+
+
+@pytest.mark.parametrize("kind", ["case", "study"])
+def test_an_editor_finds_the_schema(rps: Invoke, kind: str) -> None:
+    study = ["--study"] if kind == "study" else []
+    assert rps("init", "--editor", *study).exit_code == 0
+    first = Path(f"{kind}.yaml").read_text(encoding="utf-8").splitlines()[0]
+    assert first == f"# yaml-language-server: $schema=rps-{kind}.schema.json"
+    schema = json.loads(Path(f"rps-{kind}.schema.json").read_text(encoding="utf-8"))
+    assert schema == json.loads(rps("schema", *study).stdout)
+    jsonschema.validate(read_yaml(read_text(f"{kind}.yaml"), kind).content, schema)
+    assert rps("init", "other.yaml", "--editor", *study).exit_code == 7  # the schema is there
+    assert not Path("other.yaml").exists()
+
+
+def test_studies_keep_their_schema(rps: Invoke) -> None:
+    schema = json.loads(rps("schema", "--study").stdout)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    studies = sorted((ROOT / "cases").rglob("*.yaml"))
+    contents = [read_yaml(read_text(file), file.name).content for file in studies]
+    studied = [content for content in contents if "base" in content]
+    assert len(studied) > 5
+    for content in studied:
+        jsonschema.validate(content, schema)
+    wrong: list[dict[str, Any]] = [
+        {"reports": ["overturnin"]},
+        {"reports": [{"demand": {"colour": 1}}]},
+        {"vari": []},
+        {"base": {"podum": {}}},
+    ]
+    for change in wrong:
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate({**studied[0], **change}, schema)
+
+
+def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
+    rps("init", "--study")
+    for command in ("check", "timehistory", "modal"):
+        result = rps(command, "study.yaml")
+        assert result.exit_code == 3
+        assert "is a study" in result.stderr
+        assert "`rps sweep study.yaml`" in result.stderr
+        assert len(result.stderr.splitlines()) == 1
+    result = rps("sweep", "small.yaml")
+    assert result.exit_code == 3
+    assert "is a case" in result.stderr
+    assert "`rps timehistory small.yaml`" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("podium.bearing.slenderness", ["tan(alpha) = B/H", "> 0", "section 1", "2H"]),
+        ("rho", ["podium.bearing.curvature_ratio", "critical", ">= 0"]),
+        ("storeys", ["number of storeys", "from 0 to 200"]),
+        ("superstructure.stiffness", ["N/m"]),
+        ("friction_demand", ["friction demand |F|/N", "limits.friction_demand"]),
+        ("p_ext", ["frequency parameter"]),
+        ("demand", ["option"]),
+        ("law", ["flexible, rigid, value", "left out", "section 4"]),
+    ],
+)
+def test_what_a_word_means(rps: Invoke, word: str, said: list[str]) -> None:
+    result = rps("explain", word)
+    assert result.exit_code == 0, result.stderr
+    for text in said:
+        assert text in " ".join(result.stdout.split()) or text in result.stdout
+
+
+def test_every_key_is_explained(rps_json: InvokeJson) -> None:
+    for path in known_paths(CaseFile)[::7]:
+        key = ".".join(map(str, path))
+        explained = rps_json("explain", key)["keys"]
+        assert [item["key"] for item in explained] == [key]
+        assert explained[0]["meaning"]
+
+
+def test_an_unknown_word_gets_the_nearest(rps: Invoke) -> None:
+    result = rps("explain", "slendernes")
+    assert result.exit_code == 2
+    assert "did you mean slenderness?" in result.stderr
+
+
+def completed(rps: Invoke, *words: str) -> list[str]:
+    """What zsh is told for the last of these words: type, value and help in turn."""
+    environment = {
+        "_RPS_COMPLETE": "zsh_complete",
+        "COMP_WORDS": " ".join(["rps", *words]),
+        "COMP_CWORD": str(len(words)),
+    }
+    return str(rps(env={**os.environ, **environment}, prog_name="rps").stdout).splitlines()
+
+
+def test_words_are_completed(rps: Invoke) -> None:
+    assert completed(rps, "check", "sm")[0] == "file"
+    assert completed(rps, "sweep", "sm")[0] == "file"
+    assert completed(rps, "timehistory", "a.yaml", "--record", "x")[0] == "file"
+    keys = completed(rps, "check", "a.yaml", "--set", "podium.bearing.s")[1::3]
+    assert keys == ["podium.bearing.semi_diagonal", "podium.bearing.slenderness"]
+    names = completed(rps, "timehistory", "a.yaml", "--fail-on", "ov")[1::3]
+    assert names == ["overturning"]
+    assert "friction_demand" in completed(rps, "sweep", "a.yaml", "--fail-on", "f")
+    assert "timehistory" in completed(rps, "time")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_lines_of_a_shell(rps: Invoke, shell: str) -> None:
+    result = rps("completion", shell)
+    assert result.exit_code == 0
+    assert f"_RPS_COMPLETE={shell}_complete" in result.stdout
+
+
+def test_bash_completes_by_them(shell: Callable[..., Any]) -> None:
+    lines = """
+eval "$(rps completion bash)"
+COMP_WORDS=(rps check --set podium.bearing.sle); COMP_CWORD=3; _rps_completion rps
+echo "${COMPREPLY[@]}"
+"""
+    assert shell(lines).stdout.strip() == "podium.bearing.slenderness"

@@ -165,11 +165,12 @@ class Whole:
         number = int(value)
         if number < self.at_least or (self.at_most is not None and number > self.at_most):
             remedy = f"; {self.remedy}" if self.remedy else ""
-            refuse(f"must be a whole number {self._range}{remedy}")
+            refuse(f"must be a whole number {self.rule}{remedy}")
         return number
 
     @property
-    def _range(self) -> str:
+    def rule(self) -> str:
+        """The bounds in words."""
         if self.at_most is None:
             return f">= {self.at_least}"
         if self.at_most == self.at_least:

@@ -13,7 +13,7 @@ from rpscli.case.schema.case_file import CaseFile
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
-class _PresentKeys(GenerateJsonSchema):
+class PresentKeys(GenerateJsonSchema):
     """Optional keys are left out, never null: show neither null nor a default of null."""
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
@@ -36,7 +36,7 @@ class _PresentKeys(GenerateJsonSchema):
 
 def json_schema_of(model: type[BaseModel]) -> dict[str, Any]:
     """JSON schema of a model; ``unit`` beside a number is the SI unit of a bare number."""
-    schema = model.model_json_schema(schema_generator=_PresentKeys)
+    schema = model.model_json_schema(schema_generator=PresentKeys)
     return {"$schema": DIALECT, **schema}
 
 

@@ -28,7 +28,7 @@ from rpscli.case.study.rules import (
 from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.case.study.sizes import size_faults
 from rpscli.case.study.sources import sources_of
-from rpscli.case.text.document import Document
+from rpscli.case.text.document import Document, is_case, is_study
 from rpscli.case.text.faults import Fault, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
@@ -147,7 +147,13 @@ def parse_study(
     folder = folder or Path()
     of_study = [override for override in overrides if _is_of_study(override)]
     of_base = [override for override in overrides if not _is_of_study(override)]
-    document = apply_overrides(read_yaml(text, name), of_study, model=StudyFile)
+    document = read_yaml(text, name)
+    if is_case(document):
+        raise CaseError(
+            f"{name}: is a case, and a study is wanted here; `rps timehistory {name}` computes it,"
+            " `rps init --study` writes a study"
+        )
+    document = apply_overrides(document, of_study, model=StudyFile)
     axes, sources, reports = _checked(document, folder, kinds)
     file = StudyFile.model_validate(document.content)
     document.refuse(fixed_faults(document, of_base))
@@ -230,6 +236,6 @@ def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:
     except CaseError as error:
         raise CaseError(f"{here}: {error}") from None
     base = read_yaml(text, str(path))
-    if "base" in base.content and "superstructure" not in base.content:
+    if is_study(base):
         raise CaseError(f"{here} is a study, and a base is a case; name the case that it varies")
     return base, path

@@ -125,3 +125,13 @@ class Document:
         if fault.place:
             return fault.place
         return self.key_place(fault.path) if fault.at_key else self.value_place(fault.path)
+
+
+def is_study(document: Document) -> bool:
+    """Whether a document is a study rather than a case."""
+    return "base" in document.content and "superstructure" not in document.content
+
+
+def is_case(document: Document) -> bool:
+    """Whether a document is a case rather than a study."""
+    return "superstructure" in document.content and "base" not in document.content

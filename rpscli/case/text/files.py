@@ -91,9 +91,10 @@ def decoded(data: bytes, name: str) -> str:
         ) from None
 
 
-def starter_text() -> str:
-    """A commented case that is valid as it stands."""
-    return resources.files("rpscli.case").joinpath("starter.yaml").read_text(encoding="utf-8")
+def starter_text(*, study: bool = False) -> str:
+    """A commented case, or a study of one, that is valid as it stands."""
+    name = "starter_study.yaml" if study else "starter.yaml"
+    return resources.files("rpscli.case").joinpath(name).read_text(encoding="utf-8")
 
 
 def _similar(path: Path) -> str:

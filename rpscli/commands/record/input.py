@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.commands.case_input import RESULTS
+from rpscli.commands.shell.completions import FILE
 from rpscli.commands.shell.options import Command, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.report.files.output_folder import OutputFolder, Run
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 def source_options(function: Command) -> Command:
     """SRC, --dt, --units and --scale, as `motion`; the record's warnings go to the terminal."""
 
-    @click.argument("source", metavar="SRC")
+    @click.argument("source", metavar="SRC", type=FILE)
     @click.option("--dt", type=float, metavar="S", help="Time step of a file that states none [s].")
     @click.option(
         "--units", metavar="UNIT", help="Unit of the values of a file that states none, such as g."

@@ -13,6 +13,7 @@ from typing import Any
 
 import click
 
+from rpscli.commands.shell.completions import FILE, case_keys
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, nearest
 from rpscli.report.figures.look import FORMATS, Look, read_style
@@ -55,6 +56,7 @@ _overrides = click.option(
     "overrides",
     multiple=True,
     metavar="KEY=VALUE",
+    shell_complete=case_keys,
     help="Put a value over the case's own, such as"
     " --set podium.bearing.curvature_ratio=1.5; repeatable.",
 )
@@ -63,7 +65,7 @@ _overrides = click.option(
 def case_options(function: Command) -> Command:
     """CASE and --set, as `request`."""
 
-    @click.argument("case", metavar="CASE")
+    @click.argument("case", metavar="CASE", type=FILE)
     @_overrides
     @functools.wraps(function)
     def command(*, case: str, overrides: tuple[str, ...], **rest: Any) -> None:
@@ -123,7 +125,7 @@ def _formats(text: str) -> tuple[str, ...]:
 def several_cases_options(function: Command) -> Command:
     """CASE... and --set, as `requests`."""
 
-    @click.argument("cases", metavar="CASE...", nargs=-1, required=True)
+    @click.argument("cases", metavar="CASE...", nargs=-1, required=True, type=FILE)
     @_overrides
     @functools.wraps(function)
     def command(*, cases: tuple[str, ...], overrides: tuple[str, ...], **rest: Any) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from rpscli.commands.acceptance import parse_condition
+from rpscli.commands.shell.completions import FILE, case_keys, condition_names
 from rpscli.commands.shell.failure import INTERRUPTED, concluded, leave
 from rpscli.commands.shell.options import (
     CaseRequest,
@@ -47,12 +48,13 @@ WARNINGS_SHOWN = 5
 
 
 @click.command("sweep")
-@click.argument("study", metavar="STUDY")
+@click.argument("study", metavar="STUDY", type=FILE)
 @click.option(
     "--set",
     "overrides",
     multiple=True,
     metavar="KEY=VALUE",
+    shell_complete=case_keys,
     help="Put a value over the study's own (--set 'scale=[1, 2]') or over its base case's"
     " (--set podium.bearing.slenderness=0.2); repeatable.",
 )
@@ -66,6 +68,7 @@ WARNINGS_SHOWN = 5
     "fail_on",
     multiple=True,
     metavar="WHAT",
+    shell_complete=condition_names,
     help="End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
     " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
     " units); repeatable. The limits of study and case count as well.",

@@ -1,0 +1,190 @@
+"""`rps explain`: what a key, a result or a word means."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from importlib import resources
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.analyses import result_quantities
+from rpscli.analyses.result_quantities import ResultQuantity
+from rpscli.commands.shell.completions import case_keys
+from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.tables import listing, sentence, title
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import UsageError, nearest
+from rpscli.report.documents import heading
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.case.schema.reference import KeyReference
+
+BEARING = """\
+      <- 2B ->
+     .--------.     ---
+   .'          '.    |   R      from the centre to an end of
+   |<--- 2B' -->|    |          the flat part, 2B wide
+   |            |    |   alpha  between R and the axis:
+   |      +     |   2H          tan(alpha) = B/H
+   |            |    |   alpha' to the edge of the arc:
+   |            |    |          tan(alpha') = B'/H
+   '.          .'    |   rho    r/2H, r the radius of the
+     '--------'     ---         arcs between B and B'
+"""
+DRAWINGS = {"podium.bearing": BEARING}
+"""Small drawings of what sections describe."""
+
+
+@click.command("explain")
+@click.argument("word", metavar="KEY", shell_complete=case_keys)
+@terminal_options
+def command(word: str, terminal: Terminal) -> None:
+    """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.
+
+    Keys are named in full (podium.bearing.slenderness), by their end (slenderness) or by their
+    symbol (rho).
+    """
+    keys = _keys(word)
+    results = [quantity for quantity in _results() if quantity.name == word]
+    words = [row for row in glossary() if word.lower() in _names(row[0])]
+    options = _report_options(word)
+    if not (keys or results or words or options):
+        raise UsageError(f"explain {word}: {_hint(word)}")
+    document = {
+        **heading(),
+        "command": "explain",
+        "word": word,
+        "keys": [key._asdict() for key in keys],
+        "results": [_of_result(quantity) for quantity in results],
+        "words": [{"word": name, "meaning": meaning} for name, meaning in words],
+        "options": [key._asdict() for key in options],
+    }
+    terminal.result(document, _tables(keys, results, words, options))
+
+
+def _formats() -> Iterator[KeyReference]:
+    # pydantic is slow.
+    from rpscli.case.schema.case_file import CaseFile  # noqa: PLC0415
+    from rpscli.case.schema.reference import key_references  # noqa: PLC0415
+    from rpscli.case.study.schema import StudyFile  # noqa: PLC0415
+
+    known = set()
+    for model in (CaseFile, StudyFile):
+        for reference in key_references(model):
+            if reference.key not in known:
+                known.add(reference.key)
+                yield reference
+
+
+def _keys(word: str) -> list[KeyReference]:
+    """Keys that are called so: in full, else by their end, else by their symbol."""
+    found = list(_formats())
+    for called in (
+        lambda key: key.key == word,
+        lambda key: key.key.endswith(f".{word}"),
+        lambda key: word in re.split(r"[\s=/,()]+", key.symbol or key.meaning.split(",")[0]),
+    ):
+        if hits := [key for key in found if called(key)]:
+            return hits
+    return []
+
+
+def _report_options(word: str) -> list[KeyReference]:
+    """Options of the report of a name."""
+    from rpscli.case.schema.reference import key_references  # noqa: PLC0415
+    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+
+    return list(key_references(REPORTS[word].options)) if word in REPORTS else []
+
+
+def _results() -> Iterator[ResultQuantity]:
+    """Every quantity of the table of results, once."""
+    known = set()
+    for value in vars(result_quantities).values():
+        for quantity in value if type(value) is tuple else (value,):
+            if isinstance(quantity, ResultQuantity) and quantity.name not in known:
+                known.add(quantity.name)
+                yield quantity
+
+
+def _of_result(quantity: ResultQuantity) -> dict[str, Any]:
+    return {name: value for name, value in quantity._asdict().items() if value}
+
+
+def glossary() -> list[tuple[str, str]]:
+    """Words and meanings of the glossary."""
+    text = resources.files("rpscli").joinpath("GLOSSARY.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (.+?) \| (.+) \|$", text, re.MULTILINE)
+    return [(name.replace("`", ""), meaning) for name, meaning in rows if name != "word"]
+
+
+def _names(entry: str) -> list[str]:
+    return [part.strip().lower() for part in re.split(r"[,()]", entry)]
+
+
+def _hint(word: str) -> str:
+    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+
+    keys = [key.key for key in _formats()]
+    names = [name for entry, _ in glossary() for name in _names(entry)]
+    ends = [key.rsplit(".", 1)[-1] for key in keys]
+    results = [quantity.name for quantity in _results()]
+    close = nearest(word, [*keys, *ends, *results, *REPORTS, *names])
+    if close:
+        return f"nothing is called so; did you mean {close}?"
+    return "nothing is called so; `rps explain podium` and the like list the keys of a section"
+
+
+def _tables(
+    keys: Iterable[KeyReference],
+    results: Iterable[ResultQuantity],
+    words: Iterable[tuple[str, str]],
+    options: Iterable[KeyReference],
+) -> Iterator[RenderableType]:
+    for key in keys:
+        yield title(key.key)
+        yield listing(list(_lines(key)))
+        drawing = next((DRAWINGS[place] for place in DRAWINGS if key.key.startswith(place)), None)
+        if drawing:
+            yield sentence(drawing)
+    for quantity in results:
+        yield title(f"{quantity.name}, a result")
+        shown = _of_result(quantity)
+        names = {"limit": "limit, as in", "needs": "needs", "meaning": "is"}
+        rows = [("means", quantity.label), ("unit", quantity.unit or "none")]
+        rows += [(names[name], str(shown[name])) for name in names if name in shown]
+        yield listing(rows)
+    for name, meaning in words:
+        yield title(name)
+        yield sentence(meaning)
+    for option in options:
+        yield title(f"option {option.key}")
+        yield listing(list(_lines(option)))
+
+
+def _lines(key: KeyReference) -> Iterator[tuple[str, str]]:
+    yield "means", key.meaning
+    if key.symbol:
+        yield "symbol", key.symbol
+    if key.unit:
+        yield "unit", key.unit if key.unit != "-" else "none"
+    if key.bounds:
+        yield "must be", key.bounds
+    if key.words:
+        yield "words", ", ".join(key.words)
+    if key.key.split(".")[-1] == "reports":
+        from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+
+        yield "names", f"{', '.join(REPORTS)}; `rps explain NAME` lists the options of one"
+    if key.keys:
+        yield "keys", ", ".join(key.keys)
+    if key.default is not None:
+        yield "left out", str(key.default)
+    elif key.required:
+        yield "left out", "cannot be, where its section stands"
+    if key.sections:
+        yield "enters", f"THEORY.md, section {key.sections}"
