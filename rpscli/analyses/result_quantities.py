@@ -137,15 +137,23 @@ HISTORY = (
 """Scalars of a time history."""
 
 SAMPLED = (
-    ResultQuantity("max_roof_displacement", "m", "roof displacement"),
-    ResultQuantity("max_floor_velocity", "m/s", "floor velocity"),
-    ResultQuantity("fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$"),
-    ResultQuantity("max_column_shear", "N", "shear of a column"),
-    ResultQuantity("max_column_force", "N", "normal force of a column"),
+    ResultQuantity(
+        "max_roof_displacement", "m", "roof displacement", limit="0.5", needs="a superstructure"
+    ),
+    ResultQuantity(
+        "max_floor_velocity", "m/s", "floor velocity", limit="1", needs="a superstructure"
+    ),
+    ResultQuantity(
+        "fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$", limit="0.5",
+        needs="a superstructure", meaning="largest base shear over that of the fixed base",
+    ),
+    ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
+    ResultQuantity("max_column_force", "N", "normal force of a column", limit="2e6"),
     ResultQuantity("min_column_force", "N", "least normal force of a column"),
     ResultQuantity("sliding_time", "s", "columns slide at"),
-)
-"""Scalars of a single history, from its samples: not among the results of a study."""
+)  # fmt: skip
+"""Scalars of a history that is followed with all its samples: a single one, or those of a study
+with `whole_histories: true`."""
 
 IMPACTS = (
     ResultQuantity("energy_devices", "J", "energy dissipated in devices"),
@@ -160,7 +168,7 @@ INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s"
 
 STOREY_SHEARS = ResultQuantity("storey_shears", "N", "storey shear", "$V_i$")
 
-LIMITED = tuple(quantity for quantity in HISTORY if quantity.limit)
+LIMITED = tuple(quantity for quantity in (*HISTORY, *SAMPLED) if quantity.limit)
 """What limits, `--fail-on`, fragilities and axes of incremental dynamic analyses may name."""
 
 _FREQUENCIES = ResultQuantity("frequencies", "rad/s", "frequency", r"$\omega$")

@@ -8,6 +8,7 @@ from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
+from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.analyses.timehistory import time_history
 from rpscli.records.source import load_record
 from rpscli.sweep.design.layout import lay_out
@@ -15,6 +16,7 @@ from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.results import SCALARS, value_at
 from rpscli.sweep.evaluation.systems import resolved
+from rpscli.sweep.run.keys import point_key
 from sweep.small_studies import STUDY, Make
 
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
@@ -49,6 +51,23 @@ def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
                 single[name] if single[name] is None else pytest.approx(single[name], rel=1e-6)
             )
             assert row.results[name] == expected, name
+
+
+def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
+    brief = lay_out(study_of())
+    whole = lay_out(study_of(STUDY, ("scale: [", "whole_histories: true\nscale: [")))
+    context, more = StudyContext(brief.plan), StudyContext(whole.plan)
+    for number in (3, 20):
+        without = run_batch(context, [brief[number]])[0]
+        row = run_batch(more, [whole[number]])[0]
+        assert {name: row.results[name] for name in without.results} == without.results
+        history = context.history(brief[number])
+        motion = history.record.scaled(history.scale)
+        single = time_history(history.structure, motion, history.settings)
+        assert {name: row.results[name] for name in set(row.results) - set(without.results)} == {
+            quantity.name: getattr(single, quantity.name) for quantity in SAMPLED
+        }
+    assert point_key(brief, context, brief[3]) != point_key(whole, more, whole[3])
 
 
 def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: Make) -> None:

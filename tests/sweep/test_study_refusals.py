@@ -54,6 +54,12 @@ def sampled(distribution: str) -> tuple[str, str]:
             "  - record.scale: [1, 2]\n  - podium.bearing.curv",
             ("record.scale must not vary beside", "take one of them out"),
         ),
+        # results
+        (
+            SCALE,
+            f"limits: {{max_floor_velocity: 1}}\n{SCALE}",
+            ("max_floor_velocity needs `whole_histories: true`", "study.yaml:10"),
+        ),
         # scale
         (SCALE, "scale: {measure: PGV, values: [one]}", ("a number in m/s", "one")),
         (SCALE, "scale: {low: 1, high: 2, cnt: 3}", ("study.yaml:10", "cnt")),

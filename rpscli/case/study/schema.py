@@ -120,6 +120,11 @@ class StudyFile(Section):
     perturb: PerturbSection | None = Field(
         None, description="small perturbations around every point"
     )
+    whole_histories: bool = Field(
+        default=False,
+        description="follow each history by itself, with all its samples: roof displacement, floor"
+        " velocity, forces of a column, base shear over that of the fixed base; far slower",
+    )
     limits: LimitsSection | None = Field(
         None, description="judge the study in place of those of its base; exceeded: exit code 10"
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.case.conditions import LIMITS
 from rpscli.commands.sweep.input import StudyInput
 from rpscli.errors import UsageError
@@ -39,6 +40,9 @@ def lacking(given: StudyInput, name: str) -> bool:
 
 
 def _needs(name: str) -> str:
+    if name in {quantity.name for quantity in SAMPLED}:
+        alike = f" and {LIMITS[name].needs} in all systems" if LIMITS[name].needs else ""
+        return f"{name} needs `whole_histories: true` in the study{alike}"
     return f"{name} needs {LIMITS[name].needs}, which not every system of the study has"
 
 

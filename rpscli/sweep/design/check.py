@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path as Folder
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from rpscli.analyses.result_quantities import LIMITED
+from rpscli.analyses.result_quantities import LIMITED, SAMPLED
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of
 from rpscli.case.overrides import Override
@@ -17,6 +17,8 @@ from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
 from rpscli.case.text.faults import Fault, Path, Place
 from rpscli.errors import CaseError
+from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.sweep.design.combinations import Combinations
 from rpscli.sweep.design.perturbation import Change
@@ -100,7 +102,7 @@ def _properties(
         record=request,
         scale=1.0 if case.record is None else case.record.scale,
         limits=_limits(study, case),
-        lacking=frozenset(q.name for q in LIMITED if q.needs and lacks(case, q.needs)),
+        lacking=lacking(study, case),
     )
 
 
@@ -111,24 +113,32 @@ def _limits(study: Study, case: Case) -> tuple[Condition, ...]:
     return conditions_of(case.limits, "limits of the case")
 
 
-def lacks(case: Case, needs: str) -> bool:
-    """Whether a case is without what a result needs: a building, or some key.
+def lacking(study: Study, case: Case) -> frozenset[str]:
+    """Names of the results that may be limited, but that histories of this case will not have."""
+    sampled = () if study.file.whole_histories else SAMPLED
+    return frozenset(
+        [q.name for q in LIMITED if q.needs and not HAS[q.needs](case.structure)]
+        + [q.name for q in sampled]
+    )
 
-    Parameters
-    ----------
-    case
-        Resolved.
-    needs
-        As in the table of results: ``a superstructure``, or a dotted key and ``in the case``.
-    """
-    if needs == "a superstructure":
-        return case.structure.superstructure is None
-    content: Any = case.document
-    for part in needs.removesuffix(" in the case").split("."):
-        if part not in content:
-            return True
-        content = content[part]
-    return False
+
+def _has(*kinds: type) -> Callable[[PodiumStructure], bool]:
+    return lambda structure: any(isinstance(device, kinds) for device in structure.devices)
+
+
+HAS: dict[str, Callable[[PodiumStructure], bool]] = {
+    "a superstructure": lambda structure: structure.superstructure is not None,
+    "superstructure.storey_height in the case": lambda structure: (
+        structure.superstructure is not None and structure.superstructure.storey_heights is not None
+    ),
+    "podium.friction in the case": lambda structure: structure.friction is not None,
+    "a damper in podium.devices": _has(ViscousDamper, FrictionDamper),
+    "a stop in podium.devices": _has(Stop),
+    "a prestressed tendon in podium.devices": lambda structure: any(
+        isinstance(device, Tendon) and device.prestress > 0.0 for device in structure.devices
+    ),
+}
+"""Whether a structure has what a result needs, by the words of the table of results."""
 
 
 def _digest(building: Superstructure) -> bytes:

@@ -116,6 +116,7 @@ def lay_out(study: Study) -> Design:
         base_name=study.base.name,
         base_folder=str(study.base_folder),
         measure=measure,
+        whole=file.whole_histories,
         solver=solver_version(),
     )
     members = changes(file.perturb)

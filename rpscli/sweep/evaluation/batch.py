@@ -11,6 +11,9 @@ from typing import Any, NamedTuple, TypeVar
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.result_quantities import SAMPLED, values_of
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.timehistory import time_history
 from rpscli.errors import RpsError
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
@@ -32,6 +35,8 @@ def run_batch(context: StudyContext, points: Sequence[Point]) -> list[Row]:
     """Outcomes of some points of the study, in the same order."""
     if context.plan.analysis != "timehistory":
         return [_row(point, _attempt(_parametric, context, point)) for point in points]
+    if context.plan.whole:
+        return [_whole_history_row(context, point) for point in points]
     histories = [_attempt(context.history, point) for point in points]
     found = iter(_demands([history for history in histories if isinstance(history, Request)]))
     demanded = [next(found) if isinstance(h, Request) else h for h in histories]
@@ -53,6 +58,26 @@ def _demands(requests: list[Request]) -> list[Demand | str]:
 
 def _parametric(context: StudyContext, point: Point) -> Results:
     return parametric_results(context.plan.analysis, context.systems[point].structure)
+
+
+def _whole_history_row(context: StudyContext, point: Point) -> Row:
+    """Of a history by itself, with what its samples tell."""
+    history = _attempt(context.history, point)
+    found = history if isinstance(history, str) else _attempt(_whole_history, history)
+    row = _history_row(context, point, history, found)
+    if isinstance(found, str) or row.outcome == FAILED:
+        return row
+    return row._replace(results=row.results | values_of(found, SAMPLED))
+
+
+def _whole_history(request: Request) -> TimeHistoryResult:
+    vertical, scale = request.vertical, request.scale
+    return time_history(
+        request.structure,
+        request.record.scaled(scale),
+        request.settings,
+        vertical=None if vertical is None else vertical.scaled(scale),
+    )
 
 
 def _history_row(

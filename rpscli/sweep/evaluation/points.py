@@ -54,6 +54,8 @@ class Plan:
         Where it comes from, for messages and relative file names.
     measure
         What the records are scaled to, if not by factors.
+    whole
+        Whether histories are followed with all their samples.
     solver
         Version of the solver that all results must come from.
     """
@@ -64,4 +66,5 @@ class Plan:
     base_name: str
     base_folder: str
     measure: MeasureScale | None
+    whole: bool
     solver: str

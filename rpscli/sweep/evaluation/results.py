@@ -34,7 +34,7 @@ def _named(
 _FIXED, _ROLLING, _ROCKING = ("fixed_base.",), ("rolling.",), ("rocking.",)
 
 SCALARS: dict[Analysis, Named] = {
-    "timehistory": _named((*rq.HISTORY, *rq.IMPACTS, *rq.INTENSITIES)),
+    "timehistory": _named((*rq.HISTORY, *rq.SAMPLED, *rq.IMPACTS, *rq.INTENSITIES)),
     "modal": _named(rq.FIXED_BASE_MODES, _FIXED, ".0")
     | _named(rq.UPLIFTED_RATIOS, _ROLLING, ".0")
     | _named(rq.FREQUENCY_PARAMETERS, _ROLLING)

@@ -26,7 +26,7 @@ def point_key(design: Design, context: StudyContext, point: Point) -> bytes:
             factor = context.factor(point)
         except RpsError:
             factor = point.scale
-        digest.update(struct.pack("<2d", factor, point.restitution_change))
+        digest.update(struct.pack("<2d?", factor, point.restitution_change, design.plan.whole))
     return digest.digest()
 
 
