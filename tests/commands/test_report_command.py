@@ -12,6 +12,7 @@ import pytest
 from click.testing import Result
 
 from rpscli.commands.shell.numbers import shown
+from rpscli.sweep.run.runner import Finish
 
 Invoke = Callable[..., Result]
 
@@ -183,3 +184,16 @@ def test_titles_with_tags_are_harmless(rps: Invoke) -> None:
     Path("small.yaml").write_text(hostile, encoding="utf-8")
     assert rps("report", "small.yaml", "-o", "out.html").exit_code == 0
     assert "<script" not in Path("out.html").read_text(encoding="utf-8")
+
+
+def test_a_study_that_is_stopped_goes_on(
+    rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = "rpscli.commands.report.study_page.compute"
+    with monkeypatch.context() as patch:
+        patch.setattr(name, lambda *_: Finish(1, 0, 1.0, interrupted=True))
+        result = rps("report", study, "-o", "out.html")
+    assert result.exit_code == 130
+    assert "the same command goes on" in result.stderr
+    assert not Path("out.html").exists()
+    assert rps("report", study, "-o", "out.html").exit_code in {0, 10}

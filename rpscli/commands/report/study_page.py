@@ -25,7 +25,7 @@ from rpscli.commands.sweep.points import begin, compute
 from rpscli.commands.sweep.requirements import require_results
 from rpscli.commands.sweep.results import Collected, collect, first_error, outcome_counts
 from rpscli.commands.sweep.tables import summary_tables, verdict_table
-from rpscli.errors import RecordError, StudyIncomplete, UsageError
+from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.html import sections as shared
@@ -68,8 +68,8 @@ def study_page(
 
     Raises
     ------
-    StudyIncomplete
-        If it was interrupted.
+    KeyboardInterrupt
+        If it was stopped between two points.
     """
     from rpscli.sweep.reports.study_results import StudyResults  # noqa: PLC0415 -- numpy is slow
     from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
@@ -83,7 +83,8 @@ def study_page(
         start = begin(given, store, replace(CHOICES, report_only=place is not None), terminal)
         finish = compute(given, start, store, CHOICES, terminal)
         if finish.interrupted:
-            raise StudyIncomplete("interrupted; the same command goes on from what is stored")
+            terminal.note(f"points are stored in {store.path}; the same command goes on from there")
+            raise KeyboardInterrupt
         table = tabulate(given.design, store.stored(start.keys))
         results = StudyResults(table, start.keys, store, given.context, available_cores())
         found = collect(given, results, list(conditions), folder)
