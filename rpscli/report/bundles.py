@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 
 from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.pushover import PushoverResult
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.spectrum import ResponseSpectrum
+from rpscli.records.selection import Selection
 from rpscli.report.figures.capacity import capacity_figure
 from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.displacement import displacement_figure
@@ -21,11 +23,13 @@ from rpscli.report.figures.moment import moment_figure
 from rpscli.report.figures.profile import profile_figure
 from rpscli.report.figures.record import record_figure
 from rpscli.report.figures.rotation import rotation_figure
+from rpscli.report.figures.selection import selection_figure
 from rpscli.report.figures.storey_curve import storey_curve_figure
 from rpscli.report.files.csv_text import csv_text
 from rpscli.report.tables.modal import eigenvalue_columns, mode_columns, shape_columns
 from rpscli.report.tables.pushover import capacity_columns, storey_curve_columns
 from rpscli.report.tables.record import motion_columns, spectrum_columns
+from rpscli.report.tables.selection import mean_columns, selection_columns, selection_list
 from rpscli.report.tables.storeys import storey_columns
 from rpscli.report.tables.timehistory import event_columns, history_columns
 
@@ -77,3 +81,12 @@ def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = 
     yield "record.csv", csv_text(motion_columns(motion))
     yield "spectrum.csv", csv_text(spectrum_columns(spectrum))
     yield from figure_files({"record": partial(record_figure, motion, spectrum)}, look).items()
+
+
+def selection_files(selection: Selection, folder: Path, look: Look = USUAL) -> Files:
+    """Files of a choice of motions; the list names them as seen from the folder."""
+    yield "selection.txt", selection_list(selection, folder)
+    yield "selection.csv", csv_text(selection_columns(selection))
+    yield "spectra.csv", csv_text(mean_columns(selection))
+    draw = partial(selection_figure, selection, selection.target.name)
+    yield from figure_files({"selection": draw}, look).items()

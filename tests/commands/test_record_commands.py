@@ -11,7 +11,7 @@ import pytest
 from click.testing import Result
 
 from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.source import load_record
+from rpscli.records.source import expand_sources, load_record
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]
@@ -104,3 +104,36 @@ def test_synth_says_that_nobody_recorded_it(rps: Invoke) -> None:
     again = rps("record", "synth", "made.at2")
     assert again.exit_code == 2
     assert "convert" in again.stderr
+
+
+SELECT = ("record", "select", "--target", "en1998:?ag=0.2g&soil=B", "--per-event", "1", "-n", "2")
+
+
+def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
+    Path("pool").mkdir()
+    for seed in (1, 2, 3, 4):
+        synthetic = f"synthetic:?pga=0.2g&seed={seed}&duration=6"
+        rps("record", "synth", synthetic, "-o", f"pool/m{seed}.at2")
+    document = rps_json(*SELECT, "pool", "-o", "made/inside", "--periods", "0.2", "1.5")
+    assert len(document["motions"]) == 2
+    assert document["candidates"] == 4
+    assert document["target"]["pgd"] == pytest.approx(0.025 * 0.24 * 9.80665 * 0.5 * 2.0)
+    assert {Path(file).name for file in document["files"]} >= {
+        "selection.txt", "selection.csv", "spectra.csv", "selection.png",
+    }  # fmt: skip
+    first = document["motions"][0]
+    (scaled, _) = expand_sources(["list:made/inside/selection.txt"])
+    measures = intensity_measures(load_record(scaled))
+    assert measures.pgv == pytest.approx(first["pgv"], rel=1e-9)
+    assert measures.pgd == pytest.approx(first["pgd"], rel=1e-9)
+    said = " ".join(rps(*SELECT, "pool", "-o", "made/inside").stdout.split())
+    assert "Sa(T1) is the wrong aim for rocking" in said
+    by_pgv = rps_json(*SELECT, "pool", "-o", "made/inside", "--scale-by", "PGV", "--pgv", "0.2")
+    assert by_pgv["mean_pgv"] == pytest.approx(0.2, rel=1e-5)
+
+
+def test_select_refuses(rps: Invoke) -> None:
+    made = rps(*SELECT, NOISE)
+    assert made.exit_code == 3
+    assert "only 1 of 1 motions" in made.stderr
+    assert rps(*SELECT, NOISE, "--pgv", "0.2").exit_code == 2

@@ -1,0 +1,83 @@
+"""A target spectrum from a CSV file."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+
+from rpscli.errors import RecordError
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
+from rpscli.records.query import parse_query
+from rpscli.records.targets.target import Array, TargetSpectrum, velocity_of
+
+_HEAD = re.compile(r"\s*(.*?)\s*[\[(]([^\])]*)[\])]\s*")
+
+
+def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
+    """A spectrum of two columns, period and acceleration, linear between logarithms.
+
+    Parameters
+    ----------
+    path : Path
+        A CSV file whose first line names the columns with units: `period [s],acceleration [g]`;
+        further columns are not read. `spectrum.csv` of `rps record plot` is such a file.
+    options : str
+        `damping=0.05`.
+    source : str
+        The whole source, for messages.
+    """
+    try:
+        lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+    except (OSError, UnicodeDecodeError) as error:
+        raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
+    factor = _acceleration_unit(lines[0] if lines else [], path)
+    rows = [(number, row) for number, row in enumerate(lines[1:], start=2) if any(row)]
+    pairs = np.array([_pair(row, f"{path}:{number}") for number, row in rows]).reshape(-1, 2)
+    pairs = pairs[pairs[:, 0] > 0.0]  # the rigid oscillator has no logarithm
+    if len(pairs) < 2 or (np.diff(pairs[:, 0]) <= 0.0).any():
+        raise RecordError(f"{path}: needs two rows at least, with periods that grow")
+    known = np.log(pairs)
+
+    def shape(T: Array) -> Array:
+        return np.asarray(factor * np.exp(np.interp(np.log(T), *known.T)))
+
+    query = parse_query(options, source, ("damping",))
+    damping = query.quantity("damping", "ratio", 0.05)
+    first, last = float(pairs[0, 0]), float(pairs[-1, 0])
+    has_pgv = damping == 0.05 and first <= 1.0 <= last
+    return TargetSpectrum(
+        name=path.stem,
+        source=source,
+        damping=damping,
+        span=(first, last),
+        shape=shape,
+        pgv=velocity_of(shape) if has_pgv else None,
+        pgd=None,
+    )
+
+
+def _acceleration_unit(head: list[str], path: Path) -> float:
+    units = [match[2] if (match := _HEAD.fullmatch(cell)) else "" for cell in head[:2]]
+    unit = canonical_unit(units[1]) if len(units) == 2 else None
+    if unit is None or units[0].strip() != "s":
+        raise RecordError(
+            f"{path}:1: {','.join(head)[:60]!r} should name two columns with units, as in"
+            f" 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
+        )
+    return unit_factor(unit)
+
+
+def _pair(row: list[str], place: str) -> tuple[float, float]:
+    try:
+        period, value = (float(cell) for cell in row[:2])
+    except ValueError:
+        period = value = math.nan
+    if not (math.isfinite(period) and math.isfinite(value) and period >= 0.0 and value > 0.0):
+        raise RecordError(
+            f"{place}: {','.join(row[:2])[:40]!r} must be a period >= 0 and an acceleration > 0"
+        )
+    return period, value
