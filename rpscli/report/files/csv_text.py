@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -44,6 +45,16 @@ def csv_text(columns: Sequence[Column]) -> str:
     lines = [",".join(column.title for column in columns)]
     lines += [",".join(row) for row in zip(*cells, strict=True)]
     return "\n".join(lines) + "\n"
+
+
+def quoted(value: object) -> float | int | str | None:
+    """A value for a cell of a CSV file; text with commas in quotes."""
+    if value is None or isinstance(value, int | float):
+        return value
+    text = value if isinstance(value, str) else json.dumps(value)
+    if any(sign in text for sign in ',"\n'):
+        return '"' + text.replace('"', '""') + '"'
+    return text
 
 
 def _one_by_one(values: Iterable[object]) -> Iterator[object]:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
-from rpscli.report.study.labels import key_columns, labels, quoted
+from rpscli.report.files.csv_text import Column, quoted
+from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import (
     by_values,
     colour,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rpscli.report.files.csv_text import Column
-from rpscli.report.study.labels import key_columns, labels, quoted
+from rpscli.report.files.csv_text import Column, quoted
+from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import (
     Layout,
     colour,

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Sequence
 
 from rpscli.case.schema.units import in_si
-from rpscli.report.files.csv_text import Column
+from rpscli.report.files.csv_text import Column, quoted
 from rpscli.sweep.reports.intensities import unit_of
 
 SYMBOLS = {
@@ -85,13 +85,3 @@ def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
         Column(key, unit_of(key), [quoted(in_si(row[place], unit_of(key))) for row in rows])
         for place, key in enumerate(keys)
     ]
-
-
-def quoted(value: object) -> float | int | str | None:
-    """A value for a cell of a CSV file; text with commas in quotes."""
-    if value is None or isinstance(value, int | float):
-        return value
-    text = value if isinstance(value, str) else json.dumps(value)
-    if any(sign in text for sign in ',"\n'):
-        return '"' + text.replace('"', '""') + '"'
-    return text

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
-from rpscli.report.study.labels import key_columns, labels, plain, quoted, symbol
+from rpscli.report.files.csv_text import Column, quoted
+from rpscli.report.study.labels import key_columns, labels, plain, symbol
 from rpscli.report.study.panels import by_values, colour, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.report.study.statistics import reached

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rpscli.report.files.csv_text import Column
-from rpscli.report.study.labels import key_columns, label, quoted
+from rpscli.report.files.csv_text import Column, quoted
+from rpscli.report.study.labels import key_columns, label
 from rpscli.report.study.panels import by_values, colour, left_out, marker, panel_figure
 from rpscli.report.study.report import Report
 from rpscli.sweep.design.described import described

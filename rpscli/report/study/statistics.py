@@ -7,8 +7,8 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.case.conditions import LIMITS, Condition
-from rpscli.report.files.csv_text import Column
-from rpscli.report.study.labels import key_columns, quoted
+from rpscli.report.files.csv_text import Column, quoted
+from rpscli.report.study.labels import key_columns
 from rpscli.sweep.statistics.share import Share
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import StudyVerdict

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rpscli.records.selection import Candidate, Selection
-from rpscli.report.files.csv_text import Column
-from rpscli.report.study.labels import quoted
+from rpscli.report.files.csv_text import Column, quoted
 
 
 def selection_document(selection: Selection) -> dict[str, Any]:
