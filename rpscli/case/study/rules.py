@@ -13,7 +13,7 @@ from rpscli.case.study.schema import MeasureScale, RangeSection
 from rpscli.case.text.document import MISSING, Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
 
-OF_HISTORIES = ("records", "scale", "perturb")
+OF_HISTORIES = ("records", "scale", "perturb", "observed")
 """Keys of a study that only time histories have."""
 
 OF_POINTS = ("record", "scale")

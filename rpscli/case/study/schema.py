@@ -128,6 +128,9 @@ class StudyFile(Section):
     limits: LimitsSection | None = Field(
         None, description="judge the study in place of those of its base; exceeded: exit code 10"
     )
+    observed: Text | None = Field(
+        None, description="CSV file of what was observed under records; for the report comparison"
+    )
     reports: tuple[str | dict[str, Any], ...] = Field(
         (), description="names of reports, or `name: {option: value}`"
     )

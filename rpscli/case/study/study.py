@@ -13,6 +13,7 @@ from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Axis, axes_of
+from rpscli.case.study.observed import Observed, observed_of
 from rpscli.case.study.reports import ReportKinds, ReportRequest
 from rpscli.case.study.requests import requests_of
 from rpscli.case.study.rules import (
@@ -61,6 +62,8 @@ class Study:
         The varied keys.
     sources
         Single record sources, seen from the study's folder; empty: the record of the case.
+    observed
+        What was observed; None if the study names no file.
     reports
         What is drawn at the end.
     digest
@@ -78,6 +81,7 @@ class Study:
     base_overrides: tuple[str, ...]
     axes: tuple[Axis, ...]
     sources: tuple[str, ...]
+    observed: Observed | None
     reports: tuple[ReportRequest, ...]
     digest: str
 
@@ -154,7 +158,7 @@ def parse_study(
             " `rps init --study` writes a study"
         )
     document = apply_overrides(document, of_study, model=StudyFile)
-    axes, sources, reports = _checked(document, folder, kinds)
+    axes, sources, observed, reports = _checked(document, folder, kinds)
     file = StudyFile.model_validate(document.content)
     document.refuse(fixed_faults(document, of_base))
     document.refuse(size_faults(file, axes, sources))
@@ -172,6 +176,7 @@ def parse_study(
         base_overrides=tuple(of_base),
         axes=axes,
         sources=sources,
+        observed=observed,
         reports=reports,
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
@@ -185,15 +190,17 @@ def _is_of_study(override: str) -> bool:
 
 def _checked(
     document: Document, folder: Path, kinds: ReportKinds
-) -> tuple[tuple[Axis, ...], tuple[str, ...], tuple[ReportRequest, ...]]:
-    """Axes, sources and reports; all faults of the study are raised together."""
+) -> tuple[tuple[Axis, ...], tuple[str, ...], Observed | None, tuple[ReportRequest, ...]]:
+    """Axes, sources, observations and reports; all faults of the study are raised together."""
     axes, axis_faults = axes_of(document)
     sources, source_faults = sources_of(document, folder)
+    observed, observed_faults = observed_of(document, folder, axes)
     requests, request_faults = requests_of(document, kinds)
     faults = [
         *_single_keys(document),
         *axis_faults,
         *source_faults,
+        *observed_faults,
         *request_faults,
         *scale_faults(document),
         *range_faults(document),
@@ -205,7 +212,7 @@ def _checked(
     if not axis_faults:
         faults += report_rules(document, axes, requests, kinds)
     document.refuse(faults)
-    return tuple(axes), sources, requests
+    return tuple(axes), sources, observed, requests
 
 
 def _single_keys(document: Document) -> Iterator[Fault]:

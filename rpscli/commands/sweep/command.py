@@ -171,6 +171,10 @@ def _conclude(
         },
         "outcomes": outcome_counts(table),
         **_statistics(found),
+        "findings": {
+            stem: [{"of": name, "found": sentence} for name, sentence in lines]
+            for stem, lines in found.findings.items()
+        },
         "failures": [asdict(failure) for failure in failures],
         "notes": list(start.notes),
         "warnings": notes,
@@ -203,3 +207,6 @@ def _tables(document: dict[str, Any], found: Collected) -> Iterator[RenderableTy
         yield from summary_tables(found.summary)
         if found.verdicts:
             yield verdict_table(found.summary, found.verdicts)
+    for stem, lines in found.findings.items():
+        yield title(stem)
+        yield listing(lines)

@@ -47,6 +47,7 @@ class Collected(NamedTuple):
     summary: Summary | None
     verdicts: list[StudyVerdict]
     notes: list[str]
+    findings: dict[str, list[tuple[str, str]]]
     broken: list[RpsError]
 
 
@@ -60,12 +61,12 @@ def collect(
     failures = list(_failures(given, results.table, folder))
     if failures:
         folder.add("failed.csv", csv_text(_failure_columns(failures)))
-    found = Collected(failures, None, [], [], [])
+    found = Collected(failures, None, [], [], {}, [])
     if given.design.plan.analysis == "timehistory":
         found = _with_statistics(found, results, conditions, folder)
     for request in given.study.reports:
         try:
-            found.notes.extend(_report(given, results, request, folder))
+            _report(given, results, request, folder, found)
         except RpsError as error:
             found.broken.append(error)
         except Exception as error:  # noqa: BLE001 -- the points and the others must not be lost
@@ -92,18 +93,23 @@ def _with_statistics(
 
 
 def _report(
-    given: StudyInput, results: StudyResults, request: ReportRequest, folder: OutputFolder
-) -> list[str]:
-    """Add the files of a report; returns what it has to say about its numbers."""
+    given: StudyInput,
+    results: StudyResults,
+    request: ReportRequest,
+    folder: OutputFolder,
+    found: Collected,
+) -> None:
+    """Add the files of a report, and what it has to say about its numbers."""
     from rpscli.report.study.registry import REPORTS  # noqa: PLC0415 -- numpy is slow
 
     report = REPORTS[request.kind]
     numbers = report.numbers(results, request.options)
-    notes = [f"{request.stem}: {note}" for note in report.notes(numbers)]
     title = request.options.title or given.study.title
     for name, content in list(report.files(numbers, request.stem, title, given.look)):
         folder.add(name, content)
-    return notes
+    found.notes.extend(f"{request.stem}: {note}" for note in report.notes(numbers))
+    if lines := list(report.findings(numbers)):
+        found.findings[request.stem] = lines
 
 
 def _failures(given: StudyInput, table: Table, folder: OutputFolder) -> Iterator[Failure]:

@@ -42,6 +42,8 @@ def label(key: str, value: object) -> str:
 
     >>> label("superstructure.storeys", 3), label("podium.bearing.curvature_ratio", 0)
     ('n = 3', 'flat ends')
+    >>> label("title", "tower A")
+    'tower A'
     >>> label("superstructure.period", 0.3), label("superstructure.period", "300 ms")
     ('T₁ = 0.3 s', 'T₁ = 300 ms')
     """
@@ -51,6 +53,8 @@ def label(key: str, value: object) -> str:
             return known
     if key == "podium.devices":
         return plain(value) if value else "no devices"
+    if key == "title":
+        return plain(value)
     unit = unit_of(key) if isinstance(value, int | float) else "-"
     return f"{symbol(key)} = {plain(value)}{'' if unit == '-' else f' {unit}'}"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rpscli.report.study import (
+    comparison,
     contrast,
     demand,
     directions,
@@ -28,5 +29,6 @@ REPORTS: dict[str, Report[Any, Any]] = {
     "fragility": fragility.REPORT,
     "ida": ida.REPORT,
     "overturning_spectrum": overturning_spectrum.REPORT,
+    "comparison": comparison.REPORT,
     "lines": lines.REPORT,
 }

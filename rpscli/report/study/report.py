@@ -37,6 +37,8 @@ class Report(Generic[Options, Numbers]):
         Whether there is anything to draw.
     notes
         What the user should know about the numbers.
+    findings
+        Its main numbers in lines, a name and a sentence each, for the terminal.
     check
         Rules that join the options with the rest of the study; seen before anything is computed.
     results
@@ -54,6 +56,7 @@ class Report(Generic[Options, Numbers]):
     figure: Callable[[Numbers, str], bytes]
     drawable: Callable[[Numbers], bool] = lambda _: True
     notes: Callable[[Numbers], Iterable[str]] = lambda _: ()
+    findings: Callable[[Numbers], Iterable[tuple[str, str]]] = lambda _: ()
     check: Check = lambda *_: ()
     results: Callable[[Options], Iterable[str]] = lambda _: ()
     requires: Callable[[Design, Options], Iterable[str]] = lambda *_: ()

@@ -17,6 +17,7 @@ from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import Keys, PositiveNumbers, Seed
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions
+from rpscli.sweep.statistics.observations import record_of
 from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note, shown_keys
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
@@ -39,11 +40,9 @@ class LimitStates(create_model("LimitStates", __base__=Section, **_THRESHOLDS)):
     )
 
 
-class FragilityOptions(MeasureOptions):
-    """Probability of exceeding a limit state against an intensity measure."""
+class BandOptions(MeasureOptions):
+    """Options of reports whose curves have bands."""
 
-    limits: LimitStates = Field(LimitStates(), description="limit states")
-    series: Keys | None = Field(None, description="varied keys, one curve for each value")
     resamples: Annotated[int, Whole(0, 10_000)] = Field(
         200, description="bootstrap samples of the records for the bands; 0 = none"
     )
@@ -51,6 +50,18 @@ class FragilityOptions(MeasureOptions):
         0.9, description="probability inside the bands"
     )
     seed: Seed = Field(1, description="of the bootstrap")
+
+    @property
+    def bootstrap(self) -> Bootstrap:
+        """How the bands are had."""
+        return Bootstrap(self.resamples, self.confidence, self.seed)
+
+
+class FragilityOptions(BandOptions):
+    """Probability of exceeding a limit state against an intensity measure."""
+
+    limits: LimitStates = Field(LimitStates(), description="limit states")
+    series: Keys | None = Field(None, description="varied keys, one curve for each value")
 
 
 class LimitState(NamedTuple):
@@ -181,20 +192,13 @@ def _fragility(
         measured.values[kept],
         exceeds(table, limit.result, limit.threshold or 0.0)[kept],
     )
-    grid = _grid(intensity)
+    grid = intensity_grid(intensity)
     return Fragility(
         values=values,
         limit=limit,
-        fit=lognormal_fit(
-            intensity,
-            beyond,
-            _cluster(table, kept),
-            _weight(table, kept),
-            grid,
-            Bootstrap(options.resamples, options.confidence, options.seed),
-        ),
+        fit=fragility_fit(table, kept, intensity, beyond, grid, options.bootstrap),
         grid=grid,
-        observed=_observed(intensity, beyond),
+        observed=binned(intensity, beyond),
         counted=len(kept),
         exceeded=int(beyond.sum()),
         overturned=int(table.overturned[kept].sum()),
@@ -202,12 +206,34 @@ def _fragility(
     )
 
 
+def fragility_fit(
+    table: Table,
+    points: Indices,
+    intensity: Array,
+    beyond: NDArray[np.bool_],
+    grid: Array,
+    bootstrap: Bootstrap,
+) -> Lognormal:
+    """Fit a curve through what became of some points of a study.
+
+    Parameters
+    ----------
+    points, intensity, beyond
+        (points,) numbers of the points, intensities of their motions, and outcomes.
+    grid
+        Intensities at which the curve is wanted.
+    bootstrap
+        How the bands are had.
+    """
+    cluster, weight = _cluster(table, points), _weight(table, points)
+    return lognormal_fit(intensity, beyond, cluster, weight, grid, bootstrap)
+
+
 def _cluster(table: Table, points: Indices) -> Indices:
     """What hangs together: points of one record; each point alone if there is one record only."""
     if len(table.design.records) == 1:
         return points
-    of_system = table.design.points_of_system
-    return points % of_system // (of_system // len(table.design.records))
+    return record_of(table.design, points)
 
 
 def _weight(table: Table, points: Indices) -> float:
@@ -217,14 +243,14 @@ def _weight(table: Table, points: Indices) -> float:
     return len(np.unique(shaken)) / max(len(points), 1)
 
 
-def _grid(intensities: Array) -> Array:
+def intensity_grid(intensities: Array) -> Array:
     """Intensities at which curves are drawn: some way beyond the data on both sides."""
     if not len(intensities):
         return np.ones(CURVE_POINTS)
     return np.geomspace(intensities.min() / 1.5, intensities.max() * 1.5, CURVE_POINTS)
 
 
-def _observed(intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
+def binned(intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
     """Shares at each intensity, or in bins of equal numbers of points if there are too many."""
     levels, place = np.unique(intensity, return_inverse=True)
     if len(levels) > 2 * MOST_BINS:

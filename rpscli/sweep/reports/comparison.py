@@ -1,0 +1,469 @@
+"""A study beside what was observed: outcomes, fragilities and maxima; fitted and held out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from rpscli.case.schema.fields import Quantity
+from rpscli.case.schema.section import Section
+from rpscli.case.study.axes import Axis
+from rpscli.case.study.fields import Keys, Seed
+from rpscli.case.study.observed import OVERTURNED, Observed
+from rpscli.case.study.reports import ReportRequest
+from rpscli.case.text.document import Document
+from rpscli.case.text.faults import Fault, dotted, listed
+from rpscli.records.measures.measure import Measure
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.fits.lognormal import Lognormal
+from rpscli.sweep.reports.fragility import BandOptions, binned, fragility_fit, intensity_grid
+from rpscli.sweep.reports.fragility import Observed as Binned
+from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, measure_without_period
+from rpscli.sweep.reports.study_results import StudyResults
+from rpscli.sweep.statistics.observations import Pairs, observed_pairs, unpaired
+from rpscli.sweep.statistics.pooling import shown_keys
+from rpscli.sweep.statistics.share import Share, share
+from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
+
+Flags = NDArray[np.bool_]
+
+BASELINES: tuple[Measure, ...] = ("PGA", "PGV")
+"""Measures whose thresholds a model has to beat."""
+
+FITTED, HELD_OUT, ALL = "fitted", "held out", "all"
+
+
+class FitSection(Section):
+    """Choose values of varied keys on a share of the records; the rest is held out."""
+
+    keys: Keys | None = Field(
+        None, description="varied keys to be chosen; all but those of the observations"
+    )
+    share: Annotated[float, Quantity(above=0, below=1)] = Field(
+        0.5, description="share of the records that they are chosen on"
+    )
+    seed: Seed = Field(1, description="of the draw of these records")
+
+
+class ComparisonOptions(BandOptions):
+    """Outcomes and maxima beside those that were observed."""
+
+    fit: FitSection | None = Field(None, description="choose a parameter, judge it on the rest")
+
+
+class Agreement(NamedTuple):
+    """How often computed and observed outcomes are the same."""
+
+    both: int
+    computed_only: int
+    observed_only: int
+    neither: int
+
+    @property
+    def counted(self) -> int:
+        """All outcomes."""
+        return sum(self)
+
+    @property
+    def agreed(self) -> Share:
+        """The share of equal outcomes."""
+        return share(self.both + self.neither, self.counted)
+
+    @property
+    def computed(self) -> int:
+        """Computed overturnings."""
+        return self.both + self.computed_only
+
+    @property
+    def observed(self) -> int:
+        """Observed overturnings."""
+        return self.both + self.observed_only
+
+
+class Threshold(NamedTuple):
+    """A measure beyond which everything is taken to overturn, chosen as the parameter is."""
+
+    measure: str
+    unit: str
+    value: float
+    agreement: Agreement
+
+
+class Curve(NamedTuple):
+    """A fragility with the data that it goes through."""
+
+    fit: Lognormal
+    binned: Binned
+    grid: Array
+
+    @property
+    def fitted(self) -> bool:
+        """Whether there is a curve."""
+        return self.fit.method != "none"
+
+
+@dataclass(frozen=True, eq=False)
+class Outcomes:
+    """Overturning in one part of the records; None where nothing could be counted."""
+
+    agreement: Agreement
+    thresholds: tuple[Threshold, ...]
+    observed: Curve
+    computed: Curve
+
+
+@dataclass(frozen=True)
+class Maxima:
+    """Computed over observed maxima of one quantity.
+
+    `median` and `dispersion` (standard deviation of the logarithm) are those of the `counted`
+    ratios; `overturned` histories have none, and are infinite in the distance of Kolmogorov and
+    Smirnov between both distributions.
+    """
+
+    counted: int
+    overturned: int
+    median: float
+    dispersion: float
+    distance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One quantity of one system in one part of the records.
+
+    `chosen` are values of the keys of the fit; `pairs` are places in the pairs of the report.
+    """
+
+    values: tuple[object, ...]
+    chosen: tuple[object, ...]
+    part: str
+    quantity: str
+    found: Outcomes | Maxima
+    pairs: Indices
+    failed: int
+
+
+class Worth(NamedTuple):
+    """What a fit makes small: first the misfit, then what is off in the count.
+
+    The misfit is the share of wrong outcomes, or the median of |ln(computed/observed)| of maxima.
+    """
+
+    misfit: float
+    count_off: float
+
+
+class Candidate(NamedTuple):
+    """What a choice of the fitted keys would have been worth, on the fitted records."""
+
+    values: tuple[object, ...]
+    chosen: tuple[object, ...]
+    worth: Worth
+    taken: bool
+
+
+@dataclass(frozen=True, eq=False)
+class ComparisonReport:
+    """All of it.
+
+    `computed` (quantities, pairs) is 1 for overturned, and infinite for maxima of overturned
+    histories.
+    """
+
+    table: Table
+    intensity: Intensity
+    confidence: float
+    system_keys: tuple[str, ...]
+    fit_keys: tuple[str, ...]
+    quantities: tuple[str, ...]
+    pairs: Pairs
+    computed: Array
+    compared: tuple[Compared, ...]
+    candidates: tuple[Candidate, ...]
+
+    @property
+    def judged(self) -> list[Compared]:
+        """What counts: what was held out, or everything if nothing was fitted."""
+        return [each for each in self.compared if each.part != FITTED]
+
+    @property
+    def notes(self) -> Iterator[str]:
+        """What was left out, and what the user might take the numbers for."""
+        yield from self.pairs.notes
+        ends: dict[tuple[object, ...], list[bool]] = {}
+        for each in self.candidates:
+            ends.setdefault(each.values, []).append(each.taken)
+        if any(len(taken) > 2 and (taken[0] or taken[-1]) for taken in ends.values()):
+            yield "the fit chose a value at an end of its axis; extend the axis"
+
+
+def comparison_report(study: StudyResults, options: ComparisonOptions) -> ComparisonReport:
+    """Compare every system, or the best one of each group, with its observations."""
+    table, design = study.table, study.table.design
+    observed = design.study.observed
+    assert observed is not None, "`unpaired` was asked before"
+    pairs = observed_pairs(design, observed)
+    fit_keys = _fit_keys(_leading(design), observed, options.fit)
+    system_keys = tuple(key for key in _leading(design) if not _same_axis(design, key, fit_keys))
+    measured = study.intensity(options)
+    baselines = [study.intensity(MeasureOptions(measure=measure)) for measure in BASELINES]
+    if measured.measure not in BASELINES:
+        baselines.append(measured)
+    work = _Work(table, options, measured, baselines, observed.quantities, pairs)
+    compared: list[Compared] = []
+    candidates: list[Candidate] = []
+    for system in groups(design, system_keys):
+        best = Group((), system.points)
+        if options.fit is not None:
+            rows = [
+                Candidate(system.values, group.values, work.worth(group.points), taken=False)
+                for group in groups(design, fit_keys, system.points)
+            ]
+            place = _best([row.worth for row in rows])
+            candidates += [row._replace(taken=n == place) for n, row in enumerate(rows)]
+            best = groups(design, fit_keys, system.points)[place]
+        compared += work.compared(system.values, best)
+    return ComparisonReport(
+        table=table,
+        intensity=measured,
+        confidence=options.confidence,
+        system_keys=shown_keys(design, system_keys),
+        fit_keys=shown_keys(design, fit_keys),
+        quantities=observed.quantities,
+        pairs=pairs,
+        computed=work.computed,
+        compared=tuple(compared),
+        candidates=tuple(candidates),
+    )
+
+
+def fit_faults(_: Document, axes: Sequence[Axis], request: ReportRequest) -> Iterator[Fault]:
+    """Keys of the fit that do not vary, and a fit with nothing to choose."""
+    options = request.options
+    assert isinstance(options, ComparisonOptions)
+    known = [key for axis in axes for key in axis.keys]
+    path = (*request.path, request.kind, "fit")
+    if options.fit is None:
+        return
+    if not known:
+        yield Fault(path, f"{dotted(path)} needs keys under `vary` to choose from; add them")
+    for key in options.fit.keys or ():
+        if known and key not in known:
+            text = f"{dotted(path)}.keys: {key} does not vary in this study; use {listed(known)}"
+            yield Fault(path, text)
+
+
+def uncomparable(design: Design, options: ComparisonOptions) -> Iterator[str]:
+    """What keeps a study from this report."""
+    yield from unpaired(design)
+    yield from measure_without_period(design, options)
+    observed = design.study.observed
+    if options.fit is None or observed is None:
+        return
+    keys = _fit_keys(_leading(design), observed, options.fit)
+    named = [key for key in observed.keys if _same_axis(design, key, keys)]
+    if not keys or named:
+        which = f"{listed(named, 'and')} tells what was observed" if named else "no key is left"
+        yield f"fit: {which}, and cannot be chosen; vary another key, and name it in fit.keys"
+    elif len(observed_records(observed_pairs(design, observed))) < 2:
+        yield "fit: less than two records have an observation, and one part must be held out"
+
+
+def observed_records(pairs: Pairs) -> Indices:
+    """Numbers of the records with an observation."""
+    return np.unique(pairs.records)
+
+
+def _leading(design: Design) -> tuple[str, ...]:
+    """What tells systems apart: the first key of every axis, and the scale."""
+    return (*leading_keys(design), "scale") if len(design.scales) > 1 else leading_keys(design)
+
+
+def _fit_keys(
+    leading: Sequence[str], observed: Observed, fit: FitSection | None
+) -> tuple[str, ...]:
+    if fit is None:
+        return ()
+    if fit.keys is not None:
+        return tuple(fit.keys)
+    return tuple(key for key in leading if key not in (*observed.keys, "scale"))
+
+
+def _same_axis(design: Design, key: str, keys: Iterable[str]) -> bool:
+    """Whether a key belongs to the axis of one of others."""
+    axes = [set(axis.keys) for axis in design.study.axes] + [{"scale"}]
+    return any(key in axis and axis & set(keys) for axis in axes)
+
+
+def _best(worths: Sequence[Worth]) -> int:
+    """The smallest; of several equal ones the middle, which a little more data moves least."""
+    least = min(worths)
+    places = [place for place, worth in enumerate(worths) if worth == least]
+    return places[(len(places) - 1) // 2]
+
+
+def agreement(computed: Flags, observed: Flags) -> Agreement:
+    """Count the four pairs of outcomes.
+
+    >>> import numpy as np
+    >>> agreement(np.array([True, True, False]), np.array([True, False, False]))
+    Agreement(both=1, computed_only=1, observed_only=0, neither=1)
+    """
+    cells = (computed & observed, computed & ~observed, ~computed & observed, ~computed & ~observed)
+    return Agreement(*(int(cell.sum()) for cell in cells))
+
+
+def threshold(intensity: Array, observed: Flags) -> float:
+    """The intensity that tells most outcomes right when all beyond it is taken to overturn.
+
+    It lies midway (geometrically) between two data, or is the least or twice the largest of them.
+
+    >>> import numpy as np
+    >>> im = np.array([1.0, 2.0, 4.0, 8.0])
+    >>> round(threshold(im, np.array([False, False, True, True])), 3)
+    2.828
+    """
+    levels = np.unique(intensity)
+    cuts = np.array([levels[0], *np.sqrt(levels[1:] * levels[:-1]), 2.0 * levels[-1]])
+    wrong = [Worth(float(np.mean((intensity >= cut) != observed)), 0.0) for cut in cuts]
+    return float(cuts[_best(wrong)])
+
+
+def maxima(computed: Array, observed: Array) -> Maxima:
+    """Compare maxima; computed ones are infinite where the structure overturned.
+
+    >>> import numpy as np
+    >>> found = maxima(np.array([2.0, 8.0, np.inf]), np.array([1.0, 1.0, 1.0]))
+    >>> found.counted, found.overturned, round(found.median, 6), found.distance
+    (2, 1, 4.0, 1.0)
+    """
+    from scipy.stats import ks_2samp  # noqa: PLC0415 -- slow to import
+
+    stood = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
+    logs = np.log(computed[stood] / observed[stood])
+    return Maxima(
+        counted=len(logs),
+        overturned=int(np.isinf(computed).sum()),
+        median=math.exp(float(np.median(logs))) if len(logs) else math.nan,
+        dispersion=float(np.std(logs, ddof=1)) if len(logs) > 1 else math.nan,
+        distance=float(ks_2samp(computed, observed).statistic) if len(observed) else math.nan,
+    )
+
+
+class _Work:
+    """What all comparisons of a report share."""
+
+    def __init__(
+        self,
+        table: Table,
+        options: ComparisonOptions,
+        measured: Intensity,
+        baselines: Sequence[Intensity],
+        quantities: Sequence[str],
+        pairs: Pairs,
+    ) -> None:
+        self._table, self._options, self._pairs = table, options, pairs
+        self._measured, self._baselines, self._quantities = measured, baselines, quantities
+        self.computed = np.array([self._of(name) for name in quantities])
+        self._parts: Mapping[str, Flags] = self._drawn()
+
+    def _of(self, quantity: str) -> Array:
+        """Computed values of all pairs; NaN of failed points."""
+        points, table = self._pairs.points, self._table
+        overturned = table.overturned[points]
+        if quantity == OVERTURNED:
+            found = overturned.astype(float)
+        else:
+            found = np.where(overturned, np.inf, table.columns[quantity][points])
+        return np.where(table.failed[points], np.nan, found)
+
+    def _drawn(self) -> Mapping[str, Flags]:
+        """Pairs of each part of the records."""
+        records, fit = observed_records(self._pairs), self._options.fit
+        if fit is None:
+            return {ALL: np.ones(len(self._pairs.points), dtype=bool)}
+        count = min(max(round(fit.share * len(records)), 1), len(records) - 1)
+        drawn = np.random.default_rng(fit.seed).permutation(records)[:count]
+        fitted = np.isin(self._pairs.records, drawn)
+        return {FITTED: fitted, HELD_OUT: ~fitted}
+
+    def _chosen(self, points: Indices, part: str, quantity: int) -> Indices:
+        """Places of the pairs of some points in a part, where the quantity was observed."""
+        seen = np.isfinite(self._pairs.values[quantity])
+        return np.flatnonzero(np.isin(self._pairs.points, points) & self._parts[part] & seen)
+
+    def worth(self, points: Indices) -> Worth:
+        """What a fit makes small, for the first quantity of the observations."""
+        places = self._chosen(points, FITTED, 0)
+        computed, observed = self.computed[0][places], self._pairs.values[0][places]
+        known = ~np.isnan(computed)
+        computed, observed = computed[known], observed[known]
+        if not len(computed):
+            return Worth(math.inf, math.inf)
+        if self._quantities[0] == OVERTURNED:
+            off = abs(computed.mean() - observed.mean())
+            return Worth(float(np.mean(computed != observed)), float(off))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            off = np.abs(np.log(computed / observed))
+        return Worth(float(np.median(np.nan_to_num(off, nan=np.inf))), 0.0)
+
+    def compared(self, values: tuple[object, ...], best: Group) -> Iterator[Compared]:
+        """Every quantity in every part."""
+        for quantity, name in enumerate(self._quantities):
+            for part in self._parts:
+                places = self._chosen(best.points, part, quantity)
+                known = places[~np.isnan(self.computed[quantity][places])]
+                if not len(places):
+                    continue
+                found: Outcomes | Maxima
+                if name == OVERTURNED:
+                    found = self._outcomes(best.points, known, quantity)
+                else:
+                    found = maxima(
+                        self.computed[quantity][known], self._pairs.values[quantity][known]
+                    )
+                failed = len(places) - len(known)
+                yield Compared(values, best.values, part, name, found, known, failed)
+
+    def _outcomes(self, points: Indices, places: Indices, quantity: int) -> Outcomes:
+        computed = self.computed[quantity] == 1.0
+        observed = self._pairs.values[quantity] == 1.0
+        learnt = self._chosen(points, next(iter(self._parts)), quantity)
+        intensity = self._measured.values[self._pairs.points]
+        shaken = places[intensity[places] > 0.0]
+        grid = intensity_grid(intensity[shaken])
+        return Outcomes(
+            agreement=agreement(computed[places], observed[places]),
+            thresholds=tuple(self._thresholds(observed, learnt, places)),
+            observed=self._curve(shaken, observed, intensity, grid),
+            computed=self._curve(shaken, computed, intensity, grid),
+        )
+
+    def _curve(self, places: Indices, beyond: Flags, intensity: Array, grid: Array) -> Curve:
+        fit = fragility_fit(
+            self._table,
+            self._pairs.points[places],
+            intensity[places],
+            beyond[places],
+            grid,
+            self._options.bootstrap,
+        )
+        return Curve(fit, binned(intensity[places], beyond[places]), grid)
+
+    def _thresholds(self, observed: Flags, learnt: Indices, judged: Indices) -> Iterator[Threshold]:
+        """Thresholds chosen on one part of the records and judged on another."""
+        for measured in self._baselines:
+            intensity = measured.values[self._pairs.points]
+            known = learnt[intensity[learnt] > 0.0]
+            if len(known):
+                value = threshold(intensity[known], observed[known])
+                beyond = intensity[judged] >= value
+                counts = agreement(beyond, observed[judged])
+                yield Threshold(measured.measure, measured.unit, value, counts)
