@@ -27,6 +27,8 @@ class FixedBaseResponse:
     """(samples, n) relative to the ground [m]."""
     drifts: NDArray[np.float64]
     """(n,) largest storey drifts [m]."""
+    acceleration_histories: NDArray[np.float64]
+    """(samples, n) absolute accelerations of the floors [m/s2]."""
 
     @property
     def base_shear(self) -> float:
@@ -69,6 +71,10 @@ def fixed_base_response(
         floor_velocities=largest_velocities(floors[:, 1], record),
         floor_displacements=floors[:, 0],
         drifts=shears / building.stiffnesses,
+        acceleration_histories=-(
+            floors[:, 0] @ building.stiffness_matrix + floors[:, 1] @ building.damping_matrix
+        )
+        / building.masses,
     )
 
 

@@ -71,6 +71,11 @@ FIGURES = 5
 @click.option(
     "--animate", type=click.Path(path_type=Path), metavar="FILE.gif", help="Also draw it moving."
 )
+@click.option(
+    "--floor-spectra",
+    is_flag=True,
+    help="Also spectra of equipment on every floor, beside those on a fixed base.",
+)
 @figure_options
 @output_options
 @terminal_options
@@ -82,6 +87,8 @@ def command(
     fail_on: tuple[str, ...],
     animate: Path | None,
     look: Look,
+    *,
+    floor_spectra: bool,
     **motion: Any,
 ) -> None:
     """Response of each CASE to its record, or to each --record.
@@ -94,7 +101,10 @@ def command(
         raise UsageError(f"--animate {animate}: must end with .gif, the only format there is")
     motions = list(single_motions(records, MotionRequest(**motion)))
     cases = read_cases(requests, terminal)
-    histories = history_requests(cases, motions, output)
+    histories = [
+        replace(history, floor_spectra=floor_spectra)
+        for history in history_requests(cases, motions, output)
+    ]
     if len(histories) == 1:
         _one(histories[0], conditions, look, animate, terminal)
         return

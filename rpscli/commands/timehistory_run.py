@@ -36,13 +36,14 @@ COMMAND = "timehistory"
 
 @dataclass(frozen=True, eq=False)
 class HistoryRequest:
-    """A case, its motion, and the folder of the results."""
+    """A case, its motion, the folder of the results; spectra of floors where they are asked for."""
 
     given: CaseInput
     case_label: str
     ground: MotionComponents
     label: str
     folder: OutputFolder
+    floor_spectra: bool = False
 
 
 class HistoryResult(NamedTuple):
@@ -125,7 +126,7 @@ def compute(
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
     from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
-    from rpscli.report.bundles import timehistory_files  # noqa: PLC0415
+    from rpscli.report.bundles import floor_spectra_files, timehistory_files  # noqa: PLC0415
 
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):
@@ -134,6 +135,9 @@ def compute(
         )
     for name, content in timehistory_files(result, case.title, look, drawing):
         request.folder.add(name, content)
+    if request.floor_spectra:
+        for name, content in floor_spectra_files(result, case.title, look):
+            request.folder.add(name, content)
     verdicts: list[Verdict] = []
     error: RpsError | None
     if result.failure:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
+from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.pushover import PushoverResult
 from rpscli.analyses.results import TimeHistoryResult
@@ -17,6 +18,7 @@ from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.displacement import displacement_figure
 from rpscli.report.figures.drawing import Artists, Draw, figure_files
 from rpscli.report.figures.energy import energy_figure
+from rpscli.report.figures.floor_spectra import floor_spectra_figure
 from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.figures.modes import modes_figure
 from rpscli.report.figures.moment import moment_figure
@@ -26,6 +28,7 @@ from rpscli.report.figures.rotation import rotation_figure
 from rpscli.report.figures.selection import selection_figure
 from rpscli.report.figures.storey_curve import storey_curve_figure
 from rpscli.report.files.csv_text import csv_text
+from rpscli.report.tables.floor_spectra import floor_spectra_columns
 from rpscli.report.tables.modal import eigenvalue_columns, mode_columns, shape_columns
 from rpscli.report.tables.pushover import capacity_columns, storey_curve_columns
 from rpscli.report.tables.record import motion_columns, spectrum_columns
@@ -74,6 +77,16 @@ def timehistory_files(
         figures["devices"] = devices_figure
     draws = {stem: partial(draw, result, title) for stem, draw in figures.items()}
     yield from figure_files(draws, look, artists).items()
+
+
+def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:
+    """Spectra of the floors; none without a building."""
+    if not result.structure.storeys:
+        return
+    isolated, fixed = isolated_floor_spectra(result), fixed_base_floor_spectra(result)
+    yield "floor_spectra.csv", csv_text(floor_spectra_columns(isolated, fixed))
+    draw = partial(floor_spectra_figure, isolated, fixed, title, result.record.name)
+    yield from figure_files({"floor_spectra": draw}, look).items()
 
 
 def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
