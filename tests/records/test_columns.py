@@ -129,6 +129,8 @@ def test_one_column_with_options(tmp_path: Path) -> None:
         load_record("rec.txt?units=g", folder=tmp_path)
     with pytest.raises(RecordError, match="does not state the units"):
         load_record("rec.txt?dt=0.01", folder=tmp_path)
+    with pytest.raises(RecordError, match=r"units of its values \(its header: 'acc of floor 2'\)"):
+        load(tmp_path, f"acc of floor 2\n{text}", "?dt=0.01")
     with pytest.raises(RecordError, match=r"dt = -0\.01 s must be positive"):
         load_record("rec.txt?dt=-0.01&units=g", folder=tmp_path)
 

@@ -130,7 +130,7 @@ def _check_count(text: RecordText, table: _Table) -> None:
 
 
 def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
-    unit, factor = text.agreed_factor(_stated_units(text, table.header))
+    unit, factor = text.agreed_factor(_stated_units(text, table.header), _first_line(table))
     values = table.values.reshape(-1, 2)
     numerals = (numerals_in(text.lines[line])[0] for line in table.lines)
     resolution = printed_resolution(values[:, 0], numerals)
@@ -166,7 +166,7 @@ def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
 
 
 def _sequence(text: RecordText, table: _Table, *warnings: str) -> GroundMotion:
-    unit, factor = text.agreed_factor(_stated_units(text, table.header))
+    unit, factor = text.agreed_factor(_stated_units(text, table.header), _first_line(table))
     dt = text.agreed_dt(_stated_step(text, table.header))
     values = table.values
     _refuse_leading_header(text, table, values)
@@ -215,8 +215,12 @@ def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
     return _sequence(text, table, note)
 
 
+def _first_line(table: _Table) -> str:
+    return table.header[0].value if table.header else ""
+
+
 def _description(table: _Table, unit: str) -> str:
-    return f"{table.header[0].value[:100] if table.header else 'no header'}; values in {unit}"
+    return f"{_first_line(table)[:100] or 'no header'}; values in {unit}"
 
 
 def _found(header: Sequence[Statement], pattern: re.Pattern[str], name: str) -> list[Statement]:

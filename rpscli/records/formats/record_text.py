@@ -73,8 +73,15 @@ class RecordText:
         place = f"{self.path}" if line is None else f"{self.path}:{line + 1}"
         return RecordError(f"{place}: {message}")
 
-    def agreed_factor(self, stated: str | None) -> tuple[str, float]:
+    def agreed_factor(self, stated: str | None, header: str = "") -> tuple[str, float]:
         """The unit of the values and its size in m/s2, from the file or from the user.
+
+        Parameters
+        ----------
+        stated
+            The unit that the file states.
+        header
+            What it says in its header instead, for the message.
 
         Raises
         ------
@@ -83,7 +90,8 @@ class RecordText:
         """
         if stated is None and self.units is None:
             raise self.fault(
-                f"the file does not state the units of its values and none were given; say "
+                f"the file does not state the units of its values"
+                f"{f' (its header: {header[:60]!r})' if header else ''} and none were given; say "
                 f"?units=g (or another of {KNOWN_UNITS}) after the file name, "
                 f"or write a header line 'units: g'"
             )
