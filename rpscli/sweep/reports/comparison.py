@@ -27,7 +27,7 @@ from rpscli.sweep.reports.fragility import Observed as Binned
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, measure_without_period
 from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.statistics.observations import Pairs, observed_pairs, unpaired
-from rpscli.sweep.statistics.pooling import shown_keys
+from rpscli.sweep.statistics.pooling import pooling_note, shown_keys
 from rpscli.sweep.statistics.share import Share, share
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
 
@@ -187,6 +187,7 @@ class ComparisonReport:
     computed: Array
     compared: tuple[Compared, ...]
     candidates: tuple[Candidate, ...]
+    pooling: tuple[str, ...]
 
     @property
     def judged(self) -> list[Compared]:
@@ -196,7 +197,7 @@ class ComparisonReport:
     @property
     def notes(self) -> Iterator[str]:
         """What was left out, and what the user might take the numbers for."""
-        yield from self.pairs.notes
+        yield from (*self.pairs.notes, *self.pooling)
         ends: dict[tuple[object, ...], list[bool]] = {}
         for each in self.candidates:
             ends.setdefault(each.values, []).append(each.taken)
@@ -241,6 +242,7 @@ def comparison_report(study: StudyResults, options: ComparisonOptions) -> Compar
         computed=work.computed,
         compared=tuple(compared),
         candidates=tuple(candidates),
+        pooling=tuple(pooling_note(design, (*system_keys, *fit_keys, "scale"))),
     )
 
 
