@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -9,11 +10,13 @@ from functools import partial
 from html.parser import HTMLParser
 
 import pytest
+from PIL import Image
 
-from report.small_results import KINDS, structure
+from report.small_results import KINDS, history, structure
 from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures.look import USUAL
 from rpscli.report.html.elements import element, written
+from rpscli.report.html.motions import motion_pictures
 from rpscli.report.html.page import MOST_BYTES, Block, Code, Notice, Section, Table, is_about, page
 from rpscli.report.html.pictures import Picture, page_look, pictures
 from rpscli.report.html.sections import derived_section, hidden_section, structure_section
@@ -97,13 +100,16 @@ def test_figures_have_texts_in_place_of_them(figures_of_history: list[Block]) ->
 
 
 def test_a_figure_of_many_points_is_an_image_and_the_page_stays_small() -> None:
-    marks = b"".join(b'<circle r="1" cx="%d" cy="2"/>' % n for n in range(20_000))
+    marks = b"".join(b'<circle r="1" cx="%d" cy="2"/>' % n for n in range(30_000))
     start = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
-    heavy = Picture({"svg": start + marks + b"</svg>", "png": b"\x89PNG" * 100}, "many points")
-    light = Picture({"svg": start + b"</svg>", "png": b"\x89PNG" * 100}, "few points")
+    with io.BytesIO() as file:
+        Image.new("RGB", (1050, 700), "white").save(file, "png")
+        png = file.getvalue()
+    heavy = Picture({"svg": start + marks + b"</svg>", "png": png}, "many points")
+    light = Picture({"svg": start + b"</svg>", "png": png}, "few points")
     content = page("a", "b", [Section("c", [heavy] * 20 + [light])], "d")
     tags = Counter(tag for tag, _ in Parsed(content).tags)
-    assert (tags["img"], tags["svg"]) == (19, 2)  # as many drawings as there is room for
+    assert (tags["img"], tags["svg"]) == (20, 1)  # one heavy drawing is too much
     assert len(content) < MOST_BYTES
 
 
@@ -152,3 +158,12 @@ def test_every_derived_number_has_a_row() -> None:
 def test_elements_nest() -> None:
     made = element("p", "a", element("b", "c"), None, ["d", element("i")], "e")
     assert written(made) == "<p>a<b>c</b>d<i></i>e</p>"
+
+
+def test_a_long_record_leaves_the_page_small_enough_to_be_sent() -> None:
+    record = "synthetic:?pga=0.5g&duration=300&dt=0.005&seed=3"
+    result = history(structure(storeys=6), record)
+    files = timehistory_files(result, "a long record", page_look(USUAL))
+    blocks: list[Block] = [Picture(found, stem) for stem, found in pictures(files)]
+    blocks.append(motion_pictures(result.record, USUAL))
+    assert len(page("a", "b", [Section("c", blocks)], "d")) < 0.9 * MOST_BYTES  # tables: a tenth

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,9 @@ from rpscli.report.html.elements import element, printable, written
 
 FORMATS = ("svg", "png")
 """What a page asks for: the second where the first takes too much room."""
+
+COLOURS = 256
+"""Of an image: ours, and those of their edges."""
 
 _NUMBER = re.compile(r"-?\d+\.\d{3,}")
 _REFERENCE = re.compile(r"#([\w.-]+)")
@@ -57,13 +61,27 @@ def figures(shown: Sequence[Picture], room: int) -> list[Element]:
     drawn = [_drawing(each.files["svg"], f"f{n}-", each.caption) for n, each in enumerate(shown, 1)]
     sizes = [len(written(each)) for each in drawn]
     for place in sorted(range(len(shown)), key=lambda place: -sizes[place]):
-        image = base64.b64encode(shown[place].files["png"]).decode()
-        if sum(sizes) > room and len(image) < sizes[place]:
+        if sum(sizes) <= room:
+            break
+        image = base64.b64encode(_few_colours(shown[place].files["png"])).decode()
+        if len(image) < sizes[place]:
             source, caption = f"data:image/png;base64,{image}", shown[place].caption
             drawn[place] = element("img", src=source, alt=caption)
             sizes[place] = len(image)
     pairs = zip(drawn, shown, strict=True)
     return [_figure(each, of.caption, number) for number, (each, of) in enumerate(pairs, 1)]
+
+
+def _few_colours(image: bytes) -> bytes:
+    """The image with a palette, which takes a third of the room; our figures have few colours."""
+    from PIL import Image  # noqa: PLC0415 -- rarely needed
+
+    small = io.BytesIO()
+    with Image.open(io.BytesIO(image)) as full:
+        # By coverage of colours, not of pixels: a thin red line must stay red.
+        palette = full.convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE)
+        palette.save(small, "png", optimize=True)
+    return small.getvalue()
 
 
 def _figure(drawn: Element, caption: str, number: int) -> Element:
