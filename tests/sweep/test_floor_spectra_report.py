@@ -1,0 +1,72 @@
+"""Fractiles of floor spectra in a study, against single histories."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import Result
+from paper_structures import needs_compiled_kernels
+
+from rpscli.analyses.floor_spectra import (
+    PERIODS,
+    fixed_base_floor_spectra,
+    isolated_floor_spectra,
+)
+from rpscli.analyses.timehistory import time_history
+from rpscli.case.case import load_case
+from rpscli.records.source import load_record
+from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.reports.floor_spectra import FloorSpectraOptions, without_floors
+from sweep.small_studies import STUDY, Make
+
+VARY = STUDY[STUDY.index("vary:") : STUDY.index("records:")]
+FLOORS = STUDY.replace(VARY, "").replace("[0.5, 1.0]", "[0.5, 9.0]")
+
+
+@needs_compiled_kernels
+def test_fractiles_of_three_histories(workplace: Path, sweep: Callable[..., Result]) -> None:
+    (workplace / "study.yaml").write_text(f"{FLOORS}reports: [floor_spectra]\n", encoding="utf-8")
+    made = sweep("study.yaml", "-o", "made")
+    assert made.exit_code == 0, made.stderr
+    case = load_case("base.yaml")
+    found = {}
+    for scale in (0.5, 9.0):
+        results = [
+            time_history(
+                case.structure,
+                load_record(f"synthetic:?pga=0.5g&duration=4&dt=0.02&seed={seed}").scaled(scale),
+                case.analysis,
+            )
+            for seed in (1, 2, 3)
+        ]
+        fallen = np.array([r.outcome.startswith("overturned") for r in results])
+        isolated = np.array([isolated_floor_spectra(r).pseudo_acceleration for r in results])
+        isolated[fallen] = np.inf
+        fixed = [fixed_base_floor_spectra(r) for r in results]
+        displacement = np.array([f.displacement for f in fixed if f is not None])
+        # Of three values the median is the second, the 84 % fractile the largest.
+        found[scale] = np.sort(isolated, axis=0), np.sort(displacement, axis=0), fallen
+    assert not found[0.5][2].any()
+    assert found[9.0][2].sum() == 2
+    with (workplace / "made/floor_spectra.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2 * 3 * len(PERIODS)
+    for scale, (isolated, displacement, _) in found.items():
+        of_scale = [row for row in rows if float(row["scale [-]"]) == scale]
+        for name, values in (
+            ("isolated_pseudo_acceleration_50 [m/s2]", isolated[1]),
+            ("isolated_pseudo_acceleration_84 [m/s2]", isolated[2]),
+            ("fixed_base_displacement_16 [m]", displacement[0]),
+        ):
+            cells = [float(row[name]) for row in of_scale]
+            np.testing.assert_allclose(cells, values.ravel(), rtol=1e-9)
+
+
+@pytest.mark.usefixtures("workplace")
+def test_a_frame_has_no_floors(study_of: Make) -> None:
+    design = lay_out(study_of(STUDY))
+    assert not list(without_floors(design, FloorSpectraOptions()))
