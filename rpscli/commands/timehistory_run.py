@@ -21,7 +21,7 @@ from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.patience import patience
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import AnalysisError, RecordError, RpsError
-from rpscli.report.documents import heading, timehistory_document
+from rpscli.report.documents import ONE_DIRECTION, heading, timehistory_document
 from rpscli.report.figures.drawing import Artists
 from rpscli.report.figures.look import Look
 from rpscli.report.files.json_text import json_text
@@ -164,6 +164,7 @@ def _document(
     document = {
         **heading(),
         "command": COMMAND,
+        "note": ONE_DIRECTION,
         "case": case_heading(given),
         **timehistory_document(result),
         "verdicts": [asdict(verdict) for verdict in verdicts],

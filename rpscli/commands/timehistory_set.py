@@ -24,7 +24,7 @@ from rpscli.commands.timehistory_run import (
     compute,
 )
 from rpscli.errors import AnalysisError, LimitExceeded, RpsError
-from rpscli.report.documents import heading
+from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.drawing import Artists
 from rpscli.report.figures.look import Look
 from rpscli.report.files.csv_text import csv_text
@@ -179,6 +179,7 @@ def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str,
     document = {
         **heading(),
         "command": COMMAND,
+        "note": ONE_DIRECTION,
         "histories": histories,
         "sets": [_set_document(case) for case in computed],
         "warnings": warnings,
@@ -207,6 +208,7 @@ def _tables(computed: Sequence[Computed]) -> Iterator[RenderableType]:
             yield f"overturned: {case.together.overturned}; {CODES}"
     if any(case.verdicts for case in computed):
         yield _verdict_table(computed)
+    yield ONE_DIRECTION
 
 
 def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> RenderableType:

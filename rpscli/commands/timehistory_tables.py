@@ -10,6 +10,7 @@ from rpscli.commands.acceptance import Verdict
 from rpscli.commands.shell.numbers import measured, percent, shown
 from rpscli.commands.shell.tables import table
 from rpscli.commands.shell.tables import title as heading_line
+from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def timehistory_tables(
         yield devices_table(result)
     if verdicts:
         yield limits_table(verdicts)
+    yield ONE_DIRECTION
 
 
 def outcome_text(result: TimeHistoryResult) -> str:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 Document = dict[str, Any]
 
+ONE_DIRECTION = "one horizontal direction at a time, which is not conservative: see the README"
+"""What has to be known wherever results of histories are read."""
+
 
 def heading(status: str = "ok") -> Document:
     """The keys with which every document begins."""

@@ -44,6 +44,15 @@ def columns(path: Path) -> dict[str, list[str]]:
     return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
 
 
+def test_results_say_that_one_direction_is_not_conservative(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
+    told = rps_json("timehistory", "small.yaml", "--figures", "none")["note"]
+    assert "not conservative" in told
+    assert json.loads((FOLDER / "summary.json").read_text(encoding="utf-8"))["note"] == told
+    assert told in rps("timehistory", "small.yaml", "--figures", "none").stdout
+
+
 @pytest.mark.usefixtures("figures")
 def test_files_and_numbers(rps_json: InvokeJson) -> None:
     document, result = rps_json("timehistory", "small.yaml"), small_result()

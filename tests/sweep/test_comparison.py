@@ -239,6 +239,7 @@ def test_sweep_leaves_tables_and_says_what_it_found(
     result = sweep("study.yaml", "-o", "out", "--json")
     assert result.exit_code == 0, result.stderr
     document = json.loads(result.stdout)
+    assert "not conservative" in document["note"]
     rows = _rows("out/comparison.csv")
     model = [row for row in rows if row["told_by [-]"] == "model"]
     assert [row["records [-]"] for row in model] == ["fitted", "held out"]

@@ -32,7 +32,7 @@ from rpscli.commands.sweep.points import begin, compute
 from rpscli.commands.sweep.requirements import require_results
 from rpscli.commands.sweep.results import Collected, collect, first_error, outcome_counts
 from rpscli.commands.sweep.tables import summary_tables, verdict_table
-from rpscli.report.documents import failure_document, heading
+from rpscli.report.documents import ONE_DIRECTION, failure_document, heading
 from rpscli.report.figures.look import Look
 
 if TYPE_CHECKING:
@@ -162,6 +162,7 @@ def _conclude(
         **heading(),
         "command": "sweep",
         "study": study_heading(given),
+        "note": ONE_DIRECTION if found.summary else None,
         "points": {
             "total": len(table),
             "computed": finish.computed,
@@ -210,3 +211,5 @@ def _tables(document: dict[str, Any], found: Collected) -> Iterator[RenderableTy
     for stem, lines in found.findings.items():
         yield title(stem)
         yield listing(lines)
+    if found.summary is not None:
+        yield ONE_DIRECTION
