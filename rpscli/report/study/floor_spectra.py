@@ -79,8 +79,13 @@ def floor_spectra_figure(report: FloorSpectraReport, title: str) -> bytes:
                     color=colour, lw=1.3,
                     label=f"{name}, {'median' if row == 1 else '84 %'}",
                 )  # fmt: skip
+
+    def limits(axes: Axes) -> None:
+        # At the end: panels are given ticks for equal steps before they are drawn.
         axes.set_xscale("log")
-        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set(xlim=(report.periods[0], report.periods[-1]), ylim=(0.0, None))
+        for each in axes.figure.axes:
+            each.xaxis.set_major_formatter("{x:g}")
 
     overturned = sum(panel.overturned for panel in report.panels)
     return panel_figure(
@@ -90,9 +95,7 @@ def floor_spectra_figure(report: FloorSpectraReport, title: str) -> bytes:
         title=title,
         x_label="period [s]",
         y_label="pseudo-acceleration [m/s²]",
-        limits=lambda axes: axes.set(
-            xlim=(report.periods[0], report.periods[-1]), ylim=(0.0, None)
-        ),
+        limits=limits,
         note=remarks(
             over(report.pooled),
             "fractiles that overturned are not drawn" if overturned else "",
