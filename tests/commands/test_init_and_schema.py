@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -172,10 +173,15 @@ def test_the_lines_of_a_shell(rps: Invoke, shell: str) -> None:
     assert f"_RPS_COMPLETE={shell}_complete" in result.stdout
 
 
-def test_bash_completes_by_them(shell: Callable[..., Any]) -> None:
-    lines = """
+def test_bash_completes_by_them(shell: Callable[..., Any], tmp_path: Path) -> None:
+    # The shell asks the program itself, which is no function then.
+    rps = tmp_path / "rps"
+    rps.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rpscli "$@"\n', encoding="utf-8")
+    rps.chmod(0o755)
+    lines = f"""
 eval "$(rps completion bash)"
+unset -f rps; PATH="{tmp_path}:$PATH"
 COMP_WORDS=(rps check --set podium.bearing.sle); COMP_CWORD=3; _rps_completion rps
-echo "${COMPREPLY[@]}"
+echo "${{COMPREPLY[@]}}"
 """
     assert shell(lines).stdout.strip() == "podium.bearing.slenderness"
