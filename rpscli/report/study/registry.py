@@ -15,6 +15,7 @@ from rpscli.report.study import (
     lines,
     overturning,
     overturning_spectrum,
+    risk,
     rotation,
     storey_shear,
 )
@@ -29,6 +30,7 @@ REPORTS: dict[str, Report[Any, Any]] = {
     "storey_shear": storey_shear.REPORT,
     "floor_spectra": floor_spectra.REPORT,
     "fragility": fragility.REPORT,
+    "risk": risk.REPORT,
     "ida": ida.REPORT,
     "overturning_spectrum": overturning_spectrum.REPORT,
     "comparison": comparison.REPORT,

@@ -41,7 +41,8 @@ class Lognormal:
     """Phi(ln(im/median)/beta); NaN where there is no fit.
 
     `note` tells what keeps the fit from being an ordinary one. `curve` and `band` are at the
-    intensities asked for; the bands enclose the confidence asked for.
+    intensities asked for; the bands enclose the confidence asked for. `resampled` are median and
+    beta, each (samples,), of the bootstrap samples that could be fitted.
     """
 
     method: Method
@@ -52,6 +53,7 @@ class Lognormal:
     beta_band: Band
     curve: Array
     band: tuple[Array, Array]
+    resampled: tuple[Array, Array]
 
 
 def lognormal_fit(
@@ -90,16 +92,19 @@ def lognormal_fit(
     if not fit.slope[0] > 0.0:
         return _no_fit("the share does not grow with the intensity", grid)
     median, beta = _moments(fit)
-    median_band, beta_band, band, lost = _bands(x, exceeded, cluster, weight, grid, bootstrap)
+    fits, lost = _resampled(x, exceeded, cluster, weight, bootstrap)
+    medians, betas = _moments(fits)
+    tails = (50.0 * (1.0 - bootstrap.confidence), 50.0 * (1.0 + bootstrap.confidence))
     return Lognormal(
         method="penalised" if apart else "maximum likelihood",
         note="; ".join([_separated_note(x, exceeded)] * apart + lost) or None,
         median=float(median[0]),
         beta=float(beta[0]),
-        median_band=median_band,
-        beta_band=beta_band,
+        median_band=percentiles(medians, tails),
+        beta_band=percentiles(betas, tails),
         curve=_probability(fit, grid)[0],
-        band=band,
+        band=_band(fits, grid, tails),
+        resampled=(medians, betas),
     )
 
 
@@ -128,22 +133,16 @@ def _separated_note(x: Array, y: NDArray[np.bool_]) -> str:
 
 def _no_fit(note: str, grid: Array) -> Lognormal:
     nothing = np.full(len(grid), math.nan)
-    band = (nothing, nothing)
-    return Lognormal("none", note, math.nan, math.nan, NOTHING, NOTHING, nothing, band)
+    band, none = (nothing, nothing), (np.empty(0), np.empty(0))
+    return Lognormal("none", note, math.nan, math.nan, NOTHING, NOTHING, nothing, band, none)
 
 
-def _bands(
-    x: Array,
-    y: NDArray[np.bool_],
-    cluster: Indices,
-    weight: float,
-    grid: Array,
-    bootstrap: Bootstrap,
-) -> tuple[Band, Band, tuple[Array, Array], list[str]]:
-    """Percentiles of median, beta and curve over bootstrap samples, and what was left out."""
-    nothing = np.full(len(grid), math.nan)
+def _resampled(
+    x: Array, y: NDArray[np.bool_], cluster: Indices, weight: float, bootstrap: Bootstrap
+) -> tuple[Probit, list[str]]:
+    """Fits to bootstrap samples of the records, and in words how many of them have none."""
     if not bootstrap.resamples:
-        return NOTHING, NOTHING, (nothing, nothing), []
+        return Probit(np.empty(0), np.empty(0), np.empty(0, dtype=bool)), []
     generator = np.random.default_rng(bootstrap.seed)
     names, place = np.unique(cluster, return_inverse=True)
     even = np.full(len(names), 1.0 / len(names))
@@ -155,23 +154,25 @@ def _bands(
     ]
     found = Probit(*(np.concatenate(values) for values in zip(*parts, strict=True)))
     kept = found.converged
-    fits = Probit(found.intercept[kept], found.slope[kept], kept[kept])
-    lost = bootstrap.resamples - len(fits.slope)
+    lost = int((~kept).sum())
     notes = [f"{lost} of {bootstrap.resamples} bootstrap samples have no fit"] if lost else []
+    return Probit(found.intercept[kept], found.slope[kept], kept[kept]), notes
+
+
+def _band(fits: Probit, grid: Array, tails: tuple[float, float]) -> tuple[Array, Array]:
     if not len(fits.slope):
-        return NOTHING, NOTHING, (nothing, nothing), notes
-    tails = (50.0 * (1.0 - bootstrap.confidence), 50.0 * (1.0 + bootstrap.confidence))
-    median, beta = _moments(fits)
+        nothing = np.full(len(grid), math.nan)
+        return nothing, nothing
     low, high = np.percentile(_probability(fits, grid), tails, axis=0)
-    return _percentiles(median, tails), _percentiles(beta, tails), (low, high), notes
+    return low, high
 
 
 def _fits(x: Array, y: NDArray[np.bool_], weights: Array) -> Probit:
     return probit_fit(x, y, weights, separated(x, y, weights), CLOSE_ENOUGH_RESAMPLED)
 
 
-def _percentiles(values: Array, tails: tuple[float, float]) -> Band:
-    """Percentiles of the fits that have a slope at all."""
+def percentiles(values: Array, tails: tuple[float, float]) -> Band:
+    """Percentiles [%] of the values that are finite; NaN without any."""
     known = values[np.isfinite(values)]
     if not len(known):
         return NOTHING

@@ -1,0 +1,177 @@
+"""Seismic hazard against a lognormal fragility: how often a year a limit state is exceeded.
+
+Between its points a hazard curve is a power law, H = H_a (im/im_a)^-k, and so it goes on beyond the
+last of them. With P = Phi(ln(im/median)/beta) every such piece of the annual rate
+
+    rate = integral of P |dH| = P(im_0) H(im_0) + integral of H dP
+
+has a closed form, by completing the square: no step of integration has to be chosen.
+
+References
+----------
+C. A. Cornell, F. Jalayer, R. O. Hamburger and D. A. Foutch, J. Struct. Eng. 128, 2002: a power law
+throughout gives rate = H(median) exp(k^2 beta^2/2).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.case.schema.units import si_value
+from rpscli.case.text.faults import shown
+from rpscli.case.text.files import read_text
+from rpscli.errors import CaseError
+from rpscli.records.measures.measure import MEASURE_UNITS, Measure
+
+Array = NDArray[np.float64]
+
+RATE_UNITS = ("1/year", "1/yr", "1/a")
+
+
+@dataclass(frozen=True, eq=False)
+class Hazard:
+    """A hazard curve.
+
+    Parameters
+    ----------
+    intensity
+        (points,) ascending, in the SI unit of the measure.
+    rate
+        (points,) how often a year they are exceeded, not rising [1/year].
+    """
+
+    intensity: Array
+    rate: Array
+
+
+def read_hazard(path: Path, measure: Measure) -> Hazard:
+    """A hazard curve from a CSV file with the header ``PGV [cm/s],rate [1/year]``.
+
+    Parameters
+    ----------
+    path
+        The file.
+    measure
+        What its first column must hold.
+
+    Raises
+    ------
+    CaseError
+        With the line that is wrong.
+    """
+    text = read_text(path)
+    rows = [
+        (line, row)
+        for line, row in enumerate(csv.reader(io.StringIO(text)), 1)
+        if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
+    ]
+    if len(rows) < 3:
+        raise CaseError(
+            f"{path}: a hazard curve has a header, {_header(measure)}, and at least two rows"
+        )
+    factor = _unit(path, *rows[0], measure)
+    points = np.array([_numbers(path, line, row) for line, row in rows[1:]])
+    for (line, row), wrong in zip(rows[2:], np.diff(points[:, 0]) <= 0.0, strict=True):
+        if wrong:
+            raise CaseError(f"{path}:{line}: {shown(row[0])} must be above the row before")
+    for (line, row), wrong in zip(rows[2:], np.diff(points[:, 1]) > 0.0, strict=True):
+        if wrong:
+            raise CaseError(
+                f"{path}:{line}: the rate {shown(row[1])} is above that of the row before; stronger"
+                " motions are not more frequent"
+            )
+    return Hazard(points[:, 0] * factor, points[:, 1])
+
+
+def _header(measure: Measure) -> str:
+    return f"`{measure} [{MEASURE_UNITS[measure]}],rate [1/year]`"
+
+
+def _unit(path: Path, line: int, row: Sequence[str], measure: Measure) -> float:
+    """Factor to SI from the header."""
+    heads = [cell.strip().removesuffix("]").partition("[") for cell in row]
+    names = [name.strip().lower() for name, _, _ in heads]
+    units = [unit.strip() for _, _, unit in heads]
+    if names != [measure.lower(), "rate"] or units[1] not in RATE_UNITS:
+        raise CaseError(
+            f"{path}:{line}: the header {shown(','.join(row))} must be {_header(measure)}"
+        )
+    try:
+        return si_value(f"1 {units[0]}", MEASURE_UNITS[measure])
+    except ValueError as error:
+        raise CaseError(f"{path}:{line}: the unit of {measure}: 1 {units[0]} {error}") from None
+
+
+def _numbers(path: Path, line: int, row: Sequence[str]) -> tuple[float, float]:
+    try:
+        intensity, rate = map(float, row)
+    except ValueError:
+        intensity = rate = math.nan
+    if not (0.0 < intensity < math.inf and 0.0 < rate < math.inf):
+        text = f"{shown(','.join(row))} must be two numbers > 0, an intensity and its annual rate"
+        raise CaseError(f"{path}:{line}: {text}")
+    return intensity, rate
+
+
+def annual_rate(hazard: Hazard, median: float, beta: float) -> float:
+    """How often a year the limit is exceeded by motions above the curve's first point [1/year].
+
+    Parameters
+    ----------
+    hazard
+        The hazard curve.
+    median, beta
+        Of the lognormal fragility: in the unit of the intensity, and [-].
+    """
+    low = hazard.intensity[:1]
+    return float(rates_above(hazard, median, beta, low)[0])
+
+
+def rates_above(hazard: Hazard, median: float, beta: float, intensities: Array) -> Array:
+    """(n,) how often a year motions above given intensities exceed the limit [1/year].
+
+    Parameters
+    ----------
+    hazard
+        The hazard curve.
+    median, beta
+        Of the fragility.
+    intensities
+        (n,) not below the first point of the curve.
+    """
+    from scipy.special import ndtr  # noqa: PLC0415 -- slow to import
+
+    x, height = np.log(hazard.intensity), np.log(hazard.rate)
+    slopes = -np.diff(height) / np.diff(x)
+    at = np.log(intensities)
+    first = np.minimum(np.searchsorted(x, at, side="right") - 1, len(slopes) - 1)
+    here = height[first] - slopes[first] * (at - x[first])
+    # Whole pieces, then the one without end, and of each the part above an intensity in it.
+    ends = np.append(x[1:-1], math.inf)
+    pieces = _pieces(height[:-1], slopes, x[:-1], ends, math.log(median), beta)
+    later = np.append(np.cumsum(pieces[::-1])[::-1][1:], 0.0)
+    part = _pieces(here, slopes[first], at, ends[first], math.log(median), beta)
+    return np.asarray(ndtr((at - math.log(median)) / beta) * np.exp(here) + part + later[first])
+
+
+def _pieces(
+    height: Array, slope: Array, start: Array, end: Array, middle: float, beta: float
+) -> Array:
+    """Integrals of H dP over power laws that have the logarithm `height` at their start."""
+    from scipy.special import log_ndtr  # noqa: PLC0415 -- slow to import
+
+    constant = height + slope * (start - middle) + 0.5 * (slope * beta) ** 2
+    low, high = ((y - middle) / beta + slope * beta for y in (start, end))
+    # In the tail where both are small, or their difference would have no digits.
+    low, high = np.where(low > 0.0, (-high, -low), (low, high))
+    with np.errstate(divide="ignore"):
+        below, above = log_ndtr(low), log_ndtr(high)
+        return np.asarray(np.exp(constant + above + np.log1p(-np.exp(below - above))))

@@ -1,0 +1,158 @@
+"""Annual rates against the closed form for a power law, quadrature, and the worst of input."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+from scipy.integrate import quad
+from scipy.special import ndtr
+
+from rpscli.errors import CaseError
+from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard
+from rpscli.sweep.reports.risk import probability
+from sweep.small_studies import STUDY
+
+KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5]))
+HEADER = "PGV [cm/s],rate [1/year]\n"
+
+
+@pytest.mark.parametrize("slope", [0.0, 1.0, 2.5, 4.0])
+@pytest.mark.parametrize("beta", [1e-3, 0.3, 0.6, 1.5])
+def test_a_power_law_gives_the_closed_form(slope: float, beta: float) -> None:
+    """Two points far apart are a power law throughout: H(median) exp(k^2 beta^2 / 2)."""
+    median, ends = 0.7, np.array([1e-40, 1e40])
+    hazard = Hazard(ends, 2e-4 * (ends / median) ** -slope)
+    expected = 2e-4 * math.exp(0.5 * (slope * beta) ** 2)
+    # Logarithms up to 370 lose three of sixteen digits.
+    assert annual_rate(hazard, median, beta) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("median", "beta"), [(0.5, 0.4), (0.15, 0.7), (3.0, 0.2), (0.8, 0.02)])
+def test_any_curve_gives_what_quadrature_gives(median: float, beta: float) -> None:
+    x, y = np.log(KINKED.intensity), np.log(KINKED.rate)
+    slopes = -np.diff(y) / np.diff(x)
+
+    def density(at: float) -> float:
+        piece = min(int(np.searchsorted(x, at, side="right")) - 1, len(slopes) - 1)
+        rate = math.exp(y[piece] - slopes[piece] * (at - x[piece]))
+        return float(ndtr((at - math.log(median)) / beta) * slopes[piece] * rate)
+
+    def above(intensity: float) -> float:
+        low, top = math.log(intensity), math.log(1.6) + 12.0
+        middle = math.log(median)
+        breaks = [*x[1:], *(middle + beta * step for step in (-6, -2, 0, 2, 6))]
+        edges = [low, *sorted(b for b in breaks if low < b < top), top]
+        parts = itertools.pairwise(edges)
+        return sum(quad(density, a, b, epsabs=0.0, epsrel=1e-11)[0] for a, b in parts)
+
+    at = np.array([0.1, 0.17, 0.4, 1.0, 1.6, 2.5])
+    found = rates_above(KINKED, median, beta, at)
+    # The tail that the quadrature leaves out is exp(-3.3 x 12) of the last rate.
+    assert found == pytest.approx([above(float(value)) for value in at], rel=1e-9)
+    assert annual_rate(KINKED, median, beta) == found[0]
+
+
+def test_a_fragility_without_spread_has_the_rate_of_its_median() -> None:
+    assert annual_rate(KINKED, 0.4, 1e-9) == pytest.approx(2e-3, rel=1e-6)
+
+
+def test_no_spread_is_too_wide() -> None:
+    """Bootstrap samples have any beta; no rate exceeds that of the first intensity."""
+    for beta in (20.0, 1e3, 1e8):
+        assert 0.0 < annual_rate(KINKED, 0.5, beta) <= KINKED.rate[0]
+
+
+def test_ten_percent_in_fifty_years_is_once_in_475() -> None:
+    assert probability(1.0 / 474.561, 50.0) == pytest.approx(0.1, rel=1e-5)
+
+
+def test_units_and_comments_of_a_hazard_file(tmp_path: Path) -> None:
+    path = tmp_path / "hazard.csv"
+    path.write_text(f"# a remark, with a comma\n{HEADER}10,0.1\n\n20, 0.01\n", encoding="utf-8")
+    found = read_hazard(path, "PGV")
+    assert found.intensity.tolist() == pytest.approx([0.1, 0.2])
+    assert found.rate.tolist() == [0.1, 0.01]
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("", ("at least two rows", "`PGV [m/s],rate [1/year]`")),
+        (HEADER + "10,0.1\n", ("at least two rows",)),
+        ("PGA [g],rate [1/year]\n1,1\n2,1\n", (":1:", "the header", "PGA [g]", "PGV [m/s]")),
+        ("PGV [g],rate [1/year]\n1,1\n2,1\n", (":1:", "1 g", "a velocity")),
+        ("PGV,rate\n1,1\n2,1\n", (":1:", "the header")),
+        (HEADER + "10,0.1\n5,0.01\n", (":3:", "'5'", "above the row before")),
+        (HEADER + "10,0.1\n20,0.2\n", (":3:", "'0.2'", "not more frequent")),
+        (HEADER + "10,0.1\n20,0\n", (":3:", "'20,0'", "two numbers > 0")),
+        (HEADER + "10,0.1\n20,nan\n", (":3:", "two numbers > 0")),
+        (HEADER + "10,0.1,3\n20,1\n", (":2:", "two numbers > 0")),
+    ],
+)
+def test_a_hazard_file_that_is_none_is_refused(
+    text: str, parts: tuple[str, ...], tmp_path: Path
+) -> None:
+    path = tmp_path / "hazard.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(CaseError) as refused:
+        read_hazard(path, "PGV")
+    for part in ("hazard.csv", *parts):
+        assert part in str(refused.value)
+
+
+def with_risk(workplace: Path, options: str, hazard: str) -> None:
+    text = STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.9, 2.7]}")
+    (workplace / "study.yaml").write_text(
+        f"{text}reports:\n  - risk: {options}\n", encoding="utf-8"
+    )
+    (workplace / "hazard.csv").write_text(hazard, encoding="utf-8")
+
+
+def test_a_study_reports_its_risk(workplace: Path, sweep_json: Callable[..., Any]) -> None:
+    options = "{hazard: {file: hazard.csv, measure: PGV}, limits: {rotation_ratio: 0.2}}"
+    with_risk(workplace, options, HEADER + "1,1\n10,0.1\n100,0.001\n1000,1e-7\n")
+    sweep_json("study.yaml", "-o", "out")
+    with (workplace / "out" / "risk.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    known = [row for row in rows if row["annual_rate [1/year]"]]
+    assert known
+    hazard = read_hazard(workplace / "hazard.csv", "PGV")
+    for row in known:
+        rate = float(row["annual_rate [1/year]"])
+        fit = float(row["median [m/s]"]), float(row["beta [-]"])
+        assert rate == pytest.approx(annual_rate(hazard, *fit), rel=1e-8)
+        assert float(row["return_period [year]"]) == pytest.approx(1.0 / rate)
+        low, high = (float(row[f"annual_rate_{end} [1/year]"]) for end in ("low", "high"))
+        assert low <= high
+        assert float(row["probability_in_50_years [-]"]) == pytest.approx(-math.expm1(-50 * rate))
+    with (workplace / "out" / "risk_contributions.csv").open(encoding="utf-8") as file:
+        parts = list(csv.DictReader(file))
+    assert sum(float(part["share [-]"]) for part in parts) == pytest.approx(len(known), rel=1e-8)
+    assert (workplace / "out" / "risk.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "parts"),
+    [
+        ("{hazard: {file: no.csv, measure: PGV}}", ("study.yaml:12", "no.csv", "no such file")),
+        ("{hazard: {file: hazard.csv, measure: Sa}}", ("one period", "`period`")),
+        ("{hazard: {file: hazard.csv, measure: PGV}, measure: PGA}", ("take the first out",)),
+        ("{limits: {rotation_ratio: 0.2}}", ("hazard",)),
+    ],
+)
+def test_a_risk_without_a_hazard_is_refused(
+    options: str, parts: tuple[str, ...], workplace: Path, sweep: Callable[..., Result]
+) -> None:
+    with_risk(workplace, options, HEADER + "1,1\n10,0.1\n")
+    result = sweep("study.yaml", "--dry-run")
+    assert result.exit_code == 3
+    for part in parts:
+        assert part in result.stderr
