@@ -49,7 +49,7 @@ class CapacityCurve:
     """(points,) [m]."""
     cap_beam_displacement: Array
     """(points,) [m]."""
-    base_shear: Array
+    sum_of_floor_forces: Array
     """(points,) lambda [N]."""
     roof_displacement_at_uplift: float
     """[m]."""
@@ -137,14 +137,14 @@ def _capacity(
 ) -> CapacityCurve:
     forces = load_pattern(building, pattern)
     sway = np.linalg.solve(building.stiffness_matrix, forces)
-    base_shear = np.concatenate([[0.0], curve.force])
+    pushed = np.concatenate([[0.0], curve.force])
     base = np.concatenate([[0.0], curve.displacement])
     return CapacityCurve(
         pattern=pattern if isinstance(pattern, str) else "given",
         forces=forces,
-        roof_displacement=base + base_shear * sway[-1],
+        roof_displacement=base + pushed * sway[-1],
         cap_beam_displacement=base,
-        base_shear=base_shear,
+        sum_of_floor_forces=pushed,
         roof_displacement_at_uplift=float(curve.force[0] * sway[-1]),
     )
 

@@ -28,7 +28,7 @@ class ResultQuantity(NamedTuple):
         The paper's letters as a formula for figures, where there are any.
     limit
         An example of a limit; empty where none makes sense. What has one may be limited in a case,
-        a study, a fragility and by `--fail-on`, and be an axis of an incremental dynamic analysis.
+        a study, a fragility and by `--fail-on`.
     demand
         Whether it is among the main demands, which tables of studies show in the terminal.
     whole
@@ -37,6 +37,8 @@ class ResultQuantity(NamedTuple):
         What a structure must have to have it.
     meaning
         What a ratio is made of, for the schemas of limits.
+    from_below
+        Whether small values are bad, so that a limit is the least that is admissible.
     """
 
     name: str
@@ -48,6 +50,7 @@ class ResultQuantity(NamedTuple):
     whole: bool = False
     needs: str = ""
     meaning: str = ""
+    from_below: bool = False
 
     @property
     def axis_label(self) -> str:
@@ -149,8 +152,10 @@ SAMPLED = (
     ),
     ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
     ResultQuantity("max_column_force", "N", "normal force of a column", limit="2e6"),
-    ResultQuantity("min_column_force", "N", "least normal force of a column"),
-    ResultQuantity("sliding_time", "s", "columns slide at"),
+    ResultQuantity(
+        "min_column_force", "N", "least normal force of a column", limit="1e4", from_below=True
+    ),
+    ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction in the case"),
 )  # fmt: skip
 """Scalars of a history that is followed with all its samples: a single one, or those of a study
 with `whole_histories: true`."""
@@ -169,7 +174,10 @@ INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s"
 STOREY_SHEARS = ResultQuantity("storey_shears", "N", "storey shear", "$V_i$")
 
 LIMITED = tuple(quantity for quantity in (*HISTORY, *SAMPLED) if quantity.limit)
-"""What limits, `--fail-on`, fragilities and axes of incremental dynamic analyses may name."""
+"""What limits, `--fail-on` and fragilities may name."""
+
+DEMANDS = tuple(quantity for quantity in LIMITED if not quantity.from_below)
+"""Those that are the worse the larger they are, as an axis of demands needs them."""
 
 _FREQUENCIES = ResultQuantity("frequencies", "rad/s", "frequency", r"$\omega$")
 _DAMPING = ResultQuantity("damping", "-", "damping", r"$\xi$")

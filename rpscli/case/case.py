@@ -16,7 +16,7 @@ from rpscli.case.rules.bearing import bearing_rules, impact_rules
 from rpscli.case.rules.devices import devices_rules
 from rpscli.case.rules.masses import masses_rules
 from rpscli.case.rules.partial_case import PartialCase
-from rpscli.case.rules.plausibility import doubts_of_storeys, doubts_of_structure
+from rpscli.case.rules.plausibility import Doubt, doubts_of_storeys, doubts_of_structure
 from rpscli.case.rules.podium import overturning_rule, release_rule, restitution_rule
 from rpscli.case.rules.record import record_rules
 from rpscli.case.rules.superstructure import (
@@ -61,8 +61,8 @@ class Case:
         The validated file.
     podium
         Columns and cap beam, built.
-    warnings
-        What the user should know although it is no fault.
+    doubts_of_text
+        What is unusual in the values as they are written, and keys without effect.
     digest
         SHA-256 of the text; empty for a case made in memory.
     """
@@ -72,7 +72,7 @@ class Case:
     folder: Path
     file: CaseFile
     podium: Podium
-    warnings: tuple[str, ...] = ()
+    doubts_of_text: tuple[Doubt, ...] = ()
     digest: str = ""
 
     @property
@@ -104,9 +104,14 @@ class Case:
             raise CaseError(f"{self.source}: {error}") from None
 
     @cached_property
-    def doubts(self) -> tuple[str, ...]:
-        """What is possible in the structure, but unusual."""
-        return tuple(doubts_of_structure(self.structure))
+    def doubts(self) -> tuple[Doubt, ...]:
+        """What is possible, but unusual."""
+        return (*self.doubts_of_text, *doubts_of_structure(self.structure))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know although it is no fault."""
+        return tuple(map(str, self.doubts))
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -188,11 +193,11 @@ def case_from_mapping(
     stem = Path(name.strip("<>")).stem or "case"
     podium = _podium(file, partial)
     ignored = ignored_keys(partial)
-    warnings = (
-        *((ignored_text(ignored),) if ignored else ()),
+    doubts = (
+        *((Doubt(ignored_text(ignored)),) if ignored else ()),
         *doubts_of_storeys(file.superstructure, document),
     )
-    return Case(stem, name, folder or Path(), file, podium, warnings)
+    return Case(stem, name, folder or Path(), file, podium, doubts)
 
 
 def _checked(document: Document) -> tuple[CaseFile, PartialCase]:

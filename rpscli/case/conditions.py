@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rpscli.analyses.result_quantities import LIMITED
 
 if TYPE_CHECKING:
     from rpscli.case.schema.limits import LimitsSection
+    from rpscli.model.podium import PodiumStructure
 
 EVENTS = {"overturning": "overturn", "uplift": "uplift"}
 """Conditions on something that must not happen, and what the histories do then."""
+
+FRICTION = "podium.friction"
+"""Source of the condition that the columns do not slide."""
 
 LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Results that conditions may limit, in SI units."""
@@ -26,7 +31,8 @@ class Condition:
     name
         Of an event or a result.
     limit
-        The value that no record may exceed, SI units; 0 for an event.
+        The value that no record may exceed, or fall below where small values are bad, SI units; 0
+        for an event.
     source
         Who asks for it, in words.
     share
@@ -41,6 +47,20 @@ class Condition:
     share: float = 0.0
     fractile: float | None = None
 
+    @property
+    def from_below(self) -> bool:
+        """Whether small values are bad."""
+        return self.name in LIMITS and LIMITS[self.name].from_below
+
+    @property
+    def bound(self) -> str:
+        """The limit in words."""
+        return f"at {'least' if self.from_below else 'most'} {self.limit:g}"
+
+    def kept_by(self, values: Any) -> Any:
+        """Whether a value keeps the limit, or for an array each of its values; NaN does not."""
+        return values >= self.limit if self.from_below else values <= self.limit
+
 
 def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
     """The limits that a case or a study sets, in the order of the table of results."""
@@ -50,10 +70,24 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
             found.append(Condition(name, 0.0, source, given))
         elif isinstance(given, dict):
             share, fractile = given.get("share", 0.0), given.get("fractile")
-            found.append(Condition(name, given["at_most"], source, share, fractile))
+            limit = given["at_least" if LIMITS[name].from_below else "at_most"]
+            found.append(Condition(name, limit, source, share, fractile))
         else:
             found.append(Condition(name, given, source))
     return tuple(found)
+
+
+def with_friction(
+    conditions: Iterable[Condition], structure: PodiumStructure
+) -> tuple[Condition, ...]:
+    """The conditions, and that columns do not slide where their coefficient of friction is given.
+
+    A limit on the friction ratio stands in place of that.
+    """
+    given = tuple(conditions)
+    if structure.friction is None or any(each.name == "friction_ratio" for each in given):
+        return given
+    return (*given, Condition("friction_ratio", 1.0, FRICTION))
 
 
 def condition_text(condition: Condition) -> str:
@@ -63,11 +97,13 @@ def condition_text(condition: Condition) -> str:
     'at most 0.5 but for 10 % of the records'
     >>> condition_text(Condition("overturning", 0.0, "")), condition_text(Condition("a", 2.0, ""))
     ('no record', 'at most 2 in every record')
+    >>> condition_text(Condition("min_column_force", 1e5, "", fractile=0.1))
+    'at least 100000 at the 10 % fractile'
     """
     if condition.fractile is not None:
-        return f"at most {condition.limit:g} at the {100.0 * condition.fractile:g} % fractile"
+        return f"{condition.bound} at the {100.0 * condition.fractile:g} % fractile"
     percent = f"{100.0 * condition.share:g} %"
     if condition.name in EVENTS:
         return f"at most {percent} of the records" if condition.share else "no record"
     rest = f" but for {percent} of the records" if condition.share else " in every record"
-    return f"at most {condition.limit:g}{rest}"
+    return f"{condition.bound}{rest}"

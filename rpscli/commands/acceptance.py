@@ -1,4 +1,4 @@
-"""Limits of a case, and `--fail-on`: what a time history must not exceed."""
+"""Limits of a case, and `--fail-on`: what a time history must keep."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from rpscli.errors import LimitExceeded, UsageError, nearest
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.case.schema.limits import LimitsSection
-    from rpscli.model.podium import PodiumStructure
 
 HAPPENED: dict[str, Callable[[TimeHistoryResult], float]] = {
     "overturning": lambda result: float(result.overturned),
@@ -22,13 +21,9 @@ HAPPENED: dict[str, Callable[[TimeHistoryResult], float]] = {
 """How often each event happened."""
 
 
-FRICTION = "podium.friction"
-"""Source of the condition that the columns do not slide."""
-
-
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a condition."""
+    """What became of a condition; `exceeded` is one that is not kept."""
 
     name: str
     value: float
@@ -39,7 +34,8 @@ class Verdict:
     def __str__(self) -> str:
         if self.name in EVENTS:
             return f"{self.name} ({self.source})"
-        return f"{self.name} = {self.value:.4g} exceeds {self.limit:g} ({self.source})"
+        beyond = "is below" if LIMITS[self.name].from_below else "exceeds"
+        return f"{self.name} = {self.value:.4g} {beyond} {self.limit:g} ({self.source})"
 
 
 def parse_condition(text: str) -> Condition:
@@ -89,11 +85,6 @@ def case_conditions(limits: LimitsSection) -> list[Condition]:
     return [Condition("overturning", 0.0, "limits of the case"), *found]
 
 
-def friction_conditions(structure: PodiumStructure) -> list[Condition]:
-    """Where a coefficient of friction is given, the friction demand is judged by it."""
-    return [] if structure.friction is None else [Condition("friction_ratio", 1.0, FRICTION)]
-
-
 def judge(result: TimeHistoryResult, conditions: Iterable[Condition]) -> list[Verdict]:
     """Every condition with its value.
 
@@ -110,7 +101,8 @@ def _verdict(result: TimeHistoryResult, condition: Condition) -> Verdict:
     value = HAPPENED[name](result) if name in HAPPENED else getattr(result, name)
     if value is None:
         raise UsageError(f"{condition.source}: {name} needs {LIMITS[name].needs}")
-    return Verdict(name, float(value), condition.limit, value > condition.limit, condition.source)
+    exceeded = not condition.kept_by(value)
+    return Verdict(name, float(value), condition.limit, exceeded, condition.source)
 
 
 def exceeded(verdicts: Iterable[Verdict]) -> LimitExceeded | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +37,6 @@ def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
     from rpscli.case.case import load_case  # noqa: PLC0415 -- pydantic and yaml are slow
 
     case = load_case(request.source, request.overrides)
-    case = replace(case, warnings=(*case.warnings, *case.doubts))
     terminal.warn(case.warnings)
     return CaseInput(case, request)
 

@@ -32,7 +32,9 @@ def device_tables(structure: PodiumStructure) -> Iterator[RenderableType]:
         for item in consequences(structure, device)
     ]
     found.append(("all", "uplift force at the cap beam", uplift_force(structure), "N"))
-    found.append(("all", "quasi-static uplift at", uplift_acceleration(structure), "m/s2"))
+    found.append(
+        ("all", "uplift acceleration, quasi-static", uplift_acceleration(structure), "m/s2")
+    )
     rows = []
     for device, label, value, unit in found:
         number, name = large(value, unit)

@@ -157,6 +157,8 @@ def _tables(
         names = {"limit": "limit, as in", "needs": "needs", "meaning": "is"}
         rows = [("means", quantity.label), ("unit", quantity.unit or "none")]
         rows += [(names[name], str(shown[name])) for name in names if name in shown]
+        if quantity.from_below:
+            rows.append(("limits", "are at_least, since small values are bad"))
         yield listing(rows)
     for name, meaning in words:
         yield title(name)

@@ -113,7 +113,7 @@ def _tables(result: PushoverResult, title: str) -> Iterator[RenderableType]:
             (
                 curve.pattern,
                 shown(curve.roof_displacement_at_uplift),
-                shown(float(curve.base_shear.max()) * 1e-3),
+                shown(float(curve.sum_of_floor_forces.max()) * 1e-3),
             )
             for curve in result.capacity
         ]

@@ -65,7 +65,7 @@ FIGURES = 5
     multiple=True,
     metavar="WHAT",
     shell_complete=condition_names,
-    help="End with exit code 10 on overturning, on uplift, or if a result exceeds a value, such as"
+    help="End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
     f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units); repeatable.",
 )
 @click.option(

@@ -6,12 +6,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rpscli.case.conditions import Condition
+from rpscli.case.conditions import Condition, with_friction
 from rpscli.commands.acceptance import (
     Verdict,
     case_conditions,
     exceeded,
-    friction_conditions,
     judge,
 )
 from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, case_heading
@@ -143,8 +142,8 @@ def compute(
     if result.failure:
         error = AnalysisError(result.failure)
     else:
-        slides = friction_conditions(case.structure)
-        verdicts = judge(result, [*case_conditions(case.limits), *slides, *conditions])
+        limits = with_friction(case_conditions(case.limits), case.structure)
+        verdicts = judge(result, [*limits, *conditions])
         error = exceeded(verdicts)
     document = concluded(_document(request, result, verdicts), error)
     return HistoryResult(document, verdicts, error), result

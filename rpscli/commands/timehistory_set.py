@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rpscli.case.conditions import EVENTS, Condition, condition_text, conditions_of
-from rpscli.commands.acceptance import friction_conditions
+from rpscli.case.conditions import (
+    EVENTS,
+    Condition,
+    condition_text,
+    conditions_of,
+    with_friction,
+)
 from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.numbers import large, shown
@@ -45,6 +51,8 @@ if TYPE_CHECKING:
 
 WARNINGS_SHOWN = 5
 DIGITS = 4
+REDUCTION = "fixed_base_ratio"
+"""What the bearings are for, in the table beside the main demands."""
 A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
 CODES = (
@@ -84,9 +92,8 @@ def run_all(
         histories = [_written(request, conditions, look, drawing, terminal) for request in group]
         scalars = [history.document for history in histories]
         judged = group[0].given.case
-        slides = friction_conditions(judged.structure)
-        asked = [*conditions_of(judged.limits, "limits of the case"), *slides, *conditions]
-        found = set_verdicts(scalars, asked)
+        limits = conditions_of(judged.limits, "limits of the case")
+        found = set_verdicts(scalars, [*with_friction(limits, judged.structure), *conditions])
         computed.append(Computed(group, histories, record_set(scalars), found, folder))
     error = _error(computed)
     document = _document(computed, error)
@@ -201,7 +208,7 @@ def _set_document(case: Computed) -> dict[str, Any]:
 def _tables(computed: Sequence[Computed]) -> Iterator[RenderableType]:
     for case in computed:
         yield heading_line(case.given.case.title)
-        main = [quantity for quantity in case.together.demands if quantity.demand]
+        main = [q for q in case.together.demands if q.demand or q.name == REDUCTION]
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, main[first : first + A_TABLE])
         if len(case.requests) > 1:
@@ -238,7 +245,9 @@ def _verdict_table(computed: Sequence[Computed]) -> RenderableType:
         for verdict in case.verdicts:
             event = verdict.condition.name in EVENTS
             worst = case.requests[verdict.worst].label
-            largest = "" if event else f", largest {shown(verdict.value)} ({worst})"
+            which = "least" if verdict.condition.from_below else "largest"
+            value = shown(verdict.value) if math.isfinite(verdict.value) else "overturned"
+            largest = "" if event else f", {which} {value} ({worst})"
             rows.append(
                 [
                     case.requests[0].case_label,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
-from rpscli.case.conditions import EVENTS
+from rpscli.case.conditions import EVENTS, Condition
 from rpscli.commands.acceptance import Verdict
 from rpscli.commands.shell.numbers import measured, percent, shown
 from rpscli.commands.shell.tables import table
@@ -180,8 +180,12 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
             v.name,
             "EXCEEDED" if v.exceeded else "met",
             v.source,
-            *(("", "") if v.name in EVENTS else (shown(v.value), f"{v.limit:g}")),
+            *(
+                ("", "")
+                if v.name in EVENTS
+                else (shown(v.value), Condition(v.name, v.limit, "").bound)
+            ),
         )
         for v in verdicts
     ]
-    return table(["limit", "", "from", "value", "at most"], rows, words=3)
+    return table(["limit", "", "from", "value", "asked for"], rows, words=3)

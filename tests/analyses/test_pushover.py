@@ -58,18 +58,18 @@ def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern: str) -> No
     result = pushover(structure)
     capacity = next(c for c in result.capacity if c.pattern == pattern)
     assert capacity.forces.sum() == pytest.approx(1.0, rel=1e-14)
-    assert capacity.base_shear[0] == capacity.roof_displacement[0] == 0.0
+    assert capacity.sum_of_floor_forces[0] == capacity.roof_displacement[0] == 0.0
     # up to uplift the building alone yields, on a fixed base
     shears = np.cumsum(capacity.forces[::-1])[::-1]
     sway = float(np.sum(shears / above.stiffnesses))
-    assert capacity.base_shear[1] == pytest.approx(structure.uplift_force, rel=1e-13)
+    assert capacity.sum_of_floor_forces[1] == pytest.approx(structure.uplift_force, rel=1e-13)
     uplift = structure.uplift_force * sway
     assert capacity.roof_displacement_at_uplift == pytest.approx(uplift, rel=1e-12)
     assert capacity.roof_displacement[1] == pytest.approx(uplift, rel=1e-12)
     # beyond, it is carried along and unloads with the storey
-    assert capacity.base_shear[1:].tolist() == result.curve.force.tolist()
+    assert capacity.sum_of_floor_forces[1:].tolist() == result.curve.force.tolist()
     assert capacity.cap_beam_displacement[1:].tolist() == result.curve.displacement.tolist()
-    expected = capacity.cap_beam_displacement + capacity.base_shear * sway
+    expected = capacity.cap_beam_displacement + capacity.sum_of_floor_forces * sway
     assert capacity.roof_displacement == pytest.approx(expected, rel=1e-12)
     assert capacity.roof_displacement[-1] == pytest.approx(result.critical_displacement, rel=1e-9)
 

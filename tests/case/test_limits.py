@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
@@ -37,6 +39,22 @@ def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(building: str) -> None
     ]
 
 
+def test_a_least_force_is_limited_from_below(building: str) -> None:
+    found = limited(building, "{min_column_force: {at_least: 100 kN, share: 0.1}}")
+    assert found == (Condition("min_column_force", 1e5, "the case", share=0.1),)
+    assert condition_text(found[0]) == "at least 100000 but for 10 % of the records"
+    (plain,) = limited(building, "{min_column_force: 0}")  # no tension
+    assert condition_text(plain) == "at least 0 in every record"
+    assert [plain.kept_by(force) for force in (1.0, 0.0, -1.0, math.nan)] == [
+        True,
+        True,
+        False,
+        False,
+    ]
+    (above,) = limited(building, "{max_column_force: 100 kN}")
+    assert [above.kept_by(force) for force in (1e5, 2e5, math.nan)] == [True, False, False]
+
+
 @pytest.mark.parametrize("name", [quantity.name for quantity in LIMITED])
 def test_every_result_of_the_list_may_be_limited(building: str, name: str) -> None:
     ((found),) = limited(building, f"{{{name}: 3}}")
@@ -51,6 +69,8 @@ def test_every_result_of_the_list_may_be_limited(building: str, name: str) -> No
         ("{rotation_ratio: {share: 0.1}}", "rotation_ratio.at_most is missing"),
         ("{rotation_ratio: -1}", "rotation_ratio = -1 must be > 0"),
         ("{max_base_shear: 2 m}", "is a length, but must be a force"),
+        ("{min_column_force: {at_most: 1 kN}}", "at_least is missing"),
+        ("{max_column_force: {at_least: 1 kN}}", "at_most is missing"),
         ("{overturning: 2}", "overturning = 2 must be >= 0 and < 1"),
     ],
 )

@@ -24,8 +24,7 @@ podium:
 
 def doubts(old: str = "", new: str = "") -> list[str]:
     assert old in CASE
-    case = parse_case(CASE.replace(old, new), name="c.yaml")
-    return [*case.warnings, *case.doubts]
+    return list(parse_case(CASE.replace(old, new), name="c.yaml").warnings)
 
 
 def test_a_usual_building_raises_no_doubt() -> None:
@@ -46,14 +45,14 @@ def test_a_usual_building_raises_no_doubt() -> None:
             "240 t",
             "240",
             [
-                "mixes numbers with a unit (200 t) and without (240)",
+                "mixes numbers with and without a unit (200 t and 240)",
                 "storey 2 has 2e+05 kg, storey 3 240 kg",
             ],
         ),
         ("400 kN/mm", "29 kN/mm", ["storey 2 has 6e+08 N/m, storey 3 2.9e+07 N/m"]),
         # 240 t g 0.15 over 30 kN/mm is 11.8 mm of 0.5 m
         ("400 kN/mm]\n", "30 kN/mm]\n", []),
-        ("storey_height: 3.0", "storey_height: 0.03", ["drifts by 0.0369 of its height at uplift"]),
+        ("storey_height: 3.0", "storey_height: 0.03", ["by 0.03692 (storey 1, under a shear"]),
         # V_st/(M_tot g) = tan(alpha) = 0.9/2; flexible impacts on it hardly rebound
         (
             "width: 300 mm, wedge_width: 500 mm",
@@ -81,5 +80,5 @@ def test_the_first_period_is_looked_at() -> None:
     text = text.replace("[850 kN/mm, 600 kN/mm, 400 kN/mm]", "900").replace(
         "  storey_height: 3.0\n", ""
     )
-    (doubt,) = parse_case(text, name="c.yaml").doubts
+    (doubt,) = parse_case(text, name="c.yaml").warnings
     assert "T1 = 93.66 s is unusual: 0.02 to 5 s is" in doubt

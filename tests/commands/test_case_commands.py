@@ -145,7 +145,8 @@ def test_tables_of_the_pushover(rps: Invoke) -> None:
     assert force == pytest.approx(result.curve.force, rel=TEN_DIGITS, abs=1e-6)
     capacity = columns(folder / "capacity.csv")
     assert list(capacity) == [
-        "pattern [-]", "roof_displacement [m]", "cap_beam_displacement [m]", "base_shear [N]"
+        "pattern [-]", "roof_displacement [m]", "cap_beam_displacement [m]",
+        "sum_of_floor_forces [N]",
     ]  # fmt: skip
     assert sorted(set(capacity["pattern [-]"])) == ["given", "uniform"]
     roof = [float(value) for value in capacity["roof_displacement [m]"]]

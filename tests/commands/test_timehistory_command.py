@@ -179,6 +179,15 @@ def test_limits_of_the_case(rps: Invoke) -> None:
     assert (FOLDER / "rotation.png").is_file()
 
 
+def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
+    words = ("timehistory", "small.yaml", "--fail-on")
+    assert rps(*words, "min_column_force=1").exit_code == 0
+    result = rps(*words, "min_column_force=1e9")
+    assert result.exit_code == 10
+    assert "is below 1e+09 (--fail-on)" in result.stderr
+    assert "at least 1e+09" in result.stdout
+
+
 def test_what_falls_meets_no_limit(rps: Invoke) -> None:
     # Its drifts were small as long as it stood.
     limit = ("--set", "limits.drift_ratio=0.9")

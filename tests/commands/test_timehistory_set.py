@@ -115,6 +115,19 @@ def test_limits_judge_the_set(rps_json: InvokeJson) -> None:
     assert rps_json(*words, "--set", limit, exit_code=10)["passed"] is False
 
 
+def test_a_least_force_judges_the_set_from_below(rps: Invoke, rps_json: InvokeJson) -> None:
+    words = ("timehistory", "small.yaml", *asked([*PULSES, OVERTURNING]), "--fail-on")
+    document = rps_json(*words, "min_column_force=1", exit_code=10)
+    (verdict,) = document["sets"][0]["verdicts"]
+    assert (verdict["beyond"]["count"], verdict["value"]) == (1, None)  # the overturned one
+    forces = [history["min_column_force"] for history in document["histories"][:3]]
+    (verdict,) = rps_json(*words, f"min_column_force={sorted(forces)[1]}", exit_code=10)["sets"][0][
+        "verdicts"
+    ]
+    assert verdict["beyond"]["count"] == 2
+    assert "least overturned" in rps(*words, "min_column_force=1").stdout
+
+
 def test_several_cases_are_judged_by_one_exit_code(rps: Invoke, rps_json: InvokeJson) -> None:
     text = Path("small.yaml").read_text(encoding="utf-8")
     Path("strict.yaml").write_text(text + "limits: {rotation_ratio: 1.0e-6}\n", encoding="utf-8")

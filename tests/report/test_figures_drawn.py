@@ -127,7 +127,7 @@ def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
     for name, kinds in (
         ("uplift", {"uplift"}),
         ("impact", {"impact"}),
-        ("roll - rock", {"rolling_to_rocking", "rocking_to_rolling"}),
+        ("rolling, rocking", {"rolling_to_rocking", "rocking_to_rolling"}),
         ("critical", {"critical_rotation_passed", "overturning"}),
     ):
         assert marks.get(name, []) == [e.time for e in result.events if e.kind in kinds]
@@ -244,7 +244,7 @@ def test_moment(drawn: Drawn, result: TimeHistoryResult) -> None:
     assert axes.get_xlabel() == "rotation $\\theta$ [rad]"
     driving, restoring = legend(axes)
     assert driving == "driving moment (ground and building)"
-    assert restoring == "static restoring moment $2RWB$"
+    assert restoring == "restoring moment of the weight"
     is_drawn(curve(axes, driving), trace.rotation, factor * trace.driving_moment)
     left = curve(axes, restoring)
     is_drawn(left, left[0], factor * result.restoring_moment(left[0]))
@@ -300,12 +300,12 @@ def test_modes(drawn: Drawn, bearing: Bearing, storeys: int) -> None:
         assert row[0].get_ylabel() == f"{name}\nheight [m]"
         for mode, axes in enumerate(row):
             shape = modes.shapes[:, mode]
-            is_drawn(curve(axes, "uplifted, horizontal"), [0.0, *shape], levels)
+            is_drawn(curve(axes, "uplifted"), [0.0, *shape], levels)
             if storeys:
                 elastic = [0.0, *(shape[1:] - shape[0])]
-                is_drawn(curve(axes, "uplifted, elastic part"), elastic, levels[1:])
+                is_drawn(curve(axes, "elastic shape"), elastic, levels[1:])
             if mode == 0:
-                title = f"storey: $p$ = {modes.frequency_parameter:#.3g} rad/s"
+                title = f"storey: $p_{{ext}}$ = {modes.frequency_parameter:#.3g} rad/s"
             else:
                 title = f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s"
                 assert result.fixed_base is not None
@@ -314,8 +314,8 @@ def test_modes(drawn: Drawn, bearing: Bearing, storeys: int) -> None:
             assert axes.get_title() == title
     assert all(axes.get_xlabel() == "shape [-]" for axes in panels[-1])
     contact = ["full contact"] if storeys else []
-    elastic_part = ["uplifted, elastic part"] if storeys else []
-    assert legend(figure) == [*contact, "uplifted, horizontal", *elastic_part]
+    relative = ["elastic shape"] if storeys else []
+    assert legend(figure) == [*contact, "uplifted", *relative]
     low, high = panels[0, 0].get_xlim()
     assert -low == high
     assert high > max(np.abs(modes.shapes[:, :columns]).max() for modes in rows)
@@ -332,7 +332,7 @@ def test_storey_curve(drawn: Drawn, pushed: PushoverResult) -> None:
     factor = prefix(force.get_ylabel(), "N")
     assert force.get_ylabel().startswith("force at the cap beam [")
     assert lift.get_ylabel() == "lift [mm]"
-    assert lift.get_xlabel() == "displacement of the cap beam $u_b$ [m]"
+    assert lift.get_xlabel() == "cap beam displacement $u_b$ [m]"
     assert legend(force) == ["full contact", "rolling", "rocking"]
     for name, inside in (("rolling", found.rotation <= beta), ("rocking", found.rotation >= beta)):
         assert 1 < np.count_nonzero(inside) < len(inside)
@@ -362,7 +362,7 @@ def test_capacity(drawn: Drawn, pushed: PushoverResult) -> None:
     figure = drawn(capacity_figure, pushed, "")
     whole, close = figure.axes
     factor = prefix(whole.get_ylabel(), "N")
-    assert whole.get_ylabel().startswith("sum of the floor forces [")
+    assert whole.get_ylabel().startswith("sum of floor forces [")
     assert whole.get_xlabel() == "roof displacement [m]"
     assert close.get_xlabel() == "roof displacement, near uplift [m]"
     assert legend(figure) == ["uniform", "triangular", "first mode", "uplift"]
@@ -370,7 +370,7 @@ def test_capacity(drawn: Drawn, pushed: PushoverResult) -> None:
     for capacity, (at, force) in zip(pushed.capacity, marks[:-1], strict=True):
         name = capacity.pattern.replace("_", " ")
         for axes in (whole, close):
-            shears = factor * capacity.base_shear
+            shears = factor * capacity.sum_of_floor_forces
             is_drawn(curve(axes, name), capacity.roof_displacement, shears)
         assert at == [capacity.roof_displacement_at_uplift]
         assert force == [factor * pushed.uplift_force]

@@ -360,7 +360,7 @@ def test_fragilities(histories: Open) -> None:
 def test_the_spectrum_of_pulses(tmp_path: Path) -> None:
     figure, table = opened(PULSES, tmp_path)("overturning_spectrum")
     labelled(figure, r"$\omega/p$ [-]", r"$a_p/(g\,\tan\alpha)$ [-]")
-    words = {"no uplift": "at_rest", "stands": "survived", "overturns": "overturned"}
+    words = {"at rest": "at_rest", "survived": "survived", "overturned": "overturned"}
     assert legend(figure) == [*words, "least that overturns"]
     frequency, amplitude = "frequency_over_p", "amplitude_over_g_tan_alpha"
     for rho in ("0.5", "0"):

@@ -70,6 +70,15 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
     assert point_key(brief, context, brief[3]) != point_key(whole, more, whole[3])
 
 
+def test_whole_histories_tell_when_columns_slide(study_of: Make) -> None:
+    changes = ("base: base.yaml", "base: base.yaml\nwhole_histories: true")
+    design = lay_out(study_of(STUDY, changes, overrides=("podium.friction=0.12",)))
+    point = design[20]  # tan(alpha) = 0.15 and more than that is asked of the friction
+    (row,) = run_batch(StudyContext(design.plan), [point])
+    assert row.results["friction_ratio"] > 1.0
+    assert 0.0 < row.results["sliding_time"] < row.results["max_rotation_time"]
+
+
 def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: Make) -> None:
     design = lay_out(study_of())
     points = list(design)[:4]

@@ -14,6 +14,7 @@ from click.testing import Result
 from scipy.stats import beta
 
 from rpscli.case.conditions import Condition
+from rpscli.report.study.statistics import summary_columns, summary_document
 from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.pooling import apart, pooled
@@ -63,6 +64,7 @@ def made(make: Make) -> tuple[Table, Summary]:
         falls = at[RHO] == 0 and at["scale"] == 1.0 and record >= 4
         outcome = "overturned_rocking" if falls else "survived"
         results = {"rotation_ratio": record / 10, "uplifts": 2.0, "max_base_shear": 1e6}
+        results["min_column_force"] = record * 1e5
         return stored(outcome, **results, residual_rotation=None)
 
     table = table_of(make, answer, FIVE)
@@ -100,6 +102,22 @@ def test_an_overturned_history_is_larger_than_any_demand(study_of: Make) -> None
     assert spread_of(result, 3, "rotation_ratio") == pytest.approx((0.3, 0.5, 0.5))
 
 
+def test_an_overturned_history_is_less_than_any_least_force(study_of: Make) -> None:
+    _, result = made(study_of)
+    # Overturned, overturned, 100, 200, 300 kN: the third of five is the median.
+    name = "min_column_force"
+    assert spread_of(result, 5, name) == pytest.approx((1e5, -math.inf, -math.inf))
+    # 100, 200, 400, 500 kN: the median is the second, 16 % of four are within the first.
+    assert spread_of(result, 4, name) == pytest.approx((2e5, 1e5, 1e5))
+    titles = [column.name for column in summary_columns(result)]
+    assert [title for title in titles if title.startswith(name)] == [
+        f"{name}_{ending}" for ending in ("median", "16", "least")
+    ]
+    cells = {column.name: list(column.values) for column in summary_columns(result)}
+    assert cells[f"{name}_least"][4:6] == [1e5, "-inf"]
+    assert list(summary_document(result)[4]["demands"][name]) == ["median", "fractile_16", "least"]
+
+
 def test_the_reduction_is_against_the_fixed_base_at_the_same_scale(study_of: Make) -> None:
     _, result = made(study_of)
     # `stored` gives every point the scale 1, so that the reference is 4 MN.
@@ -127,6 +145,11 @@ def test_what_is_pooled_is_said(study_of: Make) -> None:
         (Condition("rotation_ratio", 0.25, "", share=0.59), True, 3, 2),
         (Condition("rotation_ratio", 0.3, "", fractile=0.6), False, 2, 2),
         (Condition("rotation_ratio", 9.0, "", fractile=0.61), True, 2, 2),
+        (Condition("min_column_force", 1e5, ""), True, 2, 2),
+        (Condition("min_column_force", 1e5, "", share=0.4), False, 2, 2),
+        (Condition("min_column_force", 1.5e5, "", share=0.4), True, 3, 2),
+        (Condition("min_column_force", 1e5, "", fractile=0.41), False, 2, 2),
+        (Condition("min_column_force", 0.0, "", fractile=0.4), True, 2, 2),
         (Condition("overturning", 0.0, ""), True, 2, 0),
         (Condition("overturning", 0.0, "", share=0.4), False, 2, 0),
         (Condition("uplift", 0.0, "", share=0.9), True, 5, 0),
@@ -157,6 +180,16 @@ def test_limits_of_the_study_replace_those_of_its_case(study_of: Make) -> None:
         Condition("rotation_ratio", 0.5, "limits of the case"),
         Condition("drift_ratio", 0.01, "limits of the case"),
     )
+
+
+def test_columns_must_not_slide_where_their_friction_is_given(study_of: Make) -> None:
+    def limits(*overrides: str) -> tuple[Condition, ...]:
+        given = ("podium.friction=0.4", *overrides)
+        return lay_out(study_of(overrides=given)).properties[0].limits
+
+    assert limits() == (Condition("friction_ratio", 1.0, "podium.friction"),)
+    own = "limits={friction_ratio: {at_most: 1, share: 0.1}}"
+    assert limits(own) == (Condition("friction_ratio", 1.0, "limits of the study", share=0.1),)
 
 
 @pytest.mark.parametrize(

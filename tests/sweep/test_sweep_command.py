@@ -49,6 +49,30 @@ def test_studies_with_a_folder_of_their_own_are_valid(name: str) -> None:
     assert len(design) == {"impact_law": 50_688, "loss": 3168}[name]  # as its README says
 
 
+@pytest.mark.parametrize("analysis", ["modal", "timehistory"])
+def test_what_is_unusual_about_systems_is_told_once(
+    sweep_json: Document, workplace: Path, analysis: str
+) -> None:
+    """Columns of 2H = 2 R/sqrt(1 + 0.15^2): 39.56 m and 59.34 m high in two systems of three."""
+    (workplace / "study.yaml").write_text(
+        f"rps: 1\nbase: base.yaml\nanalysis: {analysis}\n"
+        "vary: [podium.bearing.semi_diagonal: [1.5, 20 m, 30]]\n"
+        + ("records: ['pulse:sine?amplitude=4&period=0.6']\n" * (analysis == "timehistory")),
+        encoding="utf-8",
+    )
+    told = [
+        f"2 of 3 systems: {name} is unusual: {usual} m is; check the units"
+        for name, usual in {
+            "the height of the columns 2H = 39.56 to 59.34 m": "0.3 to 10",
+            "the semi-diagonal of the columns R = 20 to 30 m": "0.15 to 6",
+        }.items()
+    ]
+    assert sweep_json("study.yaml", "--dry-run")["warnings"] == told
+    assert sweep_json("study.yaml")["warnings"][:2] == told
+    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
+    assert sweep_json("study.yaml", "--dry-run")["warnings"] == []
+
+
 @pytest.mark.parametrize("name", ["modal_parameters", "pushover_curves"])
 def test_parametric_studies_run_with_their_figures(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -1,11 +1,12 @@
 """What is possible in a case and yet hardly meant: each with its number and what is usual.
 
-Mostly slips of units: millimetres for metres, kilograms for tonnes.
+Mostly slips of units: millimetres for metres, kilograms for tonnes. The systems of a study are
+looked at as a single case is; what is doubted in many of them is told once, with the range.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +18,55 @@ if TYPE_CHECKING:
     from rpscli.model.podium import PodiumStructure
 
 
+class Doubt(NamedTuple):
+    """Something unusual.
+
+    Parameters
+    ----------
+    sentence
+        What is unusual about it, the same for all cases, with ``{}`` for the number.
+    value
+        The number; None where there is none.
+    detail
+        What follows the number in a single case.
+    """
+
+    sentence: str
+    value: float | None = None
+    detail: str = ""
+
+    def __str__(self) -> str:
+        """As a warning.
+
+        >>> str(Doubt("a storey drifts by {} of its height", 0.03, " (storey 2)"))
+        'a storey drifts by 0.03 (storey 2) of its height'
+        """
+        number = "" if self.value is None else f"{self.value:.4g}"
+        return self.sentence.format(number + self.detail)
+
+
+def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
+    """Each kind of doubt once, with how many systems raise it and the range of its number.
+
+    >>> wide = Doubt("the width {} is unusual", 9.0)
+    >>> doubts_of_many([[wide], [], [wide._replace(value=7.5)], [Doubt("it is odd{}")]])
+    ['2 of 4 systems: the width 7.5 to 9 is unusual', '1 of 4 systems: it is odd']
+    """
+    kinds: dict[str, dict[int, list[float]]] = {}
+    for system, doubts in enumerate(systems):
+        for sentence, value, _ in doubts:
+            values = kinds.setdefault(sentence, {}).setdefault(system, [])
+            values += [] if value is None else [value]
+    texts = []
+    for sentence, found in kinds.items():
+        values = [value for of_system in found.values() for value in of_system]
+        numbers = dict.fromkeys(f"{f(values):.4g}" for f in (min, max) if values)
+        texts.append(
+            f"{len(found)} of {len(systems)} systems: {sentence.format(' to '.join(numbers))}"
+        )
+    return texts
+
+
 class Usual(NamedTuple):
     """A quantity and the range in which buildings have it."""
 
@@ -25,14 +75,12 @@ class Usual(NamedTuple):
     least: float
     most: float
 
-    def doubts(self, value: float) -> Iterator[str]:
-        """A warning if the value is outside."""
+    def doubts(self, value: float) -> Iterator[Doubt]:
+        """A doubt if the value is outside."""
         if not self.least <= value <= self.most:
             unit = f" {self.unit}" if self.unit else ""
-            yield (
-                f"{self.name} = {value:.4g}{unit} is unusual: {self.least:g} to"
-                f" {self.most:g}{unit} is; check the units"
-            )
+            usual = f"{self.least:g} to {self.most:g}{unit}"
+            yield Doubt(f"{self.name} = {{}}{unit} is unusual: {usual} is; check the units", value)
 
 
 HEIGHT = Usual("the height of the columns 2H", "m", 0.3, 10.0)
@@ -53,7 +101,7 @@ LARGEST_DRIFT = 0.02
 PER_STOREY = ("storey_mass", "storey_height", "stiffness")
 
 
-def doubts_of_structure(structure: PodiumStructure) -> Iterator[str]:
+def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     """Sizes, period, restitution and friction; storey shears at uplift."""
     bearing, building = structure.bearing, structure.superstructure
     yield from HEIGHT.doubts(2.0 * bearing.half_height)
@@ -66,24 +114,27 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[str]:
     yield from PERIOD.doubts(float(building.periods[0]))
     share = bearing.slenderness
     if share > STRONGEST:
-        yield (
-            f"the base shear at uplift V_st = {structure.static_base_shear:.4g} N is {share:.3g} of"
-            f" the building's weight, above the {STRONGEST:g} that any usual building carries: it"
-            " would be damaged before it lifts; more slender columns lift earlier"
+        yield Doubt(
+            "the base shear at uplift V_st is {} of the building's weight, above the"
+            f" {STRONGEST:g} that any usual building carries: it would be damaged before it lifts;"
+            " more slender columns lift earlier",
+            share,
         )
     if building.storey_heights is not None:
         above = building.masses[::-1].cumsum()[::-1] * structure.uplift_acceleration
         drifts = above / building.stiffnesses / building.storey_heights
         storey = int(drifts.argmax())
         if drifts[storey] > LARGEST_DRIFT:
-            yield (
-                f"storey {storey + 1} drifts by {drifts[storey]:.3g} of its height at uplift, under"
-                f" a shear of {above[storey]:.4g} N; more than {LARGEST_DRIFT:g} is beyond usual"
-                " buildings; check stiffness, period and storey height"
+            yield Doubt(
+                "a storey drifts at uplift by {} of its height; more than"
+                f" {LARGEST_DRIFT:g} is beyond usual buildings; check stiffness, period and storey"
+                " height",
+                float(drifts[storey]),
+                f" (storey {storey + 1}, under a shear of {above[storey]:.4g} N)",
             )
 
 
-def doubts_of_storeys(section: SuperstructureSection, document: Document) -> Iterator[str]:
+def doubts_of_storeys(section: SuperstructureSection, document: Document) -> Iterator[Doubt]:
     """Neighbours that differ too much, and lists in which some numbers lack a unit."""
     for name in PER_STOREY:
         written = document.at(("superstructure", name))
@@ -95,21 +146,24 @@ def doubts_of_storeys(section: SuperstructureSection, document: Document) -> Ite
             yield from _neighbours(name, unit, each_storey(given, section.storeys))
 
 
-def _mixed(name: str, written: Sequence[object]) -> Iterator[str]:
+def _mixed(name: str, written: Sequence[object]) -> Iterator[Doubt]:
     bare = [value for value in written if not isinstance(value, str)]
     if bare and len(bare) < len(written):
         with_unit = next(value for value in written if isinstance(value, str))
-        yield (
-            f"superstructure.{name} mixes numbers with a unit ({with_unit}) and without"
-            f" ({bare[0]}): a bare number is in SI units; write the unit everywhere"
+        yield Doubt(
+            f"superstructure.{name} mixes numbers with and without a unit{{}}: a bare number is in"
+            " SI units; write the unit everywhere",
+            detail=f" ({with_unit} and {bare[0]})",
         )
 
 
-def _neighbours(name: str, unit: str, values: Sequence[float]) -> Iterator[str]:
+def _neighbours(name: str, unit: str, values: Sequence[float]) -> Iterator[Doubt]:
     for storey, (below, above) in enumerate(pairwise(values), start=1):
         if max(below, above) > NEIGHBOURS * min(below, above):
-            yield (
-                f"superstructure.{name}: storey {storey} has {below:.4g} {unit}, storey"
-                f" {storey + 1} {above:.4g} {unit}; neighbours usually differ by less than"
-                f" {NEIGHBOURS:g} times; check the units"
+            yield Doubt(
+                f"superstructure.{name}: a storey has {{}} times as much as its neighbour, and less"
+                f" than {NEIGHBOURS:g} times is usual; check the units",
+                max(below, above) / min(below, above),
+                f" (storey {storey} has {below:.4g} {unit},"
+                f" storey {storey + 1} {above:.4g} {unit})",
             )

@@ -2,6 +2,7 @@
 
 A limit is a number, which every record must keep; or a number that a share of the records may
 exceed, `{at_most: 0.5, share: 0.1}`; or one for a fractile, `{at_most: 0.5, fractile: 0.84}`.
+Results of which small values are bad have `at_least` in place of `at_most`.
 """
 
 from __future__ import annotations
@@ -43,10 +44,11 @@ def _form(value: object) -> str:
 def _limit(quantity: ResultQuantity) -> Any:
     """A number, or a mapping with more to say."""
     unit = quantity.unit if quantity.unit in KINDS else PLAIN
-    bound = Quantity(unit, at_least=0) if quantity.whole else Quantity(unit, above=0)
+    zero = quantity.whole or quantity.from_below
+    bound = Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)
     number = Annotated[float, bound]
-    description = f"largest admissible {quantity.label}"
-    fields: Any = {"at_most": (number, Field(description=description))}
+    key = "at_least" if quantity.from_below else "at_most"
+    fields: Any = {key: (number, Field(description=f"admissible {quantity.label}"))}
     rule = create_model(f"Limit_{quantity.name}", __base__=LimitRule, **fields)
     return Annotated[
         Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")],
@@ -56,7 +58,8 @@ def _limit(quantity: ResultQuantity) -> Any:
 
 def described(quantity: ResultQuantity) -> str:
     """What a limit limits, for schemas."""
-    return f"{quantity.label}{f': {quantity.meaning}' * bool(quantity.meaning)}"
+    side = ", which must be at least so large" * quantity.from_below
+    return f"{quantity.label}{f': {quantity.meaning}' * bool(quantity.meaning)}{side}"
 
 
 _FIELDS: Any = {

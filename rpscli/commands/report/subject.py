@@ -80,7 +80,7 @@ def earlier_case(earlier: Earlier) -> tuple[CaseInput, MotionRequest]:
     name = str(file or f"{run['name']}.yaml")
     # JSON is YAML too.
     case = parse_case(json.dumps(run["inputs"]["case"]), name=name, folder=folder)
-    case = replace(case, digest=run["sha256"], warnings=(*case.warnings, *case.doubts))
+    case = replace(case, digest=run["sha256"])
     request = CaseRequest(name, tuple(run["inputs"]["overrides"]))
     return CaseInput(case, request), _motion(earlier, None if not case.record else case.record)
 

@@ -48,7 +48,9 @@ def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -
         "first_points": [points[n] for n in first],
         "last_points": [points[n] for n in last],
         "estimate": {"seconds": seconds, "jobs": jobs, "source": source},
+        "warnings": given.doubts,
     }
+    terminal.warn(document["warnings"])
     shown = [points[n] for n in sorted(points)]
     terminal.result(document, _tables(document, shown))
 

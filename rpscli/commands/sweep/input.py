@@ -55,6 +55,13 @@ class StudyInput:
         return self.design.study
 
     @property
+    def doubts(self) -> list[str]:
+        """What is unusual about its systems, each kind once."""
+        from rpscli.case.rules.plausibility import doubts_of_many  # noqa: PLC0415
+
+        return doubts_of_many([properties.doubts for properties in self.design.properties])
+
+    @property
     def file(self) -> Path | None:
         """The study's file; None if it came through the standard input."""
         return None if self.request.source == "-" else Path(self.request.source)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from rpscli.analyses.result_quantities import SAMPLED
-from rpscli.case.conditions import LIMITS
+from rpscli.analyses.result_quantities import HISTORY, SAMPLED
+from rpscli.case.conditions import FRICTION
 from rpscli.commands.sweep.input import StudyInput
 from rpscli.errors import UsageError
 
@@ -40,10 +40,11 @@ def lacking(given: StudyInput, name: str) -> bool:
 
 
 def _needs(name: str) -> str:
+    needs = {quantity.name: quantity.needs for quantity in (*HISTORY, *SAMPLED)}[name]
     if name in {quantity.name for quantity in SAMPLED}:
-        alike = f" and {LIMITS[name].needs} in all systems" if LIMITS[name].needs else ""
+        alike = f" and {needs} in all systems" if needs else ""
         return f"{name} needs `whole_histories: true` in the study{alike}"
-    return f"{name} needs {LIMITS[name].needs}, which not every system of the study has"
+    return f"{name} needs {needs}, which not every system of the study has"
 
 
 def _limit_faults(given: StudyInput) -> Iterator[Fault]:
@@ -51,7 +52,8 @@ def _limit_faults(given: StudyInput) -> Iterator[Fault]:
 
     own = given.study.file.limits is not None
     systems = given.design.properties
-    for name in dict.fromkeys(limit.name for system in systems for limit in system.limits):
+    limits = (limit for system in systems for limit in system.limits if limit.source != FRICTION)
+    for name in dict.fromkeys(limit.name for limit in limits):
         if lacking(given, name):
             yield Fault(
                 ("limits", name) if own else ("base",), f"limits.{_needs(name)}", at_key=own

@@ -39,8 +39,9 @@ class Failure:
 class Collected(NamedTuple):
     """What a study found besides its points.
 
-    `summary` is None for analyses without histories; `notes` are what statistics and reports have
-    to say about their numbers, `broken` the reports that could not be made.
+    `summary` is None for analyses without histories; `notes` are what is unusual about the systems,
+    and what statistics and reports have to say about their numbers; `broken` are the reports that
+    could not be made.
     """
 
     failures: list[Failure]
@@ -61,7 +62,7 @@ def collect(
     failures = list(_failures(given, results.table, folder))
     if failures:
         folder.add("failed.csv", csv_text(_failure_columns(failures)))
-    found = Collected(failures, None, [], [], {}, [])
+    found = Collected(failures, None, [], given.doubts, {}, [])
     if given.design.plan.analysis == "timehistory":
         found = _with_statistics(found, results, conditions, folder)
     for request in given.study.reports:
@@ -89,7 +90,7 @@ def _with_statistics(
     if verdicts:
         folder.add("verdicts.csv", csv_text(verdict_columns(made.keys, verdicts)))
     notes = [f"statistics: {note}" for note in (*made.notes, *scale_notes(results.table))]
-    return found._replace(summary=made, verdicts=verdicts, notes=notes)
+    return found._replace(summary=made, verdicts=verdicts, notes=[*found.notes, *notes])
 
 
 def _report(

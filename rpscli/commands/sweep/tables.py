@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -104,7 +105,7 @@ def verdict_table(summary: Summary, verdicts: Sequence[StudyVerdict]) -> Table:
 def found(verdict: StudyVerdict) -> str:
     """What a verdict rests on."""
     if verdict.fractile is not None:
-        demand = "overturned" if verdict.fractile == float("inf") else shown(verdict.fractile)
+        demand = "overturned" if math.isinf(verdict.fractile) else shown(verdict.fractile)
         return f"{demand} there, n = {verdict.beyond.of}"
     fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
     return f"{verdict.beyond}{fallen}"

@@ -17,8 +17,8 @@ LOOKS = ((style.BLUE, "-"), (style.RED, "--"), (style.GREEN, "-."), (style.PINK,
 
 
 def capacity_figure(result: PushoverResult, title: str) -> bytes:
-    """Base shear against roof displacement, whole and close to the uplift."""
-    factor, prefix = style.engineering(max(c.base_shear.max() for c in result.capacity))
+    """Sum of floor forces against roof displacement, whole and close to the uplift."""
+    factor, prefix = style.engineering(max(c.sum_of_floor_forces.max() for c in result.capacity))
     uplift = max(c.roof_displacement_at_uplift for c in result.capacity)
 
     def draw(figure: Figure) -> None:
@@ -29,7 +29,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
             name = curve.pattern.replace("_", " ")
             for axes in (whole, close):
                 axes.plot(
-                    curve.roof_displacement, factor * curve.base_shear,
+                    curve.roof_displacement, factor * curve.sum_of_floor_forces,
                     color=colour, ls=line, lw=1.5, label=name,
                 )  # fmt: skip
             close.plot(
@@ -38,10 +38,12 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
             )  # fmt: skip
         close.plot([], [], "o", color=style.GREY, ms=4.5, label="uplift")
         whole.set_xlim(left=0.0)
-        whole.set_ylim(bottom=min(0.0, *(factor * np.min(c.base_shear) for c in result.capacity)))
+        whole.set_ylim(
+            bottom=min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))
+        )
         close.set_xlim(0.0, 3.0 * uplift)
         close.locator_params(axis="x", nbins=5)
-        whole.set_ylabel(f"sum of the floor forces [{prefix}N]")
+        whole.set_ylabel(f"sum of floor forces [{prefix}N]")
         whole.set_xlabel(style.folded(figure, "roof displacement [m]"))
         close.set_xlabel(style.folded(figure, "roof displacement, near uplift [m]"))
         columns = 5 if figure.get_figwidth() >= style.WIDTH else 2

@@ -60,17 +60,13 @@ def _draw_mode(
         axes.plot(
             full, levels, color=style.BLACK, ls="--", marker="o", ms=2.5, label="full contact"
         )
-    axes.plot(
-        [0.0, *shape], levels, color=style.BLACK, marker="o", ms=2.5, label="uplifted, horizontal"
-    )
+    axes.plot([0.0, *shape], levels, color=style.BLACK, marker="o", ms=2.5, label="uplifted")
     if len(shape) > 1:
         elastic = [0.0, *(shape[1:] - shape[0])]
-        axes.plot(
-            elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label="uplifted, elastic part"
-        )
+        axes.plot(elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label="elastic shape")
     axes.axvline(0.0, color=style.GREY, lw=0.5)
     axes.set_ylim(-0.02 * levels[-1], 1.03 * levels[-1])
     if mode == 0:
-        axes.set_title(f"storey: $p$ = {modes.frequency_parameter:#.3g} rad/s")
+        axes.set_title(f"storey: $p_{{ext}}$ = {modes.frequency_parameter:#.3g} rad/s")
     else:
         axes.set_title(f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s")

@@ -30,7 +30,7 @@ def moment_figure(result: TimeHistoryResult, title: str) -> bytes:
         for k, side in enumerate((-1.0, 1.0)):
             rotation = side * np.linspace(1e-9, reach, 300)
             static = factor * result.restoring_moment(rotation)
-            label = "static restoring moment $2RWB$" if k == 0 else None
+            label = "restoring moment of the weight" if k == 0 else None
             axes.plot(rotation, static, color=style.RED, lw=2.5, zorder=1.5, label=label)
         axes.axhline(0.0, color=style.BLACK, lw=0.5)
         axes.axvline(0.0, color=style.BLACK, lw=0.5)

@@ -22,7 +22,7 @@ EVENT_ROWS: tuple[EventRow, ...] = (
     (("uplift",), "uplift", style.GREEN),
     (("impact",), "impact", style.BLACK),
     (("recontact",), "re-contact", style.GREY),
-    (("rolling_to_rocking", "rocking_to_rolling"), "roll - rock", style.PINK),
+    (("rolling_to_rocking", "rocking_to_rolling"), "rolling, rocking", style.PINK),
     (("critical_rotation_passed", "overturning"), "critical", style.RED),
 )
 """Kinds of event, their name in the figure, and its colour."""

@@ -22,7 +22,7 @@ def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
     rolling = curve.rotation <= beta
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, "rocking storey alone")
+        style.heading(figure, title, "storey of the bearings alone")
         force, lift = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, 1.0])
         u, F, back = curve.displacement, factor * curve.force, factor * curve.unloading_force
         returns = bool(np.any(back != F))
@@ -55,7 +55,7 @@ def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
         ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
         lift.set_ylim(bottom=0.0)
         lift.set_ylabel("lift [mm]")
-        lift.set_xlabel("displacement of the cap beam $u_b$ [m]")
+        lift.set_xlabel("cap beam displacement $u_b$ [m]")
         style.legend_above(force, 3 + returns)
         figure.align_ylabels()
 

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LOOKS = (
-    ("at_rest", "no uplift", style.GREY, ".", 2.0),
-    ("survived", "stands", style.SKY, "o", 3.0),
-    ("overturned", "overturns", style.RED, "s", 3.0),
+    ("at_rest", "at rest", style.GREY, ".", 2.0),
+    ("survived", "survived", style.SKY, "o", 3.0),
+    ("overturned", "overturned", style.RED, "s", 3.0),
 )
 
 
@@ -62,7 +62,7 @@ def spectrum_figure(report: SpectrumReport, title: str) -> bytes:
                 draw_outcomes(axes, series)
 
     def draw_in_colour(axes: Axes, series: SpectrumSeries, place: int, count: int) -> None:
-        """What overturned and the least that did; what stood would hide the other series."""
+        """What overturned and the least that did; survivors would hide the other series."""
         fell = np.array([outcome.startswith("overturned") for outcome in series.shown])
         shade = colour(place, count)
         axes.plot(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
@@ -15,6 +16,8 @@ from rpscli.sweep.statistics.verdicts import StudyVerdict
 
 SPREAD = {"median": "median", "84": "high", "largest": "largest"}
 """What follows the name of a quantity in a column, and the attribute of its spread."""
+FROM_BELOW = {"84": "16", "largest": "least"}
+"""What follows the names of those of which small values are bad."""
 
 
 def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
@@ -40,13 +43,14 @@ def summary_columns(summary: Summary) -> list[Column]:
     for place, quantity in enumerate(summary.quantities):
         for suffix, attribute in SPREAD.items():
             values = [reached(getattr(row.spreads[place], attribute)) for row in rows]
-            columns.append(Column(f"{quantity.name}_{suffix}", quantity.unit, values))
+            ending = FROM_BELOW.get(suffix, suffix) if quantity.from_below else suffix
+            columns.append(Column(f"{quantity.name}_{ending}", quantity.unit, values))
     return columns
 
 
 def reached(value: float) -> float | str:
-    """A demand for a cell of a CSV file: ``inf`` for that of an overturned history."""
-    return "inf" if value == float("inf") else value
+    """A demand for a cell of a CSV file: ``inf`` or ``-inf`` for that of an overturned history."""
+    return str(value) if math.isinf(value) else value
 
 
 def verdict_columns(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[Column]:
@@ -57,7 +61,8 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> li
         *key_columns(keys, [verdict.values for verdict in verdicts]),
         Column("limit", "-", [condition.name for condition in conditions]),
         Column("unit", "-", [_unit(condition) for condition in conditions]),
-        Column("at_most", "SI", [condition.limit for condition in conditions]),
+        Column("at_most", "SI", [None if c.from_below else c.limit for c in conditions]),
+        Column("at_least", "SI", [c.limit if c.from_below else None for c in conditions]),
         Column("admissible_share", "-", [_share(condition) for condition in conditions]),
         Column("fractile", "-", [condition.fractile for condition in conditions]),
         Column("value_at_fractile", "SI", fractiles),
@@ -88,8 +93,8 @@ def summary_document(summary: Summary) -> list[dict[str, Any]]:
             "demands": {
                 quantity.name: {
                     "median": spread.median,
-                    "fractile_84": spread.high,
-                    "largest": spread.largest,
+                    "fractile_16" if quantity.from_below else "fractile_84": spread.high,
+                    "least" if quantity.from_below else "largest": spread.largest,
                 }
                 for quantity, spread in zip(summary.quantities, row.spreads, strict=True)
             },

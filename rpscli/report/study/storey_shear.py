@@ -47,7 +47,7 @@ def storey_shear_columns(report: StoreyShearReport) -> list[Column]:
 
 
 def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
-    """Mean and largest shears of what stood, with both counts; the scale is common."""
+    """Mean and largest shears of survivors, with both counts; the scale is common."""
     in_kn = report.unit == "kN"
 
     def draw(axes: Axes, profile: StoreyProfile) -> None:
@@ -64,7 +64,7 @@ def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
         axes.set_ylim(0.0, len(profile.mean))
         axes.locator_params(axis="y", integer=True)
         axes.text(
-            0.96, 0.95, f"{profile.counted} of {profile.counted + profile.overturned} stood",
+            0.96, 0.95, f"{profile.counted} survivors of {profile.counted + profile.overturned}",
             transform=axes.transAxes, ha="right", va="top", fontsize=0.9 * style.small(),
         )  # fmt: skip
 

@@ -49,7 +49,7 @@ GEOMETRY = (
         lambda s: s.bearing.critical_rotation_of_paper,
     ),
     Derived(
-        "overturns", "overturns", "", "-",
+        "overturns", "overturning", "", "-",
         lambda s: "rolling" if s.bearing.overturns_rolling else "rocking",
     ),
 )  # fmt: skip
@@ -67,7 +67,7 @@ DYNAMICS = (
     Derived("gamma_total", "both over columns", "gamma (1 + eta)", "-", lambda s: s.gamma_total),
     Derived("restitution", "restitution at impact", "e", "-", lambda s: s.restitution),
     Derived(
-        "uplift_acceleration", "quasi-static uplift at", "g tan(alpha)", "m/s2",
+        "uplift_acceleration", "uplift acceleration, quasi-static", "g tan(alpha)", "m/s2",
         lambda s: s.uplift_acceleration,
     ),
     Derived(
@@ -81,7 +81,7 @@ DYNAMICS = (
         "initial_stiffness", "stiffness after uplift", "", "N/m", lambda s: s.initial_stiffness
     ),
     Derived(
-        "p_hat", "frequency parameter, rigid", "p_hat", "rad/s",
+        "p_hat", "frequency parameter, rigid estimate", "p_hat", "rad/s",
         lambda s: s.rigid_frequency_parameter,
     ),
 )  # fmt: skip

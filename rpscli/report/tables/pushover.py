@@ -16,12 +16,12 @@ def storey_curve_columns(curve: StoreyCurve) -> list[Column]:
 
 def capacity_columns(curves: tuple[CapacityCurve, ...]) -> list[Column]:
     """`capacity.csv`: the points of one load pattern after those of the other."""
-    names = [curve.pattern for curve in curves for _ in curve.base_shear]
+    names = [curve.pattern for curve in curves for _ in curve.sum_of_floor_forces]
     return [
         Column("pattern", "-", names),
         Column("roof_displacement", "m", np.concatenate([c.roof_displacement for c in curves])),
         Column(
             "cap_beam_displacement", "m", np.concatenate([c.cap_beam_displacement for c in curves])
         ),
-        Column("base_shear", "N", np.concatenate([c.base_shear for c in curves])),
+        Column("sum_of_floor_forces", "N", np.concatenate([c.sum_of_floor_forces for c in curves])),
     ]

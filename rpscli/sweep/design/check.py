@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path as Folder
 from typing import NamedTuple
 
-from rpscli.analyses.result_quantities import LIMITED, SAMPLED
+from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.case import Case, case_from_mapping
-from rpscli.case.conditions import Condition, conditions_of
+from rpscli.case.conditions import Condition, conditions_of, with_friction
 from rpscli.case.overrides import Override
+from rpscli.case.rules.plausibility import Doubt
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Values
 from rpscli.case.study.schema import MeasureScale
@@ -34,7 +35,8 @@ class SystemProperties(NamedTuple):
 
     `period` is T1 on a fixed base, `frequency_parameter` that of the rigid frame, p_hat;
     `building` is a digest of the superstructure, empty without one; `limits` are those of the study
-    or, where it has none, of the case; `lacking` names results that the system cannot have.
+    or, where it has none, of the case; `lacking` names results that the system cannot have;
+    `doubts` are what is unusual about it.
     """
 
     digest: bytes
@@ -49,6 +51,7 @@ class SystemProperties(NamedTuple):
     scale: float
     limits: tuple[Condition, ...]
     lacking: frozenset[str]
+    doubts: tuple[Doubt, ...]
 
 
 def check_systems(
@@ -103,21 +106,26 @@ def _properties(
         scale=1.0 if case.record is None else case.record.scale,
         limits=_limits(study, case),
         lacking=lacking(study, case),
+        doubts=case.doubts,
     )
 
 
 def _limits(study: Study, case: Case) -> tuple[Condition, ...]:
-    """Limits of the study or, where it has none of its own, of the case."""
-    if study.file.limits is not None:
-        return conditions_of(study.file.limits, "limits of the study")
-    return conditions_of(case.limits, "limits of the case")
+    """Limits of the study or, where it has none of its own, of the case; friction where given."""
+    of_study = study.file.limits
+    if of_study is not None:
+        limits = conditions_of(of_study, "limits of the study")
+    else:
+        limits = conditions_of(case.limits, "limits of the case")
+    return with_friction(limits, case.structure)
 
 
 def lacking(study: Study, case: Case) -> frozenset[str]:
-    """Names of the results that may be limited, but that histories of this case will not have."""
+    """Names of the results that histories of this case will not have."""
     sampled = () if study.file.whole_histories else SAMPLED
+    known = (*HISTORY, *SAMPLED)
     return frozenset(
-        [q.name for q in LIMITED if q.needs and not HAS[q.needs](case.structure)]
+        [q.name for q in known if q.needs and not HAS[q.needs](case.structure)]
         + [q.name for q in sampled]
     )
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from rpscli.analyses.result_quantities import LIMITED
+from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.study.fields import Keys
 from rpscli.sweep.reports.rotation import RotationOptions, paired
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
@@ -16,7 +16,7 @@ from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 if TYPE_CHECKING:
     ResultNames = tuple[str, ...]
 else:
-    ResultNames = tuple[Literal[tuple(quantity.name for quantity in LIMITED)], ...]
+    ResultNames = tuple[Literal[tuple(quantity.name for quantity in DEMANDS)], ...]
 
 FRACTILES = (0.16, 0.50, 0.84)
 

@@ -99,7 +99,7 @@ def demand_report(table: Table, options: DemandOptions) -> DemandReport:
 
 def too_few(points: int) -> str:
     """Why there is no curve of two pieces."""
-    return f"{points} different rotations of what stood; the curve needs {2 * FEWEST}"
+    return f"{points} different rotations of survivors; the curve needs {2 * FEWEST}"
 
 
 def _panel(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.analyses.result_quantities import DEMANDS, ResultQuantity
 from rpscli.case.study.reports import ReportOptions
 from rpscli.records.pair import HALF_TURN, Direction, direction_of
 from rpscli.sweep.design.layout import Design
@@ -20,7 +20,7 @@ from rpscli.sweep.table import Array, Table, groups, leading_keys
 if TYPE_CHECKING:
     ResultName = str
 else:
-    ResultName = Literal[tuple(quantity.name for quantity in LIMITED)]
+    ResultName = Literal[tuple(quantity.name for quantity in DEMANDS)]
 
 FRACTILES = (0.50, 0.84)
 
@@ -104,10 +104,10 @@ def directions_report(table: Table, options: DirectionsOptions) -> DirectionsRep
     keys = apart(design, leading_keys(design))
     known = {
         q: demand(table, table.columns[q.name])
-        for q in LIMITED
+        for q in DEMANDS
         if not np.isnan(table.columns[q.name]).all()
     }
-    drawn = next(quantity for quantity in LIMITED if quantity.name == options.result)
+    drawn = next(quantity for quantity in DEMANDS if quantity.name == options.result)
     panels = []
     for group in groups(design, keys):
         members: dict[str, list[tuple[float, int]]] = {}

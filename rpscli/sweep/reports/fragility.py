@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field, StrictBool, create_model
 
 from rpscli.analyses.result_quantities import LIMITED
+from rpscli.case.conditions import LIMITS
 from rpscli.case.schema.fields import Quantity, Whole
 from rpscli.case.schema.limits import described
 from rpscli.case.schema.section import Section
@@ -65,15 +66,22 @@ class FragilityOptions(BandOptions):
 
 
 class LimitState(NamedTuple):
-    """Exceeded where a result is larger than a threshold; every overturned point exceeds it."""
+    """Exceeded where a result is beyond a threshold; every overturned point exceeds it."""
 
     result: str
     threshold: float | None
 
     @property
     def label(self) -> str:
-        """Such as ``rotation_ratio > 0.5``."""
-        return self.result if self.threshold is None else f"{self.result} > {self.threshold:g}"
+        """The state in words.
+
+        >>> LimitState("rotation_ratio", 0.5).label, LimitState("min_column_force", 1e5).label
+        ('rotation_ratio > 0.5', 'min_column_force < 100000')
+        """
+        if self.threshold is None:
+            return self.result
+        sign = "<" if LIMITS[self.result].from_below else ">"
+        return f"{self.result} {sign} {self.threshold:g}"
 
 
 class Observed(NamedTuple):
@@ -141,8 +149,8 @@ class FragilityReport:
         if not fallen:
             return []
         exceeded = sum(curve.exceeded for curve in limited)
-        counts = f"{fallen} of {exceeded} excesses of limits are overturned histories"
-        return [f"an overturned history exceeds every limit: {counts}"]
+        counts = f"{fallen} of {exceeded} histories beyond a limit"
+        return [f"an overturned history exceeds every limit: {counts} overturned"]
 
 
 def fragility_report(

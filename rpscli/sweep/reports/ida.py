@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import Field
 
-from rpscli.analyses.result_quantities import LIMITED
+from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
@@ -25,7 +25,7 @@ FRACTILES = (0.16, 0.50, 0.84)
 if TYPE_CHECKING:
     DemandName = str
 else:
-    DemandName = Literal[tuple(quantity.name for quantity in LIMITED)]
+    DemandName = Literal[tuple(quantity.name for quantity in DEMANDS)]
 
 
 class IdaOptions(ReportOptions):

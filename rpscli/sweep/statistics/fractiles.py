@@ -1,4 +1,4 @@
-"""Fractiles of demands in which an overturned history is larger than any demand."""
+"""Fractiles of results in which an overturned history is worse than any result."""
 
 from __future__ import annotations
 
@@ -9,20 +9,31 @@ import numpy as np
 
 from rpscli.sweep.table import Array, Table
 
-HIGH = 0.84
+LOW, HIGH = 0.16, 0.84
 
 
 class Spread(NamedTuple):
-    """Median, 84 % fractile and largest value; infinite where so many overturned."""
+    """Median, 84 % fractile and largest value; infinite where so many overturned.
+
+    Of a result of which small values are bad: median, 16 % fractile and least value.
+    """
 
     median: float
     high: float
     largest: float
 
 
-def demand(table: Table, values: Array) -> Array:
-    """(points,) values; infinite where the structure overturned, NaN where the point failed."""
-    reached = np.where(table.overturned, np.inf, values)
+def demand(table: Table, values: Array, *, from_below: bool = False) -> Array:
+    """(points,) values; infinite where the structure overturned, NaN where the point failed.
+
+    Parameters
+    ----------
+    values
+        (points,) of a result.
+    from_below
+        Whether small values are bad, so that an overturned history has minus infinity.
+    """
+    reached = np.where(table.overturned, -np.inf if from_below else np.inf, values)
     return np.where(table.failed, np.nan, reached)
 
 
@@ -49,8 +60,12 @@ def fractiles(demands: Array, shares: Sequence[float]) -> Array:
     return np.asarray(np.quantile(known, shares, method="inverted_cdf"))
 
 
-def spread(demands: Array) -> Spread:
-    """Median, 84 % fractile and largest demand; NaN where a history that stood has none."""
+def spread(demands: Array, *, from_below: bool = False) -> Spread:
+    """Median, 84 % fractile and largest demand, or from below the 16 % fractile and the least.
+
+    They are NaN where a history that stood has none.
+    """
     if np.isnan(demands).any():
         return Spread(np.nan, np.nan, np.nan)
-    return Spread(*fractiles(demands, (0.5, HIGH, 1.0)).tolist())
+    shares = (0.5, LOW, 0.0) if from_below else (0.5, HIGH, 1.0)
+    return Spread(*fractiles(demands, shares).tolist())

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.analyses.result_quantities import DEMANDS, ResultQuantity
 from rpscli.case.conditions import EVENTS, Condition
 from rpscli.sweep.statistics.fractiles import fractiles, spread
 from rpscli.sweep.statistics.share import Share, share
@@ -51,7 +51,7 @@ class SetVerdict(NamedTuple):
     """What became of a condition.
 
     `beyond` are the records that exceed it, every overturned one among them; `worst` is the place
-    of the largest value among the records, `value` that value, infinite where it overturned.
+    of the worst value among the records, `value` that value, infinite where it overturned.
     """
 
     condition: Condition
@@ -65,7 +65,7 @@ def record_set(histories: Sequence[Scalars]) -> RecordSet:
     """Mean, median, 84 % fractile and largest of the maxima of histories."""
     known = [history for history in histories if history["outcome"] != "failed"]
     demands = {}
-    for quantity in LIMITED:
+    for quantity in DEMANDS:
         values = _demands(known, quantity.name)
         if len(values) and not np.isnan(values).any():
             demands[quantity] = SetDemand(float(np.mean(values)), *spread(values))
@@ -89,15 +89,16 @@ def set_verdicts(
 
 def _verdict(histories: Sequence[Scalars], known: list[int], condition: Condition) -> SetVerdict:
     found = [histories[place] for place in known]
-    values = _happened(found, condition.name) if condition.name in EVENTS else None
-    if values is None:
-        values = _demands(found, condition.name)
-    beyond = share(int((values > condition.limit).sum()), len(values))
-    worst = int(np.argmax(values))
+    if condition.name in EVENTS:
+        values = _happened(found, condition.name)
+    else:
+        values = _demands(found, condition.name, -np.inf if condition.from_below else np.inf)
+    beyond = share(int((~condition.kept_by(values)).sum()), len(values))
+    worst = int(np.argmin(values) if condition.from_below else np.argmax(values))
     if condition.fractile is None:
         exceeded = beyond.number / beyond.of > condition.share
     else:
-        exceeded = not fractiles(values, [condition.fractile])[0] <= condition.limit
+        exceeded = not condition.kept_by(float(fractiles(values, [condition.fractile])[0]))
     return SetVerdict(condition, beyond, float(values[worst]), known[worst], exceeded)
 
 
@@ -111,10 +112,10 @@ def _happened(histories: Sequence[Scalars], event: str) -> Array:
     return np.array([float(history["uplifts"]) for history in histories])
 
 
-def _demands(histories: Sequence[Scalars], name: str) -> Array:
+def _demands(histories: Sequence[Scalars], name: str, overturned: float = np.inf) -> Array:
     """(histories,) infinite where overturned, NaN where the structure has no such result."""
     values = [
-        np.inf if _overturned(each) else np.nan if each[name] is None else float(each[name])
+        overturned if _overturned(each) else np.nan if each[name] is None else float(each[name])
         for each in histories
     ]
     return np.array(values)

@@ -57,7 +57,11 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
     keys = apart(design, leading_keys(design))
     columns = {quantity: table.columns[quantity.name] for quantity in LIMITED}
     columns[REDUCTION] = shear_over_fixed_base(table, fixed)
-    known = {q: demand(table, v) for q, v in columns.items() if not np.isnan(v).all()}
+    known = {
+        q: demand(table, v, from_below=q.from_below)
+        for q, v in columns.items()
+        if not np.isnan(v).all()
+    }
     rows = []
     for group in groups(design, keys):
         points = group.points[~table.failed[group.points]]
@@ -67,7 +71,9 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
                 points=points,
                 failed=len(group.points) - len(points),
                 overturned=share(int(table.overturned[points].sum()), len(points)),
-                spreads=tuple(spread(column[points]) for column in known.values()),
+                spreads=tuple(
+                    spread(column[points], from_below=q.from_below) for q, column in known.items()
+                ),
             )
         )
     return Summary(

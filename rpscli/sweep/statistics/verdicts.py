@@ -71,7 +71,7 @@ def judged(
 
 
 def exceeds(table: Table, name: str, limit: float) -> NDArray[np.bool_]:
-    """(points,) in which a result is larger than a limit; overturned ones exceed every limit.
+    """(points,) in which a result is beyond a limit; overturned ones exceed every limit.
 
     A history that has no such result does not keep the limit either.
 
@@ -86,7 +86,8 @@ def exceeds(table: Table, name: str, limit: float) -> NDArray[np.bool_]:
         return table.overturned
     if name == "uplift":
         return np.asarray(table.overturned | (table.columns["uplifts"] > 0.0))
-    return np.asarray(table.overturned | ~(table.columns[name] <= limit))
+    kept = Condition(name, limit, "").kept_by(table.columns[name])
+    return np.asarray(table.overturned | ~kept)
 
 
 def _verdict(table: Table, row: SummaryRow, condition: Condition) -> StudyVerdict:
@@ -96,6 +97,7 @@ def _verdict(table: Table, row: SummaryRow, condition: Condition) -> StudyVerdic
     if condition.fractile is None:
         exceeded = count / len(row.points) > condition.share
         return StudyVerdict(row.values, condition, beyond, fallen, None, exceeded)
-    demands = demand(table, table.columns[condition.name])[row.points]
+    column = table.columns[condition.name]
+    demands = demand(table, column, from_below=condition.from_below)[row.points]
     (at,) = fractiles(demands, [condition.fractile]).tolist()
-    return StudyVerdict(row.values, condition, beyond, fallen, at, not at <= condition.limit)
+    return StudyVerdict(row.values, condition, beyond, fallen, at, not condition.kept_by(at))

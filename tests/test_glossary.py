@@ -1,0 +1,54 @@
+"""One word for one thing: labels of tables and figures are words of the glossary."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from rpscli.analyses import result_quantities
+from rpscli.analyses.outcome import OUTCOMES
+from rpscli.commands.explain import glossary
+from rpscli.commands.timehistory_tables import OUTCOMES as SENTENCES
+from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
+
+EXPLAINED = {
+    part.strip().lower()
+    for entry, _ in glossary()
+    for part in re.split(r",|\(.*?\)|\bof a column\b", entry)
+    if part.strip()
+}
+
+PLAIN = {
+    # the field's, which need no explanation here
+    "pga", "pgv", "period", "frequency", "frequency parameter", "damping", "damping ratio",
+    "mode shape", "eigenvalue", "duration", "energy", "force over weight", "frequency ratio",
+    "semi-diagonal", "slenderness angle", "arcs", "width", "stiffness",
+}  # fmt: skip
+
+LABELS = sorted(
+    {
+        quantity.label
+        for value in vars(result_quantities).values()
+        for quantity in (value if type(value) is tuple else (value,))
+        if isinstance(quantity, result_quantities.ResultQuantity)
+    }
+    | {row.label for row in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD)}
+)
+
+
+@pytest.mark.parametrize("label", LABELS)
+def test_labels_are_made_of_words_of_the_glossary(label: str) -> None:
+    words = EXPLAINED | PLAIN
+    assert any(re.search(rf"\b{re.escape(word)}(s|es)?\b", label.lower()) for word in words)
+
+
+def test_outcomes_are_explained_with_the_sentences_that_are_printed() -> None:
+    rows = {name: meaning for entry, meaning in glossary() for name in entry.split(", ")}
+    for outcome in (*OUTCOMES.values(), "failed"):
+        assert rows[outcome].partition(" | ")[0] == SENTENCES[outcome].partition(",")[0]
+
+
+def test_no_word_is_explained_twice() -> None:
+    words = [part.strip() for entry, _ in glossary() for part in entry.split(",")]
+    assert len(words) == len(set(words))
