@@ -8,15 +8,23 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.case.conditions import conditions_of
-from rpscli.commands.case_input import case_heading, read_case
+from rpscli.commands.case_input import CaseInput, case_folder, case_heading, read_case, write
 from rpscli.commands.check_device_tables import device_tables
 from rpscli.commands.check_tables import check_tables
 from rpscli.commands.motion import MotionRequest, load_motion
 from rpscli.commands.shell.failure import concluded, leave
-from rpscli.commands.shell.options import CaseRequest, case_options, terminal_options
+from rpscli.commands.shell.options import (
+    CaseRequest,
+    OutputRequest,
+    case_options,
+    figure_options,
+    output_options,
+    terminal_options,
+)
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
+from rpscli.report.figures.look import USUAL, Look
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -24,13 +32,25 @@ if TYPE_CHECKING:
 
 @click.command("check")
 @case_options
+@click.option(
+    "--draw",
+    is_flag=True,
+    help="Also draw the bearing with its dimensions: at rest, where rolling ends, at the critical"
+    " rotation, and the restoring force; the figure bearing.",
+)
+@figure_options
+@output_options
 @terminal_options
-def command(request: CaseRequest, terminal: Terminal) -> None:
+def command(
+    request: CaseRequest, output: OutputRequest, terminal: Terminal, look: Look, *, draw: bool
+) -> None:
     """What follows from CASE: geometry, masses, statics, periods.
 
-    Nothing is analysed and nothing is written. A case with mistakes ends with exit code 3 and a
-    line for each of them; so does a record that cannot be read.
+    Nothing is analysed, and nothing is written without --draw. A case with mistakes ends with exit
+    code 3 and a line for each of them; so does a record that cannot be read.
     """
+    if not draw and (output != OutputRequest(None, force=False) or look != USUAL):
+        raise UsageError("only --draw writes something; options of files and figures go with it")
     given = read_case(request, terminal)
     from rpscli.model.device_consequences import device_consequences  # noqa: PLC0415
     from rpscli.report.tables.derived import derived_quantities  # noqa: PLC0415 -- numpy is slow
@@ -47,11 +67,24 @@ def command(request: CaseRequest, terminal: Terminal) -> None:
         "limits": given.case.limits.model_dump(exclude_none=True),
         "warnings": [*given.case.warnings, *(record or {}).get("warnings", ())],
     }
+    if draw:
+        document["files"] = _drawn(given, output, look, terminal)
     terminal.warn((record or {}).get("warnings", ()))
     limits = conditions_of(given.case.limits, "limits of the case")
     tables = chain(check_tables(document, limits), device_tables(structure))
     terminal.result(concluded(document, error), tables)
     leave(error)
+
+
+def _drawn(given: CaseInput, output: OutputRequest, look: Look, terminal: Terminal) -> list[str]:
+    """Draw the bearing; the files that there are of it."""
+    from rpscli.report.bundles import bearing_files  # noqa: PLC0415 -- numpy is slow
+
+    folder = case_folder(given, output, "check")
+    for name, content in bearing_files(given.case.structure, given.case.title, look):
+        folder.add(name, content)
+    write(folder, terminal)
+    return folder.files
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RecordError | None]:

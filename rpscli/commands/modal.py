@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
@@ -15,14 +16,17 @@ from rpscli.commands.shell.options import (
     OutputRequest,
     case_options,
     figure_options,
+    film_options,
     output_options,
     terminal_options,
 )
+from rpscli.commands.shell.passing_time import counted
 from rpscli.commands.shell.tables import sentence, table
 from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.report.documents import heading
-from rpscli.report.figures.look import Look
+from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.look import Look, drawn_with
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -32,10 +36,17 @@ if TYPE_CHECKING:
 
 @click.command("modal")
 @case_options
+@film_options
 @figure_options
 @output_options
 @terminal_options
-def command(request: CaseRequest, output: OutputRequest, terminal: Terminal, look: Look) -> None:
+def command(
+    request: CaseRequest,
+    output: OutputRequest,
+    terminal: Terminal,
+    look: Look,
+    film: FilmRequest | None,
+) -> None:
     """Modes of CASE in full contact and, linearised, rolling and rocking.
 
     Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
@@ -48,6 +59,12 @@ def command(request: CaseRequest, output: OutputRequest, terminal: Terminal, loo
     result = modal(given.case.structure)
     for name, content in modal_files(result, given.case.title, look):
         folder.add(name, content)
+    if film is not None:
+        from rpscli.report.figures.animation import modes_film  # noqa: PLC0415
+
+        with counted("drawing the animation", terminal) as progress:
+            draw = partial(modes_film, result, given.case.title, film, progress)
+            folder.add_at(film.file, drawn_with(look, film.ending, draw))
     write(folder, terminal)
     document = {
         **heading(),

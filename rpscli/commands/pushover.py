@@ -53,7 +53,8 @@ def command(
 ) -> None:
     """Restoring force of the storey of CASE, and capacity curves of the whole structure.
 
-    Writes storey_curve.csv and, for a case with storeys, capacity.csv, and a figure of each.
+    Writes storey_curve.csv and, for a case with storeys, capacity.csv, a figure of each, and the
+    figure bearing: columns at rest, where rolling ends and at the critical rotation.
     """
     given = read_case(request, terminal)
     from rpscli.analyses.pushover import PATTERNS, pushover  # noqa: PLC0415 -- numpy is slow

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import click
@@ -21,10 +21,13 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     figure_options,
+    film_options,
+    film_part_options,
     output_options,
     several_cases_options,
     terminal_options,
 )
+from rpscli.commands.shell.passing_time import counted
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.timehistory_run import (
     HistoryRequest,
@@ -34,7 +37,8 @@ from rpscli.commands.timehistory_run import (
 )
 from rpscli.errors import UsageError
 from rpscli.report.figures.drawing import artists
-from rpscli.report.figures.look import Look
+from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.look import Look, drawn_with
 
 FIGURES = 5
 """Figures of a history, at most."""
@@ -68,9 +72,8 @@ FIGURES = 5
     help="End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
     f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units); repeatable.",
 )
-@click.option(
-    "--animate", type=click.Path(path_type=Path), metavar="FILE.gif", help="Also draw it moving."
-)
+@film_part_options
+@film_options
 @click.option(
     "--floor-spectra",
     is_flag=True,
@@ -85,7 +88,7 @@ def command(
     output: OutputRequest,
     terminal: Terminal,
     fail_on: tuple[str, ...],
-    animate: Path | None,
+    film: FilmRequest | None,
     look: Look,
     *,
     floor_spectra: bool,
@@ -97,8 +100,6 @@ def command(
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
     conditions = [parse_condition(text) for text in fail_on]
-    if animate is not None and animate.suffix.lower() != ".gif":
-        raise UsageError(f"--animate {animate}: must end with .gif, the only format there is")
     motions = list(single_motions(records, MotionRequest(**motion)))
     cases = read_cases(requests, terminal)
     histories = [
@@ -106,10 +107,10 @@ def command(
         for history in history_requests(cases, motions, output)
     ]
     if len(histories) == 1:
-        _one(histories[0], conditions, look, animate, terminal)
+        _one(histories[0], conditions, look, film, terminal)
         return
-    if animate is not None:
-        raise UsageError(f"--animate {animate}: shows one history, not {len(histories)}")
+    if film is not None:
+        raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
     from rpscli.commands.timehistory_set import run_all  # noqa: PLC0415 -- numpy is slow
 
     chosen = look if look.formats is not None else replace(look, formats=())
@@ -122,7 +123,7 @@ def _one(
     request: HistoryRequest,
     conditions: Sequence[Condition],
     look: Look,
-    animate: Path | None,
+    film: FilmRequest | None,
     terminal: Terminal,
 ) -> None:
     from rpscli.commands.timehistory_tables import timehistory_tables  # noqa: PLC0415
@@ -131,11 +132,12 @@ def _one(
     with artists(FIGURES * len(look.endings)) as drawing:
         announce_compilation(terminal, moving=True)
         done, result = compute(request, conditions, look, drawing, terminal)
-    if animate is not None:
-        from rpscli.report.figures.animation import animation_gif  # noqa: PLC0415
+    if film is not None:
+        from rpscli.report.figures.animation import history_film  # noqa: PLC0415
 
-        terminal.note("drawing the animation")
-        request.folder.add_at(animate, animation_gif(result, title))
+        with counted("drawing the animation", terminal) as progress:
+            draw = partial(history_film, result, title, film, progress)
+            request.folder.add_at(film.file, drawn_with(look, film.ending, draw))
     add_summary(request, done)
     write(request.folder, terminal)
     terminal.warn(done.document["warnings"])

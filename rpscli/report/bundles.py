@@ -8,11 +8,13 @@ from pathlib import Path
 
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.modal import ModalResult
-from rpscli.analyses.pushover import PushoverResult
+from rpscli.analyses.pushover import PushoverResult, pushover
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.spectrum import ResponseSpectrum
 from rpscli.records.selection import Selection
+from rpscli.report.figures.bearing import bearing_figure
 from rpscli.report.figures.capacity import capacity_figure
 from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.displacement import displacement_figure
@@ -40,6 +42,12 @@ Files = Iterator[tuple[str, str | bytes]]
 """Names and contents."""
 
 
+def bearing_files(structure: PodiumStructure, title: str, look: Look = USUAL) -> Files:
+    """The drawing of the bearing."""
+    draw = partial(bearing_figure, pushover(structure, patterns=()), title)
+    yield from figure_files({"bearing": draw}, look).items()
+
+
 def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     """Files of a modal analysis."""
     yield "modes.csv", csv_text(mode_columns(result))
@@ -51,7 +59,10 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
 def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Files:
     """Files of the static characteristics; without a building there are no capacity curves."""
     yield "storey_curve.csv", csv_text(storey_curve_columns(result.curve))
-    figures: dict[str, Draw] = {"storey_curve": partial(storey_curve_figure, result, title)}
+    figures: dict[str, Draw] = {
+        "bearing": partial(bearing_figure, result, title),
+        "storey_curve": partial(storey_curve_figure, result, title),
+    }
     if result.capacity:
         yield "capacity.csv", csv_text(capacity_columns(result.capacity))
         figures["capacity"] = partial(capacity_figure, result, title)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import Result
+from PIL import Image
 
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
@@ -63,6 +64,23 @@ def test_check(rps_json: InvokeJson, case: Path) -> None:
     building = structure.superstructure
     assert document["T1"] == (None if building is None else pytest.approx(building.periods[0]))
     assert not Path("results").exists()
+
+
+def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
+    document = rps_json("check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn")
+    assert document["files"] == [
+        str(Path("drawn", name)) for name in ("bearing.svg", "bearing.pdf", "run.json")
+    ]
+    assert "files" not in rps_json("check", "small.yaml")
+
+
+def test_an_animation_of_the_modes(rps_json: InvokeJson) -> None:
+    arguments = ("--animate", "modes.gif", "--animate-size", "300")
+    document = rps_json("modal", "small.yaml", *arguments, "--figures", "none")
+    assert "modes.gif" in document["files"]
+    with Image.open("modes.gif") as film:
+        assert film.size[0] == 300
+        assert getattr(film, "n_frames", 1) == 40
 
 
 @pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)
@@ -127,7 +145,7 @@ def test_pushover(rps_json: InvokeJson, case: Path) -> None:
     assert document["curve"]["force"] == result.curve.force.tolist()
     names = {Path(file).name for file in document["files"]}
     building = {"capacity.csv", "capacity.png"} if result.capacity else set()
-    assert names == {"storey_curve.csv", "storey_curve.png", "run.json"} | building
+    assert names == {"bearing.png", "storey_curve.csv", "storey_curve.png", "run.json"} | building
 
 
 def test_tables_of_the_pushover(rps: Invoke) -> None:

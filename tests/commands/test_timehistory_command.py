@@ -249,12 +249,13 @@ def test_an_animation(rps_json: InvokeJson) -> None:
     record = "pulse:half_sine?amplitude=0.3g&period=0.3"
     document = rps_json(
         "timehistory", "small.yaml", "--record", record, "--animate", "film.gif",
-        "--set", "analysis.free_vibration=0.1",
+        "--set", "analysis.free_vibration=0.1", "--animate-size", "240", "--animate-to", "0.3",
     )  # fmt: skip
     assert "film.gif" in document["files"]
     with Image.open("film.gif") as film:
         assert film.format == "GIF"
-        assert 2 <= getattr(film, "n_frames", 1) <= 180
+        assert 2 <= getattr(film, "n_frames", 1) <= 6
+        assert film.size[0] == 240
 
 
 def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:

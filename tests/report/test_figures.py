@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import io
+import os
+import shutil
+from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -12,11 +15,13 @@ from PIL import Image
 from report.small_results import CURVED, FLAT, KINDS, ROLLER, structure
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
+from rpscli.errors import OutputError, UsageError
 from rpscli.model.bearing import Bearing
 from rpscli.report.bundles import modal_files, pushover_files, timehistory_files
 from rpscli.report.figures import style
-from rpscli.report.figures.animation import MOST_FRAMES, frame_plan
+from rpscli.report.figures.animation import frame_plan, modes_film
 from rpscli.report.figures.displacement import shown_floors
+from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.rotation import rotation_figure
 
 
@@ -37,7 +42,7 @@ def test_modes_and_static_curves_are_drawn(bearing: Bearing, storeys: int) -> No
     made = structure(bearing, storeys)
     files = [*modal_files(modal(made), "title"), *pushover_files(pushover(made), "title")]
     figures = [content for _, content in files if isinstance(content, bytes)]
-    assert len(figures) == (3 if storeys else 2)
+    assert len(figures) == (4 if storeys else 3)
     assert all(Image.open(io.BytesIO(figure)).width >= 600 for figure in figures)
 
 
@@ -70,10 +75,69 @@ def test_prefixes() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_animation_shows_the_motion_from_its_first_to_its_last(kind: str) -> None:
     result = KINDS[kind]()
-    plan = frame_plan(result)
-    assert 2 <= len(plan.samples) <= MOST_FRAMES
+    plan = frame_plan(result, FilmRequest(Path("film.gif")))
+    assert 2 <= len(plan.samples) <= 180  # 9 s
     assert (np.diff(plan.samples) >= 0).all()
     assert plan.samples[-1] < len(result.trace.time)
     shown = np.abs(result.trace.rotation[plan.samples[0] : plan.samples[-1] + 1])
     assert shown.max() == np.abs(result.trace.rotation).max()
     assert plan.speed > 0.0
+
+
+def test_speed_and_part_of_an_animation_are_those_that_were_asked_for() -> None:
+    result = KINDS["rolls"]()
+    time = result.trace.time
+    wanted = FilmRequest(Path("film.gif"), speed=0.5, first=0.2, last=0.8)
+    plan = frame_plan(result, wanted)
+    assert len(plan.samples) == 24  # 0.6 s take 1.2 s
+    assert plan.speed == pytest.approx(0.5)
+    shown = time[plan.samples[[0, -1]]]
+    np.testing.assert_allclose(shown, (0.2, 0.8), atol=float(time[1]))
+    to_the_end = frame_plan(result, FilmRequest(Path("film.gif"), speed=1.0, last=1e9))
+    assert to_the_end.samples[-1] == len(time) - 1
+
+
+@pytest.mark.parametrize(
+    ("wishes", "says"),
+    [
+        ({"first": 1e9}, "before the end at"),
+        ({"speed": 1e-4}, "3000 are the most"),
+    ],
+)
+def test_a_part_that_is_not_there_is_refused(wishes: dict[str, float], says: str) -> None:
+    with pytest.raises(UsageError, match=says):
+        frame_plan(KINDS["rolls"](), FilmRequest(Path("film.gif"), **wishes))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("file", "wishes", "says"),
+    [
+        ("film.avi", {}, "must end with .gif or .mp4"),
+        ("film.gif", {"first": 2.0, "last": 1.0}, "--animate-to 1 must be later than"),
+        ("film.gif", {"last": 0.0}, "later than --animate-from 0"),
+    ],
+)
+def test_a_film_that_cannot_be_is_refused(file: str, wishes: dict[str, float], says: str) -> None:
+    with pytest.raises(UsageError, match=says):
+        FilmRequest(Path(file), **wishes)  # type: ignore[arg-type]
+
+
+def test_mp4_needs_its_encoder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(UsageError, match=r"needs the program ffmpeg.*or write film\.gif"):
+        FilmRequest(Path("film.mp4"))
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not installed")
+def test_mp4_is_what_its_ending_says() -> None:
+    film = modes_film(modal(structure(CURVED, 1)), "title", FilmRequest(Path("film.mp4"), 201))
+    assert film[4:8] == b"ftyp"
+
+
+def test_an_encoder_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    broken = tmp_path / "ffmpeg"
+    broken.write_text("#!/bin/sh\nexit 3\n")
+    broken.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    with pytest.raises(OutputError, match="ffmpeg could not make the film"):
+        modes_film(modal(structure(FLAT, 0)), "title", FilmRequest(Path("film.mp4")))

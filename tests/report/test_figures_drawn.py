@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,11 +37,12 @@ from rpscli.model.devices import Device, FrictionDamper, Stop, Tendon, ViscousDa
 from rpscli.records.measures import integration
 from rpscli.records.measures.spectrum import response_spectrum
 from rpscli.records.source import load_record
-from rpscli.report.figures.animation import animation_gif, frame_plan
+from rpscli.report.figures.animation import frame_plan, history_film, modes_film
 from rpscli.report.figures.capacity import capacity_figure
 from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.displacement import displacement_figure
 from rpscli.report.figures.energy import energy_figure
+from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.levels import level_heights
 from rpscli.report.figures.modes import modes_figure
 from rpscli.report.figures.moment import moment_figure
@@ -432,7 +434,7 @@ def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
             height = levels[floor + 1] + lift + scene.thickness
             assert np.asarray(y).tolist() == pytest.approx([height, height], rel=1e-12)
     drifts = f"; storey drifts x {scene.magnification:g}" if storeys else ""
-    assert axes.get_xlabel() == f"bearings to scale{drifts}; 0.5 x real time"
+    assert axes.get_xlabel() == f"bearings to scale{drifts}; 2 times slower than real"
     # a metre is as high as it is wide
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     assert (high - low) / (right - left) == pytest.approx(axes.get_box_aspect(), rel=1e-12)
@@ -441,39 +443,82 @@ def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
 def test_a_scene_with_devices(equipped: TimeHistoryResult) -> None:
     trace = equipped.trace
     scene = Scene(Figure().subplots(), equipped, "a title", 0.5)
-    ((_, posts),) = scene.devices.stops
     half = 0.5 * scene.width
-    for post, side in zip(posts, (-1.0, 1.0), strict=True):
-        assert post.get_xdata()[0] == pytest.approx(side * (half + 0.02))  # type: ignore[attr-defined]
+    posts = [post for _, _, post in scene.devices.stops]
+    assert [side for side, _, _ in scene.devices.stops] == [-1.0, 1.0]
     for sample in (0, int(np.argmax(np.abs(trace.rotation)))):
         scene.show(sample)
         shift = trace.cap_beam_displacement[sample]
         for foot, tendon in zip(scene.feet, scene.devices.tendons, strict=True):
             assert np.asarray(tendon.get_xdata()).tolist() == pytest.approx([foot, foot + shift])
-        red = [post.get_color() == "#D55E00" for post in posts]  # type: ignore[attr-defined]
+        for post, side in zip(posts, (-1.0, 1.0), strict=True):
+            foot, head = np.asarray(post.get_xdata(), float)
+            assert foot == pytest.approx(side * (half + 0.02))
+            assert head == pytest.approx(foot + side * max(side * shift - 0.02, 0.0))
+        red = [post.get_color() == "#D55E00" for post in posts]
         assert red == [shift < -0.02, shift > 0.02]
     assert any(red)
     assert scene.devices.brace is not None
 
 
-def test_an_animation_runs_along_the_record(monkeypatch: pytest.MonkeyPatch) -> None:
-    cursors: list[float] = []
-    seen: list[Axes] = []
+GIF = FilmRequest(Path("film.gif"))
+
+
+def watched(monkeypatch: pytest.MonkeyPatch, look: Callable[[Figure], Any]) -> list[Any]:
+    """What is seen in the figure of each frame."""
+    seen: list[Any] = []
     draw = FigureCanvasAgg.draw
 
-    def watched(canvas: FigureCanvasAgg) -> None:
-        record = canvas.figure.axes[1]
-        seen[:] = [record]
-        cursors.append(float(np.asarray(record.lines[1].get_xdata())[0]))
+    def watch(canvas: FigureCanvasAgg) -> None:
+        seen.append(look(canvas.figure))
         draw(canvas)  # type: ignore[no-untyped-call]
 
-    monkeypatch.setattr(FigureCanvasAgg, "draw", watched)
+    monkeypatch.setattr(FigureCanvasAgg, "draw", watch)
+    return seen
+
+
+def test_an_animation_runs_along_the_record(monkeypatch: pytest.MonkeyPatch) -> None:
     result = KINDS["rolls"]()
-    trace, plan = result.trace, frame_plan(result)
-    animation_gif(result, "a title")
+    trace, plan = result.trace, frame_plan(result, GIF)
+    frames = watched(monkeypatch, lambda figure: figure.axes)
+    cursors: list[float] = []
+    contacts: list[float] = []
+
+    def progress(done: int, total: int) -> None:
+        assert total == len(plan.samples)
+        _, end, record = frames[-1]
+        cursors.append(float(np.asarray(record.lines[1].get_xdata())[0]))
+        contacts.append(float(np.asarray(end.lines[1].get_xdata(), float)[0]))
+        assert done == len(cursors)
+
+    history_film(result, "a title", GIF, progress)
     assert cursors == trace.time[plan.samples].tolist()
-    (record,) = seen
+    # the contact of the enlarged end wanders with the rotation
+    bearing, rotation = result.structure.bearing, trace.rotation[plan.samples]
+    reach = bearing.half_width + bearing.radius * np.minimum(np.abs(rotation), bearing.beta)
+    leaning = rotation != 0.0
+    wanted = np.copysign(reach, rotation)[leaning]
+    np.testing.assert_allclose(np.array(contacts)[leaning], wanted, rtol=1e-12)
+    _, end, record = frames[-1]
+    assert end.get_title() == "lower end of a column, enlarged"
+    low, high = end.get_xlim()
+    assert high - low < 4.0 * 0.3 * bearing.half_height  # less than twice its width
     is_drawn(curve(record, "_child0"), trace.time, trace.ground_acceleration)
     assert record.get_xlim() == (cursors[0], cursors[-1])
     assert record.get_ylabel() == "$a_g$ [m/s²]"
     assert record.get_xlabel() == "time [s]"
+
+
+def test_mode_shapes_swing_there_and_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = modal(structure(CURVED, 2))
+    assert result.rolling is not None
+
+    def first(figure: Figure) -> Any:
+        return np.array(curve(figure.axes[0], "uplifted")[0])
+
+    frames = watched(monkeypatch, first)
+    modes_film(result, "a title", GIF)
+    shape = np.array([0.0, *result.rolling.shapes[:, 0]])
+    steps = np.cos(2.0 * np.pi * np.arange(len(frames)) / len(frames))
+    assert len(frames) == 40
+    np.testing.assert_allclose(frames, steps[:, None] * shape, atol=1e-12)

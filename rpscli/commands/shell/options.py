@@ -16,6 +16,7 @@ import click
 from rpscli.commands.shell.completions import FILE, case_keys
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, nearest
+from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
 from rpscli.report.figures.look import FORMATS, Look, read_style
 
 Command = Callable[..., None]
@@ -120,6 +121,62 @@ def _formats(text: str) -> tuple[str, ...]:
             hint = f"did you mean {close}?" if close else "write png, svg, pdf, svg,pdf or none"
             raise UsageError(f"--figures {text}: {word or 'nothing'} is no format; {hint}")
     return tuple(dict.fromkeys(words))
+
+
+def film_options(function: Command) -> Command:
+    """--animate and --animate-size, as `film`; with a history's speed and part, if it has them."""
+
+    @click.option(
+        "--animate",
+        "file",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help=f"Also draw it moving: {' or, with ffmpeg, '.join(RATES)}.",
+    )
+    @click.option(
+        "--animate-size",
+        type=click.IntRange(200, 4000),
+        metavar="PIXELS",
+        help=f"Width of the moving picture; {USUAL_SIZE} by default.",
+    )
+    @functools.wraps(function)
+    def command(*, file: Path | None, **rest: Any) -> None:
+        wishes = {
+            name: rest.pop(f"animate_{name}")
+            for name in ("size", "speed", "first", "last")
+            if f"animate_{name}" in rest
+        }
+        asked = {name: value for name, value in wishes.items() if value is not None}
+        if asked and file is None:
+            raise UsageError("options that begin with --animate- go with --animate FILE")
+        function(film=None if file is None else FilmRequest(file, **asked), **rest)
+
+    return command
+
+
+def film_part_options(function: Command) -> Command:
+    """Speed and part of a history; above `film_options`."""
+    second = click.FloatRange(min=0.0)
+    for decorate in (
+        click.option(
+            "--animate-to", "animate_last", type=second, metavar="S", help="Its end, in seconds."
+        ),
+        click.option(
+            "--animate-from",
+            "animate_first",
+            type=second,
+            metavar="S",
+            help="Its beginning, in seconds; where the motion begins by default.",
+        ),
+        click.option(
+            "--animate-speed",
+            type=click.FloatRange(min=0.0, min_open=True),
+            metavar="FACTOR",
+            help="Times real time: 0.5 shows it half as fast; by default it fits 9 s.",
+        ),
+    ):
+        function = decorate(function)
+    return function
 
 
 def several_cases_options(function: Command) -> Command:

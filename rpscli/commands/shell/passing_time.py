@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rpscli.commands.shell.terminal import Terminal
@@ -38,3 +38,24 @@ def passing_time(what: str, terminal: Terminal) -> Iterator[None]:
             yield
     finally:
         _shown.remove(what)
+
+
+@contextmanager
+def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None]]:
+    """A function that shows how many of how many are done: a bar on a terminal, else one line."""
+    if terminal.quiet or sys.stderr is None or not sys.stderr.isatty():
+        terminal.note(what)
+        yield lambda *_: None
+        return
+    from rich.console import Console  # noqa: PLC0415 -- other commands do without
+    from rich.progress import (  # noqa: PLC0415
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TimeRemainingColumn,
+    )
+
+    columns = (what, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

@@ -1,25 +1,30 @@
-"""A moving picture of a time history: columns leaning, building swaying."""
+"""Moving pictures of a time history and of mode shapes."""
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.errors import UsageError
 from rpscli.report.figures import style
+from rpscli.report.figures.bearing import BearingView, frame_end
+from rpscli.report.figures.film import MOST_FRAMES, FilmRequest, Motion, Progress, film
+from rpscli.report.figures.modes import draw_modes, modes_size
 from rpscli.report.figures.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from PIL.Image import Image
+    from matplotlib.figure import Figure
 
+    from rpscli.analyses.modal import ModalResult
     from rpscli.analyses.results import TimeHistoryResult
 
-FRAMES_PER_SECOND = 20
-MOST_FRAMES = 180
-NO_DITHER: Any = 0
+USUAL_LENGTH = 9.0
+"""Of a film whose speed nobody asked for, at most [s]."""
+SWING = 2.0
+"""Time in which mode shapes swing there and back [s]."""
 
 
 class Plan(NamedTuple):
@@ -29,39 +34,90 @@ class Plan(NamedTuple):
     speed: float
 
 
-def frame_plan(result: TimeHistoryResult) -> Plan:
-    """Evenly spaced samples from the first motion to the last, at most `MOST_FRAMES`."""
+def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
+    """Evenly spaced samples of the wanted part, by default from the first motion to the last.
+
+    Raises
+    ------
+    UsageError
+        If the history ends before that part, or there are too many frames.
+    """
     time, rotation = result.trace.time, np.abs(result.trace.rotation)
     moving = np.flatnonzero(rotation > 0.01 * rotation.max()) if rotation.any() else np.empty(0)
     first = max(time[int(moving[0])] - 0.5, 0.0) if moving.size else 0.0
     last = min(time[int(moving[-1])] + 0.5, time[-1]) if moving.size else time[-1]
-    frames = int(np.clip((last - first) * FRAMES_PER_SECOND, 2, MOST_FRAMES))
+    last = last if wanted.last is None else min(wanted.last, time[-1])
+    first = min(first, last) if wanted.first is None else wanted.first
+    if first >= time[-1] or first < 0.0:
+        raise UsageError(
+            f"--animate-from {first:g}: must be >= 0 and before the end at {time[-1]:g} s"
+        )
+    last = last if last > first else time[-1]
+    length = (last - first) / wanted.speed if wanted.speed else min(last - first, USUAL_LENGTH)
+    frames = max(int(length * wanted.rate), 2)
+    if frames > MOST_FRAMES:
+        raise UsageError(
+            f"--animate-speed {wanted.speed:g}: {last - first:.4g} s make {frames} frames, and"
+            f" {MOST_FRAMES} are the most; let it run faster, or show a part with --animate-from"
+            " and --animate-to"
+        )
     at = np.linspace(first, last, frames)
     samples = np.minimum(np.searchsorted(time, at), len(time) - 1)
-    return Plan(samples, float((last - first) * FRAMES_PER_SECOND / frames))
+    return Plan(samples, float((last - first) * wanted.rate / frames))
 
 
-def animation_gif(result: TimeHistoryResult, title: str) -> bytes:
-    """The GIF file. Bearings and cap beam move to scale, storey drifts are magnified."""
-    import matplotlib.style  # noqa: PLC0415
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415
-    from matplotlib.figure import Figure  # noqa: PLC0415
+def history_film(
+    result: TimeHistoryResult,
+    title: str,
+    wanted: FilmRequest,
+    progress: Progress = lambda *_: None,
+) -> bytes:
+    """The structure, a column's end enlarged, and the record below.
 
-    plan = frame_plan(result)
-    with matplotlib.style.context(["default", style.STYLE]):
-        figure = Figure(figsize=(5.4, 6.2), dpi=90, layout="constrained")
-        canvas = FigureCanvasAgg(figure)
-        picture, record = figure.subplots(2, 1, height_ratios=[5.6, 1.0])
-        scene = Scene(picture, result, title, plan.speed)
-        cursor = _draw_record(record, result, plan)
-        images = []
-        for sample in plan.samples:
-            scene.show(int(sample))
+    Bearings and cap beam move to scale, storey drifts are magnified.
+    """
+    plan = frame_plan(result, wanted)
+
+    def draw(figure: Figure) -> Motion:
+        panels = figure.subplot_mosaic(
+            [["scene", "end"], ["record", "record"]], width_ratios=[1.7, 1.0],
+            height_ratios=[4.2, 1.0],
+        )  # fmt: skip
+        scene = Scene(panels["scene"], result, title, plan.speed)
+        end = BearingView(panels["end"], result.structure)
+        frame_end(panels["end"], result.structure.bearing)
+        panels["end"].set_title("lower end of a column, enlarged", fontsize=style.small())
+        cursor = _draw_record(panels["record"], result, plan)
+
+        def show(frame: int) -> None:
+            sample = int(plan.samples[frame])
+            scene.show(sample)
+            end.show(float(result.trace.rotation[sample]))
             cursor.set_xdata([result.trace.time[sample]] * 2)
-            canvas.draw()  # type: ignore[no-untyped-call]
-            images.append(_image(canvas))
-            figure.set_layout_engine("none")  # laid out once: the picture must not jump
-    return _gif(images)
+
+        return Motion(len(plan.samples), show)
+
+    return film(draw, 8.0, 5.2, wanted, progress)
+
+
+def modes_film(
+    result: ModalResult, title: str, wanted: FilmRequest, progress: Progress = lambda *_: None
+) -> bytes:
+    """The figure of the modes, its shapes swinging, all at one pace."""
+
+    def draw(figure: Figure) -> Motion:
+        draw_modes(figure, result, f"{title}   |   all modes at one pace")
+        lines = [line for axes in figure.axes for line in axes.lines]
+        shapes = [np.asarray(line.get_xdata(), dtype=float) for line in lines]
+        frames = int(SWING * wanted.rate)
+
+        def show(frame: int) -> None:
+            for line, shape in zip(lines, shapes, strict=True):
+                line.set_xdata(shape * np.cos(2.0 * np.pi * frame / frames))
+
+        return Motion(frames, show)
+
+    return film(draw, *modes_size(result), wanted, progress)
 
 
 def _draw_record(axes: Axes, result: TimeHistoryResult, plan: Plan) -> Any:
@@ -72,34 +128,3 @@ def _draw_record(axes: Axes, result: TimeHistoryResult, plan: Plan) -> Any:
     axes.set_ylabel("$a_g$ [m/s²]")
     axes.set_xlabel("time [s]")
     return axes.axvline(first, color=style.RED, lw=1.2)
-
-
-def _image(canvas: Any) -> Image:
-    from PIL import Image as Pillow  # noqa: PLC0415
-
-    return Pillow.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
-
-
-def _gif(images: list[Image]) -> bytes:
-    """All frames in one palette, repeated for ever."""
-    palette = _palette()
-    frames = [image.quantize(palette=palette, dither=NO_DITHER) for image in images]
-    buffer = io.BytesIO()
-    frames[0].save(
-        buffer, format="GIF", save_all=True, append_images=frames[1:],
-        duration=round(1000 / FRAMES_PER_SECOND), loop=0, optimize=False,
-    )  # fmt: skip
-    return buffer.getvalue()
-
-
-def _palette() -> Image:
-    """The inks of the picture, each in steps towards white: what smooth edges need."""
-    from matplotlib.colors import to_rgb  # noqa: PLC0415
-    from PIL import Image as Pillow  # noqa: PLC0415
-
-    inks = np.array([to_rgb(ink) for ink in (style.BLACK, style.BLUE, style.RED)])
-    steps = np.linspace(0.0, 1.0, 32)[:, None, None]
-    colours = np.rint(255.0 * (inks + steps * (1.0 - inks))).astype(int)
-    image = Pillow.new("P", (1, 1))
-    image.putpalette(colours.ravel().tolist())
-    return image

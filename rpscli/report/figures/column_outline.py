@@ -1,4 +1,4 @@
-"""The outline of a leaning column, true to scale, for pictures."""
+"""The outline of a leaning column and its contacts, true to scale, for pictures."""
 
 from __future__ import annotations
 
@@ -49,3 +49,13 @@ def leaning_outline(bearing: Bearing, rotation: float, displacement: float, lift
     turn = np.array([[cosine, -sine], [sine, cosine]])
     centre = (0.5 * displacement, bearing.half_height + 0.5 * lift)
     return np.asarray(upright_outline(bearing) @ turn + centre)
+
+
+def contact_points(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
+    """Where a leaning column touches ground and cap beam, (2, 2) [m]; arguments as above.
+
+    It has rolled the arc's length r |theta| beyond the edge of the flat part, up to r beta.
+    """
+    side = math.copysign(1.0, rotation)
+    reach = side * (bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta))
+    return np.array([[reach, 0.0], [displacement - reach, 2.0 * bearing.half_height + lift]])

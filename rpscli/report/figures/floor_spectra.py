@@ -39,9 +39,9 @@ def floor_spectra_figure(
         grid = figure.subplots(2, len(floors), squeeze=False, sharex=True, sharey="row")
         for column, floor in enumerate(floors):
             for row, name in enumerate(("pseudo_acceleration", "displacement")):
-                _draw(grid[row, column], isolated, fixed, name, floor - 1)
+                draw_floor_spectrum(grid[row, column], isolated, fixed, floor, name)
             grid[0, column].set_title(f"floor {floor}")
-            grid[1, column].set_xlabel("period [s]")
+            grid[0, column].set_xlabel("")
         for axes in grid[:, 0]:  # once all are drawn, since a row shares its limits
             axes.set_ylim(bottom=0.0)
         grid[0, 0].set_ylabel(style.folded(figure, "pseudo-acceleration [m/s²]"))
@@ -52,9 +52,15 @@ def floor_spectra_figure(
     return style.picture(draw, 4.8)
 
 
-def _draw(
-    axes: Axes, isolated: FloorSpectra, fixed: FloorSpectra | None, name: str, place: int
+def draw_floor_spectrum(
+    axes: Axes,
+    isolated: FloorSpectra,
+    fixed: FloorSpectra | None,
+    floor: int,
+    name: str = "pseudo_acceleration",
 ) -> None:
+    """The spectrum of a floor, counted from 1, or its `displacement`; beside the fixed base."""
+    place = floor - 1
     axes.plot(
         isolated.periods, getattr(isolated, name)[place], color=style.BLUE, label="on bearings"
     )
@@ -66,3 +72,4 @@ def _draw(
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set_xlim(isolated.periods[0], isolated.periods[-1])
+    axes.set_xlabel("period [s]")

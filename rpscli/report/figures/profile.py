@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,32 +25,56 @@ FIXED: dict[str, Any] = {"color": style.BLACK, "ls": "--", "label": "fixed base"
 
 def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Largest storey shears (kN, and over V_st), drifts and floor accelerations."""
-    series = [(isolated_demands(result), ISOLATED)]
-    if (fixed := fixed_base_demands(result)) is not None:
-        series.append((fixed, FIXED))
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title, result.record.name)
-        shear, drift, acceleration = figure.subplots(1, 3, sharey=True)
-        for demands, look in series:
-            _stairs(shear, demands.shear * 1e-3, look)
-            _stairs(drift, _drift(demands)[0], look)
-            floors = np.arange(1, result.structure.storeys + 1)
-            acceleration.plot(demands.floor_acceleration, floors, marker="o", ms=3.5, **look)
-        shear.set_xlabel(style.folded(figure, "storey shear [kN]"))
-        static = result.structure.static_base_shear * 1e-3
-        ratio = shear.secondary_xaxis("top", functions=style.over(static))
-        ratio.set_xlabel("$V_i/V_{st}$ [-]")
-        drift.set_xlabel(style.folded(figure, _drift(series[0][0])[1]))
-        acceleration.set_xlabel(style.folded(figure, "floor acceleration [m/s²]"))
-        acceleration.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label="PGA")
-        _levels(shear, result.structure.storeys)
-        for axes in (shear, drift, acceleration):
-            axes.set_xlim(left=0.0)
-        handles, names = acceleration.get_legend_handles_labels()
+        panels = figure.subplots(1, 3, sharey=True)
+        for axes, draw_one in zip(
+            panels, (draw_shears, draw_storey_drifts, draw_accelerations), strict=True
+        ):
+            draw_one(axes, result)
+            axes.set_xlabel(style.folded(figure, axes.get_xlabel()))
+            axes.label_outer()
+        handles, names = panels[-1].get_legend_handles_labels()
         figure.legend(handles, names, loc="outside lower center", ncols=3)
 
     return style.picture(draw, 4.2)
+
+
+def draw_shears(axes: Axes, result: TimeHistoryResult) -> None:
+    """Largest storey shears, over V_st on top."""
+    for demands, look in _series(result):
+        _stairs(axes, demands.shear * 1e-3, look)
+    axes.set_xlabel("storey shear [kN]")
+    static = result.structure.static_base_shear * 1e-3
+    ratio = axes.secondary_xaxis("top", functions=style.over(static))
+    ratio.set_xlabel("$V_i/V_{st}$ [-]")
+    _levels(axes, result.structure.storeys)
+
+
+def draw_storey_drifts(axes: Axes, result: TimeHistoryResult) -> None:
+    """Largest storey drifts, as a part of the storey heights where these are known."""
+    for demands, look in _series(result):
+        values, label = _drift(demands)
+        _stairs(axes, values, look)
+        axes.set_xlabel(label)
+    _levels(axes, result.structure.storeys)
+
+
+def draw_accelerations(axes: Axes, result: TimeHistoryResult) -> None:
+    """Largest absolute floor accelerations, and the ground's."""
+    floors = np.arange(1, result.structure.storeys + 1)
+    for demands, look in _series(result):
+        axes.plot(demands.floor_acceleration, floors, marker="o", ms=3.5, **look)
+    axes.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label="PGA")
+    axes.set_xlabel("floor acceleration [m/s²]")
+    _levels(axes, result.structure.storeys)
+
+
+def _series(result: TimeHistoryResult) -> Iterator[tuple[StoreyDemands, dict[str, Any]]]:
+    yield isolated_demands(result), ISOLATED
+    if (fixed := fixed_base_demands(result)) is not None:
+        yield fixed, FIXED
 
 
 def _stairs(axes: Axes, values: Array, look: dict[str, Any]) -> None:
@@ -68,3 +93,4 @@ def _levels(axes: Axes, storeys: int) -> None:
     axes.set_ylim(0.0, storeys + 0.15)
     axes.set_yticks(range(0, storeys + 1, step))
     axes.set_ylabel("level (0 = cap beam)")
+    axes.set_xlim(left=0.0)

@@ -36,7 +36,7 @@ def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
         panels[-1].set_xlim(0.0, motion.duration)
         panels[-1].set_xlabel("time [s]")
         left.align_ylabels()
-        _draw_spectrum(right.subplots(), spectrum)
+        draw_spectrum(right.subplots(), spectrum)
 
     return style.picture(draw, 4.2, 8.0)
 
@@ -53,7 +53,8 @@ def _draw_history(
     )
 
 
-def _draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
+def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
+    """Pseudo-acceleration against period."""
     axes.plot(spectrum.periods, spectrum.pseudo_acceleration, color=style.RED, lw=1.3)
     axes.set_xlabel("period [s]")
     axes.set_ylabel(f"pseudo-acceleration, {spectrum.damping:.0%} damping [m/s²]")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,34 +34,43 @@ NEAR = 2.0
 
 def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Ground acceleration, rotation with its phases, and events of a time history."""
-    rows = [row for row in EVENT_ROWS if any(event.kind in row[0] for event in result.events)]
+    rows = _rows(result)
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title, result.record.name)
         ground, rotation, events = figure.subplots(
             3, 1, sharex=True, height_ratios=[1.0, 2.4, 0.18 * max(len(rows), 1)]
         )
-        _draw_ground(ground, result)
-        _draw_rotation(rotation, result)
-        _draw_events(events, result, rows)
+        draw_ground(ground, result)
+        draw_rotation(rotation, result)
+        draw_events(events, result)
         events.set_xlim(0.0, result.trace.time[-1])
-        events.set_xlabel("time [s]")
+        for axes in (ground, rotation):
+            axes.label_outer()
         figure.align_ylabels()
 
     return style.picture(draw, 4.6 + 0.15 * len(rows))
 
 
-def _draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
+def _rows(result: TimeHistoryResult) -> list[EventRow]:
+    """Kinds of event that there are."""
+    return [row for row in EVENT_ROWS if any(event.kind in row[0] for event in result.events)]
+
+
+def draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
+    """Ground acceleration, and what uplifts quasi-statically."""
     limit = result.structure.uplift_acceleration
     axes.plot(result.trace.time, result.trace.ground_acceleration, color=style.BLACK, lw=0.7)
     for sign in (1.0, -1.0):
         axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
     axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
     axes.set_ylabel("ground\nacceleration [m/s²]")
+    axes.set_xlabel("time [s]")
     style.legend_above(axes, 1)
 
 
-def _draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
+    """Rotation with its phases, beta and theta_cr; over theta_cr on the right."""
     trace, critical = result.trace, result.structure.critical_rotation
     beta = result.structure.bearing.beta
     levels = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
@@ -77,6 +85,7 @@ def _draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
     for symbol, value, line, colour in levels:
         _level(axes, value, line, colour, symbol)
     axes.set_ylabel("rotation $\\theta$ [rad]")
+    axes.set_xlabel("time [s]")
     ratio = axes.secondary_yaxis("right", functions=style.over(critical))
     ratio.set_ylabel("$\\theta/\\theta_{cr}$ [-]")
     style.legend_above(axes, 4)
@@ -103,7 +112,9 @@ def _level(axes: Axes, value: float, line: str, colour: str, symbol: str) -> Non
     axes.axhline(-value, color=colour, ls=line)
 
 
-def _draw_events(axes: Axes, result: TimeHistoryResult, rows: Sequence[EventRow]) -> None:
+def draw_events(axes: Axes, result: TimeHistoryResult) -> None:
+    """Marks at the times of the events, one row a kind."""
+    rows = _rows(result)
     axes.set_yticks(range(len(rows)), [name for _, name, _ in rows])
     axes.tick_params(axis="y", length=0.0, labelsize=0.9 * style.small())
     axes.set_ylim(len(rows) - 0.4, -0.6)
@@ -111,3 +122,4 @@ def _draw_events(axes: Axes, result: TimeHistoryResult, rows: Sequence[EventRow]
     for row, (kinds, _, colour) in enumerate(rows):
         times = [event.time for event in result.events if event.kind in kinds]
         axes.plot(times, [row] * len(times), "|", color=colour, ms=6.0, mew=0.7)
+    axes.set_xlabel("time [s]")

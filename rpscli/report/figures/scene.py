@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-BOX_ASPECT = 0.85
+BOX_ASPECT = 0.8
 """Height of the picture over its width."""
 
 COLUMNS = 3
@@ -47,16 +47,16 @@ class Scene:
         self.floors = [axes.plot([], [], color=style.BLUE, lw=3.0)[0] for _ in self.levels[1:]]
         self.sides = [axes.plot([], [], **look)[0] for _ in (-1, 1)] if self.floors else []
         base = float(self.levels[0])
-        self.devices = SceneDevices(axes, result, self.feet, 0.5 * self.width, base)
-        self.clock = axes.set_title("", loc="right", fontsize=8.0)
-        axes.figure.suptitle(title, fontsize=9.0, parse_math=False)
+        self.devices = SceneDevices(axes, structure.devices, self.feet, 0.5 * self.width, base)
+        self.clock = axes.set_title("", loc="right", fontsize=style.small())
+        axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
-        axes.set_xlabel(self._legend(speed), fontsize=8.0)
+        axes.set_xlabel(self._legend(speed), fontsize=style.small())
         self._frame(axes)
 
     def _legend(self, speed: float) -> str:
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
-        return f"bearings to scale{drifts}; {speed:.2g} x real time"
+        return f"bearings to scale{drifts}; {_pace(speed)}"
 
     def _frame(self, axes: Axes) -> None:
         trace = self.result.trace
@@ -94,8 +94,19 @@ class Scene:
                 floor.set_data([at - half, at + half], [height, height])
             for side, line in zip((-half, half), self.sides, strict=True):
                 line.set_data(x + side, y)
-        self.devices.show(sample, shift, lift)
+        self.devices.show(shift, lift)
         self.clock.set_text(f"t = {trace.time[sample]:.2f} s")
+
+
+def _pace(speed: float) -> str:
+    """How fast a film runs, in words.
+
+    >>> _pace(2.13), _pace(1.0), _pace(0.5)
+    ('2.1 times faster than real', 'in real time', '2 times slower than real')
+    """
+    if f"{speed:.2g}" == "1":
+        return "in real time"
+    return f"{max(speed, 1.0 / speed):.2g} times {'faster' if speed > 1.0 else 'slower'} than real"
 
 
 def _magnification(result: TimeHistoryResult, levels: Array) -> float:

@@ -1,32 +1,32 @@
-"""Devices in the picture of the structure: stops beside the beam, tendons, braces with dampers."""
+"""Devices in pictures of the structure: stops beside the beam, tendons, braces with dampers."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import Device, FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from rpscli.analyses.results import TimeHistoryResult
+    from matplotlib.lines import Line2D
 
 Array = NDArray[np.float64]
 
 
 class SceneDevices:
-    """Posts stand at the gap of each stop, red while it pushes; all dampers share one brace.
+    """Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a brace.
 
     Parameters
     ----------
     axes
-        Of the scene.
-    result
-        History with the forces of its devices.
+        Of the picture.
+    devices
+        Of the structure.
     feet
         Where the columns stand [m].
     half, base
@@ -34,32 +34,27 @@ class SceneDevices:
     """
 
     def __init__(
-        self, axes: Axes, result: TimeHistoryResult, feet: Array, half: float, base: float
+        self, axes: Axes, devices: Sequence[Device], feet: Array, half: float, base: float
     ) -> None:
-        self.trace, devices = result.trace, result.structure.devices
         self.feet, self.half, self.base = feet, half, base
-        self.stops = [
-            (index, [self._post(axes, side * (half + device.gap), base) for side in (-1.0, 1.0)])
-            for index, device in enumerate(devices)
+        self.stops: list[tuple[float, float, Line2D]] = [
+            (side, device.gap, axes.plot([], [], lw=2.5)[0])
+            for device in devices
             if isinstance(device, Stop)
+            for side in (-1.0, 1.0)
         ]
         count = len(feet) if any(isinstance(device, Tendon) for device in devices) else 0
         self.tendons = [axes.plot([], [], color=style.RED, lw=1.0)[0] for _ in range(count)]
         braced = any(isinstance(device, ViscousDamper | FrictionDamper) for device in devices)
-        look = {"color": style.RED, "lw": 1.5, "marker": "s", "markevery": [1], "ms": 5.0}
-        self.brace = axes.plot([], [], **look)[0] if braced else None  # type: ignore[arg-type]
+        look: dict[str, Any] = {"color": style.RED, "lw": 1.5, "marker": "s", "markevery": [1]}
+        self.brace = axes.plot([], [], **look, ms=5.0)[0] if braced else None
 
-    @staticmethod
-    def _post(axes: Axes, at: float, base: float) -> object:
-        return axes.plot([at, at], [0.0, 1.25 * base], color=style.BLACK, lw=2.5)[0]
-
-    def show(self, sample: int, shift: float, lift: float) -> None:
-        """Move them to where they are at a sample."""
-        for index, posts in self.stops:
-            force = float(self.trace.devices.force[sample, index])
-            for side, post in zip((-1.0, 1.0), posts, strict=True):
-                pushes = force * side < 0.0
-                post.set_color(style.RED if pushes else style.BLACK)  # type: ignore[attr-defined]
+    def show(self, shift: float, lift: float) -> None:
+        """Move them with the cap beam, displaced and lifted [m]."""
+        for side, gap, post in self.stops:
+            at, pushed = side * (self.half + gap), max(side * shift - gap, 0.0)
+            post.set_data([at, at + side * pushed], [0.0, 1.06 * self.base])
+            post.set_color(style.RED if pushed else style.BLACK)
         for foot, tendon in zip(self.feet, self.tendons, strict=False):
             tendon.set_data([foot, foot + shift], [0.0, self.base + lift])
         if self.brace is not None:

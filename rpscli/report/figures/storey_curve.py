@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.report.figures import style
 
@@ -14,52 +16,75 @@ if TYPE_CHECKING:
 
     from rpscli.analyses.pushover import PushoverResult
 
+DISPLACEMENT = "cap beam displacement $u_b$ [m]"
+
 
 def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
     """Force and lift of the cap beam against its displacement, to the critical rotation."""
-    curve, beta = result.curve, result.structure.bearing.beta
-    factor, prefix = style.engineering(float(np.max(curve.force)))
-    rolling = curve.rotation <= beta
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title, "storey of the bearings alone")
         force, lift = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, 1.0])
-        u, F, back = curve.displacement, factor * curve.force, factor * curve.unloading_force
-        returns = bool(np.any(back != F))
-        if returns:
-            force.plot([], [], color=style.GREY, lw=1.5, ls="--", label="on the way back")
-            force.axhline(0.0, color=style.GREY, lw=0.6)
-        force.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
-        for inside, colour, name in (
-            (rolling, style.BLUE, "rolling"),
-            (~rolling | (curve.rotation == beta), style.RED, "rocking"),
-        ):
-            if np.count_nonzero(inside) > 1:
-                force.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
-                if returns:
-                    force.plot(u[inside], back[inside], color=colour, lw=1.5, ls="--")
-                lift.plot(u[inside], 1e3 * curve.lift[inside], color=colour, lw=2.0)
-        _mark(force, 0.0, F[0], "uplift", (8.0, -4.0 if F[1] > F[0] else 6.0))
-        if 0.0 < beta < result.critical_rotation:
-            at = int(np.searchsorted(curve.rotation, beta))
-            rises = F[at + 1] > F[at]
-            side = (-7.0 if rises else 7.0, 6.0)
-            _mark(force, u[at], F[at], f"$\\beta$ = {beta:.3f} rad", side)
-        critical = f"$\\theta_{{cr}}$ = {result.critical_rotation:.3f} rad"
-        _mark(force, u[-1], F[-1], critical, (-32.0, 4.0))
-        _limits(force, u[-1], F.max(), min(0.0, back.min()) if returns else 0.0)
-        force.set_ylabel(f"force at the cap beam [{prefix}N]")
-        ratio = force.secondary_yaxis(
-            "right", functions=style.over(factor * result.structure.uplift_force)
-        )
-        ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
-        lift.set_ylim(bottom=0.0)
-        lift.set_ylabel("lift [mm]")
-        lift.set_xlabel("cap beam displacement $u_b$ [m]")
-        style.legend_above(force, 3 + returns)
+        draw_force(force, result)
+        draw_lift(lift, result)
+        force.label_outer()
         figure.align_ylabels()
 
     return style.picture(draw, 4.8, 5.8)
+
+
+def draw_force(axes: Axes, result: PushoverResult) -> None:
+    """Force against displacement, rolling and rocking, and back where the way back is another."""
+    curve, beta = result.curve, result.structure.bearing.beta
+    factor, prefix = style.engineering(float(np.max(curve.force)))
+    u, F, back = curve.displacement, factor * curve.force, factor * curve.unloading_force
+    returns = bool(np.any(back != F))
+    if returns:
+        axes.plot([], [], color=style.GREY, lw=1.5, ls="--", label="on the way back")
+        axes.axhline(0.0, color=style.GREY, lw=0.6)
+    axes.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
+    for inside, colour, name in _phases(result):
+        axes.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
+        if returns:
+            axes.plot(u[inside], back[inside], color=colour, lw=1.5, ls="--")
+    rises = F[1] > F[0] > 0.15 * F.max()  # and there is room below
+    _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else 6.0))
+    if 0.0 < beta < result.critical_rotation:
+        at = int(np.searchsorted(curve.rotation, beta))
+        side = (-7.0 if F[at + 1] > F[at] else 7.0, 6.0)
+        _mark(axes, u[at], F[at], f"$\\beta$ = {beta:.3f} rad", side)
+    critical = f"$\\theta_{{cr}}$ = {result.critical_rotation:.3f} rad"
+    _mark(axes, u[-1], F[-1], critical, (-44.0, 3.0))
+    _limits(axes, u[-1], F.max(), min(0.0, back.min()) if returns else 0.0)
+    axes.set_xlabel(DISPLACEMENT)
+    axes.set_ylabel(f"force at the cap beam [{prefix}N]")
+    ratio = axes.secondary_yaxis(
+        "right", functions=style.over(factor * result.structure.uplift_force)
+    )
+    ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
+    style.legend_above(axes, 3 + returns)
+
+
+def draw_lift(axes: Axes, result: PushoverResult) -> None:
+    """Lift against displacement."""
+    for inside, colour, _ in _phases(result):
+        axes.plot(
+            result.curve.displacement[inside], 1e3 * result.curve.lift[inside], color=colour, lw=2.0
+        )
+    axes.set_ylim(bottom=0.0)
+    axes.set_ylabel("lift [mm]")
+    axes.set_xlabel(DISPLACEMENT)
+
+
+def _phases(result: PushoverResult) -> Iterator[tuple[NDArray[np.bool_], str, str]]:
+    """Points of the curve in each phase that there is, its colour and its name."""
+    rotation, beta = result.curve.rotation, result.structure.bearing.beta
+    for inside, colour, name in (
+        (rotation <= beta, style.BLUE, "rolling"),
+        (rotation >= beta, style.RED, "rocking"),
+    ):
+        if np.count_nonzero(inside) > 1:
+            yield inside, colour, name
 
 
 def _mark(axes: Axes, x: float, y: float, text: str, offset: tuple[float, float]) -> None:

@@ -13,7 +13,7 @@ from rpscli.report.figures.look import SMALL, in_force, quiet_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubFigure
 
 # Okabe and Ito's colours: told apart by every kind of colour vision, and in grey.
 BLACK = "#000000"
@@ -79,13 +79,10 @@ def picture(
     layout
         None for a figure that places its axes itself, which draws four times as fast.
     """
-    quiet_matplotlib()
-    import matplotlib.style  # noqa: PLC0415
-    from matplotlib.figure import Figure  # noqa: PLC0415
-
     now = in_force()
-    # "default" first: a user's own matplotlibrc must not change what a report looks like.
-    with matplotlib.style.context(["default", STYLE, now.look.settings]), _no_noise():
+    with in_style(), _no_noise():
+        from matplotlib.figure import Figure  # noqa: PLC0415
+
         figure = Figure(figsize=(now.look.width(width), height), layout=layout)
         draw(figure)
         if (engine := figure.get_layout_engine()) is not None:
@@ -102,12 +99,28 @@ def picture(
 
 
 @contextmanager
+def in_style() -> Iterator[None]:
+    """Figures that are made inside look like those that the program writes."""
+    quiet_matplotlib()
+    import matplotlib.style  # noqa: PLC0415
+
+    # "default" first: a user's own matplotlibrc must not change what a report looks like.
+    with matplotlib.style.context(["default", STYLE, in_force().look.settings]):
+        yield
+
+
+@contextmanager
 def _no_noise() -> Iterator[None]:
     """Letters that the font lacks show in the picture; matplotlib prints a line for each."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         warnings.filterwarnings("ignore", message="Matplotlib currently does not support")
         yield
+
+
+def inches(figure: Figure | SubFigure) -> tuple[float, float]:
+    """Width and height of a figure, or of a part of it [in]."""
+    return figure.bbox.width / figure.dpi, figure.bbox.height / figure.dpi
 
 
 def small() -> float:
@@ -123,7 +136,7 @@ def heading(figure: Figure, *parts: str) -> None:
     What does not fit beside the first part, the title, stands below it; lines are cut to the width.
     """
     title, *others = [part for part in parts if part] or [""]
-    most = int(LETTERS_PER_INCH * figure.get_figwidth() * 8.0 / small())
+    most = int(LETTERS_PER_INCH * inches(figure)[0] * 8.0 / small())
     lines = ["   |   ".join((title, *others))]
     if others and len(lines[0]) > most:
         lines = [title, "   |   ".join(others)]
@@ -134,9 +147,7 @@ def heading(figure: Figure, *parts: str) -> None:
 
 def legend_above(axes: Axes, columns: int) -> None:
     """A legend on top of the axes, where it covers nothing; folded where the figure is narrow."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None, "axes stand in a figure"
-    width = figure.get_figwidth()
+    width, _ = inches(axes.figure)
     if width < WIDTH:
         widest = max(_letters(str(text)) for text in axes.get_legend_handles_labels()[1])
         room = (width - 0.5) / (0.4 + widest / LETTERS_PER_INCH)
@@ -162,7 +173,7 @@ def _letters(text: str) -> int:
 
 def folded(figure: Figure, text: str) -> str:
     """A label of one of several axes side by side: in a narrow figure, one word a line."""
-    return text if figure.get_figwidth() >= WIDTH else text.replace(" ", "\n")
+    return text if inches(figure)[0] >= WIDTH else text.replace(" ", "\n")
 
 
 def over(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:

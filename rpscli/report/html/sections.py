@@ -8,15 +8,24 @@ from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 from rpscli.case.schema.key_units import unit
+from rpscli.report.bundles import bearing_files
 from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Section, Table
-from rpscli.report.html.pictures import Picture, page_look
+from rpscli.report.html.pictures import Picture, page_look, pictures
 from rpscli.report.tables.derivation import derivations, first_shape
 
 if TYPE_CHECKING:
     from rpscli.model.podium import PodiumStructure
+
+CAPTIONS = {
+    "s": "The structure at rest.",
+    "bearing": "A column at rest, where rolling ends and at the critical rotation, to one scale;"
+    " one of its ends enlarged; and the horizontal force at the cap beam that holds it there."
+    " R runs from the middle of the column to the edge of the flat part of its end; dots are"
+    " contacts.",
+}
 
 DIGITS = 6
 THEORY = "THEORY.md"
@@ -25,14 +34,10 @@ HIDDEN = "| assumed |"
 
 
 def structure_section(structure: PodiumStructure, title: str, look: Look) -> Section:
-    """The drawing, and the storeys."""
-    files = figure_files({"s": lambda: structure_figure(structure, title)}, page_look(look))
-    drawing = Picture(
-        {name.removeprefix("s."): content for name, content in files.items()},
-        "The structure at rest, and one of its columns enlarged. R runs from the middle of the"
-        " column to the edge of the flat part of its end.",
-    )
-    blocks: list[Block] = [drawing]
+    """The drawings, and the storeys."""
+    made = figure_files({"s": lambda: structure_figure(structure, title)}, page_look(look))
+    files = [*made.items(), *bearing_files(structure, title, page_look(look))]
+    blocks: list[Block] = [Picture(each, CAPTIONS[stem]) for stem, each in pictures(files)]
     if structure.superstructure is not None:
         blocks += ["Storeys, the roof on top:", _storeys(structure)]
     return Section("The structure", blocks)

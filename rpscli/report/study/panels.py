@@ -129,7 +129,7 @@ def _legend_lines(figure: Figure, grid: Any) -> int:
     if not found:
         return 0
     widest = max(len(name) for name in found)
-    room = figure.get_figwidth() * LETTERS_AN_INCH
+    room = style.inches(figure)[0] * LETTERS_AN_INCH
     columns = max(1, min(len(found), 5, int(room / (widest + 7))))
     figure.legend(found.values(), found.keys(), loc="lower center", ncols=columns)
     return math.ceil(len(found) / columns)
@@ -141,9 +141,10 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> 
     titles = [axes.get_title() for axes in grid.flat]
     title_lines = max(title.count("\n") for title in titles) + any(titles)
     further_lines = figure.get_suptitle().count("\n")
-    width, height = figure.get_size_inches()
-    height += LINE * (max(legend_lines - 1, 0) + further_lines)
-    figure.set_size_inches(width, height)
+    width, height = style.inches(figure)
+    if hasattr(figure, "set_size_inches"):  # else it is a part of somebody's figure
+        height += LINE * (max(legend_lines - 1, 0) + further_lines)
+        figure.set_size_inches(width, height)
     left, right = 0.62, 0.14
     bottom = 0.52 + LINE * legend_lines + (0.06 if legend_lines else 0.0)
     top = 0.32 + LINE * (title_lines + further_lines)

@@ -1,0 +1,267 @@
+"""The bearing with its dimensions: at rest, where rolling ends, and at the critical rotation.
+
+Beside these, which have one scale, an end of the column enlarged, and the restoring force.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rpscli.report.figures import style
+from rpscli.report.figures.column_outline import contact_points, leaning_outline
+from rpscli.report.figures.look import in_force
+from rpscli.report.figures.scene_devices import SceneDevices
+from rpscli.report.figures.storey_curve import draw_force
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rpscli.analyses.pushover import PushoverResult
+    from rpscli.model.bearing import Bearing
+    from rpscli.model.podium import PodiumStructure
+
+COLUMN, BEAM = "#DDDDDD", "#CCE3F0"
+
+ASPECT = 1.15
+"""Height of the picture of a column over its width."""
+END_ASPECT = 1.0
+"""The same of the picture of an end."""
+NARROW = 1.5
+"""Width of a picture in which a title needs more lines [in]."""
+BESIDE = 0.35
+"""How far the cap beam is drawn to either side of the column, over the column's width."""
+ROOM = (0.16, 0.10, 0.03, 0.13)
+"""For dimensions: left, right, below and above the column, as parts of the picture."""
+
+
+class BearingView:
+    """A column between ground and cap beam, to scale; `show` leans it."""
+
+    def __init__(self, axes: Axes, structure: PodiumStructure) -> None:
+        self.structure, bearing = structure, structure.bearing
+        self.height = 2.0 * bearing.half_height
+        self.half = (1.0 + 2.0 * BESIDE) * half_width(bearing)
+        self.thickness = 0.06 * self.height
+        axes.axhline(0.0, color=style.BLACK, lw=1.2)
+        self.column = axes.fill([], [], fc=COLUMN, ec=style.BLACK, lw=1.0)[0]
+        self.beam = None
+        if structure.cap_beam_mass > 0.0:
+            self.beam = axes.fill([], [], fc=BEAM, ec=style.BLACK, lw=0.7)[0]
+        look: dict[str, Any] = {"color": style.RED, "ms": 4.0, "zorder": 4.0}
+        self.contacts = axes.plot([], [], "o", **look)[0]
+        self.thrust = axes.plot([], [], ls=(0, (5, 3)), lw=0.7, color=style.RED)[0]
+        self.devices = SceneDevices(axes, structure.devices, np.zeros(1), self.half, self.height)
+        axes.set_xticks([])
+        axes.set_yticks([])
+        axes.grid(visible=False)
+
+    def show(self, rotation: float) -> tuple[float, float]:
+        """Lean the column to a rotation [rad]; u_b and v_b there [m].
+
+        The dashed line joins the contacts: the weight restores as long as it leans the other way.
+        """
+        bearing = self.structure.bearing
+        _, u, v = self.structure.path(np.array([abs(rotation)]))
+        shift, lift = math.copysign(float(u[0]), rotation), float(v[0])
+        self.column.set_xy(leaning_outline(bearing, rotation, shift, lift))
+        touching = contact_points(bearing, rotation, shift, lift)
+        self.thrust.set_data(*touching.T)
+        if rotation == 0.0:  # both edges of the flat part
+            touching = np.array([(side * x, y) for x, y in touching for side in (1.0, -1.0)])
+            self.thrust.set_data([], [])
+        if self.beam is None:
+            touching = touching[: len(touching) // 2]  # nothing stands on it
+        self.contacts.set_data(*touching.T)
+        if self.beam is not None:
+            low = self.height + lift
+            left, right, top = shift - self.half, shift + self.half, low + self.thickness
+            self.beam.set_xy([(left, low), (right, low), (right, top), (left, top)])
+        self.devices.show(shift, lift)
+        return shift, lift
+
+
+def bearing_figure(result: PushoverResult, title: str) -> bytes:
+    """The states of a column, an end of it enlarged, and the restoring force with the states."""
+    structure = result.structure
+    beta, critical = structure.bearing.beta, structure.critical_rotation
+    states = [0.0, *([beta] if 0.0 < beta < critical else []), critical]
+    narrow = in_force().look.width(style.WIDTH) < style.WIDTH
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title)
+        heights = [1.9 if narrow else 1.15, 1.0]
+        above, below = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)[:, 0]
+        cells = above.subplots(2 if narrow else 1, 2 if narrow else 3).ravel()
+        for axes, rotation in zip(cells, states, strict=False):
+            draw_bearing(axes, structure, rotation)
+        if len(states) < len(cells):
+            end, force = cells[len(states)], below.subplots()
+        else:
+            end, force = below.subplots(1, 2, width_ratios=[1.0, 2.0])
+        for axes in cells[len(states) + 1 :]:
+            axes.set_axis_off()
+        draw_end(end, structure.bearing)
+        draw_force(force, result)
+
+    return style.picture(draw, 7.6 if narrow else 6.2)
+
+
+def draw_bearing(axes: Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
+    """A column at a rotation [rad]: its dimensions at rest, displacement and lift if it leans."""
+    bearing, critical = structure.bearing, structure.critical_rotation
+    view = BearingView(axes, structure)
+    u, v = view.show(rotation)
+    height, half = view.height, view.half
+    _, far, high = structure.path(np.array([max(abs(rotation), critical)]))
+    posts = [half + gap for _, gap, _ in view.devices.stops]
+    right, left = max(float(far[0]) + half, *posts, 0.0), max(half, *posts, 0.0)
+    if rotation < 0.0:
+        left, right = right, left
+    corners = (-left, right, 0.0, height + float(high[0]) + view.thickness)
+    _frame(axes, corners, ROOM, ASPECT)
+    axes.set_axis_off()
+    title = _state(bearing, critical, rotation, u, v)
+    if axes.get_window_extent().width / axes.figure.dpi < NARROW:
+        title = title.replace(", ", "\n").replace(": ", "\n")
+    axes.set_title(title, fontsize=style.small())
+    if rotation == 0.0:
+        _draw_dimensions(axes, bearing)
+        return
+    grey: dict[str, Any] = {"color": style.GREY, "lw": 0.7, "ls": ":"}
+    x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
+    axes.plot([*x, x[0]], [*y, y[0]], **grey)
+    top = height + v + 2.2 * view.thickness
+    for at in (0.0, u):
+        axes.plot([at, at], [height, top], **grey)
+    _arrow(axes, (0.0, top), (u, top), "$u_b$", (0.0, 2.0))
+    at = u + math.copysign(0.75 * half, rotation)
+    axes.plot([0.0, at], [height, height], **grey)
+    if view.beam is None:
+        axes.plot([u, at], [height + v, height + v], **grey)
+    _arrow(axes, (at, height), (at, height + v), "$v_b$", (0.0, -2.0), at_end=True)
+
+
+def draw_end(axes: Axes, bearing: Bearing) -> None:
+    """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
+    half, B = half_width(bearing), bearing.half_width
+    x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
+    axes.axhline(0.0, color=style.BLACK, lw=1.2)
+    axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=1.0)
+    axes.plot([-B, B], [0.0, 0.0], color=style.RED, lw=2.5, solid_capstyle="butt")
+    frame_end(axes, bearing, below=0.42)
+    axes.set_axis_off()
+    step = 0.08 * (axes.get_ylim()[1] - axes.get_ylim()[0])
+    measure(axes, (-B, -step), (B, -step), f"2B = {2.0 * B:.4g} m")
+    title = "an end, enlarged: flat"
+    if not bearing.is_flat:
+        measure(axes, (-half, -3.2 * step), (half, -3.2 * step), f"2B' = {2.0 * half:.4g} m")
+        edge = bearing.radius * (1.0 - math.cos(bearing.beta))
+        axes.plot([half, 1.5 * half], [edge, edge], color=style.GREY, lw=0.7, ls=":")
+        middle = 0.5 * bearing.beta
+        arc = (B + bearing.radius * math.sin(middle), bearing.radius * (1.0 - math.cos(middle)))
+        axes.annotate(
+            f"r = {bearing.radius:.4g} m\nβ = {bearing.beta:.3g} rad",
+            arc, (0.0, 4.0 * step), arrowprops={"arrowstyle": "->", "lw": 0.6},
+            ha="center", va="center", fontsize=style.small(),
+        )  # fmt: skip
+        axes.text(1.06 * half, edge, f"{1e3 * edge:.3g} mm", va="bottom", fontsize=style.small())
+        title = "an end, enlarged"
+    axes.set_title(title, fontsize=style.small())
+
+
+def frame_end(axes: Axes, bearing: Bearing, below: float = 0.1) -> None:
+    """Bring the lower end of a column into view; `below` the ground, as a part of the picture."""
+    half = half_width(bearing)
+    _frame(axes, (-half, half, 0.0, 0.0), (0.2, 0.2, below, 1.0 - below), END_ASPECT)
+
+
+def half_width(bearing: Bearing) -> float:
+    """B', or B where the ends are flat [m]."""
+    return bearing.half_width + bearing.radius * math.sin(bearing.beta)
+
+
+def _state(bearing: Bearing, critical: float, rotation: float, u: float, v: float) -> str:
+    """What a panel shows, in two lines."""
+    if rotation == 0.0:
+        return f"at rest\n$\\alpha$ = {bearing.alpha:.3g} rad, $R$ = {bearing.semi_diagonal:.4g} m"
+    name = f"$\\theta$ = {rotation:.3g} rad"
+    if rotation == bearing.beta:
+        name = f"end of rolling: $\\beta$ = {rotation:.3g} rad"
+    elif rotation == critical:
+        name = f"critical: $\\theta_{{cr}}$ = {rotation:.3g} rad"
+    return f"{name}\n$u_b$ = {u:.3g} m, $v_b$ = {1e3 * v:.3g} mm"
+
+
+def _draw_dimensions(axes: Axes, bearing: Bearing) -> None:
+    """R from the middle of the column to the edge, and the height."""
+    H, B = bearing.half_height, bearing.half_width
+    axes.plot([0.0, B], [H, 0.0], color=style.RED, lw=1.0)
+    axes.plot([0.0, 0.0], [0.0, H], color=style.RED, lw=0.6, ls=(0, (6, 3)))
+    axes.plot(0.0, H, "o", color=style.RED, ms=3.0)
+    words: dict[str, Any] = {"fontsize": style.small(), "color": style.RED}
+    axes.annotate("$R$", (0.5 * B, 0.5 * H), (3.0, 0.0), textcoords="offset points", **words)
+    axes.annotate("$\\alpha$", (0.0, 0.45 * H), (-9.0, 0.0), textcoords="offset points", **words)
+    start, end = axes.get_xlim()
+    left = start + 0.14 * (end - start)
+    measure(axes, (left, 0.0), (left, 2.0 * H), f"2H = {2.0 * H:.4g} m", turned=True)
+
+
+def _frame(
+    axes: Axes,
+    content: tuple[float, float, float, float],
+    room: tuple[float, float, float, float],
+    aspect: float,
+) -> None:
+    """Limits around left, right, bottom and top; a metre is as high as it is wide.
+
+    `room` is kept free on these sides, as parts of the picture; `aspect` is height over width.
+    """
+    left, right, bottom, top = content
+    across, upwards = 1.0 - room[0] - room[1], 1.0 - room[2] - room[3]
+    width = (right - left) / across
+    if upwards > 0.0:
+        width = max(width, (top - bottom) / upwards / aspect)
+    start = 0.5 * (left + right) - width * (room[0] + 0.5 * across)
+    floor = bottom - room[2] * aspect * width
+    axes.set_xlim(start, start + width)
+    axes.set_ylim(floor, floor + aspect * width)
+    axes.set_box_aspect(aspect)
+
+
+def measure(
+    axes: Axes,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    text: str,
+    *,
+    turned: bool = False,
+) -> None:
+    """A dimension line with arrows at both ends and its text beside: on its left or below."""
+    upright = start[0] == end[0]
+    _arrow(axes, start, end, text, (-3.0, 0.0) if upright else (0.0, -3.0), turned=turned)
+
+
+def _arrow(
+    axes: Axes,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    text: str,
+    offset: tuple[float, float],
+    *,
+    turned: bool = False,
+    at_end: bool = False,
+) -> None:
+    """A double arrow with a text, offset [pt] from its middle or from its start."""
+    line = {"arrowstyle": "<->", "lw": 0.6, "color": style.BLACK, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", end, start, arrowprops=line)
+    at = start if at_end else (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
+    axes.annotate(
+        text, at, offset, textcoords="offset points", fontsize=style.small(),
+        ha="right" if offset[0] < 0.0 else "center",
+        va="center" if offset[1] == 0.0 else "top" if offset[1] < 0.0 else "bottom",
+        rotation=90.0 if turned else 0.0,
+    )  # fmt: skip
