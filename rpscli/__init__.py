@@ -68,6 +68,7 @@ __all__ = [
     "TimeHistorySettings",
     "__version__",
     "demand",
+    "figures",
     "load_case",
     "load_record",
     "modal",
@@ -83,6 +84,8 @@ def __getattr__(name: str) -> Any:
 
     if name == "__version__":
         return import_module("rpscli.report.files.versions").program_version()
+    if name == "figures":
+        return import_module("rpscli.figures")
     for module, names in _HOMES.items():
         if name in names:
             return getattr(import_module(module), name)

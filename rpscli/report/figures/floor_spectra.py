@@ -41,7 +41,8 @@ def floor_spectra_figure(
             for row, name in enumerate(("pseudo_acceleration", "displacement")):
                 draw_floor_spectrum(grid[row, column], isolated, fixed, floor, name)
             grid[0, column].set_title(f"floor {floor}")
-            grid[0, column].set_xlabel("")
+        for axes in grid.flat:
+            axes.label_outer()
         for axes in grid[:, 0]:  # once all are drawn, since a row shares its limits
             axes.set_ylim(bottom=0.0)
         grid[0, 0].set_ylabel(style.folded(figure, "pseudo-acceleration [m/s²]"))
@@ -73,3 +74,8 @@ def draw_floor_spectrum(
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set_xlim(isolated.periods[0], isolated.periods[-1])
     axes.set_xlabel("period [s]")
+    words = {
+        "pseudo_acceleration": "pseudo-acceleration [m/s²]",
+        "displacement": "displacement [m]",
+    }
+    axes.set_ylabel(f"floor {floor}, {words[name]}")

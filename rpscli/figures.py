@@ -1,0 +1,74 @@
+"""Figures of results, drawn into axes of your own.
+
+Each function draws one panel into the matplotlib Axes that it gets first, with labels and units;
+titles, limits, colours and files are yours. `style` gives a figure the look of those that the
+program writes.
+
+>>> from rpscli import figures, load_case, pushover
+>>> from matplotlib.figure import Figure
+>>> axes = Figure().subplots()
+>>> figures.storey_curve(axes, pushover(load_case("cases/rigid_frame.yaml").structure))
+>>> axes.get_xlabel()
+'cap beam displacement $u_b$ [m]'
+
+After the axes come
+
+- a `TimeHistoryResult` for `ground_acceleration`, `rotation`, `events`, `displacements`,
+  `elastic_displacements`, `energy`, `moment`, `storey_shears`, `storey_drifts`,
+  `floor_accelerations`, and `device`, which takes the number of the device too, from 0;
+- a `PushoverResult` for `storey_curve`, `lift` and `capacity`;
+- a `ModalResult`, ``"rolling"`` or ``"rocking"``, and the number of the mode, for `mode`;
+- a `PodiumStructure` for `structure`, and for `bearing`, which takes a rotation [rad] too; a
+  `Bearing` for `bearing_end`;
+- response spectra for `spectrum` and `spectra`; floor spectra and the floor for `floor_spectrum`.
+"""
+
+from __future__ import annotations
+
+from rpscli.report.figures.bearing import draw_bearing as bearing
+from rpscli.report.figures.bearing import draw_end as bearing_end
+from rpscli.report.figures.capacity import draw_capacity as capacity
+from rpscli.report.figures.devices import draw_device as device
+from rpscli.report.figures.displacement import draw_displacements as displacements
+from rpscli.report.figures.displacement import draw_drifts as elastic_displacements
+from rpscli.report.figures.energy import draw_energy as energy
+from rpscli.report.figures.floor_spectra import draw_floor_spectrum as floor_spectrum
+from rpscli.report.figures.modes import draw_mode as mode
+from rpscli.report.figures.moment import draw_moment as moment
+from rpscli.report.figures.profile import draw_accelerations as floor_accelerations
+from rpscli.report.figures.profile import draw_shears as storey_shears
+from rpscli.report.figures.profile import draw_storey_drifts as storey_drifts
+from rpscli.report.figures.record import draw_spectrum as spectrum
+from rpscli.report.figures.rotation import draw_events as events
+from rpscli.report.figures.rotation import draw_ground as ground_acceleration
+from rpscli.report.figures.rotation import draw_rotation as rotation
+from rpscli.report.figures.spectra import draw_spectra as spectra
+from rpscli.report.figures.storey_curve import draw_force as storey_curve
+from rpscli.report.figures.storey_curve import draw_lift as lift
+from rpscli.report.figures.structure import draw_structure as structure
+from rpscli.report.figures.style import in_style as style
+
+__all__ = [
+    "bearing",
+    "bearing_end",
+    "capacity",
+    "device",
+    "displacements",
+    "elastic_displacements",
+    "energy",
+    "events",
+    "floor_accelerations",
+    "floor_spectrum",
+    "ground_acceleration",
+    "lift",
+    "mode",
+    "moment",
+    "rotation",
+    "spectra",
+    "spectrum",
+    "storey_curve",
+    "storey_drifts",
+    "storey_shears",
+    "structure",
+    "style",
+]

@@ -1,0 +1,129 @@
+"""`rpscli.figures`: panels in somebody else's axes."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from report.small_results import CURVED, curve, history, is_drawn, structure
+from rpscli import figures
+from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
+from rpscli.analyses.modal import modal
+from rpscli.analyses.pushover import pushover
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.model.devices import ViscousDamper
+from rpscli.records.measures.spectrum import response_spectrum
+
+MADE = replace(structure(CURVED, 3), devices=(ViscousDamper(2e5),))
+
+
+@cache
+def result() -> TimeHistoryResult:
+    return history(MADE, "pulse:half_sine?amplitude=0.3g&period=0.6")
+
+
+def spectrum_of_record() -> Any:
+    return response_spectrum(result().record, np.linspace(0.1, 2.0, 20))
+
+
+TIME = "time [s]"
+PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
+    "ground_acceleration": (lambda: (result(),), TIME, "ground\nacceleration [m/s²]"),
+    "rotation": (lambda: (result(),), TIME, "rotation $\\theta$ [rad]"),
+    "events": (lambda: (result(),), TIME, ""),
+    "displacements": (lambda: (result(),), TIME, "displacement relative\nto the ground [m]"),
+    "elastic_displacements": (lambda: (result(),), TIME, "relative\nto the cap beam [m]"),
+    "energy": (lambda: (result(),), TIME, "energy [kJ]"),
+    "moment": (lambda: (result(),), "rotation $\\theta$ [rad]", "contact points [MN m]"),
+    "storey_shears": (lambda: (result(),), "storey shear [kN]", "level (0 = cap beam)"),
+    "storey_drifts": (lambda: (result(),), "storey drift ratio [%]", "level (0 = cap beam)"),
+    "floor_accelerations": (lambda: (result(),), "floor acceleration [m/s²]", "level"),
+    "device": (lambda: (result(), 0), "$u_b$ [m]", "resistance [kN]"),
+    "storey_curve": (lambda: (pushover(MADE),), "$u_b$ [m]", "force at the cap beam [MN]"),
+    "lift": (lambda: (pushover(MADE),), "$u_b$ [m]", "lift [mm]"),
+    "capacity": (lambda: (pushover(MADE),), "roof displacement [m]", "sum of floor forces ["),
+    "mode": (lambda: (modal(MADE), "rolling", 1), "shape [-]", "height [m]"),
+    "spectrum": (lambda: (spectrum_of_record(),), "period [s]", "pseudo-acceleration, 5% damping"),
+    "spectra": (lambda: ([spectrum_of_record()] * 2,), "period [s]", "5% damping [m/s²]"),
+    "floor_spectrum": (
+        lambda: (isolated_floor_spectra(result()), fixed_base_floor_spectra(result()), 3),
+        "period [s]",
+        "floor 3, pseudo-acceleration [m/s²]",
+    ),
+    "bearing": (lambda: (MADE, 0.1), "", ""),
+    "bearing_end": (lambda: (CURVED,), "", ""),
+    "structure": (lambda: (MADE,), "", ""),
+}
+
+
+def test_every_panel_is_tried() -> None:
+    assert {*PANELS, "style"} == set(figures.__all__)
+
+
+def panel(name: str, axes: Axes) -> None:
+    arguments, _, _ = PANELS[name]
+    getattr(figures, name)(axes, *arguments())
+
+
+@pytest.mark.parametrize("name", PANELS)
+def test_a_panel_is_drawn_with_labels_and_units(name: str) -> None:
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    panel(name, right)
+    _, x_label, y_label = PANELS[name]
+    assert right.get_xlabel().endswith(x_label)
+    assert y_label in right.get_ylabel()
+    assert right.lines or right.patches
+    assert not left.has_data()  # nothing but the axes that were given
+    assert figure.get_suptitle() == ""
+    assert (figure.axes[0], figure.axes[1]) == (left, right)
+    figure.draw_without_rendering()
+
+
+@pytest.mark.parametrize("name", PANELS)
+def test_a_panel_stands_in_a_part_of_a_figure_too(name: str) -> None:
+    figure = Figure()
+    parts = figure.subfigures(1, 2, squeeze=False)[0]
+    panel(name, parts[1].subplots())
+    assert not parts[0].axes
+
+
+def test_its_numbers_are_those_of_the_result() -> None:
+    axes = Figure().subplots()
+    figures.displacements(axes, result())
+    trace = result().trace
+    is_drawn(curve(axes, "cap beam"), trace.time, trace.cap_beam_displacement)
+    is_drawn(curve(axes, "roof"), trace.time, trace.floor_displacements[:, -1])
+
+
+def test_fonts_are_the_users_and_style_is_ours() -> None:
+    with mpl.rc_context({"axes.labelsize": 17.0}):
+        axes = Figure().subplots()
+        figures.rotation(axes, result())
+        assert axes.xaxis.label.get_fontsize() == 17.0
+        with figures.style():
+            ours = Figure().subplots()
+            assert ours.xaxis.label.get_fontsize() == 9.0
+        assert mpl.rcParams["axes.labelsize"] == 17.0
+
+
+def test_the_module_does_not_load_matplotlib() -> None:
+    code = "import sys, rpscli; rpscli.figures.rotation; print('matplotlib' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_its_description_names_every_panel() -> None:
+    named = set(re.findall(r"`(\w+)`", figures.__doc__ or ""))
+    assert set(figures.__all__) <= named
