@@ -8,12 +8,30 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from rpscli.errors import UsageError
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.case.schema.scale_to import ScaleToSection
     from rpscli.records.ground_motion import GroundMotion, MotionComponents
+
+
+class _Factor(click.types.FloatParamType):
+    """A number; whoever gives an intensity is told where it goes."""
+
+    name = "factor"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter:
+            text = f"{value!r} is no number; scale to an intensity by --scale-to PGA=0.4g"
+            self.fail(text, param, ctx)
+
+
+FACTOR = _Factor()
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
 from rpscli.commands.acceptance import parse_condition
 from rpscli.commands.case_input import read_cases, write
-from rpscli.commands.motion import MotionRequest, single_motions
+from rpscli.commands.motion import FACTOR, MotionRequest, single_motions
 from rpscli.commands.shell.compilation import announce_compilation
 from rpscli.commands.shell.completions import FILE, condition_names
 from rpscli.commands.shell.failure import leave
@@ -57,7 +57,7 @@ FIGURES = 5
 @click.option(
     "--vertical", metavar="SRC", type=FILE, help="Vertical component, with the same time step."
 )
-@click.option("--scale", type=float, metavar="FACTOR", help="Factor on the acceleration.")
+@click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
 @click.option(
     "--scale-to",
     metavar="MEASURE=VALUE",

@@ -69,6 +69,7 @@ FAILURES = [
     (("timehistory", "small.yaml", "--set", "record=null"), 2, "UsageError", "--record"),
     (("timehistory", "small.yaml", "--fail-on", "rotation_rati=1"), 2, "UsageError", "_ratio?"),
     (("timehistory", "small.yaml", "--fail-on", "rotation_ratio"), 2, "UsageError", "=NUMBER"),
+    (("timehistory", "small.yaml", "--scale", "pga=0.4g"), 2, "UsageError", "--scale-to PGA=0.4g"),
     (("pushover", "small.yaml", "--pattern", "1,2"), 2, "UsageError", "3 floor forces"),
     (("pushover", "small.yaml", "--pattern", "mode"), 2, "UsageError", "first_mode"),
     (("record", "synth", "small.yaml"), 3, "RecordError", "small.yaml"),
@@ -206,6 +207,8 @@ def test_narrow_terminals_fold_words_and_break_no_number(
     assert max(len(line) for line in narrow.splitlines()) <= 44
     assert sorted(re.findall(r"\d+\.\d+", narrow)) == sorted(numbers)
     assert "…" not in narrow
+    words = rps("timehistory", "small.yaml").stdout.split()
+    assert {"storey", "acceleration"} <= set(words)  # heads of columns
 
 
 def test_a_reader_that_leaves_is_no_error(shell: Shell) -> None:

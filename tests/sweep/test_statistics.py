@@ -275,6 +275,14 @@ def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
     assert report.panels[0].lines[0].y == (0.5, 1.0)
 
 
+def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) -> None:
+    sizes = (f"{RHO}: [critical, 0.5, 0]", "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]")
+    table = table_of(study_of, lambda _: stored(), sizes)
+    options = LinesOptions(x="podium.bearing.semi_diagonal", y=("max_rotation",), series=())
+    (panel,) = lines_report(table, [stored()] * 36, options).panels
+    assert panel.lines[0].x == (1.5, 2.0, 2.5)
+
+
 def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: Make) -> None:
     begin = STUDY.index("records:")
     design = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))

@@ -24,11 +24,12 @@ class Doubt(NamedTuple):
     Parameters
     ----------
     sentence
-        What is unusual about it, the same for all cases, with ``{}`` for the number.
+        What is unusual about it, the same for all cases, with ``{0}`` for the number and ``{1}``
+        for the detail.
     value
         The number; None where there is none.
     detail
-        What follows the number in a single case.
+        What a single case has more to say.
     """
 
     sentence: str
@@ -38,18 +39,18 @@ class Doubt(NamedTuple):
     def __str__(self) -> str:
         """As a warning.
 
-        >>> str(Doubt("a storey drifts by {} of its height", 0.03, " (storey 2)"))
-        'a storey drifts by 0.03 (storey 2) of its height'
+        >>> str(Doubt("a storey drifts by {0} of its height{1}", 0.03, " (storey 2)"))
+        'a storey drifts by 0.03 of its height (storey 2)'
         """
         number = "" if self.value is None else f"{self.value:.4g}"
-        return self.sentence.format(number + self.detail)
+        return self.sentence.format(number, self.detail)
 
 
 def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
     """Each kind of doubt once, with how many systems raise it and the range of its number.
 
-    >>> wide = Doubt("the width {} is unusual", 9.0)
-    >>> doubts_of_many([[wide], [], [wide._replace(value=7.5)], [Doubt("it is odd{}")]])
+    >>> wide = Doubt("the width {0} is unusual", 9.0)
+    >>> doubts_of_many([[wide], [], [wide._replace(value=7.5)], [Doubt("it is odd{1}", None, "!")]])
     ['2 of 4 systems: the width 7.5 to 9 is unusual', '1 of 4 systems: it is odd']
     """
     kinds: dict[str, dict[int, list[float]]] = {}
@@ -62,7 +63,7 @@ def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
         values = [value for of_system in found.values() for value in of_system]
         numbers = dict.fromkeys(f"{f(values):.4g}" for f in (min, max) if values)
         texts.append(
-            f"{len(found)} of {len(systems)} systems: {sentence.format(' to '.join(numbers))}"
+            f"{len(found)} of {len(systems)} systems: {sentence.format(' to '.join(numbers), '')}"
         )
     return texts
 
@@ -80,7 +81,7 @@ class Usual(NamedTuple):
         if not self.least <= value <= self.most:
             unit = f" {self.unit}" if self.unit else ""
             usual = f"{self.least:g} to {self.most:g}{unit}"
-            yield Doubt(f"{self.name} = {{}}{unit} is unusual: {usual} is; check the units", value)
+            yield Doubt(f"{self.name} = {{0}}{unit} is unusual: {usual} is; check the units", value)
 
 
 HEIGHT = Usual("the height of the columns 2H", "m", 0.3, 10.0)
@@ -115,7 +116,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     share = bearing.slenderness
     if share > STRONGEST:
         yield Doubt(
-            "the base shear at uplift V_st is {} of the building's weight, above the"
+            "the base shear at uplift V_st is {0} of the building's weight, above the"
             f" {STRONGEST:g} that any usual building carries: it would be damaged before it lifts;"
             " more slender columns lift earlier",
             share,
@@ -126,7 +127,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
         storey = int(drifts.argmax())
         if drifts[storey] > LARGEST_DRIFT:
             yield Doubt(
-                "a storey drifts at uplift by {} of its height; more than"
+                "a storey drifts at uplift by {0} of its height{1}; more than"
                 f" {LARGEST_DRIFT:g} is beyond usual buildings; check stiffness, period and storey"
                 " height",
                 float(drifts[storey]),
@@ -151,7 +152,7 @@ def _mixed(name: str, written: Sequence[object]) -> Iterator[Doubt]:
     if bare and len(bare) < len(written):
         with_unit = next(value for value in written if isinstance(value, str))
         yield Doubt(
-            f"superstructure.{name} mixes numbers with and without a unit{{}}: a bare number is in"
+            f"superstructure.{name} mixes numbers with and without a unit{{1}}: a bare number is in"
             " SI units; write the unit everywhere",
             detail=f" ({with_unit} and {bare[0]})",
         )
@@ -161,8 +162,8 @@ def _neighbours(name: str, unit: str, values: Sequence[float]) -> Iterator[Doubt
     for storey, (below, above) in enumerate(pairwise(values), start=1):
         if max(below, above) > NEIGHBOURS * min(below, above):
             yield Doubt(
-                f"superstructure.{name}: a storey has {{}} times as much as its neighbour, and less"
-                f" than {NEIGHBOURS:g} times is usual; check the units",
+                f"superstructure.{name}: a storey has {{0}} times as much as its neighbour{{1}};"
+                f" less than {NEIGHBOURS:g} times is usual; check the units",
                 max(below, above) / min(below, above),
                 f" (storey {storey} has {below:.4g} {unit},"
                 f" storey {storey + 1} {above:.4g} {unit})",

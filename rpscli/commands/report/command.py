@@ -12,7 +12,7 @@ import click
 
 from rpscli.commands.acceptance import parse_condition
 from rpscli.commands.case_input import RESULTS, read_case
-from rpscli.commands.motion import MotionRequest
+from rpscli.commands.motion import FACTOR, MotionRequest
 from rpscli.commands.report.case_page import PageDone, case_page
 from rpscli.commands.report.subject import HISTORY, earlier_case, earlier_results, is_study
 from rpscli.commands.shell.failure import leave
@@ -43,7 +43,7 @@ from rpscli.report.files.whole_files import require_writable, write_whole
 )
 @click.option("--record", metavar="SRC", help="Ground motion in place of the case's own.")
 @click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
-@click.option("--scale", type=float, metavar="FACTOR", help="Factor on the acceleration.")
+@click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
 @click.option("--scale-to", metavar="MEASURE=VALUE", help="Scale to a measure, as PGA=0.4g.")
 @click.option(
     "--fail-on",

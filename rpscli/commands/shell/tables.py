@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 
-LONGEST_WORD = 30
-"""Which is not broken."""
+LONGEST_WORD, LONGEST_HEAD = 30, 14
+"""Which is not broken, in cells and in heads."""
 
 
 def title(text: str) -> Text:
@@ -48,11 +48,13 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1
     cells = list(rows)
     for index, head in enumerate(heads):
         longest = max((len(row[index]) for row in cells), default=0)
+        in_head = min(max(map(len, head.split()), default=0), LONGEST_HEAD)
         if index < words:
             word = max((len(w) for row in cells for w in row[index].split()), default=0)
-            made.add_column(head, overflow="fold", min_width=min(word, LONGEST_WORD))
+            least = max(min(word, LONGEST_WORD), in_head)
+            made.add_column(head, overflow="fold", min_width=least)
         else:
-            made.add_column(head, justify="right", overflow="fold", min_width=longest)
+            made.add_column(head, justify="right", overflow="fold", min_width=max(longest, in_head))
     for row in cells:
         made.add_row(*row)
     return made

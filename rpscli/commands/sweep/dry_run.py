@@ -77,7 +77,7 @@ def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
 
 
 def _tables(document: dict[str, Any], points: list[dict[str, Any]]) -> Iterator[RenderableType]:
-    from rpscli.report.study.labels import plain  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.report.study.labels import label  # noqa: PLC0415 -- pydantic is slow
 
     yield title(document["study"]["title"])
     counts = [(name, str(document[name])) for name in ("points", "systems", "records", "scales")]
@@ -87,7 +87,6 @@ def _tables(document: dict[str, Any], points: list[dict[str, Any]]) -> Iterator[
     yield listing([*counts, ("time", f"{text}, by {expected['source']}")])
     rows = []
     for point in points:
-        words = (f"{key.rpartition('.')[2]} {plain(value)}" for key, value in point.items())
-        number, *varied = words
-        rows.append((number, ", ".join(varied)))
+        varied = (label(key, value) for key, value in point.items() if key != "point")
+        rows.append((f"point {point['point']}", ", ".join(varied)))
     yield listing(rows)

@@ -65,14 +65,14 @@ def summary_tables(summary: Summary) -> Iterator[RenderableType]:
 def _system_columns(
     summary: Summary, rows: Sequence[tuple[object, ...]]
 ) -> tuple[list[str], list[list[str]]]:
-    from rpscli.report.study.labels import plain, symbol  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.case.schema.units import in_si  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.report.study.labels import plain, symbol  # noqa: PLC0415
     from rpscli.sweep.reports.intensities import unit_of  # noqa: PLC0415
 
-    heads = []
-    for key in summary.keys:
-        unit = unit_of(key)
-        heads.append(symbol(key) if unit == "-" else f"{symbol(key)} {unit}")
-    return heads, [[plain(value) for value in row] for row in rows]
+    units = [unit_of(key) for key in summary.keys]
+    named = zip(map(symbol, summary.keys), units, strict=True)
+    heads = [name if unit == "-" else f"{name} {unit}" for name, unit in named]
+    return heads, [[plain(in_si(*cell)) for cell in zip(row, units, strict=True)] for row in rows]
 
 
 def _head(quantity: ResultQuantity) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field, StrictBool
 
 from rpscli.case.schema.fields import Quantity, Text
+from rpscli.case.schema.units import in_si
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
@@ -18,6 +19,7 @@ from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed
 from rpscli.errors import nearest
 from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
+from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import fractiles
 from rpscli.sweep.statistics.pooling import (
     INTENSITY,
@@ -206,7 +208,7 @@ def _lines(
         fallen = int(table.overturned[group.points].sum())
         found = _statistic(known, fallen, options.statistic)
         if not math.isnan(found):
-            at.append((group.values[0], found, len(known), fallen))
+            at.append((in_si(group.values[0], unit_of(options.x)), found, len(known), fallen))
     return [Line(of_series, name, dashed, *zip(*at, strict=True))] if at else []
 
 

@@ -69,7 +69,7 @@ class StoreyShearReport:
             of = self.overturned + sum(profile.counted for profile in self.profiles)
             notes.append(
                 f"means and largest shears are those of survivors: {self.overturned} of {of}"
-                " histories overturned and are left out"
+                " histories overturned and are left out, on the fixed base too"
             )
         return notes
 
