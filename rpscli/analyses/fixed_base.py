@@ -11,10 +11,11 @@ from rpscli.analyses.kernels.systems import building_system
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.integration import velocity
+from rpscli.shown import Shown
 
 
-@dataclass(frozen=True, eq=False)
-class FixedBaseResponse:
+@dataclass(frozen=True, eq=False, repr=False)
+class FixedBaseResponse(Shown):
     """Exact linear response of the building on a fixed base."""
 
     storey_shears: NDArray[np.float64]

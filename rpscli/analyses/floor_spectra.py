@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.spectrum import response_spectrum
+from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
 
@@ -19,8 +20,8 @@ PERIODS = np.geomspace(0.05, 4.0, 50)
 DAMPING = 0.05
 
 
-@dataclass(frozen=True, eq=False)
-class FloorSpectra:
+@dataclass(frozen=True, eq=False, repr=False)
+class FloorSpectra(Shown):
     """Spectra of light equipment on each floor, which does not act back.
 
     Attributes

@@ -16,10 +16,11 @@ from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS, v
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
+from rpscli.shown import Shown, with_unit
 
 
-@dataclass(frozen=True, eq=False)
-class Demand:
+@dataclass(frozen=True, eq=False, repr=False)
+class Demand(Shown):
     """Largest demands of a history; SI units."""
 
     structure: PodiumStructure
@@ -205,6 +206,14 @@ class Demand:
     def creating_impacts(self) -> int:
         """Number of impacts that gained energy."""
         return self.history.creating_impacts
+
+    def facts(self) -> dict[str, Any]:
+        """Outcome and scalar results with their units, the main demands first."""
+        ordered = sorted(HISTORY, key=lambda quantity: not quantity.demand)
+        return {
+            "outcome": self.outcome,
+            **{q.name: with_unit(getattr(self, q.name), q.unit) for q in ordered},
+        }
 
     def scalars(self) -> dict[str, Any]:
         """Outcome and scalar results, under their names in JSON and CSV.

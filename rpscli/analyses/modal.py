@@ -13,12 +13,13 @@ from rpscli.analyses.result_quantities import FIXED_BASE_MODES, UPLIFTED, values
 from rpscli.model.linearised_devices import left_out, linear_damping, tendon_stiffness
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
+from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class FixedBaseModes:
+@dataclass(frozen=True, eq=False, repr=False)
+class FixedBaseModes(Shown):
     """Modes of the building in full contact, ascending in frequency."""
 
     frequencies: Array
@@ -38,8 +39,8 @@ class FixedBaseModes:
         return {"shapes": _from_cap_beam(self.shapes)}
 
 
-@dataclass(frozen=True, eq=False)
-class UpliftedModes:
+@dataclass(frozen=True, eq=False, repr=False)
+class UpliftedModes(Shown):
     """Modes after uplift, linearised about theta = 0; ascending in frequency."""
 
     eigenvalues: NDArray[np.complex128]
@@ -91,8 +92,8 @@ class UpliftedModes:
         return {"shapes": self.shapes.T, "elastic_shapes": _from_cap_beam(self.elastic_shapes)}
 
 
-@dataclass(frozen=True, eq=False)
-class ModalResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class ModalResult(Shown):
     """Modes of the structure in each state. Flat ends never roll: `rolling` is None then."""
 
     structure: PodiumStructure
@@ -110,6 +111,14 @@ class ModalResult:
         """The uplifted states that exist, by name."""
         states = {"rolling": self.rolling, "rocking": self.rocking}
         return {name: modes for name, modes in states.items() if modes is not None}
+
+    def facts(self) -> dict[str, Any]:
+        """Periods on a fixed base, and what the storey itself does in each state."""
+        fixed = self.fixed_base
+        return {
+            "fixed-base periods [s]": None if fixed is None else fixed.periods[:3],
+            **{f"storey, {name}": modes.own_motion for name, modes in self.uplifted.items()},
+        }
 
     def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""

@@ -14,6 +14,7 @@ from rpscli.model.linearised_devices import stiffness_after_uplift
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.recentring import friction_force, restoring_force
 from rpscli.model.superstructure import Superstructure
+from rpscli.shown import Shown, with_unit
 
 Array = NDArray[np.float64]
 PatternName = Literal["uniform", "triangular", "first_mode"]
@@ -21,8 +22,8 @@ PatternName = Literal["uniform", "triangular", "first_mode"]
 PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")
 
 
-@dataclass(frozen=True, eq=False)
-class StoreyCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class StoreyCurve(Shown):
     """Restoring force of the storey against its motion, from 0+ to the end of the curve."""
 
     rotation: Array
@@ -38,8 +39,8 @@ class StoreyCurve:
     friction and yielding tendons the same as `force` [N]."""
 
 
-@dataclass(frozen=True, eq=False)
-class CapacityCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class CapacityCurve(Shown):
     """Whole structure under floor forces lambda p: elastic to the uplift, rigid storey above."""
 
     pattern: str
@@ -55,8 +56,8 @@ class CapacityCurve:
     """[m]."""
 
 
-@dataclass(frozen=True, eq=False)
-class PushoverResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class PushoverResult(Shown):
     """Static characteristics of the storey and capacity curves of the structure."""
 
     structure: PodiumStructure
@@ -66,6 +67,10 @@ class PushoverResult:
     initial_stiffness: float
     curve: StoreyCurve
     capacity: tuple[CapacityCurve, ...]
+
+    def facts(self) -> dict[str, Any]:
+        """Scalars with their units."""
+        return {q.name: with_unit(getattr(self, q.name), q.unit) for q in PUSHOVER}
 
     def results(self) -> dict[str, Any]:
         """Scalars and the storey's curve."""

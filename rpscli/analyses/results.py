@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ class ColumnForces:
     least_normal: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TimeHistoryResult(Demand):
     """Response of a structure to a record: its largest demands, samples and events; SI units."""
 
@@ -59,6 +60,10 @@ class TimeHistoryResult(Demand):
     trace: Trace
     events: tuple[Event, ...]
     fixed_base: FixedBaseResponse | None
+
+    def facts(self) -> dict[str, Any]:
+        """The record, and what it asked for."""
+        return {"record": self.record.name, **super().facts()}
 
     @property
     def energy(self) -> Energy:

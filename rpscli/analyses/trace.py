@@ -14,6 +14,7 @@ from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
 from rpscli.physics.formulae import geometry
+from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
 
@@ -72,8 +73,8 @@ def event_list(log: state.Record) -> tuple[Event, ...]:
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Trace:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trace(Shown):
     """Histories at the record's samples and on through the free vibration, SI units.
 
     Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements

@@ -33,6 +33,7 @@ from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
+from rpscli.shown import Shown
 
 RULES = (
     superstructure_rules,
@@ -45,8 +46,8 @@ RULES = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class Case:
+@dataclass(frozen=True, eq=False, repr=False)
+class Case(Shown):
     """One structure with its record, settings and limits.
 
     Parameters
@@ -74,6 +75,15 @@ class Case:
     podium: Podium
     doubts_of_text: tuple[Doubt, ...] = ()
     digest: str = ""
+
+    def facts(self) -> dict[str, Any]:
+        """What it is about."""
+        return {
+            "title": self.title,
+            "source": self.source,
+            "record": self.record.source if self.record else None,
+            "structure": self.structure,
+        }
 
     @property
     def title(self) -> str:

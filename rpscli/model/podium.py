@@ -5,20 +5,22 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
-from rpscli.model.devices import MOST_DEVICES, Device
+from rpscli.model.devices import MOST_DEVICES, Device, name_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.formulae import geometry
+from rpscli.shown import Shown, with_unit
 
 
-@dataclass(frozen=True, eq=False)
-class PodiumStructure:
+@dataclass(frozen=True, eq=False, repr=False)
+class PodiumStructure(Shown):
     """N kinematic bearings under a cap beam that carries a shear building.
 
     Parameters
@@ -82,6 +84,18 @@ class PodiumStructure:
                 " columns would not go over to their other edge; use more slender columns"
                 " (a smaller tan alpha) or give a measured value"
             )
+
+    def facts(self) -> dict[str, Any]:
+        """Sizes, masses and what stands on the bearings."""
+        return {
+            "storeys": self.storeys,
+            "critical_rotation": with_unit(self.critical_rotation, "rad"),
+            "columns_mass": with_unit(self.columns_mass, "kg"),
+            "cap_beam_mass": with_unit(self.cap_beam_mass, "kg"),
+            "superstructure_mass": with_unit(self.superstructure_mass, "kg"),
+            "devices": [name_of(device) for device in self.devices],
+            "bearing": self.bearing,
+        }
 
     @property
     def storeys(self) -> int:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rpscli.constants import MOST_STOREYS
 from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.shown import Shown
 
 Profile = Literal["sine", "uniform", "linear", "flexural"]
 
@@ -104,8 +105,8 @@ def shear_modes(
     return np.sqrt(squares), shapes * np.where(shapes[-1] < 0.0, -1.0, 1.0)
 
 
-@dataclass(frozen=True, eq=False)
-class Superstructure:
+@dataclass(frozen=True, eq=False, repr=False)
+class Superstructure(Shown):
     """A shear building of n floors.
 
     Parameters

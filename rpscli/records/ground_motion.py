@@ -5,16 +5,21 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
+from rpscli.shown import Shown, with_unit
+
+if TYPE_CHECKING:
+    from rpscli.records.measures.measure import Measure
 from rpscli.records.scaling import is_usual, scale_warning
 
 
-@dataclass(frozen=True, eq=False)
-class GroundMotion:
+@dataclass(frozen=True, eq=False, repr=False)
+class GroundMotion(Shown):
     """Ground acceleration, sampled uniformly from t = 0 and linear between the samples.
 
     Positive acceleration is the direction that the record's own sensor calls positive. Before
@@ -44,16 +49,18 @@ class GroundMotion:
 
     Examples
     --------
-    >>> motion = GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5, "m", "m.at2", "PEER AT2")
+    >>> motion = GroundMotion(np.array([0.0, 2.0, -3.0]), dt=0.5)
     >>> motion.npts, motion.duration, motion.pga
     (3, 1.0, 3.0)
+    >>> GroundMotion(np.array([0.0, 2.0]), 0.5, "m", "m.at2", "PEER AT2").source
+    'm.at2'
     """
 
     acceleration: NDArray[np.float64]
     dt: float
-    name: str
-    source: str
-    format: str
+    name: str = "motion"
+    source: str = "array"
+    format: str = "array"
     description: str = ""
     warnings: tuple[str, ...] = ()
 
@@ -72,6 +79,18 @@ class GroundMotion:
         values.flags.writeable = False
         object.__setattr__(self, "acceleration", values)
         object.__setattr__(self, "dt", float(self.dt))
+
+    def facts(self) -> dict[str, object]:
+        """Where it comes from, and how strong and long it is."""
+        return {
+            "name": self.name,
+            "pga": with_unit(self.pga, "m/s2"),
+            "duration": with_unit(self.duration, "s"),
+            "dt": with_unit(self.dt, "s"),
+            "npts": self.npts,
+            "format": self.format,
+            "description": self.description,
+        }
 
     @property
     def npts(self) -> int:
@@ -148,6 +167,49 @@ class GroundMotion:
             acceleration=self.acceleration * factor,
             description=f"{self.description}; {note}" if self.description else note,
         )
+
+    def scaled_to(
+        self, measure: Measure, value: float, *, period: float | None = None, damping: float = 0.05
+    ) -> GroundMotion:
+        """The same motion, scaled so that a measure of it has a value.
+
+        Parameters
+        ----------
+        measure : str
+            ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``Arias`` or ``CAV``.
+        value : float [SI]
+            What it is to be.
+        period : float, optional [s]
+            Of Sa, which needs it.
+        damping : float
+            Of Sa, a share of critical damping.
+
+        Raises
+        ------
+        RecordError
+            If there is no such measure, the period is missing, or the motion is zero.
+
+        Examples
+        --------
+        >>> motion = GroundMotion(np.array([0.0, 2.0, -3.0]), dt=0.5)
+        >>> motion.scaled_to("PGA", 1.5).acceleration.tolist()
+        [0.0, 1.0, -1.5]
+        """
+        from rpscli.records.measures.measure import (  # noqa: PLC0415 -- measures measure motions
+            MEASURE_UNITS,
+            factor_to,
+            measured,
+        )
+
+        if measure not in MEASURE_UNITS:
+            known = ", ".join(MEASURE_UNITS)
+            raise RecordError(f"{self.source}: {measure} is no measure; there are {known}")
+        if measure == "Sa" and period is None:
+            raise RecordError(f"{self.source}: Sa is scaled to at a period; give period=... in s")
+        if not value > 0.0:
+            raise RecordError(f"{self.source}: {measure} = {value} must be > 0 to scale to it")
+        unscaled = measured(self, measure, period, damping)
+        return self.scaled(factor_to(value, unscaled, measure, self.source))
 
 
 @dataclass(frozen=True, eq=False)

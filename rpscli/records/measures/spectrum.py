@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.shown import Shown
 
 _SAMPLES_PER_PERIOD = 50  # so that the largest sample is within 0.2 % of the peak
 _FINEST = 64  # parts of a step; oscillators with periods below a step just follow the ground
 
 
-@dataclass(frozen=True, eq=False)
-class ResponseSpectrum:
+@dataclass(frozen=True, eq=False, repr=False)
+class ResponseSpectrum(Shown):
     """Peak responses of linear oscillators, unsigned, each of shape (n,).
 
     Attributes

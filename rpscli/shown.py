@@ -1,0 +1,65 @@
+"""How objects show themselves: in a line where they are printed, as a small table in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from html import escape
+from typing import Any
+
+IN_A_LINE = 6
+"""Facts that stand in a line; a notebook has them all."""
+LONGEST_LIST = 4
+LONGEST_TEXT = 60
+
+
+class Shown:
+    """Base of dataclasses that hold too many numbers to be printed whole."""
+
+    def facts(self) -> Mapping[str, Any]:
+        """What tells it from others of its kind, the most important first; fields by default."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
+
+    def __repr__(self) -> str:
+        facts = list(self.facts().items())
+        inside = [f"{name}={fact_text(value)}" for name, value in facts[:IN_A_LINE]]
+        return f"{type(self).__name__}({', '.join([*inside, *['...'] * (len(facts) > IN_A_LINE)])})"
+
+    def _repr_html_(self) -> str:
+        """What notebooks show."""
+        cells = [(escape(str(name)), escape(fact_text(of))) for name, of in self.facts().items()]
+        rows = "".join(f"<tr><th>{name}</th><td>{of}</td></tr>" for name, of in cells)
+        return f"<table><caption>{type(self).__name__}</caption>{rows}</table>"
+
+
+def fact_text(value: object) -> str:
+    """A value in a few letters.
+
+    >>> fact_text(0.36127), fact_text(None), fact_text([1.0, 2.0]), fact_text([1] * 50)
+    ('0.3613', '-', '[1, 2]', '50 values')
+    """
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, str):
+        return value if len(value) <= LONGEST_TEXT else f"{value[: LONGEST_TEXT - 3]}..."
+    if getattr(value, "shape", ()) or isinstance(value, list | tuple):
+        return _several(value)
+    return "-" if value is None else str(value)
+
+
+def _several(values: Any) -> str:
+    """A short list whole, a long one or an array by its size."""
+    shape = getattr(values, "shape", (len(values),))
+    if len(shape) == 1 and shape[0] <= LONGEST_LIST:
+        return f"[{', '.join(map(fact_text, values))}]"
+    return f"{' x '.join(map(str, shape))} values"
+
+
+def with_unit(value: object, unit: str) -> str:
+    """A value and its unit.
+
+    >>> with_unit(0.10643, "rad"), with_unit(7, "-"), with_unit(None, "m")
+    ('0.1064 rad', '7', '-')
+    """
+    text = fact_text(value)
+    return text if value is None or unit in {"", "-"} else f"{text} {unit}"
