@@ -26,6 +26,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [i for i in items if not i.get_closest_marker("long")]
 
 
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Windows has no forks and signals."""
+    if os.name != "posix" and item.get_closest_marker("posix"):
+        pytest.skip("needs a POSIX system")
+
+
 @pytest.fixture(scope="session")
 def fema_record() -> RecordLoader:
     """Components of FEMA P695 as recorded, such as `farfield/1/b`."""

@@ -7,6 +7,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,9 +22,10 @@ from rpscli.user_cache import VARIABLE
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
+GUIDE = ROOT / "rpscli" / "GUIDE.md"
 WORKFLOW = ROOT / ".github" / "workflows" / "acceptance.yml"
 THEORY = ROOT / "rpscli" / "THEORY.md"
-DOCUMENTS = [README, THEORY, ROOT / "rpscli" / "VERIFICATION.md", ROOT / "CHANGELOG.md"]
+DOCUMENTS = [README, GUIDE, THEORY, ROOT / "rpscli" / "VERIFICATION.md", ROOT / "CHANGELOG.md"]
 SOURCES = sorted(
     path
     for folder in ("rpscli", "tests", "cases")
@@ -46,11 +48,18 @@ def blocks(document: Path) -> list[Block]:
     return [Block(*fence) for fence in fences]
 
 
-SHELL_LINES = [
-    line for block in blocks(README) if block.language == "sh" for line in block.text.splitlines()
-]
-COMMANDS = [line for line in SHELL_LINES if line.startswith("rps ")]
-SET_UP = [line for line in SHELL_LINES if not line.startswith("rps ")]
+BLOCKS = [*blocks(README), *blocks(GUIDE)]
+"""In the order in which a reader meets them: the guide goes on where the tour ends."""
+
+
+def lines_of(language: str) -> list[str]:
+    return [
+        line for block in BLOCKS if block.language == language for line in block.text.splitlines()
+    ]
+
+
+COMMANDS = [line for line in lines_of("sh") if line.startswith("rps ")]
+SET_UP = [line for line in lines_of("sh") if not line.startswith("rps ")]
 
 
 class Command(NamedTuple):
@@ -75,10 +84,10 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder as a reader has it: the cases, and the files that the README shows."""
     folder = tmp_path_factory.mktemp("readme")
     shutil.copytree(ROOT / "cases", folder / "cases")
-    for block in blocks(README):
-        if block.language == "yaml":
-            name = block.text.partition("\n")[0].removeprefix("# ")
-            (folder / name).write_text(block.text, encoding="utf-8")
+    for block in BLOCKS:
+        name = re.match(r"# (\S+\.yaml)\n", block.text)
+        if block.language == "yaml" and name:
+            (folder / name[1]).write_text(block.text, encoding="utf-8")
     return folder
 
 
@@ -110,20 +119,31 @@ def test_commands_run_in_their_order(here: Path, monkeypatch: pytest.MonkeyPatch
     assert written == {".png", ".csv", ".json"}
 
 
+def shown_outputs() -> list[tuple[str, str]]:
+    """Each output that is shown, and the command before it."""
+    found, last = [], ""
+    for block in BLOCKS:
+        if block.language == "sh":
+            last = block.text.splitlines()[-1].rpartition("rps ")[2]
+        elif block.language == "text":
+            found.append((f"rps {last}", block.text))
+    return found
+
+
 @needs_compiled_kernels
-def test_the_output_that_is_shown_is_the_output(here: Path) -> None:
-    shown = next(block.text for block in blocks(README) if block.language == "text")
+@pytest.mark.parametrize(("line", "shown"), shown_outputs())
+def test_the_output_that_is_shown_is_the_output(here: Path, line: str, shown: str) -> None:
     # columns are as wide as their widest number, of which the residual's has the digits of rounding
-    output = run("rps timehistory cases/six_storey.yaml").output
-    printed = [" ".join(line.split()) for line in output.splitlines()]
-    missing = [line for line in shown.splitlines() if " ".join(line.split()) not in printed]
+    output = run(f"{line.partition('#')[0]} --figures none").output
+    printed = [" ".join(row.split()) for row in output.splitlines()]
+    missing = [row for row in shown.splitlines() if " ".join(row.split()) not in printed]
     assert not missing, "\n".join(printed)
 
 
 @needs_compiled_kernels
 def test_the_python_example_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (example,) = (block.text for block in blocks(README) if block.language == "python")
-    exec(compile(example, str(README), "exec"), {})  # noqa: S102 -- it is ours
+    (example,) = (block.text for block in BLOCKS if block.language == "python")
+    exec(compile(example, str(GUIDE), "exec"), {})  # noqa: S102 -- it is ours
     first = capsys.readouterr().out.split()
     assert first[0] == "survived"
     assert float(first[2]) == pytest.approx(0.3613, abs=5e-5)  # as in the table above it
@@ -161,9 +181,45 @@ def test_set_up_commands_can_be_parsed(line: str) -> None:
         )
 
 
+def test_powershell_lines_say_what_the_others_say() -> None:
+    """The same line with other names, and nothing that PowerShell reads in another way."""
+    swaps = {"python3": "py", " && ": "; ", ".venv/bin/": ".venv\\Scripts\\"}
+    expected = []
+    for line in SET_UP:
+        said = line.partition("; eval")[0]
+        for old, new in swaps.items():
+            said = said.replace(old, new)
+        expected.append(said.replace(". .venv\\Scripts\\activate", ".venv\\Scripts\\Activate.ps1"))
+    assert lines_of("powershell") == expected
+    assert not [line for line in COMMANDS if re.search(r"[\"`$\\|&]", re.sub(r"'[^']*'", "", line))]
+
+
 def test_every_command_of_the_program_is_shown() -> None:
-    named = set(re.findall(r"\brps ([a-z]+)\b", README.read_text("utf-8")))
+    texts = (README.read_text("utf-8"), GUIDE.read_text("utf-8"))
+    named = {name for text in texts for name in re.findall(r"\brps ([a-z]+)\b", text)}
     assert set(COMMANDS_OF_PROGRAM) <= named
+
+
+def test_the_citation_is_of_this_version() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert {"cff-version", "message", "title", "authors"} <= set(citation)  # what the format needs
+    same = ("version", "license", "keywords")
+    assert [citation[name] for name in same] == [project[name] for name in same]
+    assert f"version {project['version']}," in README.read_text("utf-8")
+
+
+def test_the_tests_run_on_the_systems_of_users() -> None:
+    job = yaml.safe_load((WORKFLOW.parent / "tests.yml").read_text("utf-8"))["jobs"]["test"]
+    matrix = job["strategy"]["matrix"]
+    assert {name.partition("-")[0] for name in matrix["os"]} == {"ubuntu", "windows", "macos"}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert f">={matrix['python'][0]}" == project["requires-python"]
+    lines = [line for step in job["steps"] for line in step.get("run", "").splitlines()]
+    for line in lines:
+        if line.startswith("rps "):
+            checked = CliRunner().invoke(program, [shlex.split(line)[1], "--help"])
+            assert checked.exit_code == 0
 
 
 def test_the_readme_is_short() -> None:

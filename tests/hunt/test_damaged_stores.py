@@ -19,6 +19,8 @@ from hunt.trials import hunt, shares
 from rpscli.cli import program
 from rpscli.sweep.store import FILE
 
+pytestmark = pytest.mark.posix  # trials are timed by its signals
+
 MODAL = """\
 rps: 1
 base: base.yaml

@@ -18,6 +18,8 @@ from rpscli.case.study.schema import StudyFile
 from rpscli.records.formats.at2_writer import at2_text
 from rpscli.records.source import load_record
 
+pytestmark = pytest.mark.posix  # trials are timed by its signals
+
 CASES = Path(__file__).parents[2] / "cases"
 CASE_TEXTS = [
     path.read_text(encoding="utf-8").replace("records/", f"{CASES}/records/")

@@ -27,6 +27,8 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import GroundMotion
 
+pytestmark = pytest.mark.posix  # trials are timed by its signals
+
 OUTCOMES = {"at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"}
 RESIDUAL = 1e-6
 """Of the energy: what the step is made for."""

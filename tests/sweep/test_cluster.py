@@ -42,6 +42,7 @@ def scheduler() -> Iterator[str]:
             yield cluster.scheduler_address
 
 
+@pytest.mark.posix
 def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, scheduler: str) -> None:
     design = lay_out(study_of(STUDY, RECORDS))
     context = StudyContext(design.plan)
@@ -74,6 +75,7 @@ def test_a_worker_of_another_version_is_refused(study_of: Make) -> None:
         compute("digest", other, [])
 
 
+@pytest.mark.posix
 def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make, scheduler: str) -> None:
     design = lay_out(study_of())
     engine = Cluster(scheduler, design.plan)

@@ -60,6 +60,7 @@ def finished(folder: Path) -> dict[str, int]:
     return points
 
 
+@pytest.mark.posix
 def test_kill_9_and_resume_end_in_the_same_bytes(workplace: Path) -> None:
     code, _, _ = interrupted(signal.SIGKILL, workplace)
     assert code == -signal.SIGKILL
@@ -70,6 +71,7 @@ def test_kill_9_and_resume_end_in_the_same_bytes(workplace: Path) -> None:
     assert (workplace / CSV).read_bytes() == (workplace / "calm/points.csv").read_bytes()
 
 
+@pytest.mark.posix
 def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
     code, out, err = interrupted(signal.SIGINT, workplace)
     assert code == 130
@@ -91,6 +93,7 @@ def test_one_thread_or_two_give_the_same_bytes(
     assert (workplace / "1/points.csv").read_bytes() == (workplace / "2/points.csv").read_bytes()
 
 
+@pytest.mark.posix
 def test_the_second_ctrl_c_stops_at_once(
     study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

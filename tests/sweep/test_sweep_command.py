@@ -204,6 +204,7 @@ def test_a_study_comes_through_a_pipe(workplace: Path, no_figures: None) -> None
     assert json.loads(result.stdout)["points"]["total"] == 36
 
 
+@pytest.mark.posix
 @pytest.mark.long
 def test_20_000_points_stay_below_one_gigabyte(workplace: Path) -> None:
     (workplace / "base.yaml").write_text(BASE.replace("free_vibration: 1.0", "free_vibration: 0"))
