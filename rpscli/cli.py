@@ -21,6 +21,10 @@ COMMANDS = {
     "sweep": Member(
         "rpscli.commands.sweep.command", "all points of a study, stored as they end; reports"
     ),
+    "design": Member(
+        "rpscli.commands.design.command",
+        "the values of a case that meet limits and make an aim least",
+    ),
     "report": Member(
         "rpscli.commands.report.command", "one page to check, print and keep, from all of these"
     ),

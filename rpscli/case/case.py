@@ -28,7 +28,7 @@ from rpscli.case.rules.superstructure import (
 from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.text.document import Document, is_study
+from rpscli.case.text.document import Document, is_design, is_study
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
@@ -171,8 +171,9 @@ def parse_case(
     """
     document = read_yaml(text, name)
     if is_study(document):
+        kind, command = ("design", "design") if is_design(document) else ("study", "sweep")
         raise CaseError(
-            f"{name}: is a study, and a case is wanted here; `rps sweep {name}` runs it"
+            f"{name}: is a {kind}, and a case is wanted here; `rps {command} {name}` runs it"
         )
     case = case_from_mapping(document, name, folder, overrides)
     return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())

@@ -68,12 +68,13 @@ def command(word: str, terminal: Terminal) -> None:
 
 def _formats() -> Iterator[KeyReference]:
     # pydantic is slow.
+    from rpscli.case.design.schema import DesignFile  # noqa: PLC0415
     from rpscli.case.schema.case_file import CaseFile  # noqa: PLC0415
     from rpscli.case.schema.reference import key_references  # noqa: PLC0415
     from rpscli.case.study.schema import StudyFile  # noqa: PLC0415
 
     known = set()
-    for model in (CaseFile, StudyFile):
+    for model in (CaseFile, StudyFile, DesignFile):
         for reference in key_references(model):
             if reference.key not in known:
                 known.add(reference.key)

@@ -9,29 +9,34 @@ import click
 
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
+from rpscli.errors import UsageError
 from rpscli.report.files.json_text import json_text
 
 
 @click.command("schema")
 @click.option("--study", is_flag=True, help="Of a study file, with the options of all reports.")
+@click.option("--design", is_flag=True, help="Of a design file.")
 @terminal_options
-def command(*, study: bool, terminal: Terminal) -> None:
+def command(*, study: bool, design: bool, terminal: Terminal) -> None:
     """Print the JSON schema of a case file, with or without --json.
 
     Editors that know YAML check and complete a case by it: `rps init --editor`.
     """
     del terminal
-    emit(json_text(schema_of(study=study)), sys.stdout)
+    if study and design:
+        raise UsageError("--study and --design are two formats; take one of them")
+    emit(json_text(schema_of(study=study, design=design)), sys.stdout)
 
 
-def schema_of(*, study: bool) -> dict[str, Any]:
-    """The schema of cases, or of studies."""
+def schema_of(*, study: bool, design: bool = False) -> dict[str, Any]:
+    """The schema of cases, of studies or of designs."""
     # pydantic is slow.
-    if not study:
+    if not (study or design):
         from rpscli.case.schema.json_schema import case_json_schema  # noqa: PLC0415
 
         return case_json_schema()
+    from rpscli.case.design.schema import DesignFile  # noqa: PLC0415
     from rpscli.case.study.json_schema import study_json_schema  # noqa: PLC0415
     from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
 
-    return study_json_schema(REPORTS)
+    return study_json_schema({}, DesignFile) if design else study_json_schema(REPORTS)

@@ -10,16 +10,16 @@ from pydantic.json_schema import models_json_schema
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.json_schema import DIALECT, PresentKeys
 from rpscli.case.study.reports import ReportKinds
-from rpscli.case.study.schema import StudyFile
+from rpscli.case.study.schema import StudyFile, StudyParts
 
 
-def study_json_schema(kinds: ReportKinds) -> dict[str, Any]:
-    """JSON schema of a study file, with the options of every kind of report.
+def study_json_schema(kinds: ReportKinds, model: type[StudyParts] = StudyFile) -> dict[str, Any]:
+    """JSON schema of a study file, with the options of every kind of report; or of a design file.
 
     What a base lacks the varied keys may bring: of a case written in the study, no key is required.
     """
     options = {name: kind.options for name, kind in kinds.items()}
-    models: dict[type[BaseModel], None] = dict.fromkeys((StudyFile, CaseFile, *options.values()))
+    models: dict[type[BaseModel], None] = dict.fromkeys((model, CaseFile, *options.values()))
     references, schema = models_json_schema(
         [(model, "validation") for model in models], schema_generator=PresentKeys
     )
@@ -32,7 +32,7 @@ def study_json_schema(kinds: ReportKinds) -> dict[str, Any]:
         found: dict[str, Any] = definitions.pop(reference(model)["$ref"].rsplit("/", 1)[1])
         return found
 
-    study, base = definition(StudyFile), definition(CaseFile)
+    study, base = definition(model), definition(CaseFile)
     base.pop("required")
     described = study["properties"]["base"]["description"]
     study["properties"]["base"] = {
@@ -48,5 +48,6 @@ def study_json_schema(kinds: ReportKinds) -> dict[str, Any]:
             name: {"anyOf": [reference(model), {"type": "null"}]} for name, model in options.items()
         },
     }
-    study["properties"]["reports"]["items"] = {"anyOf": [{"enum": list(options)}, with_options]}
+    if reports := study["properties"].get("reports"):
+        reports["items"] = {"anyOf": [{"enum": list(options)}, with_options]}
     return {"$schema": DIALECT, **study, "$defs": definitions}

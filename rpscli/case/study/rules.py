@@ -30,6 +30,9 @@ def varied_paths(document: Document) -> dict[str, Path]:
             paths[key] = ("vary", index, key)
     for key in ranges if isinstance(ranges, dict) else ():
         paths[key] = ("sample", "ranges", key)
+    for part in ("find", "ties"):  # of a design
+        written = document.content.get(part)
+        paths |= {key: (part, key) for key in (written if isinstance(written, dict) else ())}
     return paths
 
 

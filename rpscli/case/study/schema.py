@@ -96,8 +96,8 @@ class RecordPattern(Section):
     source: Text = Field(description="a pulse or a synthetic motion, without the varied options")
 
 
-class StudyFile(Section):
-    """A study of rps: many points from one case."""
+class StudyParts(Section):
+    """What studies and designs say of a case, its records and its limits."""
 
     rps: Annotated[
         int, Whole(FORMAT_VERSION, FORMAT_VERSION, "this program reads version 1 of the format")
@@ -106,19 +106,11 @@ class StudyFile(Section):
     base: Text | dict[str, Any] = Field(
         description="a case file, seen from the study's folder, or the case itself"
     )
-    analysis: Analysis = Field("timehistory", description="what is done at every point")
-    vary: tuple[dict[str, tuple[Any, ...] | ValueRange], ...] = Field(
-        (), description="axes of a product; the keys of one axis go together"
-    )
-    sample: SampleSection | None = Field(None, description="uncertain parameters; one more axis")
     records: tuple[Text | RecordPattern, ...] | None = Field(
         None, description="record sources, folders, globs; left out: the record of the case"
     )
     scale: Scale | None = Field(
         None, description="factors on the records, or values of a measure to scale them to"
-    )
-    perturb: PerturbSection | None = Field(
-        None, description="small perturbations around every point"
     )
     whole_histories: bool = Field(
         default=False,
@@ -127,6 +119,19 @@ class StudyFile(Section):
     )
     limits: LimitsSection | None = Field(
         None, description="judge the study in place of those of its base; exceeded: exit code 10"
+    )
+
+
+class StudyFile(StudyParts):
+    """A study of rps: many points from one case."""
+
+    analysis: Analysis = Field("timehistory", description="what is done at every point")
+    vary: tuple[dict[str, tuple[Any, ...] | ValueRange], ...] = Field(
+        (), description="axes of a product; the keys of one axis go together"
+    )
+    sample: SampleSection | None = Field(None, description="uncertain parameters; one more axis")
+    perturb: PerturbSection | None = Field(
+        None, description="small perturbations around every point"
     )
     observed: Text | None = Field(
         None, description="CSV file of what was observed under records; for the report comparison"

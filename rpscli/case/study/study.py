@@ -26,10 +26,10 @@ from rpscli.case.study.rules import (
     twice,
     unknown_keys,
 )
-from rpscli.case.study.schema import MeasureScale, StudyFile
+from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
 from rpscli.case.study.sizes import size_faults
 from rpscli.case.study.sources import sources_of
-from rpscli.case.text.document import Document, is_case, is_study
+from rpscli.case.text.document import Document, is_case, is_design, is_study
 from rpscli.case.text.faults import Fault, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
@@ -148,44 +148,69 @@ def parse_study(
         If the study is not valid: one line for each fault. Whether each of its systems is a valid
         case is seen when its points are laid out.
     """
-    folder = folder or Path()
-    of_study = [override for override in overrides if _is_of_study(override)]
-    of_base = [override for override in overrides if not _is_of_study(override)]
     document = read_yaml(text, name)
     if is_case(document):
         raise CaseError(
             f"{name}: is a case, and a study is wanted here; `rps timehistory {name}` computes it,"
             " `rps init --study` writes a study"
         )
+    if is_design(document):
+        raise CaseError(f"{name}: is a design, and a study is wanted here; use `rps design {name}`")
+    of_study, of_base = shared_out(overrides, StudyFile)
     document = apply_overrides(document, of_study, model=StudyFile)
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return study_of(document, of_base, kinds=kinds, folder=folder or Path(), digest=digest)
+
+
+def study_of(
+    document: Document,
+    base_overrides: Sequence[str],
+    *,
+    kinds: ReportKinds,
+    folder: Path,
+    digest: str,
+) -> Study:
+    """A study from its document, as `parse_study` says.
+
+    Parameters
+    ----------
+    base_overrides
+        Those for the case at its base.
+    digest
+        Of its text.
+    """
     axes, sources, observed, reports = _checked(document, folder, kinds)
     file = StudyFile.model_validate(document.content)
-    document.refuse(fixed_faults(document, of_base))
+    document.refuse(fixed_faults(document, base_overrides))
     document.refuse(size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
-    base = apply_overrides(base, of_base)
     return Study(
-        name=Path(name.strip("<>")).stem or "study",
-        source=name,
+        name=Path(document.name.strip("<>")).stem or "study",
+        source=document.name,
         folder=folder,
         document=document,
         file=file,
-        base=base,
+        base=apply_overrides(base, base_overrides),
         base_file=base_file,
         base_folder=base_file.parent if base_file else folder,
-        base_overrides=tuple(of_base),
+        base_overrides=tuple(base_overrides),
         axes=axes,
         sources=sources,
         observed=observed,
         reports=reports,
-        digest=hashlib.sha256(text.encode()).hexdigest(),
+        digest=digest,
     )
 
 
-def _is_of_study(override: str) -> bool:
-    """Whether an override belongs to the study; `analysis.gravity` is a key of the case."""
-    key = override.partition("=")[0].strip()
-    return key.split(".")[0] in StudyFile.model_fields and not key.startswith("analysis.")
+def shared_out(overrides: Sequence[str], model: type[StudyParts]) -> tuple[list[str], list[str]]:
+    """Overrides of a study or a design, and those of its base, as `analysis.gravity`."""
+    own: list[str] = []
+    of_base: list[str] = []
+    for override in overrides:
+        key = override.partition("=")[0].strip()
+        known = key.split(".")[0] in model.model_fields and not key.startswith("analysis.")
+        (own if known else of_base).append(override)
+    return own, of_base
 
 
 def _checked(
@@ -197,7 +222,7 @@ def _checked(
     observed, observed_faults = observed_of(document, folder, axes)
     requests, request_faults = requests_of(document, kinds)
     faults = [
-        *_single_keys(document),
+        *single_key_faults(document, StudyFile),
         *axis_faults,
         *source_faults,
         *observed_faults,
@@ -215,9 +240,10 @@ def _checked(
     return tuple(axes), sources, observed, requests
 
 
-def _single_keys(document: Document) -> Iterator[Fault]:
+def single_key_faults(document: Document, model: type[StudyParts]) -> Iterator[Fault]:
     """Faults of the keys that stand alone; those with a structure of their own are left out."""
-    content = {key: value for key, value in document.content.items() if key not in _STRUCTURED}
+    structured = set(_STRUCTURED) & set(model.model_fields)
+    content = {key: value for key, value in document.content.items() if key not in structured}
     if "base" in content and isinstance(content["base"], dict):
         content["base"] = "written here"
     if isinstance(content.get("scale"), dict) and "measure" in content["scale"]:
@@ -225,7 +251,7 @@ def _single_keys(document: Document) -> Iterator[Fault]:
     if isinstance(sample := content.get("sample"), dict) and "ranges" in sample:
         content["sample"] = sample | {"ranges": {}}
     plain = Document(document.name, content, document.keys, document.values, document.faults)
-    yield from schema_check(StudyFile, plain).faults
+    yield from schema_check(model, plain).faults
 
 
 _STRUCTURED = ("vary", "records", "reports")

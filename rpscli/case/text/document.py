@@ -132,6 +132,11 @@ def is_study(document: Document) -> bool:
     return "base" in document.content and "superstructure" not in document.content
 
 
+def is_design(document: Document) -> bool:
+    """Whether a document is a design rather than a study."""
+    return "base" in document.content and "find" in document.content
+
+
 def is_case(document: Document) -> bool:
     """Whether a document is a case rather than a study."""
     return "superstructure" in document.content and "base" not in document.content

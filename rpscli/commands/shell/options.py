@@ -179,6 +179,28 @@ def film_part_options(function: Command) -> Command:
     return function
 
 
+def run_options(function: Command) -> Command:
+    """How the points of a study are computed, as the keywords of `SweepChoices`."""
+    for option in (
+        click.option("--retry-failed", is_flag=True, help="Compute points again that failed."),
+        click.option("--fresh", is_flag=True, help="Throw away what is stored, and begin anew."),
+        click.option(
+            "--dry-run", is_flag=True, help="Check the file; show its points and an estimate."
+        ),
+        click.option(
+            "--scheduler", metavar="ADDRESS", help="Use a Dask cluster, as in tcp://head:8786."
+        ),
+        click.option(
+            "--jobs",
+            type=click.IntRange(1),
+            metavar="N",
+            help="Threads; all cores by default.",
+        ),
+    ):
+        function = option(function)
+    return function
+
+
 def several_cases_options(function: Command) -> Command:
     """CASE... and --set, as `requests`."""
 

@@ -16,6 +16,7 @@ from rpscli.commands.shell.options import (
     OutputRequest,
     figure_options,
     output_options,
+    run_options,
     terminal_options,
 )
 from rpscli.commands.shell.tables import listing, title
@@ -58,11 +59,7 @@ WARNINGS_SHOWN = 5
     help="Put a value over the study's own (--set 'scale=[1, 2]') or over its base case's"
     " (--set podium.bearing.slenderness=0.2); repeatable.",
 )
-@click.option("--jobs", type=click.IntRange(1), metavar="N", help="Threads; all cores by default.")
-@click.option("--scheduler", metavar="ADDRESS", help="Use a Dask cluster, as in tcp://head:8786.")
-@click.option("--dry-run", is_flag=True, help="Check the study; show its points and an estimate.")
-@click.option("--fresh", is_flag=True, help="Throw away what is stored, and begin anew.")
-@click.option("--retry-failed", is_flag=True, help="Compute points again that failed.")
+@run_options
 @click.option(
     "--fail-on",
     "fail_on",
@@ -110,11 +107,13 @@ def command(
         except KeyboardInterrupt:
             finish = None
         if finish is None or finish.interrupted:
-            _stop(given, store, start, terminal)
+            stop("sweep", given, store, start, terminal)
         _conclude(given, store, start, finish, folder, conditions, terminal)
 
 
-def _stop(given: StudyInput, store: Store, start: Resume, terminal: Terminal) -> NoReturn:
+def stop(
+    command: str, given: StudyInput, store: Store, start: Resume, terminal: Terminal
+) -> NoReturn:
     """Say how to go on, and leave."""
     known = store.outcomes()
     done = sum(key in known for key in start.keys)
@@ -125,7 +124,7 @@ def _stop(given: StudyInput, store: Store, start: Resume, terminal: Terminal) ->
     terminal.note(text)
     document = {
         **heading(),
-        "command": "sweep",
+        "command": command,
         "study": study_heading(given),
         "points": {"total": len(start.keys), "stored": done},
         **failure_document("Interrupted", text, INTERRUPTED),

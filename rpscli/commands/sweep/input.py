@@ -28,7 +28,7 @@ class SweepChoices:
     dry_run: bool
     fresh: bool
     retry_failed: bool
-    report_only: bool
+    report_only: bool = False
 
     def require_sense(self) -> None:
         """Refuse options that contradict each other."""
@@ -90,8 +90,8 @@ def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> 
     return StudyInput(design, StudyContext(design.plan), request, look)
 
 
-def study_folder(given: StudyInput, output: OutputRequest) -> OutputFolder:
-    """The folder of a study's results.
+def study_folder(given: StudyInput, output: OutputRequest, command: str = "sweep") -> OutputFolder:
+    """The folder of a study's results, or a design's.
 
     A folder with a store belongs to its study, which the store itself looks after: after a kill
     there may be files there that no `run.json` speaks of.
@@ -106,8 +106,8 @@ def study_folder(given: StudyInput, output: OutputRequest) -> OutputFolder:
         "points": len(given.design),
         "solver": plan.solver,
     }
-    place = output.place or RESULTS / study.name / "sweep"
-    run = Run("sweep", study.name, given.file, study.digest, inputs)
+    place = output.place or RESULTS / study.name / command
+    run = Run(command, study.name, given.file, study.digest, inputs)
     return OutputFolder(place, run, force=output.force or (place / FILE).exists())
 
 

@@ -22,16 +22,17 @@ def sample(section: SampleSection) -> Array:
     A scrambled Sobol sequence, or a Latin hypercube; the seed fixes both. Each column goes through
     the inverse of its distribution function.
     """
-    unit = _unit_cube(section)
+    unit = unit_cube(section, len(section.ranges))
     columns = [_values(unit[:, i], given) for i, given in enumerate(section.ranges.values())]
     return np.column_stack(columns)
 
 
-def _unit_cube(section: SampleSection) -> Array:
+def unit_cube(section: SampleSection, dimensions: int) -> Array:
+    """(size, dimensions) of the section's sequence, in the unit cube."""
     from scipy.stats import qmc  # noqa: PLC0415 -- slow to import
 
     engine = {"sobol": qmc.Sobol, "latin_hypercube": qmc.LatinHypercube}[section.method]
-    sequence: Any = engine(len(section.ranges), seed=np.random.default_rng(section.seed))
+    sequence: Any = engine(dimensions, seed=np.random.default_rng(section.seed))
     with warnings.catch_warnings():
         # Sobol sequences are balanced at powers of two; `balance_note` tells the user.
         warnings.simplefilter("ignore", UserWarning)

@@ -1,0 +1,269 @@
+"""A design task: what a design file asks for, checked."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
+from rpscli.case.design.schema import PLUS, Aim, DesignFile
+from rpscli.case.overrides import apply_overrides
+from rpscli.case.schema.key_units import unit
+from rpscli.case.schema.units import in_si
+from rpscli.case.study.axes import Axis, clashes
+from rpscli.case.study.rules import (
+    fixed_faults,
+    record_rules,
+    scale_faults,
+    unknown_keys,
+    varied_paths,
+)
+from rpscli.case.study.schema import StudyParts
+from rpscli.case.study.sources import sources_of
+from rpscli.case.study.study import Study, shared_out, single_key_faults, study_of
+from rpscli.case.text.document import Document, is_case, is_design
+from rpscli.case.text.faults import Fault, dotted, listed, shown
+from rpscli.case.text.files import read_text
+from rpscli.case.text.yaml_text import read_yaml
+from rpscli.errors import CaseError, nearest
+
+Array = NDArray[np.float64]
+
+DIGITS = 6
+"""Of the values of a design: nobody builds more, and files stay readable."""
+
+
+class Unknown(NamedTuple):
+    """A key that may change, and its range in SI units."""
+
+    key: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class DesignTask:
+    """What is looked for.
+
+    Parameters
+    ----------
+    study
+        Case, records and limits; its axes are empty, and its document is that of the design.
+    file
+        The validated file.
+    unknowns
+        What may change.
+    confirming
+        Single sources of motions that the search does not see.
+    """
+
+    study: Study
+    file: DesignFile
+    unknowns: tuple[Unknown, ...]
+    confirming: tuple[str, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys that change: the unknowns, and what is tied to them."""
+        return (*(unknown.key for unknown in self.unknowns), *self.file.ties)
+
+    def values(self, places: Array) -> Array:
+        """(designs, keys) values in SI units.
+
+        Parameters
+        ----------
+        places
+            (designs, unknowns) in the unit cube.
+        """
+        low = np.array([unknown.low for unknown in self.unknowns])
+        high = np.array([unknown.high for unknown in self.unknowns])
+        found = {
+            unknown.key: _rounded(column)
+            for unknown, column in zip(self.unknowns, (low + (high - low) * places).T, strict=True)
+        }
+        for key, terms in self.file.ties.items():
+            sums = (terms[name] * found[name] for name in terms if name != PLUS)
+            found[key] = _rounded(sum(sums, np.full(len(places), terms.get(PLUS, 0.0))))
+        return np.column_stack(list(found.values()))
+
+    def study_of(self, values: Array, sources: tuple[str, ...] | None = None) -> Study:
+        """The study of some designs, (designs, keys), under the design's records or others."""
+        places = tuple((self.study.document.value_place(self.path(key)),) for key in self.keys)
+        axis = Axis(self.keys, tuple(map(tuple, values.tolist())), places)
+        own = self.study.sources if sources is None else sources
+        return replace(self.study, axes=(axis,), sources=own)
+
+    def path(self, key: str) -> tuple[str, str]:
+        """Where a key stands in the file."""
+        return "ties" if key in self.file.ties else "find", key
+
+
+def _rounded(values: Array) -> Array:
+    return np.array([float(f"{value:.{DIGITS}g}") for value in values.tolist()])
+
+
+def read_design(source: str, overrides: Sequence[str] = ()) -> DesignTask:
+    """A design task from a file, or from the standard input (``-``)."""
+    piped = source == "-"
+    folder = Path() if piped else Path(source).parent
+    return parse_design(
+        read_text(source), "<stdin>" if piped else source, folder=folder, overrides=overrides
+    )
+
+
+def parse_design(
+    text: str, name: str, *, folder: Path | None = None, overrides: Sequence[str] = ()
+) -> DesignTask:
+    """A design task from its text.
+
+    Parameters
+    ----------
+    text
+        YAML.
+    name
+        Of the file, for messages.
+    folder
+        Where relative file names start; the working folder by default.
+    overrides
+        Texts ``key=value`` for keys of the design (``search.most``) or of the case at its base.
+
+    Raises
+    ------
+    CaseError
+        If it is not valid: one line for each fault.
+    """
+    folder = folder or Path()
+    document = read_yaml(text, name)
+    if not is_design(document):
+        kind = "case" if is_case(document) else "study" if "base" in document.content else "file"
+        raise CaseError(
+            f"{name}: is a {kind} without `find`, and a design is wanted here: a base case, find,"
+            " records, limits and least; see `rps explain find`"
+        )
+    of_design, of_base = shared_out(overrides, DesignFile)
+    document = apply_overrides(document, of_design, model=DesignFile)
+    confirming, confirm_faults = _confirming(document, folder)
+    unknowns, find_faults = _unknowns(document)
+    faults = [*single_key_faults(document, DesignFile), *scale_faults(document)]
+    faults += [*find_faults, *unknown_keys(document), *clashes(varied_paths(document))]
+    faults += [*record_rules(document), *fixed_faults(document, of_base), *confirm_faults]
+    document.refuse(faults)
+    file = DesignFile.model_validate(document.content)
+    document.refuse([*_tie_faults(file), *_aim_faults(file)])
+    study = study_of(
+        _study_document(document),
+        of_base,
+        kinds={},
+        folder=folder,
+        digest=hashlib.sha256(text.encode()).hexdigest(),
+    )
+    study = replace(study, document=document)
+    used, held_out = study.sources, confirming
+    if file.confirm is not None and file.confirm.share is not None:
+        used, held_out = _shared(study.sources, file.confirm.share, file.confirm.seed)
+    elif both := sorted(set(used) & set(held_out)):
+        text = f"confirm.records has {listed(both[:3], 'and')}, which the search uses already"
+        document.refuse([Fault(("confirm", "records"), f"{text}; name other motions")])
+    if file.confirm is not None and not (used and held_out):
+        text = f"confirm.share = {file.confirm.share} of {len(study.sources)} records leaves none"
+        document.refuse([Fault(("confirm",), f"{text} on one side; give more records")])
+    return DesignTask(replace(study, sources=used), file, unknowns, held_out)
+
+
+def _study_document(document: Document) -> Document:
+    """What the design says as a study would."""
+    shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
+    return replace(document, content=shared)
+
+
+def _unknowns(document: Document) -> tuple[tuple[Unknown, ...], list[Fault]]:
+    """The ranges under `find`, in SI units."""
+    written = document.content["find"]
+    unknowns: list[Unknown] = []
+    faults: list[Fault] = []
+    if not isinstance(written, dict) or not written:
+        text = f"find = {shown(written)} must be keys with their ranges"
+        text = f"{text}, as in {{podium.bearing.slenderness: [0.1, 0.3]}}"
+        return (), [Fault(("find",), text)]
+    for key, bounds in written.items():
+        si = in_si(bounds, unit(key))
+        numbers = isinstance(si, list) and all(
+            isinstance(value, int | float) and not isinstance(value, bool) for value in si
+        )
+        path = ("find", key)
+        if isinstance(si, list) and len(si) == 2 and not numbers:
+            expected = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
+            faults.append(Fault(path, f"{dotted(path)} = {shown(bounds)} must be two {expected}"))
+        elif isinstance(si, list) and len(si) == 2:
+            low, high = si
+            unknowns.append(Unknown(key, float(low), float(high)))
+            if not low < high:
+                text = f"{dotted(path)} = {shown(bounds)} must rise from the least value"
+                faults.append(Fault(path, f"{text} to the largest; exchange them"))
+    for key, place in varied_paths(document).items():
+        if key.split(".")[0] in {"limits", "analysis", "rps", "title", "record"}:
+            text = f"{key} must not change in a design; it is no property of the structure"
+            faults.append(Fault(place, text, at_key=True))
+    return tuple(unknowns), faults
+
+
+def _tie_faults(file: DesignFile) -> Iterator[Fault]:
+    for key, terms in file.ties.items():
+        if key in file.find:
+            text = f"{key} varies under find already; take one of them out"
+            yield Fault(("ties", key), text, at_key=True)
+        for name in terms:
+            if name not in file.find and name != PLUS:
+                text = f"ties.{key} needs {name}, which is not under find"
+                yield Fault(("ties", key), f"{text}; use {listed([*file.find, PLUS])}")
+
+
+def _aim_faults(file: DesignFile) -> Iterator[Fault]:
+    """Names that are neither keys that change nor results."""
+    keys = [*file.find, *file.ties]
+    sampled = {quantity.name for quantity in SAMPLED}
+    results = {quantity.name for quantity in DEMANDS}
+    for name in dict.fromkeys(name for aim in file.least for name in aim):
+        if name in sampled and not file.whole_histories:
+            yield Fault(("least",), f"least: {name} needs `whole_histories: true`; add it")
+        elif name not in keys and name not in results:
+            guess = nearest(name, [*keys, *results])
+            hint = f"did you mean {guess}?" if guess else f"use {listed(keys)}, or a result"
+            yield Fault(("least",), f"least: {name} is no result and changes with nothing; {hint}")
+        elif name in keys and "fractile" in _given(file.least, name):
+            yield Fault(("least",), f"least: {name} is a key, without fractiles; take it out")
+
+
+def _given(aims: Sequence[Aim], name: str) -> set[str]:
+    """What the file says of a term."""
+    return set().union(*(aim[name].model_fields_set for aim in aims if name in aim))
+
+
+def _confirming(document: Document, folder: Path) -> tuple[tuple[str, ...], list[Fault]]:
+    """Sources under `confirm.records`, or what is wrong with the section."""
+    section = document.content.get("confirm")
+    if not isinstance(section, Mapping):
+        return (), []
+    if ("records" in section) == ("share" in section):
+        text = "confirm must have records or a share of the design's own, and not both"
+        return (), [Fault(("confirm",), text, at_key=True)]
+    sources, faults = sources_of(document.part("confirm"), folder)
+    return sources, [
+        Fault(("confirm", *fault.path), f"confirm.{fault.text}", fault.at_key) for fault in faults
+    ]
+
+
+def _shared(
+    sources: tuple[str, ...], share: float, seed: int
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Sources for the search, and those that are held out."""
+    count = round(share * len(sources))
+    drawn = set(np.random.default_rng(seed).permutation(len(sources))[:count].tolist())
+    used = tuple(source for place, source in enumerate(sources) if place not in drawn)
+    return used, tuple(source for place, source in enumerate(sources) if place in drawn)

@@ -1,0 +1,143 @@
+"""`rps design`: the values of a case that meet its requirements and make an aim least."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.commands.case_input import write
+from rpscli.commands.design.rounds import Rounds
+from rpscli.commands.design.tables import answer_tables, nothing_passes
+from rpscli.commands.shell.completions import FILE, case_keys
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.options import (
+    CaseRequest,
+    OutputRequest,
+    figure_options,
+    output_options,
+    run_options,
+    terminal_options,
+)
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.sweep.dry_run import show_dry_run
+from rpscli.commands.sweep.input import SweepChoices, study_folder, study_heading
+from rpscli.commands.sweep.results import collect, first_error
+from rpscli.errors import LimitExceeded, RpsError
+from rpscli.report.documents import ONE_DIRECTION, heading
+from rpscli.report.figures.look import Look
+from rpscli.report.files.csv_text import csv_text
+from rpscli.report.files.output_folder import OutputFolder
+
+if TYPE_CHECKING:
+    from rpscli.commands.design.rounds import Confirmation
+    from rpscli.commands.sweep.input import StudyInput
+    from rpscli.sweep.reports.study_results import StudyResults
+    from rpscli.sweep.search.answer import Answer
+
+WARNINGS_SHOWN = 5
+
+
+@click.command("design")
+@click.argument("design", metavar="DESIGN", type=FILE)
+@click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    shell_complete=case_keys,
+    help="Put a value over the file's own (--set search.most=64) or over its base case's;"
+    " repeatable.",
+)
+@run_options
+@figure_options
+@output_options
+@terminal_options
+def command(
+    design: str,
+    overrides: tuple[str, ...],
+    output: OutputRequest,
+    terminal: Terminal,
+    look: Look,
+    **choices: Any,
+) -> None:
+    """Find the values of DESIGN that meet its limits and make what is `least` least.
+
+    The file has a base case, `find` with ranges, records and `limits` as a study, and `least`. An
+    even sample comes first, then designs where the verdict changes. The answer has the best design,
+    the region that passes, what binds, and how far the choice of records moves it.
+
+    Every point is stored as it ends: after an interruption the same command goes on. The exit code
+    is 10 if no design passes.
+    """
+    from rpscli.case.design.task import read_design  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.sweep.search.search import Search  # noqa: PLC0415 -- numpy is slow
+    from rpscli.sweep.store import Store  # noqa: PLC0415 -- sqlite is slow
+
+    chosen = SweepChoices(**choices)
+    chosen.require_sense()
+    search = Search(read_design(design, overrides))
+    rounds = Rounds(search, CaseRequest(design, overrides), look, chosen, terminal)
+    first = rounds.first()
+    if chosen.dry_run:
+        terminal.note(f"the first of at most {search.most} designs:")
+        show_dry_run(first, chosen, terminal)
+        return
+    folder = study_folder(first, output, "design")
+    with Store(folder.folder, fresh=chosen.fresh) as store:
+        answer = rounds.run(first, store)
+        confirmation = rounds.confirm(answer, store)
+        given, results = rounds.everything(answer, first, store)
+        _conclude(rounds, given, results, answer, confirmation, folder)
+
+
+def _conclude(
+    rounds: Rounds,
+    given: StudyInput,
+    results: StudyResults,
+    answer: Answer,
+    confirmation: Confirmation | None,
+    folder: OutputFolder,
+) -> None:
+    from rpscli.report.design.answer import answer_document, design_columns  # noqa: PLC0415
+    from rpscli.report.design.figures import figures  # noqa: PLC0415
+    from rpscli.report.figures.drawing import figure_files  # noqa: PLC0415
+    from rpscli.report.study.statistics import verdict_columns, verdict_document  # noqa: PLC0415
+
+    found = collect(given, results, (), folder)
+    folder.add("designs.csv", csv_text(design_columns(answer, range(len(answer.places)))))
+    if len(answer.front):
+        folder.add("front.csv", csv_text(design_columns(answer, answer.front)))
+    confirmed = None if confirmation is None else confirmation.verdicts
+    if confirmation is not None:
+        columns = verdict_columns(confirmation.keys, confirmation.verdicts)
+        folder.add("confirmation.csv", csv_text(columns))
+    for name, content in figure_files(figures(answer, given.study.title), given.look).items():
+        folder.add(name, content)
+    error = first_error(found._replace(verdicts=[]), len(results.table)) or _limits(answer)
+    results.store.require()
+    write(folder, rounds.terminal)
+    notes = [*rounds.notes(answer, confirmation), *found.notes]
+    rounds.terminal.warn(notes[:WARNINGS_SHOWN])
+    document = {
+        **heading(),
+        "command": "design",
+        "study": study_heading(given),
+        "note": ONE_DIRECTION,
+        "points": {"total": len(results.table), "failed": len(found.failures)},
+        **answer_document(answer),
+        "confirmed": None if confirmed is None else not any(v.exceeded for v in confirmed),
+        "confirmation": [verdict_document(confirmation.keys, v) for v in confirmed or ()]
+        if confirmation
+        else None,
+        "warnings": notes,
+        "files": [str(results.store.path), *folder.files],
+    }
+    tables = answer_tables(document, answer, confirmation)
+    rounds.terminal.result(concluded(document, error), tables)
+    leave(error)
+
+
+def _limits(answer: Answer) -> RpsError | None:
+    text = nothing_passes(answer)
+    return LimitExceeded(text) if text else None

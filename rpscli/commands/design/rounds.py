@@ -1,0 +1,141 @@
+"""The rounds of a search, computed as studies into one store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from rpscli.commands.shell.options import CaseRequest
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.sweep.command import stop
+from rpscli.commands.sweep.input import StudyInput, SweepChoices
+from rpscli.commands.sweep.points import compute
+from rpscli.commands.sweep.requirements import require_results
+from rpscli.report.figures.look import Look
+
+if TYPE_CHECKING:
+    from rpscli.case.study.study import Study
+    from rpscli.sweep.reports.study_results import StudyResults
+    from rpscli.sweep.search.answer import Answer
+    from rpscli.sweep.search.search import Search
+    from rpscli.sweep.statistics.verdicts import StudyVerdict
+    from rpscli.sweep.store import Store
+    from rpscli.sweep.table import Table
+
+
+class Confirmation(NamedTuple):
+    """The best design under motions that the search did not see."""
+
+    keys: tuple[str, ...]
+    verdicts: list[StudyVerdict]
+    records: int
+
+
+@dataclass(eq=False)
+class Rounds:
+    """A search that computes."""
+
+    search: Search
+    request: CaseRequest
+    look: Look
+    choices: SweepChoices
+    terminal: Terminal
+
+    def first(self) -> StudyInput:
+        """The first round, laid out; with it the file is checked to its end."""
+        search = self.search
+        places = search.next_round()
+        values = search.task.values(places)
+        valid = search.valid_cases(values)
+        # If none is, the first one tells why, at its place in the file.
+        given = self._laid_out(search.task.study_of(values[valid] if valid.any() else values[:1]))
+        search.require(given.design)
+        require_results(given, ())
+        return given
+
+    def run(self, first: StudyInput, store: Store) -> Answer:
+        """All rounds, one after the other."""
+        search, given, number = self.search, first, 1
+        while len(places := search.next_round()):
+            values = search.task.values(places)
+            valid = search.valid_cases(values)
+            table = None
+            if valid.any():
+                if number > 1:
+                    given = self._laid_out(search.task.study_of(values[valid]), first)
+                self.terminal.note(f"round {number}: {len(places)} designs")
+                table = self._computed(given, store)[1]
+            search.add(places, values, valid, table)
+            number += 1
+        return search.answer()
+
+    def confirm(self, answer: Answer, store: Store) -> Confirmation | None:
+        """Judge the best design under other motions, if there is one and there are any."""
+        from rpscli.sweep.search.answer import NONE  # noqa: PLC0415 -- numpy is slow
+        from rpscli.sweep.statistics.summary import summary  # noqa: PLC0415
+        from rpscli.sweep.statistics.verdicts import judged  # noqa: PLC0415
+
+        task = answer.task
+        if answer.best == NONE or not task.confirming:
+            return None
+        study = task.study_of(answer.values[[answer.best]], task.confirming)
+        given = self._laid_out(study)
+        self.terminal.note(f"confirmation: {len(task.confirming)} records")
+        results, table = self._computed(given, store)
+        made = summary(table, results.fixed_base)
+        return Confirmation(made.keys, judged(table, made), len(task.confirming))
+
+    def everything(
+        self, answer: Answer, first: StudyInput, store: Store
+    ) -> tuple[StudyInput, StudyResults]:
+        """All valid designs as one study, whose points are in the store."""
+        given = self._laid_out(answer.task.study_of(answer.values[answer.valid]), first)
+        return given, self._computed(given, store)[0]
+
+    def notes(self, answer: Answer, confirmation: Confirmation | None) -> Iterator[str]:
+        """What the user should know about the answer."""
+        from rpscli.sweep.search.answer import NONE  # noqa: PLC0415 -- numpy is slow
+
+        if invalid := int((~answer.valid).sum()):
+            reason = next(iter(self.search.faults))
+            yield f"{invalid} designs are no valid cases and count as failing: {reason}"
+        if not answer.resamples and answer.task.file.search.resamples:
+            yield "one record only: how far the choice of records moves the answer is not known"
+        if answer.best != NONE and (ends := list(answer.at_bounds)):
+            words = " and ".join(f"the {end} {key}" for key, end in ends)
+            yield f"the best design has {words} of the range; a wider one may have a better design"
+        if confirmation is not None and any(v.exceeded for v in confirmation.verdicts):
+            yield "the best design does not keep its limits under the motions of the confirmation"
+
+    def _laid_out(self, study: Study, earlier: StudyInput | None = None) -> StudyInput:
+        """A study with its points; records are shared with an earlier one."""
+        from rpscli.sweep.design.layout import lay_out  # noqa: PLC0415 -- numpy is slow
+        from rpscli.sweep.evaluation.context import StudyContext  # noqa: PLC0415
+
+        design = lay_out(study)
+        context = StudyContext(design.plan)
+        if earlier is not None:
+            context.records = earlier.context.records
+        return StudyInput(design, context, self.request, self.look)
+
+    def _computed(self, given: StudyInput, store: Store) -> tuple[StudyResults, Table]:
+        """Compute what is not stored; leave if the user interrupts."""
+        from rpscli.sweep.reports.study_results import StudyResults  # noqa: PLC0415
+        from rpscli.sweep.run.keys import all_keys  # noqa: PLC0415 -- numpy is slow
+        from rpscli.sweep.run.resume import remember, resume  # noqa: PLC0415
+        from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
+        from rpscli.sweep.table import tabulate  # noqa: PLC0415
+
+        keys = all_keys(given.design, given.context)
+        start = resume(given.design, keys, store, retry_failed=self.choices.retry_failed)
+        remember(given.design, store)
+        try:
+            finish = compute(given, start, store, self.choices, self.terminal)
+        except KeyboardInterrupt:
+            finish = None
+        if finish is None or finish.interrupted:
+            stop("design", given, store, start, self.terminal)
+        table = tabulate(given.design, store.stored(keys))
+        jobs = self.choices.jobs or available_cores()
+        return StudyResults(table, keys, store, given.context, jobs), table

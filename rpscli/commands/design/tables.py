@@ -1,0 +1,148 @@
+"""The answer of a search as tables for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from rpscli.case.conditions import condition_text
+from rpscli.commands.shell.numbers import large, measured, shown
+from rpscli.commands.shell.tables import listing, sentence, table, title
+from rpscli.commands.sweep.tables import found as found_text
+from rpscli.report.documents import ONE_DIRECTION
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.commands.design.rounds import Confirmation
+    from rpscli.sweep.search.answer import Answer
+
+DIGITS = 4
+RECORDS_SHOWN = 3
+
+
+def answer_tables(
+    document: dict[str, Any], answer: Answer, confirmation: Confirmation | None
+) -> Iterator[RenderableType]:
+    """Best design, requirements, what the records do to it, and the confirmation."""
+    counts = document["designs"]
+    best = document["best"]
+    yield title(document["study"]["title"])
+    yield listing([(name.replace("_", " "), str(count)) for name, count in counts.items()])
+    yield _values(document, best or document["closest"], "best" if best else "fails least")
+    yield _requirements(document, answer)
+    if best is not None:
+        yield listing(list(_records(document)))
+    if len(answer.front):
+        yield sentence(f"front of both aims: {len(answer.front)} designs, in front.csv")
+    if confirmation is not None:
+        yield title(f"confirmation with {confirmation.records} records that were not used")
+        rows = [
+            (
+                verdict.condition.name,
+                "EXCEEDED" if verdict.exceeded else "met",
+                condition_text(verdict.condition),
+                found_text(verdict),
+            )
+            for verdict in confirmation.verdicts
+        ]
+        yield table(("limit", "", "asked for", "found"), rows, words=4)
+    yield sentence(ONE_DIRECTION)
+
+
+def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> RenderableType:
+    from rpscli.report.study.labels import symbol  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.sweep.reports.intensities import unit_of  # noqa: PLC0415
+
+    intervals = document["records"]["intervals"]
+    ends = {item["key"]: item["end"] for item in document["at_bounds"]}
+    rows = []
+    for key, value in design["values"].items():
+        unit = unit_of(key)
+        name = symbol(key) if unit == "-" else f"{symbol(key)} [{unit}]"
+        end = f"{ends[key]} of its range" if key in ends else ""
+        rows.append((name, end, shown(value, DIGITS), _interval(intervals[key])))
+    for aim, value in zip(document["least"], design["aims"].values(), strict=True):
+        name, interval = aim["aim"], intervals.get(aim["aim"], ())
+        limits = [large(end, aim["unit"])[0] or 0.0 for end in interval]
+        number, unit = large(value, aim["unit"])
+        rows.append((f"{name} {unit}".rstrip(), "least", shown(number, DIGITS), _interval(limits)))
+    return table(("", "", head, "95 % of resamples"), rows, words=2)
+
+
+def _interval(interval: Iterable[float]) -> str:
+    known = [end for end in interval if end == end]  # noqa: PLR0124 -- not NaN
+    return " to ".join(shown(end, 3) for end in known) or "-"
+
+
+def _requirements(document: dict[str, Any], answer: Answer) -> RenderableType:
+    rows = []
+    for row, requirement in zip(document["requirements"], answer.judged.requirements, strict=True):
+        if row["binds"]:
+            unit = document["least"][0]["unit"]
+            remark = f"binds; without it {measured(row['aim_without_it'], unit)}"
+        else:
+            remark = "" if row["met"] else "NOT MET"
+        rows.append(
+            (
+                row["requirement"],
+                condition_text(requirement.condition),
+                remark,
+                shown(row["value"], DIGITS),
+                f"{row['designs_that_meet_it']} designs",
+            )
+        )
+    heads = ("requirement", "asked for", "", "found", "met by")
+    return table(heads, rows, words=3)
+
+
+def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """How sharp the answer is, and how it hangs on the choice of records."""
+    from rpscli.report.study.labels import label  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.sweep.search.answer import ROBUST  # noqa: PLC0415 -- numpy is slow
+
+    records = document["records"]
+    for end, word in zip(document["bracket"] or (), ("smaller", "larger"), strict=False):
+        if end is not None:
+            yield f"the next {word} value that fails", shown(end, 6)
+    if not records["resamples"]:
+        return
+    share = 100.0 * records["passing_share_of_best"]
+    yield "the best design passes in", f"{share:.0f} % of {records['resamples']} resamples"
+    if (robust := document["robust"]) is not None:
+        values = ", ".join(label(*item) for item in robust["values"].items())
+        aims = zip(document["least"], robust["aims"].values(), strict=True)
+        found = ", ".join(f"{aim['aim']} {measured(value, aim['unit'])}" for aim, value in aims)
+        yield f"the best in {100.0 * ROBUST:g} % of them", f"{values}: {found}"
+    if records["without_answer"]:
+        yield "nothing passes in", f"{records['without_answer']} of them"
+    aim, unit = document["least"][0].values()
+    least = document["best"]["aims"][aim]
+    changes = [
+        (abs(value - least), item["record"], value)
+        for item in records["without_one"]
+        if item["best"] is not None and (value := item["best"]["aims"][aim]) != least
+    ]
+    for _, record, value in sorted(changes, reverse=True)[:RECORDS_SHOWN]:
+        yield f"without {record}", f"{aim} {measured(value, unit)}"
+
+
+def nothing_passes(answer: Answer) -> str:
+    """Which requirement stands in the way least, if no design passes; else nothing."""
+    from rpscli.report.design.answer import requirement_label  # noqa: PLC0415
+    from rpscli.sweep.search.answer import NONE  # noqa: PLC0415
+
+    if answer.best != NONE:
+        return ""
+    judged, place = answer.judged, answer.closest
+    rows = [row for row in range(len(judged.requirements)) if not judged.met[row, 0, place]]
+    lines = [f"no design of {len(answer.places)} meets all requirements"]
+    for row in sorted(rows, key=lambda row: float(judged.excess[row, place])):
+        requirement = judged.requirements[row]
+        value = shown(float(judged.values[row, 0, place]), DIGITS)
+        lines.append(
+            f"{requirement_label(requirement)}: {condition_text(requirement.condition)}; {value} in"
+            f" the design that fails least, {100.0 * judged.excess[row, place]:.3g} % of the"
+            f" records too many; {int(judged.met[row, 0].sum())} designs meet it"
+        )
+    return "\n".join(lines)
