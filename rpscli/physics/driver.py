@@ -76,7 +76,7 @@ def integrate_lanes(state: Record, run: Run) -> None:
         s.renew[l] = NOTHING_NEW
         # Not the constant by itself: numba would compile once more, for it alone.
         fate = IS_OVER if s.history[l] == NO_HISTORY else GOES_ON
-        switch_lane(state, l, fate, run)
+        settle_lane(state, l, fate, run)
         active -= s.history[l] == NO_HISTORY
     while active > 0:
         advance_lanes(state, systems, block, output.log)
@@ -92,7 +92,7 @@ def integrate_lanes(state: Record, run: Run) -> None:
                 if s.audited > 0:
                     store_sample(s, l, systems[s.system[l]], output)
             if fate != GOES_ON or s.renew[l] != NOTHING_NEW:
-                switch_lane(state, l, fate, run)
+                settle_lane(state, l, fate, run)
                 active -= s.history[l] == NO_HISTORY
 
 
@@ -121,11 +121,43 @@ def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -
     accept_steps(s)
 
 
-@kernel
-def switch_lane(state: Record, l: int, fate: int, run: Run) -> None:
-    """What comes of a step that one lane cannot simply go on from.
+@compiled
+def settle_lane(state: Record, l: int, fate: int, run: Run) -> None:
+    """What comes of a step that one lane cannot simply go on from, until it can.
 
-    It ends on an event, the storey stands until it uplifts, or the next history begins.
+    Parameters
+    ----------
+    state
+        The lanes, an array of one `state.STATE`.
+    l
+        Which of them.
+    fate
+        GOES_ON, NOT_ACCEPTED, STANDS or IS_OVER.
+    run
+        The histories.
+    """
+    s = state[0]
+    while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
+        if fate == STANDS:
+            fate = stand_lane(state, l, fate, run)
+        else:
+            fate = switch_lane(state, l, fate, run)
+
+
+@kernel
+def stand_lane(state: Record, l: int, fate: int, run: Run) -> int:
+    """If it STANDS, the storey of a lane does so until it uplifts or its history ends."""
+    if fate != STANDS:
+        return fate
+    s = state[0]
+    fate = stand(s, l, run.systems[s.system[l]], run.block[0], run.acceleration, run.output)
+    plan_steps(s, l)
+    return fate
+
+
+@kernel
+def switch_lane(state: Record, l: int, fate: int, run: Run) -> int:
+    """A step ends on an event, a phase begins, or the next history does; what the lane does then.
 
     Parameters
     ----------
@@ -138,26 +170,19 @@ def switch_lane(state: Record, l: int, fate: int, run: Run) -> None:
     run
         The histories.
     """
-    s, block, output = state[0], run.block[0], run.output
+    s = state[0]
     system = run.systems[s.system[l]]
     if fate == NOT_ACCEPTED:
-        fate = resolve_step(s, l, system, block, output.log)
-    while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
-        system = run.systems[s.system[l]]
-        if fate == GOES_ON:
-            fate = go_on_renewed(s, l, system, output)
-        elif fate == STANDS:
-            fate = stand(s, l, system, block, run.acceleration, output)
-            plan_steps(s, l)
-        else:
-            if s.history[l] != NO_HISTORY:
-                finish_history(s, l, system, run.results)
-            if s.waiting < run.requests.shape[0]:
-                fate = begin_history(s, l, run, s.waiting)
-                s.waiting += 1
-            else:
-                idle(s, l)
-                fate = GOES_ON
+        return resolve_step(s, l, system, run.block[0], run.output.log)
+    if fate == GOES_ON:
+        return go_on_renewed(s, l, system, run.output) if s.renew[l] != NOTHING_NEW else fate
+    if s.history[l] != NO_HISTORY:
+        finish_history(s, l, system, run.results)
+    if s.waiting < run.requests.shape[0]:
+        s.waiting += 1
+        return begin_history(s, l, run, s.waiting - 1)
+    idle(s, l)
+    return GOES_ON
 
 
 @compiled

@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.compile import compiled, inlined, specialised
+from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.formulae import geometry
 from rpscli.physics.formulae.geometry import Phase
 from rpscli.physics.formulae.trigonometry import sine_cosine
@@ -244,7 +244,7 @@ def begin_terms(s: Record) -> None:
             s.modal_force[r, l] = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[0, r, l]
 
 
-@specialised
+@inlined
 def extend_rotation(s: Record, lanes: int, m: int) -> None:
     """Terms of order m of B, C, A and x', and what they ask of the modes."""
     k = m - 1
@@ -285,7 +285,7 @@ def extend_rotation(s: Record, lanes: int, m: int) -> None:
         )
 
 
-@specialised
+@inlined
 def extend_modes(s: Record, lanes: int, m: int) -> None:
     """Terms of order m of the modes, their forces, and with V the action on the storey."""
     for l in range(lanes):
