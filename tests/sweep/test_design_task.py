@@ -253,9 +253,12 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
     ("old", "new", "place", "said"),
     [
         ("0.35]", "0.02]", "12:31", "must rise from the least value to the largest"),
-        ("[0.05, 0.35]", "[0.05]", "12:31", "must be two values, [least, largest]"),
+        ("[0.05, 0.35]", "[0.05]", "12:31", "must be two numbers, [least, largest]"),
         ("[0.05, 0.35]", "[low, high]", "12:31", "must be two numbers"),
         (f"{SLENDERNESS}: [0.05", "podium.bearing.slendernes: [0.05", "12:3", "did you mean"),
+        (f"{WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}", f"{WEDGE}: 2", "14:", "must be a linear sum"),
+        ("[0.05, 0.35]", "", "12:3", "must be two numbers"),
+        ("least:", "records: 3\nleast:", "19:1", "twice"),
         ("2, plus", "2, pluss", "14:", "needs pluss, which is not under find"),
         (f"least: {SLENDERNESS}", "least: max_rotatoin", "19:8", "did you mean max_rotation?"),
         (f"least: {SLENDERNESS}", "least: {max_rotation: {fractil: 1}}", "19:8", "fractil"),

@@ -30,12 +30,6 @@ Aim = dict[str, Term]
 """A linear sum of results and keys, by their names."""
 
 
-def _bounds(value: object) -> tuple[object, object]:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        refuse("must be two values, [least, largest]")
-    return value[0], value[1]
-
-
 def _aims(value: object) -> tuple[Aim, ...]:
     """One sum, or two whose front is looked for."""
     several = value if isinstance(value, list) else [value]
@@ -78,10 +72,9 @@ _ONE_AIM = {
 _BOUND = {"type": ["number", "string"]}
 
 Bounds = Annotated[
-    tuple[Any, Any],
-    PlainValidator(_bounds),
-    WithJsonSchema({"type": "array", "items": _BOUND, "minItems": 2, "maxItems": 2}),
+    Any, WithJsonSchema({"type": "array", "items": _BOUND, "minItems": 2, "maxItems": 2})
 ]
+"""Two values, which the task reads in the unit of their key."""
 Aims = Annotated[
     tuple[Aim, ...],
     PlainValidator(_aims),
@@ -125,7 +118,7 @@ class DesignFile(StudyParts):
     find: dict[str, Bounds] = Field(
         description="dotted case keys with [least, largest]: what may change"
     )
-    ties: dict[str, dict[str, Annotated[float, Quantity()]]] = Field(
+    ties: dict[str, dict[str, float]] = Field(
         {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
     )
     least: Aims = Field(

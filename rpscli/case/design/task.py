@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,7 +29,7 @@ from rpscli.case.study.schema import StudyParts
 from rpscli.case.study.sources import sources_of
 from rpscli.case.study.study import Study, shared_out, single_key_faults, study_of
 from rpscli.case.text.document import Document, is_case, is_design
-from rpscli.case.text.faults import Fault, dotted, listed, shown
+from rpscli.case.text.faults import Fault, listed, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, nearest
@@ -153,9 +154,9 @@ def parse_design(
     faults = [*single_key_faults(document, DesignFile), *scale_faults(document)]
     faults += [*find_faults, *unknown_keys(document), *clashes(varied_paths(document))]
     faults += [*record_rules(document), *fixed_faults(document, of_base), *confirm_faults]
-    document.refuse(faults)
+    document.refuse([*faults, *_tie_faults(document), *sources_of(document, folder)[1]])
     file = DesignFile.model_validate(document.content)
-    document.refuse([*_tie_faults(file), *_aim_faults(file)])
+    document.refuse(_aim_faults(file))
     study = study_of(
         _study_document(document),
         of_base,
@@ -184,28 +185,22 @@ def _study_document(document: Document) -> Document:
 
 def _unknowns(document: Document) -> tuple[tuple[Unknown, ...], list[Fault]]:
     """The ranges under `find`, in SI units."""
-    written = document.content["find"]
     unknowns: list[Unknown] = []
     faults: list[Fault] = []
-    if not isinstance(written, dict) or not written:
-        text = f"find = {shown(written)} must be keys with their ranges"
-        text = f"{text}, as in {{podium.bearing.slenderness: [0.1, 0.3]}}"
-        return (), [Fault(("find",), text)]
-    for key, bounds in written.items():
+    if (written := document.content["find"]) == {}:
+        text = "find is empty; name a key, as in {podium.bearing.slenderness: [0.1, 0.3]}"
+        faults.append(Fault(("find",), text))
+    for key, bounds in written.items() if isinstance(written, dict) else ():
         si = in_si(bounds, unit(key))
-        numbers = isinstance(si, list) and all(
-            isinstance(value, int | float) and not isinstance(value, bool) for value in si
-        )
-        path = ("find", key)
-        if isinstance(si, list) and len(si) == 2 and not numbers:
-            expected = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
-            faults.append(Fault(path, f"{dotted(path)} = {shown(bounds)} must be two {expected}"))
-        elif isinstance(si, list) and len(si) == 2:
-            low, high = si
-            unknowns.append(Unknown(key, float(low), float(high)))
-            if not low < high:
-                text = f"{dotted(path)} = {shown(bounds)} must rise from the least value"
-                faults.append(Fault(path, f"{text} to the largest; exchange them"))
+        if not isinstance(si, list) or len(si) != 2 or not all(map(_is_number, si)):
+            words = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
+            text = f"find.{key} = {shown(bounds)} must be two {words}, [least, largest]"
+            faults.append(Fault(("find", key), text))
+        elif not si[0] < si[1]:
+            text = f"find.{key} = {shown(bounds)} must rise from the least value to the largest"
+            faults.append(Fault(("find", key), f"{text}; exchange them"))
+        else:
+            unknowns.append(Unknown(key, float(si[0]), float(si[1])))
     for key, place in varied_paths(document).items():
         if key.split(".")[0] in {"limits", "analysis", "rps", "title", "record"}:
             text = f"{key} must not change in a design; it is no property of the structure"
@@ -213,15 +208,27 @@ def _unknowns(document: Document) -> tuple[tuple[Unknown, ...], list[Fault]]:
     return tuple(unknowns), faults
 
 
-def _tie_faults(file: DesignFile) -> Iterator[Fault]:
-    for key, terms in file.ties.items():
-        if key in file.find:
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+
+
+def _tie_faults(document: Document) -> Iterator[Fault]:
+    found, ties = document.content["find"], document.content.get("ties", {})
+    known = [*(found if isinstance(found, dict) else ()), PLUS]
+    for key, terms in ties.items() if isinstance(ties, dict) else ():
+        if key in known:
             text = f"{key} varies under find already; take one of them out"
             yield Fault(("ties", key), text, at_key=True)
-        for name in terms:
-            if name not in file.find and name != PLUS:
-                text = f"ties.{key} needs {name}, which is not under find"
-                yield Fault(("ties", key), f"{text}; use {listed([*file.find, PLUS])}")
+        elif not isinstance(terms, dict) or not all(map(_is_number, terms.values())):
+            text = (
+                f"ties.{key} = {shown(terms)} must be a linear sum, {{key: factor, plus: number}}"
+            )
+            yield Fault(("ties", key), text)
+        else:
+            for name in terms:
+                if name not in known:
+                    text = f"ties.{key} needs {name}, which is not under find"
+                    yield Fault(("ties", key), f"{text}; use {listed(known)}")
 
 
 def _aim_faults(file: DesignFile) -> Iterator[Fault]:

@@ -130,6 +130,8 @@ def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
         section = section_at(model, path)
         names = listed(section.model_fields, "and") if section else ""
         return f"must be a mapping with keys among {names}"
+    if kind == "dict_type":
+        return "must be a mapping, `key: value`"
     if kind == "too_short":
         return "must not be an empty list"
     message = error["msg"]

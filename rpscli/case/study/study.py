@@ -250,6 +250,9 @@ def single_key_faults(document: Document, model: type[StudyParts]) -> Iterator[F
         content["scale"] = 1.0
     if isinstance(sample := content.get("sample"), dict) and "ranges" in sample:
         content["sample"] = sample | {"ranges": {}}
+    for key in ("find", "ties"):  # of a design
+        if isinstance(content.get(key), dict):
+            content[key] = {}
     plain = Document(document.name, content, document.keys, document.values, document.faults)
     yield from schema_check(model, plain).faults
 

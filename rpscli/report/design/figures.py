@@ -14,9 +14,11 @@ from rpscli.case.conditions import EVENTS, LIMITS
 from rpscli.report.design.answer import aim_label, aim_unit, requirement_label
 from rpscli.report.figures import style
 from rpscli.report.figures.drawing import Draw
+from rpscli.report.figures.look import in_force
 from rpscli.report.study.labels import symbol
+from rpscli.report.study.panels import MOST_TICKS
 from rpscli.sweep.reports.intensities import unit_of
-from rpscli.sweep.search.answer import NONE, Answer
+from rpscli.sweep.search.answer import NONE, ROBUST, Answer
 from rpscli.sweep.search.judgement import Requirement
 from rpscli.sweep.statistics.share import share
 from rpscli.sweep.table import Array
@@ -109,22 +111,26 @@ def region_figure(answer: Answer, title: str) -> bytes:
     With two of them the colour between the designs is the share of the resamples that pass.
     """
     pairs = list(itertools.combinations(range(len(answer.task.unknowns)), 2))
-    columns = min(3, len(pairs[:MOST_PAIRS]))
-    rows = math.ceil(len(pairs[:MOST_PAIRS]) / columns)
+    shown = pairs[:MOST_PAIRS]
+    narrow = in_force().look.width(style.WIDTH) < style.WIDTH
+    columns = 1 if narrow else min(3, len(shown))
+    rows = math.ceil(len(shown) / columns)
 
     def draw(figure: Figure) -> None:
         more = f"{MOST_PAIRS} of {len(pairs)} pairs" if len(pairs) > MOST_PAIRS else ""
         style.heading(figure, title, _counts(answer), more)
         grid = figure.subplots(rows, columns, squeeze=False)
-        for axes in grid.flat[len(pairs) :]:
+        for axes in grid.flat[len(shown) :]:
             axes.set_axis_off()
-        for axes, (x, y) in zip(grid.flat, pairs, strict=False):
+        for axes, (x, y) in zip(grid.flat, shown, strict=False):
+            axes.locator_params(nbins=MOST_TICKS)
             if len(pairs) == 1 and answer.resamples:
                 _draw_shares(figure, axes, answer)
             _draw_designs(axes, answer, x, y)
-        style.legend_above(grid[0][0], 4)
+        handles = grid[0][0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside lower center", ncols=2 if narrow else 5)
 
-    return style.picture(draw, 0.9 + (4.2 if len(pairs) == 1 else 2.6) * rows)
+    return style.picture(draw, 1.1 + (4.2 if len(pairs) == 1 else 2.6) * rows)
 
 
 def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
@@ -147,8 +153,7 @@ def _draw_designs(axes: Axes, answer: Answer, x: int, y: int) -> None:
         if chosen.any():
             of_mark: dict[str, Any] = mark
             axes.plot(answer.values[chosen, x], answer.values[chosen, y], ls="", ms=3.2, **of_mark)
-    if answer.best != NONE:
-        axes.plot(*answer.values[answer.best, [x, y]], **BEST)
+    _mark(axes, answer, answer.values[:, [x, y]])
     axes.set_xlabel(axis_label(answer.task.keys[x]))
     axes.set_ylabel(axis_label(answer.task.keys[y]))
 
@@ -173,13 +178,21 @@ def front_figure(answer: Answer, title: str) -> bytes:
             of_mark: dict[str, Any] = mark
             axes.plot(*aims[:, chosen], ls="", ms=3.2, alpha=0.6, **of_mark)
         axes.plot(*aims[:, answer.front], color=style.BLACK, drawstyle="steps-post", label="front")
-        if answer.best != NONE:
-            axes.plot(*aims[:, answer.best], **BEST)
+        _mark(axes, answer, aims.T)
         axes.set_xlabel(labels[0])
         axes.set_ylabel(labels[1])
         style.legend_above(axes, 4)
 
     return style.picture(draw, 4.2, 6.0)
+
+
+def _mark(axes: Axes, answer: Answer, at: Array) -> None:
+    """The best design, and the best robust one, at their rows of (designs, 2)."""
+    if answer.best != NONE:
+        axes.plot(*at[answer.best], **BEST)
+    if answer.robust != NONE:
+        words = f"best in {100.0 * ROBUST:g} % of the resamples"
+        axes.plot(*at[answer.robust], **BEST | {"marker": "D", "ms": 6.0, "label": words})
 
 
 def _counts(answer: Answer) -> str:
