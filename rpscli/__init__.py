@@ -15,6 +15,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rpscli import figures
     from rpscli.analyses.demand import demand
     from rpscli.analyses.largest_demands import Demand
     from rpscli.analyses.modal import ModalResult, modal
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from rpscli.model.superstructure import Superstructure, profile_stiffnesses
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.records.source import load_record
+    from rpscli.studies import Study, StudyResult, load_study
 
 _HOMES = {
     "rpscli.analyses.demand": ("demand",),
@@ -49,6 +51,7 @@ _HOMES = {
     "rpscli.model.superstructure": ("Superstructure", "profile_stiffnesses"),
     "rpscli.records.ground_motion": ("GroundMotion",),
     "rpscli.records.source": ("load_record",),
+    "rpscli.studies": ("Study", "StudyResult", "load_study"),
 }
 
 __all__ = [
@@ -63,6 +66,8 @@ __all__ = [
     "PushoverResult",
     "RayleighDamping",
     "RpsError",
+    "Study",
+    "StudyResult",
     "Superstructure",
     "TimeHistoryResult",
     "TimeHistorySettings",
@@ -71,6 +76,7 @@ __all__ = [
     "figures",
     "load_case",
     "load_record",
+    "load_study",
     "modal",
     "profile_stiffnesses",
     "pushover",

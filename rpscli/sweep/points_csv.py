@@ -25,11 +25,11 @@ def points_csv(table: Table) -> Iterator[str]:
     results = SCALARS[design.plan.analysis]
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(f"{name} [{of}]" for name, of in _columns(design))
+    writer.writerow(f"{name} [{of}]" for name, of in units_of_columns(design))
     for number, point in enumerate(design):
         cells = [_cell(value, unit_of(name)) for name, value in described(design, point).items()]
         if histories:
-            cells.append(_number(_scale(table, number)))
+            cells.append(_number(scale_of(table, number)))
         cells.append(str(table.outcomes[number]))
         cells += [
             _number(float(table.columns[path][number]), whole=quantity.whole)
@@ -43,7 +43,7 @@ def points_csv(table: Table) -> Iterator[str]:
     yield buffer.getvalue()
 
 
-def _columns(design: Design) -> Iterator[tuple[str, str]]:
+def units_of_columns(design: Design) -> Iterator[tuple[str, str]]:
     """Names and units of all columns."""
     for name in identifying_columns(design):
         yield name, unit_of(name)
@@ -54,7 +54,7 @@ def _columns(design: Design) -> Iterator[tuple[str, str]]:
         yield path, quantity.unit
 
 
-def _scale(table: Table, number: int) -> float:
+def scale_of(table: Table, number: int) -> float:
     """The factor on the record; known beforehand unless a measure decides about it."""
     if table.design.plan.measure is None:
         point = table.design[number]

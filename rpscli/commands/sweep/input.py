@@ -11,10 +11,10 @@ from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import USUAL, Look
-from rpscli.report.files.output_folder import OutputFolder, Run
 
 if TYPE_CHECKING:
     from rpscli.case.study.study import Study
+    from rpscli.report.files.output_folder import OutputFolder
     from rpscli.sweep.design.layout import Design
     from rpscli.sweep.evaluation.context import StudyContext
 
@@ -91,24 +91,12 @@ def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> 
 
 
 def study_folder(given: StudyInput, output: OutputRequest, command: str = "sweep") -> OutputFolder:
-    """The folder of a study's results, or a design's.
+    """The folder of a study's results, or a design's."""
+    from rpscli.report.study import folder  # noqa: PLC0415 -- sqlite is slow
 
-    A folder with a store belongs to its study, which the store itself looks after: after a kill
-    there may be files there that no `run.json` speaks of.
-    """
-    from rpscli.sweep.store import FILE  # noqa: PLC0415 -- sqlite is slow
-
-    study, plan = given.study, given.design.plan
-    inputs = {
-        "study": study.document.content,
-        "base": plan.base,
-        "overrides": list(given.request.overrides),
-        "points": len(given.design),
-        "solver": plan.solver,
-    }
-    place = output.place or RESULTS / study.name / command
-    run = Run(command, study.name, given.file, study.digest, inputs)
-    return OutputFolder(place, run, force=output.force or (place / FILE).exists())
+    place = output.place or RESULTS / given.study.name / command
+    overrides = given.request.overrides
+    return folder.study_folder(given.design, place, overrides, command, force=output.force)
 
 
 def study_heading(given: StudyInput) -> dict[str, str]:

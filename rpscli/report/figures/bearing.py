@@ -12,7 +12,6 @@ import numpy as np
 
 from rpscli.report.figures import style
 from rpscli.report.figures.column_outline import contact_points, leaning_outline
-from rpscli.report.figures.look import in_force
 from rpscli.report.figures.scene_devices import SceneDevices
 from rpscli.report.figures.storey_curve import draw_force
 
@@ -89,7 +88,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
     structure = result.structure
     beta, critical = structure.bearing.beta, structure.critical_rotation
     states = [0.0, *([beta] if 0.0 < beta < critical else []), critical]
-    narrow = in_force().look.width(style.WIDTH) < style.WIDTH
+    narrow = style.room(style.WIDTH) < style.WIDTH
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title)

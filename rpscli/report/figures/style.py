@@ -7,8 +7,11 @@ import re
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Literal
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
+from rpscli.errors import UsageError
 from rpscli.report.figures.look import SMALL, in_force, quiet_matplotlib
 
 if TYPE_CHECKING:
@@ -54,6 +57,8 @@ STYLE: dict[str, Any] = {
     "svg.hashsalt": "rps",  # the same data give the same file
 }
 
+Target: TypeAlias = "Figure | SubFigure"
+
 METADATA: dict[str, dict[str, None]] = {
     "png": {"Software": None},
     "svg": {"Date": None},
@@ -79,12 +84,18 @@ def picture(
     layout
         None for a figure that places its axes itself, which draws four times as fast.
     """
+    if (kept := _kept.get()) is not None and kept.target is not None:
+        draw(cast("Figure", kept.target))
+        return b""
     now = in_force()
     with in_style(), _no_noise():
         from matplotlib.figure import Figure  # noqa: PLC0415
 
         figure = Figure(figsize=(now.look.width(width), height), layout=layout)
         draw(figure)
+        if kept is not None:
+            kept.target = figure
+            return b""
         if (engine := figure.get_layout_engine()) is not None:
             # Once, and no more: matplotlib would do it in a trial drawing, and again in the real
             # one, which takes twice as long.
@@ -96,6 +107,59 @@ def picture(
         )
         figure.savefig(buffer, format=now.ending, metadata=METADATA[now.ending], **compressed)
     return buffer.getvalue()
+
+
+@dataclass
+class Kept:
+    """A figure that is to be kept, in place of becoming a file."""
+
+    target: Target | None
+
+
+_kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
+
+
+def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) -> Target:
+    """The figure that `draw` would make a file of; drawn into the target if there is one.
+
+    Axes make room for a part of their figure.
+
+    Raises
+    ------
+    UsageError
+        If they are no subplot.
+    """
+    from matplotlib.axes import Axes  # noqa: PLC0415
+
+    kept = Kept(_in_place_of(target) if isinstance(target, Axes) else target)
+    token = _kept.set(kept)
+    try:
+        draw()
+    finally:
+        _kept.reset(token)
+    assert kept.target is not None, "something was drawn"
+    return kept.target
+
+
+def _in_place_of(axes: Axes) -> SubFigure:
+    place = axes.get_subplotspec()
+    if place is None:
+        raise UsageError("the axes are no subplot: give a figure, or axes of plt.subplots()")
+    part: SubFigure = axes.figure.add_subfigure(place)
+    axes.remove()
+    return part
+
+
+def given() -> Target | None:
+    """Somebody's figure that is to be drawn into."""
+    kept = _kept.get()
+    return None if kept is None else kept.target
+
+
+def room(usual: float) -> float:
+    """Width that a figure will have [in]; its own one, where nothing else is said."""
+    target = given()
+    return in_force().look.width(usual) if target is None else inches(target)[0]
 
 
 @contextmanager
@@ -118,7 +182,7 @@ def _no_noise() -> Iterator[None]:
         yield
 
 
-def inches(figure: Figure | SubFigure) -> tuple[float, float]:
+def inches(figure: Target) -> tuple[float, float]:
     """Width and height of a figure, or of a part of it [in]."""
     return figure.bbox.width / figure.dpi, figure.bbox.height / figure.dpi
 

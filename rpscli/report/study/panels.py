@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rpscli.report.figures import style
-from rpscli.report.figures.look import in_force
 from rpscli.report.study.labels import labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+Place = Literal["lower center", "outside lower center"]
 
 MOST_PANELS = 36
 """More would be illegible; the CSV has them all."""
@@ -87,7 +88,7 @@ def panel_figure(
     note
         A remark after the title: what was left out.
     """
-    width = in_force().look.width(style.WIDTH)
+    width = style.room(style.WIDTH)
     shown = panels[:MOST_PANELS]
     columns = layout.columns if width >= style.WIDTH else min(2, layout.columns)
     names = _wrapped(layout.names, columns)
@@ -113,14 +114,19 @@ def panel_figure(
                 axes.set_ylabel(y_label)
         if limits is not None:
             limits(grid.flat[0])
-        _arrange(figure, grid, _legend_lines(figure, grid), share_y=share == "both")
+        # Somebody's figure that lays itself out does so with what is drawn into it.
+        if figure.get_layout_engine() is not None:
+            _legend_lines(figure, grid, "outside lower center")
+            return
+        lines = _legend_lines(figure, grid, "lower center")
+        _arrange(figure, grid, lines, share_y=share == "both")
 
     width = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
     height = 3.8 if rows == 1 and columns == 1 else 1.0 + (2.6 if columns < 3 else 2.1) * rows
     return style.picture(fill, height, width, None)
 
 
-def _legend_lines(figure: Figure, grid: Any) -> int:
+def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
     """One legend for all panels, below them; returns its number of lines."""
     found: dict[str, Any] = {}
     for axes in grid.flat:
@@ -131,7 +137,7 @@ def _legend_lines(figure: Figure, grid: Any) -> int:
     widest = max(len(name) for name in found)
     room = style.inches(figure)[0] * LETTERS_AN_INCH
     columns = max(1, min(len(found), 5, int(room / (widest + 7))))
-    figure.legend(found.values(), found.keys(), loc="lower center", ncols=columns)
+    figure.legend(found.values(), found.keys(), loc=place, ncols=columns)
     return math.ceil(len(found) / columns)
 
 
@@ -142,7 +148,7 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> 
     title_lines = max(title.count("\n") for title in titles) + any(titles)
     further_lines = figure.get_suptitle().count("\n")
     width, height = style.inches(figure)
-    if hasattr(figure, "set_size_inches"):  # else it is a part of somebody's figure
+    if style.given() is None:  # else it is somebody's figure, or a part of one
         height += LINE * (max(legend_lines - 1, 0) + further_lines)
         figure.set_size_inches(width, height)
     left, right = 0.62, 0.14

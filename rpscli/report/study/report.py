@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rpscli.case.study.reports import Check, ReportOptions
 from rpscli.case.study.schema import Analysis
 from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import USUAL, Look
+from rpscli.report.figures.style import Target, kept_figure
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.reports.study_results import StudyResults
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Options = TypeVar("Options", bound=ReportOptions)
 Numbers = TypeVar("Numbers")
@@ -61,6 +65,10 @@ class Report(Generic[Options, Numbers]):
     results: Callable[[Options], Iterable[str]] = lambda _: ()
     requires: Callable[[Design, Options], Iterable[str]] = lambda *_: ()
     analyses: tuple[Analysis, ...] = ("timehistory",)
+
+    def drawn(self, numbers: Numbers, title: str, target: Target | Axes | None = None) -> Target:
+        """Its figure, which is no file yet; drawn into the target if there is one."""
+        return kept_figure(partial(self.figure, numbers, title), target)
 
     def files(
         self, numbers: Numbers, stem: str, title: str, look: Look = USUAL

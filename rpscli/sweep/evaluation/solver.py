@@ -7,8 +7,6 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 
-import rpscli
-
 SOLVING = ("constants.py", "physics", "model", "records", "analyses", "case", "sweep/evaluation")
 """Files and folders of the package whose sources decide about what is stored under a key."""
 
@@ -20,7 +18,7 @@ def solver_version() -> str:
         version = metadata.version("rpscli")
     except metadata.PackageNotFoundError:
         version = "0+unknown"
-    return f"{version}+{digest_of_sources(Path(rpscli.__file__).parent)[:16]}"
+    return f"{version}+{digest_of_sources(Path(__file__).parents[2])[:16]}"
 
 
 def digest_of_sources(package: Path) -> str:

@@ -1,0 +1,36 @@
+"""The folder of a study's results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rpscli.report.files.output_folder import OutputFolder, Run
+from rpscli.sweep.design.layout import Design
+from rpscli.sweep.store import FILE
+
+
+def study_folder(
+    design: Design,
+    place: Path,
+    overrides: Sequence[str],
+    command: str = "sweep",
+    *,
+    force: bool = False,
+) -> OutputFolder:
+    """Claimed for the results of a command on a study.
+
+    A folder with a store belongs to its study, which the store itself looks after: after a kill
+    there may be files there that no `run.json` speaks of.
+    """
+    study, plan = design.study, design.plan
+    inputs = {
+        "study": study.document.content,
+        "base": plan.base,
+        "overrides": list(overrides),
+        "points": len(design),
+        "solver": plan.solver,
+    }
+    file = None if study.source.startswith("<") else Path(study.source)
+    run = Run(command, study.name, file, study.digest, inputs)
+    return OutputFolder(place, run, force=force or (place / FILE).exists())

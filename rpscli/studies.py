@@ -1,0 +1,387 @@
+"""Studies from Python: many histories from one case, stored as they end, and reports on them.
+
+>>> from rpscli import load_study
+>>> study = load_study({
+...     "rps": 1, "title": "How wide must the ends be?", "analysis": "pushover",
+...     "base": "cases/rigid_frame.yaml",
+...     "vary": [{"podium.bearing.wedge_slenderness": [0.2, 0.3, 0.4]}],
+... })
+>>> result = study.run()
+>>> result["podium.bearing.wedge_slenderness"].tolist()
+[0.2, 0.3, 0.4]
+>>> result["critical_rotation"].round(4).tolist()
+[0.1974, 0.2915, 0.3805]
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from pathlib import Path
+from shutil import rmtree
+from tempfile import mkdtemp
+from typing import TYPE_CHECKING, Any
+from weakref import finalize
+
+from rpscli.case.overrides import apply_overrides
+from rpscli.case.study.schema import StudyFile
+from rpscli.case.study.study import Study as CheckedStudy
+from rpscli.case.study.study import parse_study, shared_out, study_of
+from rpscli.case.text.document import Document
+from rpscli.case.text.files import read_text
+from rpscli.errors import UsageError, nearest
+from rpscli.report.figures.look import Look, read_style
+from rpscli.report.files.csv_text import Column, csv_text
+from rpscli.report.study.folder import study_folder
+from rpscli.report.study.registry import REPORTS
+from rpscli.report.study.requirements import requirement_faults
+from rpscli.report.study.statistics import summary_columns, verdict_columns
+from rpscli.shown import Shown
+from rpscli.sweep.design.layout import Design, lay_out
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.point_columns import Columns, array, point_columns
+from rpscli.sweep.points_csv import points_csv, units_of_columns
+from rpscli.sweep.reports.study_results import StudyResults
+from rpscli.sweep.run.cluster import Cluster
+from rpscli.sweep.run.keys import all_keys
+from rpscli.sweep.run.resume import remember, resume
+from rpscli.sweep.run.runner import Progress, run
+from rpscli.sweep.run.threads import Threads, available_cores
+from rpscli.sweep.statistics.summary import Summary, summary
+from rpscli.sweep.statistics.verdicts import StudyVerdict, judged
+from rpscli.sweep.store import Store
+from rpscli.sweep.table import Table, tabulate
+
+if TYPE_CHECKING:
+    from rpscli.case.study.reports import ReportRequest
+    from rpscli.report.figures.style import Target
+
+
+def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] = ()) -> Study:
+    """A study from its file, or from what such a file would say; all its systems are checked.
+
+    Parameters
+    ----------
+    source
+        A file, or a mapping; relative names in a mapping start at the working folder.
+    overrides
+        Texts ``key=value`` over the study's own values, or over those of its base case.
+
+    Raises
+    ------
+    CaseError
+        If the study, one of its systems or what a report needs is not valid.
+    """
+    if isinstance(source, Mapping):
+        study = _study_of(source, overrides)
+    else:
+        study = parse_study(
+            read_text(source), name=str(source), kinds=REPORTS, folder=Path(source).parent,
+            overrides=overrides,
+        )  # fmt: skip
+    design = lay_out(study)
+    study.document.refuse(requirement_faults(design))
+    return Study(design, StudyContext(design.plan), tuple(overrides))
+
+
+def _study_of(mapping: Mapping[str, Any], overrides: Sequence[str]) -> CheckedStudy:
+    # As a file would say it: arrays of numpy become lists, keys and values what YAML knows.
+    text = json.dumps(mapping, default=lambda value: value.tolist())
+    own, of_base = shared_out(overrides, StudyFile)
+    document = apply_overrides(Document("<study>", json.loads(text)), own, model=StudyFile)
+    digest = sha256(text.encode()).hexdigest()
+    return study_of(document, of_base, kinds=REPORTS, folder=Path(), digest=digest)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Study(Shown):
+    """A study, laid out and checked; `len` is the number of its points.
+
+    Parameters
+    ----------
+    design
+        Its points, each made when it is asked for.
+    context
+        Its systems and motions.
+    overrides
+        What was put over the file.
+    """
+
+    design: Design
+    context: StudyContext
+    overrides: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.design)
+
+    @property
+    def title(self) -> str:
+        """Heading of reports."""
+        return self.design.study.title
+
+    @property
+    def reports(self) -> dict[str, ReportRequest]:
+        """The reports that it asks for, by the names of their files."""
+        return {request.stem: request for request in self.design.study.reports}
+
+    def facts(self) -> dict[str, Any]:
+        """How many of what."""
+        design = self.design
+        return {
+            "title": self.title,
+            "points": len(design),
+            "systems": len(design.combinations),
+            "records": len(design.records),
+            "scales": len(design.scales),
+            "analysis": design.plan.analysis,
+            "reports": list(self.reports),
+        }
+
+    def run(
+        self,
+        folder: Path | str | None = None,
+        *,
+        jobs: int | None = None,
+        scheduler: str | None = None,
+        fresh: bool = False,
+        retry_failed: bool = False,
+        progress: Callable[[Progress], None] = lambda _: None,
+    ) -> StudyResult:
+        """Compute what is not stored yet, and store each point as it ends.
+
+        Parameters
+        ----------
+        folder
+            Of the store, which `rps sweep` reads and continues; without one the points are stored
+            in a temporary folder that ends with the result.
+        jobs
+            Threads; all cores by default.
+        scheduler
+            Address of a Dask scheduler, in place of threads.
+        fresh
+            Throw away what is stored.
+        retry_failed
+            Compute points again that failed.
+        progress
+            Is told how far it is.
+
+        Raises
+        ------
+        Refused
+            If the folder holds something else.
+        KeyboardInterrupt
+            After Ctrl-C; what is stored stays, and the same call goes on from there.
+        """
+        keeper = _Temporary() if folder is None else None
+        place = keeper.place if keeper else Path(folder or "")
+        study_folder(self.design, place, self.overrides)
+        with Store(place, fresh=fresh) as store:
+            keys = all_keys(self.design, self.context)
+            start = resume(self.design, keys, store, retry_failed=retry_failed)
+            remember(self.design, store)
+            threads = jobs or available_cores()
+            engine = (
+                Cluster(scheduler, self.design.plan)
+                if scheduler
+                else Threads(self.context, threads)
+            )
+            if start.pending and run(self.design, start, store, engine, progress).interrupted:
+                raise KeyboardInterrupt
+            table = tabulate(self.design, store.stored(keys))
+        return StudyResult(self, table, keys, place, threads, keeper)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StudyResult(Shown):
+    """All points of a study that was run, statistics and reports; SI units.
+
+    ``result["max_rotation"]`` is a column of `columns`.
+
+    Parameters
+    ----------
+    study, table, keys
+        What was run, its results in the study's order, and their keys in the store.
+    folder
+        Of the store.
+    jobs
+        Threads for what reports compute besides.
+    """
+
+    study: Study
+    table: Table
+    keys: list[bytes]
+    folder: Path
+    jobs: int
+    _keeper: _Temporary | None = None
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __getitem__(self, name: str) -> Any:
+        """(points,) of a varied key or a result, as `points.csv` names it."""
+        if name not in self.columns:
+            close = nearest(name, self.columns, 0.6)
+            hint = f"did you mean {close}?" if close else f"there are {', '.join(self.columns)}"
+            raise KeyError(f"{name} is no column; {hint}")
+        return self.columns[name]
+
+    @cached_property
+    def columns(self) -> Columns:
+        """(points,) arrays of all columns of `points.csv` by name; what does not exist is NaN."""
+        return point_columns(self.table)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI units of the columns; ``-`` for those without one."""
+        return dict(units_of_columns(self.study.design))
+
+    @property
+    def failures(self) -> dict[int, str]:
+        """Why points failed, by their places in the columns."""
+        return self.table.messages
+
+    def to_dataframe(self) -> Any:
+        """The columns as a table of pandas, which must be installed."""
+        import pandas as pd  # noqa: PLC0415 -- not everybody has it
+
+        return pd.DataFrame(self.columns)
+
+    def facts(self) -> dict[str, Any]:
+        """Outcomes, and where they are stored."""
+        outcomes = Counter(self.table.outcomes.tolist()).most_common()
+        stored = "in a temporary folder" if self._keeper else str(self.folder)
+        return {
+            "title": self.study.title,
+            "points": len(self),
+            **dict(outcomes),
+            "reports": list(self.study.reports),
+            "stored": stored,
+        }
+
+    @cached_property
+    def statistics(self) -> Columns:
+        """Columns of `statistics.csv`: a row a system and intensity.
+
+        Counts, the share that overturned with its 95 % interval, and median, 84 % fractile and
+        largest value of all demands, infinite where so many overturned.
+        """
+        return _arrays(summary_columns(self._summary))
+
+    @cached_property
+    def verdicts(self) -> Columns:
+        """Columns of `verdicts.csv`: a row a limit of the study or of its base case and system."""
+        return _arrays(verdict_columns(self._summary.keys, self._verdicts))
+
+    @property
+    def passed(self) -> bool:
+        """Whether no limit is exceeded and no point failed."""
+        return not self.failures and not any(verdict.exceeded for verdict in self._verdicts)
+
+    def report(self, name: str) -> Any:
+        """The numbers of a report that the study asks for, by the name of its files."""
+        request = self._request(name)
+        with self._opened() as results:
+            return REPORTS[request.kind].numbers(results, request.options)
+
+    def draw(self, name: str, target: Any = None) -> Target:
+        """The figure of a report.
+
+        Parameters
+        ----------
+        name
+            Of its files.
+        target
+            A figure, a part of one or axes of matplotlib to be drawn into; axes give their place to
+            a part of their figure. A figure of its own by default.
+        """
+        request, numbers = self._request(name), self.report(name)
+        report = REPORTS[request.kind]
+        if not report.drawable(numbers):
+            raise UsageError(f"{name}: {'; '.join(report.notes(numbers)) or 'nothing to draw'}")
+        return report.drawn(numbers, request.options.title or self.study.title, target)
+
+    def write(
+        self,
+        folder: Path | str | None = None,
+        *,
+        figures: Sequence[str] = ("png",),
+        columns: int | None = None,
+        style: Path | str | None = None,
+        force: bool = False,
+    ) -> list[str]:
+        """Write points, statistics, verdicts and reports as `rps sweep` does; names of the files.
+
+        Parameters
+        ----------
+        folder
+            The one of the store by default.
+        figures
+            Formats: png, svg, pdf.
+        columns
+            Of a journal that figures fill, 1 or 2.
+        style
+            A file with matplotlib's settings.
+        force
+            Overwrite what is in the way.
+        """
+        if folder is None and self._keeper:
+            raise UsageError("name a folder: that of the store ends with the result")
+        look = Look(tuple(figures), columns, read_style(Path(style)) if style else {})
+        study = self.study
+        made = study_folder(study.design, Path(folder or self.folder), study.overrides, force=force)
+        made.add("points.csv", "".join(points_csv(self.table)))
+        if study.design.plan.analysis == "timehistory":
+            made.add("statistics.csv", csv_text(summary_columns(self._summary)))
+            if self._verdicts:
+                verdicts = verdict_columns(self._summary.keys, self._verdicts)
+                made.add("verdicts.csv", csv_text(verdicts))
+        for name, request in study.reports.items():
+            title = request.options.title or study.title
+            numbers, report = self.report(name), REPORTS[request.kind]
+            for file, content in report.files(numbers, name, title, look):
+                made.add(file, content)
+        made.write()
+        return made.files
+
+    @contextmanager
+    def _opened(self) -> Iterator[StudyResults]:
+        """The store is open no longer than it is read: others may go on in it."""
+        with Store(self.folder) as store:
+            yield StudyResults(self.table, self.keys, store, self.study.context, self.jobs)
+
+    def _request(self, name: str) -> ReportRequest:
+        known = self.study.reports
+        if name not in known:
+            have = f"it has {', '.join(known)}" if known else "it has none"
+            raise UsageError(f"{name} is no report of the study; {have}")
+        return known[name]
+
+    @cached_property
+    def _summary(self) -> Summary:
+        if self.study.design.plan.analysis != "timehistory":
+            raise UsageError("statistics and limits need analysis: timehistory")
+        with self._opened() as results:
+            return summary(self.table, results.fixed_base)
+
+    @cached_property
+    def _verdicts(self) -> list[StudyVerdict]:
+        if self.study.design.plan.analysis != "timehistory":
+            return []
+        return judged(self.table, self._summary, ())
+
+
+class _Temporary:
+    """A folder that is there as long as somebody holds this."""
+
+    def __init__(self) -> None:
+        self.place = Path(mkdtemp(prefix="rps-"))
+        finalize(self, rmtree, self.place, ignore_errors=True)
+
+
+def _arrays(columns: Sequence[Column]) -> Columns:
+    return {column.name: array(column.values) for column in columns}

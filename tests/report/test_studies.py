@@ -1,0 +1,274 @@
+"""Studies from Python: the same numbers and files as those of `rps sweep`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from matplotlib.figure import Figure
+
+import rpscli
+import rpscli.sweep
+from report.small_results import curve
+from rpscli.cli import program
+from rpscli.sweep.store import Store
+
+ROOT = Path(__file__).parents[2]
+
+SMALL: dict[str, Any] = {
+    "rps": 1,
+    "title": "A small study",
+    "base": str(ROOT / "cases" / "six_storey.yaml"),
+    "vary": [
+        {"podium.bearing.curvature_ratio": ["critical", 0.5]},
+        {"superstructure.storey_mass": ["200 t", "250 t"]},
+    ],
+    "records": [{"source": "synthetic:?pga=0.5g&duration=4&dt=0.02", "seed": [1, 2, 3]}],
+    "scale": [0.5, 1.0],
+    "limits": {"rotation_ratio": 0.01},
+    "reports": [
+        "overturning",
+        {
+            "lines": {
+                "x": "scale",
+                "y": "rotation_ratio",
+                "series": "record",
+                "statistic": "largest",
+            }
+        },
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def result() -> rpscli.StudyResult:
+    return rpscli.load_study(SMALL).run(jobs=1)
+
+
+def points(study: rpscli.Study) -> list[object]:
+    return [
+        (point.values, point.record and point.record.source, point.scale) for point in study.design
+    ]
+
+
+def test_a_mapping_and_a_file_say_the_same(tmp_path: Path) -> None:
+    file = tmp_path / "small.yaml"
+    file.write_text(json.dumps(SMALL), encoding="utf-8")
+    one, other = rpscli.load_study(SMALL), rpscli.load_study(file)
+    assert points(one) == points(other)
+    assert (len(one), one.title) == (len(other), other.title) == (24, "A small study")
+    assert list(one.reports) == ["overturning", "lines"]
+    arrays = SMALL | {"scale": np.array([0.5, 1.0])}
+    assert points(rpscli.load_study(arrays)) == points(one)
+    fewer = rpscli.load_study(SMALL, ["scale=[1]", "podium.bearing.slenderness=0.2"])
+    assert len(fewer) == 12
+    assert fewer.design.plan.base["podium"]["bearing"]["slenderness"] == 0.2
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"vari": []}, "<study>: vari is not a key of the format; did you mean vary?"),
+        ({"vary": [{"podium.bearing.slendernes": [1, 2]}]}, "slendernes"),
+        ({"limits": {"max_stop_force": 1.0}}, "max_stop_force needs a stop"),
+        ({"reports": ["overturned"]}, "overturned"),
+    ],
+)
+def test_what_is_wrong_is_told(change: dict[str, Any], says: str) -> None:
+    with pytest.raises(rpscli.RpsError, match=says.replace("?", r"\?")):
+        rpscli.load_study(SMALL | change)
+
+
+def test_columns_are_those_of_the_points(result: rpscli.StudyResult) -> None:
+    columns = result.columns
+    assert {len(column) for column in columns.values()} == {24}
+    assert list(columns)[:5] == [
+        "podium.bearing.curvature_ratio", "superstructure.storey_mass", "record", "scale", "outcome"
+    ]  # fmt: skip
+    assert result["podium.bearing.curvature_ratio"].tolist() == ["critical"] * 12 + [0.5] * 12
+    assert result["superstructure.storey_mass"].tolist() == ([200e3] * 6 + [250e3] * 6) * 2
+    assert result["scale"].tolist() == [0.5, 1.0] * 12
+    assert result.units["superstructure.storey_mass"] == "kg"
+    assert set(result.units) == set(columns)
+    number = 23
+    point = result.study.design[number]
+    one = rpscli.demand(
+        result.study.design.system(point.system).structure,
+        rpscli.load_record(result["record"][number]).scaled(1.0),
+    )
+    assert result["max_rotation"][number] == one.max_rotation
+    with pytest.raises(KeyError, match=r"did you mean max_rotation\?"):
+        result["max_rotatoin"]
+
+
+def test_pandas_takes_the_columns(result: rpscli.StudyResult) -> None:
+    pytest.importorskip("pandas")
+    frame = result.to_dataframe()
+    assert list(frame.columns) == list(result.columns)
+    assert len(frame) == 24
+    means = frame.groupby("scale")["rotation_ratio"].mean()
+    wanted = [result["rotation_ratio"][result["scale"] == scale].mean() for scale in (0.5, 1.0)]
+    np.testing.assert_allclose(means.to_numpy(), wanted, rtol=1e-14)
+
+
+def test_the_files_are_those_of_the_command(
+    result: rpscli.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study.yaml").write_text(json.dumps(SMALL), encoding="utf-8")
+    swept = CliRunner().invoke(program, ["sweep", "study.yaml", "-o", "swept", "-q"])
+    assert swept.exit_code == 10, swept.output
+    files = [Path(file) for file in result.write("written")]
+    names = {file.name for file in files}
+    assert names | {"study.sqlite", "base.yaml"} >= {file.name for file in Path("swept").iterdir()}
+    for name in names - {"run.json"}:
+        written = Path("written", name).read_bytes()
+        assert written == Path("swept", name).read_bytes(), name
+    assert not result.passed
+    assert result.verdicts["exceeded"].tolist().count("true") > 0
+    # without figures none is drawn
+    assert not any(file.endswith("png") for file in result.write("plain", figures=()))
+
+
+def test_a_run_goes_on_where_another_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    study = rpscli.load_study(SMALL)
+    done: list[int] = []
+
+    def stop(progress: Any) -> None:
+        done.append(progress.done)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        study.run("here", jobs=1, progress=stop)
+    assert 0 < done[0] <= 24
+    kept: list[int] = []
+    whole = study.run("here", jobs=2, progress=lambda progress: kept.append(progress.kept))
+    assert set(kept) <= {done[0]}
+    again: list[Any] = []
+    rpscli.load_study(SMALL).run("here", progress=again.append)
+    assert again == []  # nothing was left to compute
+    alone = study.run("there", jobs=1)
+    for name, column in whole.columns.items():
+        np.testing.assert_array_equal(column, alone.columns[name])
+
+
+def test_folders_of_others_are_left_alone(
+    result: rpscli.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    study = result.study
+    Path("taken").mkdir()
+    Path("taken", "run.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(rpscli.RpsError, match="no description of a run of rps"):
+        study.run("taken")
+    assert not Path("taken", "study.sqlite").exists()
+    Path("other.yaml").write_text(json.dumps(SMALL | {"scale": [3.0]}), encoding="utf-8")
+    study.run("here", jobs=1)
+    with pytest.raises(rpscli.RpsError, match="results of another study"):
+        rpscli.load_study("other.yaml").run("here")
+    with Store(Path("here")), pytest.raises(rpscli.RpsError, match="in use"):
+        study.run("here")
+    with pytest.raises(rpscli.RpsError, match="name a folder"):
+        result.write()
+
+
+def test_a_temporary_store_ends_with_its_result() -> None:
+    study = rpscli.load_study(SMALL | {"scale": [0.1], "vary": []})
+    result = study.run(jobs=1)
+    folder = result.folder
+    assert (folder / "study.sqlite").is_file()
+    del result
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("name", ["overturning", "lines"])
+def test_reports_are_drawn_into_figures_parts_and_axes(
+    result: rpscli.StudyResult, name: str
+) -> None:
+    own: Any = result.draw(name)
+    assert isinstance(own, Figure)
+    assert own.get_suptitle().startswith("A small study")
+    figure = Figure(figsize=(9.0, 4.0), layout="constrained")
+    left, right = figure.subfigures(1, 2, squeeze=False)[0]
+    assert result.draw(name, right) is right
+    assert right.axes
+    assert not left.axes
+    figure = Figure(layout="constrained")
+    one, two = figure.subplots(1, 2)
+    part: Any = result.draw(name, two)
+    assert part in figure.subfigs
+    assert figure.axes[0] is one
+    assert two not in figure.axes
+    assert len(part.axes) == len(own.axes)
+    figure.draw_without_rendering()
+    plain = Figure(figsize=(6.0, 5.0))
+    result.draw(name, plain)
+    assert plain.get_size_inches().tolist() == [6.0, 5.0]
+
+
+def test_what_is_drawn_are_the_results(result: rpscli.StudyResult) -> None:
+    drawn: Any = result.draw("lines")
+    first = result["record"][0]
+    chosen = result["record"] == first
+    (axes,) = drawn.axes
+    labels = [str(line.get_label()) for line in axes.lines]
+    label = next(label for label in labels if label.endswith(first) or first in label)
+    x, y = curve(axes, label)
+    assert x.tolist() == [0.5, 1.0]
+    ratio, scale = result["rotation_ratio"][chosen], result["scale"][chosen]
+    largest = [ratio[scale == each].max() for each in (0.5, 1.0)]
+    np.testing.assert_array_equal(y, largest)
+
+
+def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
+    with pytest.raises(rpscli.RpsError, match="demand is no report of the study; it has overturn"):
+        result.draw("demand")
+    loose = Figure().add_axes((0.1, 0.1, 0.8, 0.8))
+    with pytest.raises(rpscli.RpsError, match="no subplot"):
+        result.draw("overturning", loose)
+
+
+def test_statistics_are_a_row_a_system_and_intensity(result: rpscli.StudyResult) -> None:
+    statistics = result.statistics
+    assert {len(column) for column in statistics.values()} == {8}
+    assert statistics["counted"].tolist() == [3] * 8
+    inside = (
+        (result["podium.bearing.curvature_ratio"] == 0.5)
+        & (result["superstructure.storey_mass"] == 250e3)
+        & (result["scale"] == 1.0)
+    )
+    assert statistics["rotation_ratio_largest"][-1] == result["rotation_ratio"][inside].max()
+
+
+def test_studies_without_histories_have_no_statistics() -> None:
+    study = rpscli.load_study(
+        {
+            "rps": 1,
+            "analysis": "modal",
+            "base": SMALL["base"],
+            "vary": [{"superstructure.period": [0.3, 0.6]}],
+        }
+    )
+    result = study.run()
+    assert result.passed
+    assert "fixed_base.periods.0" in result.columns
+    np.testing.assert_allclose(result["fixed_base.periods.0"], [0.3, 0.6], rtol=1e-12)
+    with pytest.raises(rpscli.RpsError, match="timehistory"):
+        _ = result.statistics
+
+
+def test_they_show_themselves_in_a_line(result: rpscli.StudyResult) -> None:
+    assert repr(result.study).startswith("Study(title=A small study, points=24, systems=4, ")
+    assert repr(result).startswith("StudyResult(title=A small study, points=24, survived=")
+    assert "<td>A small study</td>" in result._repr_html_()
+
+
+def test_the_package_of_studies_has_the_public_names() -> None:
+    assert rpscli.sweep.load_study is rpscli.load_study
+    with pytest.raises(AttributeError, match="no attribute 'lode_study'"):
+        _ = rpscli.sweep.lode_study
