@@ -148,7 +148,8 @@ SAMPLED = (
     ),
     ResultQuantity(
         "fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$", limit="0.5",
-        needs="a superstructure", meaning="largest base shear over that of the fixed base",
+        demand=True, needs="a superstructure",
+        meaning="largest base shear over that of the fixed base",
     ),
     ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
     ResultQuantity("max_column_force", "N", "normal force of a column", limit="2e6"),

@@ -51,8 +51,6 @@ if TYPE_CHECKING:
 
 WARNINGS_SHOWN = 5
 DIGITS = 4
-REDUCTION = "fixed_base_ratio"
-"""What the bearings are for, in the table beside the main demands."""
 A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
 CODES = (
@@ -208,7 +206,7 @@ def _set_document(case: Computed) -> dict[str, Any]:
 def _tables(computed: Sequence[Computed]) -> Iterator[RenderableType]:
     for case in computed:
         yield heading_line(case.given.case.title)
-        main = [q for q in case.together.demands if q.demand or q.name == REDUCTION]
+        main = [quantity for quantity in case.together.demands if quantity.demand]
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, main[first : first + A_TABLE])
         if len(case.requests) > 1:

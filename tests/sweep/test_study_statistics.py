@@ -121,7 +121,7 @@ def test_an_overturned_history_is_less_than_any_least_force(study_of: Make) -> N
 def test_the_reduction_is_against_the_fixed_base_at_the_same_scale(study_of: Make) -> None:
     _, result = made(study_of)
     # `stored` gives every point the scale 1, so that the reference is 4 MN.
-    name = "base_shear_over_fixed_base"
+    name = "fixed_base_ratio"
     assert spread_of(result, 0, name) == pytest.approx((0.25, 0.25, 0.25))
     assert spread_of(result, 5, name).median == pytest.approx(0.25)
 

@@ -81,7 +81,8 @@ class Usual(NamedTuple):
         if not self.least <= value <= self.most:
             unit = f" {self.unit}" if self.unit else ""
             usual = f"{self.least:g} to {self.most:g}{unit}"
-            yield Doubt(f"{self.name} = {{0}}{unit} is unusual: {usual} is; check the units", value)
+            advice = "; check the units" if unit else ""
+            yield Doubt(f"{self.name} = {{0}}{unit} is unusual: {usual} is{advice}", value)
 
 
 HEIGHT = Usual("the height of the columns 2H", "m", 0.3, 10.0)

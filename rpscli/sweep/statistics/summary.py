@@ -13,9 +13,7 @@ from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_k
 from rpscli.sweep.statistics.share import Share, share
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
-REDUCTION = ResultQuantity(
-    "base_shear_over_fixed_base", "-", "base shear over fixed base", demand=True
-)
+REDUCTION = next(quantity for quantity in LIMITED if quantity.name == "fixed_base_ratio")
 
 
 @dataclass(frozen=True, eq=False)
