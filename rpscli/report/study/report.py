@@ -37,6 +37,8 @@ class Report(Generic[Options, Numbers]):
         Columns of each CSV file, by what follows the report's name in the file's.
     figure
         The file of its figure under a title.
+    texts
+        Further files, by what follows the report's name in the file's.
     drawable
         Whether there is anything to draw.
     notes
@@ -58,6 +60,7 @@ class Report(Generic[Options, Numbers]):
     numbers: Callable[[StudyResults, Options], Numbers]
     tables: Mapping[str, Callable[[Numbers], list[Column]]]
     figure: Callable[[Numbers, str], bytes]
+    texts: Callable[[Numbers], Mapping[str, str]] = lambda _: {}
     drawable: Callable[[Numbers], bool] = lambda _: True
     notes: Callable[[Numbers], Iterable[str]] = lambda _: ()
     findings: Callable[[Numbers], Iterable[tuple[str, str]]] = lambda _: ()
@@ -76,5 +79,7 @@ class Report(Generic[Options, Numbers]):
         """Names and contents of its files."""
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns(numbers))
+        for suffix, text in self.texts(numbers).items():
+            yield f"{stem}{suffix}", text
         if self.drawable(numbers):
             yield from figure_files({stem: partial(self.figure, numbers, title)}, look).items()
