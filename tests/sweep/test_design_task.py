@@ -158,6 +158,16 @@ def test_two_unknowns_against_the_exact_answer(design_json: DesignJson) -> None:
     assert requirement["aim_without_it"] == pytest.approx(10 * 0.05 + 0.8)
 
 
+def test_a_number_of_columns_stays_whole(design_json: DesignJson, workplace: Path) -> None:
+    text = FRAME.replace(f"{SLENDERNESS}: [0.05, 0.35]", "podium.columns: [4, 9]")
+    text = text.replace(f"  {WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}\n", "")
+    text = text.replace("ties:\n", "").replace(f"least: {SLENDERNESS}", "least: podium.columns")
+    found = design_json(text, "-o", "out")
+    assert found["best"]["values"]["podium.columns"] == 4
+    rows = rows_of(workplace / "out/designs.csv")
+    assert {row["podium.columns [-]"] for row in rows} <= {str(n) for n in range(4, 10)}
+
+
 def test_nothing_passes(design: Design, design_json: DesignJson) -> None:
     found = design_json(FRAME.replace("0.35]", "0.2]"), exit_code=10)
     assert found["best"] is None
@@ -189,8 +199,14 @@ def test_verdicts_are_those_of_a_study(design_json: DesignJson, workplace: Path)
     aim = next(iter(best))
     least = [float(row[f"least {aim.replace(',', '')} [N]"]) for row in designs]
     assert best[aim] == pytest.approx(min(np.array(least)[passes]))
-    first, *_ = rows_of(workplace / "out/front.csv")
-    assert int(first["design [-]"]) == found["best"]["design"]
+    front = rows_of(workplace / "out/front.csv")
+    assert int(front[0]["design [-]"]) == found["best"]["design"]
+    heads = [head for head in designs[0] if head.startswith("least ")]
+    aims = np.array([[float(row[head]) for head in heads] for row in designs])[passes]
+    numbers = [int(row["design [-]"]) for row in designs if row["passes [-]"] == "true"]
+    bettered = [((aims <= own).all(axis=1) & (aims < own).any(axis=1)).any() for own in aims]
+    undominated = {n for n, worse in zip(numbers, bettered, strict=True) if not worse}
+    assert {int(row["design [-]"]) for row in front} == undominated
 
 
 @needs_compiled_kernels
@@ -225,9 +241,11 @@ def test_confirmation(design_json: DesignJson, workplace: Path) -> None:
     found = design_json(FRAME + unseen % "0.1 g, 0.4 g")
     assert found["confirmed"] is False
     assert found["passed"] is True
-    (verdict,) = found["confirmation"]
+    (verdict,) = found["confirmation"]["best"]
     assert verdict["beyond"]["share"] == 0.5
-    assert any("confirmation" in warning for warning in found["warnings"])
+    assert any("the best design does not keep" in warning for warning in found["warnings"])
+    (verdict,) = found["confirmation"]["robust"]
+    assert verdict["beyond"]["count"] == 1
     task = parse_design(FRAME + "confirm: {share: 0.3}\n", "design.yaml")
     assert len(task.study.sources) == 5
     assert len(task.confirming) == 2

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.design.schema import PLUS, Aim, DesignFile
 from rpscli.case.overrides import apply_overrides
-from rpscli.case.schema.key_units import unit
+from rpscli.case.schema.key_units import is_whole, unit
 from rpscli.case.schema.units import in_si
 from rpscli.case.study.axes import Axis, clashes
 from rpscli.case.study.rules import (
@@ -85,18 +85,26 @@ class DesignTask:
         low = np.array([unknown.low for unknown in self.unknowns])
         high = np.array([unknown.high for unknown in self.unknowns])
         found = {
-            unknown.key: _rounded(column)
+            unknown.key: _rounded(unknown.key, column)
             for unknown, column in zip(self.unknowns, (low + (high - low) * places).T, strict=True)
         }
         for key, terms in self.file.ties.items():
             sums = (terms[name] * found[name] for name in terms if name != PLUS)
-            found[key] = _rounded(sum(sums, np.full(len(places), terms.get(PLUS, 0.0))))
+            found[key] = _rounded(key, sum(sums, np.full(len(places), terms.get(PLUS, 0.0))))
         return np.column_stack(list(found.values()))
+
+    def rows(self, values: Array) -> tuple[tuple[float | int, ...], ...]:
+        """The values of each design as a case takes them."""
+        whole = [is_whole(key) for key in self.keys]
+        return tuple(
+            tuple(int(value) if is_int else value for value, is_int in zip(row, whole, strict=True))
+            for row in values.tolist()
+        )
 
     def study_of(self, values: Array, sources: tuple[str, ...] | None = None) -> Study:
         """The study of some designs, (designs, keys), under the design's records or others."""
         places = tuple((self.study.document.value_place(self.path(key)),) for key in self.keys)
-        axis = Axis(self.keys, tuple(map(tuple, values.tolist())), places)
+        axis = Axis(self.keys, self.rows(values), places)
         own = self.study.sources if sources is None else sources
         return replace(self.study, axes=(axis,), sources=own)
 
@@ -105,7 +113,9 @@ class DesignTask:
         return "ties" if key in self.file.ties else "find", key
 
 
-def _rounded(values: Array) -> Array:
+def _rounded(key: str, values: Array) -> Array:
+    if is_whole(key):
+        return np.round(values)
     return np.array([float(f"{value:.{DIGITS}g}") for value in values.tolist()])
 
 

@@ -1,4 +1,4 @@
-"""Units of the keys of a case."""
+"""Units of the keys of a case, and which of them hold whole numbers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any, get_args
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.fields import Quantity
+from rpscli.case.schema.fields import Quantity, Whole
 from rpscli.case.schema.known_keys import field_at
 
 
@@ -16,11 +16,23 @@ def unit(key: str) -> str:
     >>> unit("superstructure.period"), unit("podium.bearing.slenderness")
     ('s', '-')
     """
-    path = tuple(part for part in key.split(".") if not part.isdecimal())
-    field = field_at(CaseFile, path)
-    marks = (*field.metadata, *_marks(field.annotation)) if field else ()
-    found = next((mark.unit for mark in marks if isinstance(mark, Quantity)), "1")
+    found = next((mark.unit for mark in _marks_of(key) if isinstance(mark, Quantity)), "1")
     return "-" if found == "1" else found
+
+
+def is_whole(key: str) -> bool:
+    """Whether a case key holds whole numbers.
+
+    >>> is_whole("podium.columns"), is_whole("superstructure.period")
+    (True, False)
+    """
+    return any(isinstance(mark, Whole) for mark in _marks_of(key))
+
+
+def _marks_of(key: str) -> Iterator[object]:
+    path = tuple(part for part in key.split(".") if not part.isdecimal())
+    if field := field_at(CaseFile, path):
+        yield from (*field.metadata, *_marks(field.annotation))
 
 
 def _marks(annotation: Any) -> Iterator[object]:

@@ -86,9 +86,9 @@ def command(
     folder = study_folder(first, output, "design")
     with Store(folder.folder, fresh=chosen.fresh) as store:
         answer = rounds.run(first, store)
-        confirmation = rounds.confirm(answer, store)
+        confirmations = list(rounds.confirm(answer, store))
         given, results = rounds.everything(answer, first, store)
-        _conclude(rounds, given, results, answer, confirmation, folder)
+        _conclude(rounds, given, results, answer, confirmations, folder)
 
 
 def _conclude(
@@ -96,7 +96,7 @@ def _conclude(
     given: StudyInput,
     results: StudyResults,
     answer: Answer,
-    confirmation: Confirmation | None,
+    confirmations: list[Confirmation],
     folder: OutputFolder,
 ) -> None:
     from rpscli.report.design.answer import answer_document, design_columns  # noqa: PLC0415
@@ -108,16 +108,16 @@ def _conclude(
     folder.add("designs.csv", csv_text(design_columns(answer, range(len(answer.places)))))
     if len(answer.front):
         folder.add("front.csv", csv_text(design_columns(answer, answer.front)))
-    confirmed = None if confirmation is None else confirmation.verdicts
-    if confirmation is not None:
-        columns = verdict_columns(confirmation.keys, confirmation.verdicts)
+    if confirmations:
+        verdicts = [verdict for each in confirmations for verdict in each.verdicts]
+        columns = verdict_columns(confirmations[0].keys, verdicts)
         folder.add("confirmation.csv", csv_text(columns))
     for name, content in figure_files(figures(answer, given.study.title), given.look).items():
         folder.add(name, content)
     error = first_error(found._replace(verdicts=[]), len(results.table)) or _limits(answer)
     results.store.require()
     write(folder, rounds.terminal)
-    notes = [*rounds.notes(answer, confirmation), *found.notes]
+    notes = [*rounds.notes(answer, confirmations), *found.notes]
     rounds.terminal.warn(notes[:WARNINGS_SHOWN])
     document = {
         **heading(),
@@ -126,14 +126,15 @@ def _conclude(
         "note": ONE_DIRECTION,
         "points": {"total": len(results.table), "failed": len(found.failures)},
         **answer_document(answer),
-        "confirmed": None if confirmed is None else not any(v.exceeded for v in confirmed),
-        "confirmation": [verdict_document(confirmation.keys, v) for v in confirmed or ()]
-        if confirmation
-        else None,
+        "confirmed": not confirmations[0].exceeded if confirmations else None,
+        "confirmation": {
+            each.design: [verdict_document(each.keys, verdict) for verdict in each.verdicts]
+            for each in confirmations
+        },
         "warnings": notes,
         "files": [str(results.store.path), *folder.files],
     }
-    tables = answer_tables(document, answer, confirmation)
+    tables = answer_tables(document, answer, confirmations)
     rounds.terminal.result(concluded(document, error), tables)
     leave(error)
 

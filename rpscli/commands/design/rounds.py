@@ -25,11 +25,17 @@ if TYPE_CHECKING:
 
 
 class Confirmation(NamedTuple):
-    """The best design under motions that the search did not see."""
+    """A design under motions that the search did not see."""
 
+    design: str
     keys: tuple[str, ...]
     verdicts: list[StudyVerdict]
     records: int
+
+    @property
+    def exceeded(self) -> bool:
+        """Whether a limit is."""
+        return any(verdict.exceeded for verdict in self.verdicts)
 
 
 @dataclass(eq=False)
@@ -70,21 +76,20 @@ class Rounds:
             number += 1
         return search.answer()
 
-    def confirm(self, answer: Answer, store: Store) -> Confirmation | None:
-        """Judge the best design under other motions, if there is one and there are any."""
+    def confirm(self, answer: Answer, store: Store) -> Iterator[Confirmation]:
+        """Judge the best and the robust design under other motions, if there are any."""
         from rpscli.sweep.search.answer import NONE  # noqa: PLC0415 -- numpy is slow
         from rpscli.sweep.statistics.summary import summary  # noqa: PLC0415
         from rpscli.sweep.statistics.verdicts import judged  # noqa: PLC0415
 
-        task = answer.task
-        if answer.best == NONE or not task.confirming:
-            return None
-        study = task.study_of(answer.values[[answer.best]], task.confirming)
-        given = self._laid_out(study)
-        self.terminal.note(f"confirmation: {len(task.confirming)} records")
-        results, table = self._computed(given, store)
-        made = summary(table, results.fixed_base)
-        return Confirmation(made.keys, judged(table, made), len(task.confirming))
+        task, designs = answer.task, {"best": answer.best, "robust": answer.robust}
+        for name, place in designs.items():
+            if task.confirming and place != NONE:
+                given = self._laid_out(task.study_of(answer.values[[place]], task.confirming))
+                self.terminal.note(f"confirmation of the {name} design")
+                results, table = self._computed(given, store)
+                made = summary(table, results.fixed_base)
+                yield Confirmation(name, made.keys, judged(table, made), len(task.confirming))
 
     def everything(
         self, answer: Answer, first: StudyInput, store: Store
@@ -93,7 +98,7 @@ class Rounds:
         given = self._laid_out(answer.task.study_of(answer.values[answer.valid]), first)
         return given, self._computed(given, store)[0]
 
-    def notes(self, answer: Answer, confirmation: Confirmation | None) -> Iterator[str]:
+    def notes(self, answer: Answer, confirmations: list[Confirmation]) -> Iterator[str]:
         """What the user should know about the answer."""
         from rpscli.sweep.search.answer import NONE  # noqa: PLC0415 -- numpy is slow
 
@@ -105,8 +110,9 @@ class Rounds:
         if answer.best != NONE and (ends := list(answer.at_bounds)):
             words = " and ".join(f"the {end} {key}" for key, end in ends)
             yield f"the best design has {words} of the range; a wider one may have a better design"
-        if confirmation is not None and any(v.exceeded for v in confirmation.verdicts):
-            yield "the best design does not keep its limits under the motions of the confirmation"
+        for each in confirmations:
+            if each.exceeded:
+                yield f"the {each.design} design does not keep its limits under the other motions"
 
     def _laid_out(self, study: Study, earlier: StudyInput | None = None) -> StudyInput:
         """A study with its points; records are shared with an earlier one."""

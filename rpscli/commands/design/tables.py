@@ -22,7 +22,7 @@ RECORDS_SHOWN = 3
 
 
 def answer_tables(
-    document: dict[str, Any], answer: Answer, confirmation: Confirmation | None
+    document: dict[str, Any], answer: Answer, confirmations: list[Confirmation]
 ) -> Iterator[RenderableType]:
     """Best design, requirements, what the records do to it, and the confirmation."""
     counts = document["designs"]
@@ -35,18 +35,20 @@ def answer_tables(
         yield listing(list(_records(document)))
     if len(answer.front):
         yield sentence(f"front of both aims: {len(answer.front)} designs, in front.csv")
-    if confirmation is not None:
-        yield title(f"confirmation with {confirmation.records} records that were not used")
+    if confirmations:
+        yield title(f"confirmation with {confirmations[0].records} records that were not used")
         rows = [
             (
+                each.design,
                 verdict.condition.name,
                 "EXCEEDED" if verdict.exceeded else "met",
                 condition_text(verdict.condition),
                 found_text(verdict),
             )
-            for verdict in confirmation.verdicts
+            for each in confirmations
+            for verdict in each.verdicts
         ]
-        yield table(("limit", "", "asked for", "found"), rows, words=4)
+        yield table(("design", "limit", "", "asked for", "found"), rows, words=5)
     yield sentence(ONE_DIRECTION)
 
 

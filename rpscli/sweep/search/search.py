@@ -64,7 +64,7 @@ class Search:
     def valid_cases(self, values: Array) -> Flags:
         """(designs,) which values make valid cases; why others do not is kept in `faults`."""
         study, found = self.task.study, np.ones(len(values), dtype=bool)
-        for place, row in enumerate(values.tolist()):
+        for place, row in enumerate(self.task.rows(values)):
             given = dict(zip(self.task.keys, row, strict=True))
             try:
                 _ = case_from_mapping(

@@ -16,6 +16,9 @@ Flags = NDArray[np.bool_]
 MOST_CORNERS = 4
 """Unknowns up to which all corners of the cube are in the first sample."""
 
+MOST_NEAR = 64
+"""Other designs among which the neighbours of a design are looked for."""
+
 
 def usual_count(unknowns: int) -> int:
     """Designs of the first sample, if the file does not say: 32, 64, 128 and so on, to 512."""
@@ -43,21 +46,25 @@ def neighbours(places: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     >>> [pair.tolist() for pair in neighbours(np.array([[0.0], [1.0], [0.4]]))]
     [[0, 1], [2, 2]]
     """
-    squares = ((places[:, None] - places) ** 2).sum(axis=2)
-    found = [
-        (one, other)
-        for one, row in enumerate(squares)
-        for other in np.nonzero(_empty(squares, row))[0].tolist()
-        if other > one
-    ]
-    first, second = np.array(found, dtype=np.int64).reshape(-1, 2).T
+    from scipy.spatial.distance import cdist  # noqa: PLC0415 -- slow to import
+
+    squares = np.asarray(cdist(places, places, "sqeuclidean"))
+    pairs = {
+        (min(one, other), max(one, other))
+        for one in range(len(places))
+        for other in _around(squares, one).tolist()
+    }
+    first, second = np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2).T
     return first, second
 
 
-def _empty(squares: Array, row: Array) -> Flags:
-    """(designs,) whether no third design k has d_ik^2 + d_kj^2 < d_ij^2."""
-    within = row[:, None] + squares < row * (1.0 - 1e-12)
-    return np.asarray(~within.any(axis=0))
+def _around(squares: Array, one: int) -> NDArray[np.int64]:
+    """The neighbours of a design among the nearest others: whoever is between is nearer still."""
+    near = np.argsort(squares[one], kind="stable")
+    near = near[near != one][:MOST_NEAR]
+    length = squares[one, near]
+    between = length[:, None] + squares[np.ix_(near, near)] < length * (1.0 - 1e-12)
+    return np.asarray(near[~between.any(axis=0)])
 
 
 def next_places(
