@@ -27,8 +27,8 @@ from rpscli.physics.state import LANES
 
 STOREYS = 2
 DT = 0.02
-RECORDS = [waves(0.7, DT, 6.0, seed=5), waves(0.7, DT, 4.0, seed=8)]
-SETTINGS = TimeHistorySettings(free_vibration=0.5, recontact_tolerance=1e-3)
+RECORDS = [waves(0.7, DT, 4.0, seed=5), waves(0.7, DT, 3.0, seed=8)]
+SETTINGS = TimeHistorySettings(free_vibration=0.3, recontact_tolerance=1e-3)
 STRUCTURES = [
     podium(STOREYS, 0.10, 0.5, R=0.4),
     podium(STOREYS, 0.15, FLAT, R=0.4, law=ImpactLaw("flexible")),

@@ -23,9 +23,9 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import ModalDamping, RayleighDamping
 
-BEYOND_A_PLAIN_STEP = 1.1
-"""Steps that an event adds on average: the one that leads on from it, and now and then one taken
-again after a false alarm."""
+BEYOND_A_PLAIN_STEP = 1.25
+"""Steps that an event adds on average: the one that leads on from it, now and then one taken again
+after a false alarm, and halves of steps in which the tilt changes fast."""
 
 
 def steps_an_event(result: TimeHistoryResult) -> float:

@@ -13,19 +13,19 @@ from rpscli.model.podium import PodiumStructure
 UPLIFTED_ANGLE = 0.6
 """Largest Taylor step times the highest uplifted frequency [rad], at accuracy 1."""
 
-MOST_LOST = 5e-5
-"""What steps may take from the energy of the fastest vibration, which has a hundredth of all at
-most. It shortens the steps of buildings with less than some 1.5 % of damping only."""
+MOST_LOST = 5e-6
+"""What steps may take from the energy of the fastest vibration, which has some hundredths of all at
+most. It shortens the steps of buildings with less than some 7 % of damping in their last mode."""
 
 UPLIFTED_DECAY = 1.0
 """Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
 are unstable beyond about 4. Only strongly overdamped modes come near."""
 
-LAST_TERM = 1e-6
+LAST_TERM = 3e-7
 """Largest last term of the series of a step, over its first three, at accuracy 1; what a series
-omits is smaller still. Steps made for the fastest mode hardly ever come near. Where the tilt itself
-changes faster, in large rotations of short columns or past theta_cr under floors that weigh
-hundreds of them, they are halved."""
+omits is smaller still. Steps made for the fastest of several modes hardly ever come near. Where the
+tilt itself changes faster, over one storey, in large rotations of short columns or past theta_cr
+under floors that weigh hundreds of them, they are halved."""
 
 CONTACT_ANGLE = 1.0
 """The same for the exact steps in full contact, where it guards the search of uplift: the quintic
