@@ -72,7 +72,7 @@ result
 
 # %% Its points are columns; pandas takes them, if it is there
 print(result["rotation_ratio"].reshape(3, 6, 2).max(axis=1))
-print(result.statistics["base_shear_over_fixed_base_median"])
+print(result.statistics["fixed_base_ratio_median"])
 try:
     print(result.to_dataframe().groupby("podium.bearing.curvature_ratio")["rotation_ratio"].max())
 except ModuleNotFoundError:
