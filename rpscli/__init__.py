@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rpscli import figures
     from rpscli.analyses.demand import demand
+    from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
     from rpscli.analyses.largest_demands import Demand
     from rpscli.analyses.modal import ModalResult, modal
     from rpscli.analyses.pushover import PushoverResult, pushover
@@ -31,11 +32,13 @@ if TYPE_CHECKING:
     from rpscli.model.podium import PodiumStructure
     from rpscli.model.superstructure import Superstructure, profile_stiffnesses
     from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.measures.spectrum import response_spectrum
     from rpscli.records.source import load_record
     from rpscli.studies import Study, StudyResult, load_study
 
 _HOMES = {
     "rpscli.analyses.demand": ("demand",),
+    "rpscli.analyses.floor_spectra": ("fixed_base_floor_spectra", "isolated_floor_spectra"),
     "rpscli.analyses.largest_demands": ("Demand",),
     "rpscli.analyses.modal": ("ModalResult", "modal"),
     "rpscli.analyses.pushover": ("PushoverResult", "pushover"),
@@ -50,6 +53,7 @@ _HOMES = {
     "rpscli.model.podium": ("PodiumStructure",),
     "rpscli.model.superstructure": ("Superstructure", "profile_stiffnesses"),
     "rpscli.records.ground_motion": ("GroundMotion",),
+    "rpscli.records.measures.spectrum": ("response_spectrum",),
     "rpscli.records.source": ("load_record",),
     "rpscli.studies": ("Study", "StudyResult", "load_study"),
 }
@@ -74,12 +78,15 @@ __all__ = [
     "__version__",
     "demand",
     "figures",
+    "fixed_base_floor_spectra",
+    "isolated_floor_spectra",
     "load_case",
     "load_record",
     "load_study",
     "modal",
     "profile_stiffnesses",
     "pushover",
+    "response_spectrum",
     "time_history",
 ]
 

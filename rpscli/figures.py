@@ -20,6 +20,7 @@ After the axes come
 - a `ModalResult`, ``"rolling"`` or ``"rocking"``, and the number of the mode, for `mode`;
 - a `PodiumStructure` for `structure`, and for `bearing`, which takes a rotation [rad] too; a
   `Bearing` for `bearing_end`;
+- a `GroundMotion` for `motion`, and ``"velocity"`` or ``"displacement"`` in place of acceleration;
 - response spectra for `spectrum` and `spectra`; floor spectra and the floor for `floor_spectrum`.
 """
 
@@ -38,6 +39,7 @@ from rpscli.report.figures.moment import draw_moment as moment
 from rpscli.report.figures.profile import draw_accelerations as floor_accelerations
 from rpscli.report.figures.profile import draw_shears as storey_shears
 from rpscli.report.figures.profile import draw_storey_drifts as storey_drifts
+from rpscli.report.figures.record import draw_motion as motion
 from rpscli.report.figures.record import draw_spectrum as spectrum
 from rpscli.report.figures.rotation import draw_events as events
 from rpscli.report.figures.rotation import draw_ground as ground_acceleration
@@ -63,6 +65,7 @@ __all__ = [
     "lift",
     "mode",
     "moment",
+    "motion",
     "rotation",
     "spectra",
     "spectrum",

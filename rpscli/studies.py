@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
 from rpscli.case.overrides import apply_overrides
+from rpscli.case.rules.plausibility import doubts_of_many
 from rpscli.case.study.schema import StudyFile
 from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.case.study.study import parse_study, shared_out, study_of
@@ -52,6 +53,7 @@ from rpscli.sweep.run.keys import all_keys
 from rpscli.sweep.run.resume import remember, resume
 from rpscli.sweep.run.runner import Progress, run
 from rpscli.sweep.run.threads import Threads, available_cores
+from rpscli.sweep.statistics.scales import scale_notes
 from rpscli.sweep.statistics.summary import Summary, summary
 from rpscli.sweep.statistics.verdicts import StudyVerdict, judged
 from rpscli.sweep.store import Store
@@ -128,6 +130,11 @@ class Study(Shown):
     def reports(self) -> dict[str, ReportRequest]:
         """The reports that it asks for, by the names of their files."""
         return {request.stem: request for request in self.design.study.reports}
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is unusual about its systems, each kind once."""
+        return doubts_of_many([properties.doubts for properties in self.design.properties])
 
     def facts(self) -> dict[str, Any]:
         """How many of what."""
@@ -281,6 +288,17 @@ class StudyResult(Shown):
     def passed(self) -> bool:
         """Whether no limit is exceeded and no point failed."""
         return not self.failures and not any(verdict.exceeded for verdict in self._verdicts)
+
+    @property
+    def notes(self) -> list[str]:
+        """What must be read before statistics and reports are used: what was pooled or left out."""
+        notes = [*scale_notes(self.table)]
+        if self.study.design.plan.analysis == "timehistory":
+            notes += self._summary.notes
+        for name, request in self.study.reports.items():
+            found = REPORTS[request.kind].notes(self.report(name))
+            notes += [f"{name}: {note}" for note in found]
+        return notes
 
     def report(self, name: str) -> Any:
         """The numbers of a report that the study asks for, by the name of its files."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -128,12 +129,26 @@ def test_mp4_needs_its_encoder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
         FilmRequest(Path("film.mp4"))
 
 
-@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not installed")
-def test_mp4_is_what_its_ending_says() -> None:
-    film = modes_film(modal(structure(CURVED, 1)), "title", FilmRequest(Path("film.mp4"), 201))
+def test_mp4_is_what_its_ending_says(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    shutil.copy(ffmpeg.get_ffmpeg_exe(), tmp_path / f"ffmpeg{'.exe' * (sys.platform == 'win32')}")
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    file = tmp_path / "film.mp4"
+    drawn: list[int] = []
+    # An odd width, which the format does not know.
+    film = modes_film(
+        modal(structure(CURVED, 1)),
+        "title",
+        FilmRequest(file, 241),
+        lambda done, _: drawn.append(done),
+    )
+    file.write_bytes(film)
     assert film[4:8] == b"ftyp"
+    assert drawn == list(range(1, 61))
+    assert ffmpeg.count_frames_and_secs(str(file)) == (60, pytest.approx(2.0))
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a script is no program there")
 def test_an_encoder_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     broken = tmp_path / "ffmpeg"
     broken.write_text("#!/bin/sh\nexit 3\n")

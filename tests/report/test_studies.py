@@ -123,6 +123,9 @@ def test_the_files_are_those_of_the_command(
     swept = CliRunner().invoke(program, ["sweep", "study.yaml", "-o", "swept", "-q"])
     assert swept.exit_code == 10, swept.output
     files = [Path(file) for file in result.write("written")]
+    again: list[Any] = []
+    rpscli.load_study("study.yaml").run("swept", progress=again.append)
+    assert again == []  # the command has computed them all
     names = {file.name for file in files}
     assert names | {"study.sqlite", "base.yaml"} >= {file.name for file in Path("swept").iterdir()}
     for name in names - {"run.json"}:
@@ -231,6 +234,17 @@ def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
     loose = Figure().add_axes((0.1, 0.1, 0.8, 0.8))
     with pytest.raises(rpscli.RpsError, match="no subplot"):
         result.draw("overturning", loose)
+
+
+def test_what_must_be_read_is_told(result: rpscli.StudyResult) -> None:
+    odd = rpscli.load_study(SMALL | {"scale": [9.0]}, ["podium.bearing.semi_diagonal=150"])
+    assert any("150" in text or "m high" in text for text in odd.warnings), odd.warnings
+    pooled = SMALL | {
+        "scale": [9.0],
+        "reports": [{"overturning": {"columns": [], "rows": ["podium.bearing.curvature_ratio"]}}],
+    }
+    assert result.study.warnings == []
+    assert any("beyond the usual" in note for note in rpscli.load_study(pooled).run().notes)
 
 
 def test_statistics_are_a_row_a_system_and_intensity(result: rpscli.StudyResult) -> None:

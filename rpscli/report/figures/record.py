@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -12,42 +12,48 @@ from rpscli.report.figures import style
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.records.measures.spectrum import ResponseSpectrum
 
 
+Quantity = Literal["acceleration", "velocity", "displacement"]
+
+QUANTITIES: dict[Quantity, tuple[str, str]] = {
+    "acceleration": ("m/s²", style.BLACK),
+    "velocity": ("m/s", style.BLUE),
+    "displacement": ("m", style.GREEN),
+}
+
+
 def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
     """Time histories on the left, the spectrum on the right."""
-    a, dt = motion.acceleration, motion.dt
-    histories = (
-        (a, "acceleration\n[m/s²]", style.BLACK),
-        (velocity(a, dt), "velocity\n[m/s]", style.BLUE),
-        (displacement(a, dt), "displacement\n[m]", style.GREEN),
-    )
 
     def draw(figure: Figure) -> None:
         style.heading(figure, motion.name, motion.description[:90])
         left, right = figure.subfigures(1, 2, width_ratios=[1.45, 1.0], squeeze=False)[0]
-        panels = left.subplots(3, 1, sharex=True)
-        for axes, (values, label, colour) in zip(panels, histories, strict=True):
-            _draw_history(axes, motion.time, values, label, colour)
-        panels[-1].set_xlim(0.0, motion.duration)
-        panels[-1].set_xlabel("time [s]")
+        for axes, quantity in zip(left.subplots(3, 1, sharex=True), QUANTITIES, strict=True):
+            draw_motion(axes, motion, quantity)
+            axes.label_outer()
         left.align_ylabels()
         draw_spectrum(right.subplots(), spectrum)
 
     return style.picture(draw, 4.2, 8.0)
 
 
-def _draw_history(
-    axes: Axes, time: NDArray[np.float64], values: NDArray[np.float64], label: str, colour: str
-) -> None:
-    peak = int(np.argmax(np.abs(values)))
+def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "acceleration") -> None:
+    """Acceleration, velocity or displacement of the ground against time, and the peak."""
+    unit, colour = QUANTITIES[quantity]
+    values = motion.acceleration
+    if quantity != "acceleration":
+        integral = velocity if quantity == "velocity" else displacement
+        values = integral(values, motion.dt)
+    time, peak = motion.time, int(np.argmax(np.abs(values)))
     axes.plot(time, values, color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
-    axes.set_ylabel(label)
+    axes.set_xlim(0.0, motion.duration)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(f"{quantity}\n[{unit}]")
     axes.set_title(
         f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s", loc="right", fontsize=style.small()
     )
