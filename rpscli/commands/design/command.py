@@ -20,6 +20,7 @@ from rpscli.commands.shell.options import (
     terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.sweep.command import warn
 from rpscli.commands.sweep.dry_run import show_dry_run
 from rpscli.commands.sweep.input import SweepChoices, study_folder, study_heading
 from rpscli.commands.sweep.results import collect, first_error
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
     from rpscli.commands.sweep.input import StudyInput
     from rpscli.sweep.reports.study_results import StudyResults
     from rpscli.sweep.search.answer import Answer
-
-WARNINGS_SHOWN = 5
 
 
 @click.command("design")
@@ -118,7 +117,7 @@ def _conclude(
     results.store.require()
     write(folder, rounds.terminal)
     notes = [*rounds.notes(answer, confirmations), *found.notes]
-    rounds.terminal.warn(notes[:WARNINGS_SHOWN])
+    warn(notes, rounds.terminal)
     document = {
         **heading(),
         "command": "design",

@@ -154,9 +154,7 @@ def _conclude(
     error = first_error(found, len(table))
     store.require()
     write(folder, terminal)
-    terminal.warn(notes[:WARNINGS_SHOWN])
-    if len(notes) > WARNINGS_SHOWN:
-        terminal.note(f"... and {len(notes) - WARNINGS_SHOWN} more in the reports")
+    warn(notes, terminal)
     document = {
         **heading(),
         "command": "sweep",
@@ -182,6 +180,13 @@ def _conclude(
     }
     terminal.result(concluded(document, error), _tables(document, found))
     leave(error)
+
+
+def warn(notes: list[str], terminal: Terminal) -> None:
+    """Say the first of the warnings, and how many there are besides."""
+    terminal.warn(notes[:WARNINGS_SHOWN])
+    if len(notes) > WARNINGS_SHOWN:
+        terminal.note(f"... and {len(notes) - WARNINGS_SHOWN} more with --json")
 
 
 def _statistics(found: Collected) -> dict[str, Any]:

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.design.task import DesignTask
-from rpscli.sweep.search.judgement import Judged, Weights
+from rpscli.sweep.search.judgement import Judged
 from rpscli.sweep.statistics.share import CONFIDENCE
 from rpscli.sweep.table import Array, Indices
+
+LARGE = 1e300
+"""Stands for an aim that is not known."""
 
 ROBUST = 0.9
 """Share of the resamples in which a robust design passes."""
@@ -51,11 +55,7 @@ class Answer:
     judged
         What became of them.
     resamples
-        Number of bootstrap samples of the records.
-    best
-        Place of the best design; NONE if none passes.
-    closest
-        Place of the design that fails least: the best one where there is one.
+        Number of bootstrap samples of the records, the weightings after that of all as they are.
     """
 
     task: DesignTask
@@ -64,35 +64,48 @@ class Answer:
     valid: NDArray[np.bool_]
     judged: Judged
     resamples: int
-    best: int
-    closest: int
+
+    @property
+    def best(self) -> int:
+        """Place of the best design; NONE if none passes."""
+        return int(self.chosen[0])
+
+    @cached_property
+    def closest(self) -> int:
+        """Place of the design that fails least: the best one where there is one."""
+        if self.best != NONE:
+            return self.best
+        worst = self.judged.excess.max(axis=0)
+        return int(np.lexsort((self.aims, _distance(self.judged), worst))[0])
+
+    @cached_property
+    def aims(self) -> Array:
+        """(designs,) what is to be least, infinite where so many overturned or none is known."""
+        return np.asarray(np.nan_to_num(self.judged.aims[0, 0], nan=np.inf, posinf=np.inf))
 
     @property
     def passes(self) -> NDArray[np.bool_]:
         """(designs,) under the records as they are."""
         return np.asarray(self.judged.passes[0])
 
-    @property
+    @cached_property
     def passing_share(self) -> Array:
         """(designs,) share of the resamples in which each passes; NaN without any."""
         passes = self.judged.passes[1 : 1 + self.resamples]
         return passes.mean(axis=0) if len(passes) else np.full(len(self.places), np.nan)
 
-    @property
+    @cached_property
     def chosen(self) -> Indices:
         """(weightings,) the best design of each; NONE where nothing passes."""
-        aims = np.where(self.judged.passes, self.judged.aims[0], np.inf)
-        none = ~self.judged.passes.any(axis=1)
-        first = np.argmax(self.judged.passes, axis=1)  # where no aim is finite
-        best = np.where(np.isfinite(aims).any(axis=1), aims.argmin(axis=1), first)
-        return np.where(none, NONE, best)
+        passes = self.judged.passes
+        # A passing design whose aim is not known comes after all others.
+        aims = np.where(passes, np.nan_to_num(self.judged.aims[0], nan=LARGE, posinf=LARGE), np.inf)
+        return np.where(passes.any(axis=1), aims.argmin(axis=1), NONE)
 
-    @property
+    @cached_property
     def robust(self) -> int:
         """The best design that passes in nearly all resamples; NONE without one."""
-        aims = np.where(
-            self.passes & (self.passing_share >= ROBUST), self.judged.aims[0, 0], np.inf
-        )
+        aims = np.where(self.passes & (self.passing_share >= ROBUST), self.aims, np.inf)
         return int(aims.argmin()) if np.isfinite(aims).any() else NONE
 
     @property
@@ -134,11 +147,10 @@ class Answer:
         """The best design if one requirement fell; only where there is a best one."""
         if self.best == NONE:
             return
-        aims = self.judged.aims[0, 0]
         for place in range(len(self.judged.requirements)):
             others = np.delete(self.judged.met[:, 0], place, axis=0).all(axis=0) & self.valid
-            least = float(aims[others].min())
-            yield Without(place, least, least < aims[self.best])
+            least = float(self.aims[others].min())
+            yield Without(place, least, least < self.aims[self.best])
 
     @property
     def at_bounds(self) -> Iterator[tuple[str, str]]:
@@ -175,32 +187,6 @@ def interval_of(values: Array) -> Interval:
     return Interval(low, high)
 
 
-def answered(
-    task: DesignTask,
-    places: Array,
-    values: Array,
-    valid: NDArray[np.bool_],
-    judged: Judged,
-    weights: Weights,
-) -> Answer:
-    """Find the best design, or the one that fails least."""
-    passes, aims = judged.passes[0], judged.aims[0, 0]
-    closest = int(np.lexsort((aims, _distance(judged), judged.excess.max(axis=0)))[0])
-    if passes.any():
-        closest = int(np.argmin(np.where(passes & ~np.isnan(aims), aims, np.inf)))
-        closest = closest if passes[closest] else int(np.argmax(passes))
-    return Answer(
-        task=task,
-        places=places,
-        values=values,
-        valid=valid,
-        judged=judged,
-        resamples=weights.resamples,
-        best=closest if passes.any() else NONE,
-        closest=closest,
-    )
-
-
 def _distance(judged: Judged) -> Array:
     """(designs,) the worst value over its bound: tells apart what as many records exceed."""
     bounds = np.array([requirement.bound for requirement in judged.requirements])
@@ -209,9 +195,3 @@ def _distance(judged: Judged) -> Array:
         below = np.array([requirement.sign < 0.0 for requirement in judged.requirements])
         ratios = np.where(below[:, None], 1.0 / ratios, ratios)
     return np.asarray(np.nan_to_num(ratios, nan=np.inf).max(axis=0))
-
-
-def to_refine(answer: Answer) -> tuple[NDArray[np.bool_], Array]:
-    """Verdicts (weightings, designs) and aims (designs,) by which the search goes on."""
-    rows = answer.judged.passes[: 1 + answer.resamples]
-    return rows, np.nan_to_num(answer.judged.aims[0, 0], nan=np.inf, posinf=np.inf)

@@ -10,7 +10,7 @@ from rpscli.case.design.task import DesignTask
 from rpscli.case.text.faults import Fault
 from rpscli.errors import CaseError
 from rpscli.sweep.design.layout import Design
-from rpscli.sweep.search.answer import Answer, answered, to_refine
+from rpscli.sweep.search.answer import Answer
 from rpscli.sweep.search.judgement import Requirement, demands_of, judge, weights_of
 from rpscli.sweep.search.space import Flags, first_places, next_places, usual_count
 from rpscli.sweep.statistics.pooling import INTENSITY, shown_keys
@@ -58,8 +58,14 @@ class Search:
         if count <= 0:
             return self.places[:0]
         answer = self.answer()
-        verdicts, aims = to_refine(answer)
-        return next_places(self.places, verdicts, aims, answer.closest, search.resolution, count)
+        return next_places(
+            self.places,
+            answer.judged.passes[: 1 + answer.resamples],
+            answer.aims,
+            answer.closest,
+            search.resolution,
+            count,
+        )
 
     def valid_cases(self, values: Array) -> Flags:
         """(designs,) which values make valid cases; why others do not is kept in `faults`."""
@@ -119,4 +125,6 @@ class Search:
     def answer(self) -> Answer:
         """What is known so far."""
         judged = judge(self.task, self.requirements, self.values, self._demands, self.weights.rows)
-        return answered(self.task, self.places, self.values, self.valid, judged, self.weights)
+        return Answer(
+            self.task, self.places, self.values, self.valid, judged, self.weights.resamples
+        )
