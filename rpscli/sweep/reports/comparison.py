@@ -151,13 +151,15 @@ class Compared:
 
 
 class Worth(NamedTuple):
-    """What a fit makes small: first the misfit, then what is off in the count.
+    """What a fit makes small: the misfit, and then what is off in the count.
 
-    The misfit is the share of wrong outcomes, or the median of |ln(computed/observed)| of maxima.
+    The misfit is the share of wrong outcomes, or the median of |ln(computed/observed)| of maxima;
+    `error` is its standard error, 0 of maxima.
     """
 
     misfit: float
     count_off: float
+    error: float
 
 
 class Candidate(NamedTuple):
@@ -227,7 +229,7 @@ def comparison_report(study: StudyResults, options: ComparisonOptions) -> Compar
                 Candidate(system.values, group.values, work.worth(group.points), taken=False)
                 for group in groups(design, fit_keys, system.points)
             ]
-            place = _best([row.worth for row in rows])
+            place = best_place([row.worth for row in rows])
             candidates += [row._replace(taken=n == place) for n, row in enumerate(rows)]
             best = groups(design, fit_keys, system.points)[place]
         compared += work.compared(system.values, best)
@@ -304,10 +306,33 @@ def _same_axis(design: Design, key: str, keys: Iterable[str]) -> bool:
     return any(key in axis and axis & set(keys) for axis in axes)
 
 
-def _best(worths: Sequence[Worth]) -> int:
-    """The smallest; of several equal ones the middle, which a little more data moves least."""
+def outcome_worth(computed: Flags, observed: Flags) -> Worth:
+    """Worth of computed outcomes beside observed ones.
+
+    >>> import numpy as np
+    >>> outcome_worth(np.array([True, True, False, False]), np.array([True, False, False, False]))
+    Worth(misfit=0.25, count_off=0.25, error=0.21650635094610965)
+    """
+    misfit = float(np.mean(computed != observed))
+    error = math.sqrt(misfit * (1.0 - misfit) / len(observed))
+    return Worth(misfit, abs(float(computed.mean() - observed.mean())), error)
+
+
+def best_place(worths: Sequence[Worth]) -> int:
+    """Which worth a fit takes: the best count among those that the misfit does not tell apart.
+
+    Misfits up to one standard error above the least are not told apart (the one-standard-error
+    rule of Breiman et al., Classification and Regression Trees, 1984): the least alone follows
+    chance, and its count is off to either side. Of several equal ones the middle is taken, which a
+    little more data moves least.
+
+    >>> best_place([Worth(0.10, 0.06, 0.03), Worth(0.12, 0.01, 0.03), Worth(0.15, 0.0, 0.03)])
+    1
+    """
     least = min(worths)
-    places = [place for place, worth in enumerate(worths) if worth == least]
+    near = [worth for worth in worths if worth.misfit <= least.misfit + least.error]
+    best = min(near, key=lambda worth: (worth.count_off, worth.misfit))
+    places = [place for place, worth in enumerate(worths) if worth == best]
     return places[(len(places) - 1) // 2]
 
 
@@ -323,7 +348,7 @@ def agreement(computed: Flags, observed: Flags) -> Agreement:
 
 
 def threshold(intensity: Array, observed: Flags) -> float:
-    """The intensity that tells most outcomes right when all beyond it is taken to overturn.
+    """The intensity beyond which all is taken to overturn, chosen as `best_place` says.
 
     It lies midway (geometrically) between two data, or is the least or twice the largest of them.
 
@@ -334,8 +359,8 @@ def threshold(intensity: Array, observed: Flags) -> float:
     """
     levels = np.unique(intensity)
     cuts = np.array([levels[0], *np.sqrt(levels[1:] * levels[:-1]), 2.0 * levels[-1]])
-    wrong = [Worth(float(np.mean((intensity >= cut) != observed)), 0.0) for cut in cuts]
-    return float(cuts[_best(wrong)])
+    worths = [outcome_worth(intensity >= cut, observed) for cut in cuts]
+    return float(cuts[best_place(worths)])
 
 
 def maxima(computed: Array, observed: Array) -> Maxima:
@@ -408,13 +433,12 @@ class _Work:
         known = ~np.isnan(computed)
         computed, observed = computed[known], observed[known]
         if not len(computed):
-            return Worth(math.inf, math.inf)
+            return Worth(math.inf, math.inf, 0.0)
         if self._quantities[0] == OVERTURNED:
-            off = abs(computed.mean() - observed.mean())
-            return Worth(float(np.mean(computed != observed)), float(off))
+            return outcome_worth(computed == 1.0, observed == 1.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             off = np.abs(np.log(computed / observed))
-        return Worth(float(np.median(np.nan_to_num(off, nan=np.inf))), 0.0)
+        return Worth(float(np.median(np.nan_to_num(off, nan=np.inf))), 0.0, 0.0)
 
     def compared(self, values: tuple[object, ...], best: Group) -> Iterator[Compared]:
         """Every quantity in every part."""
