@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
+from PIL import Image
 
 from report.small_results import (
     CURVED,
@@ -464,29 +466,29 @@ def test_a_scene_with_devices(equipped: TimeHistoryResult) -> None:
 GIF = FilmRequest(Path("film.gif"))
 
 
-def watched(monkeypatch: pytest.MonkeyPatch, look: Callable[[Figure], Any]) -> list[Any]:
-    """What is seen in the figure of each frame."""
-    seen: list[Any] = []
+@pytest.fixture
+def filmed(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
+    """Figures of which films were made."""
+    found: list[Figure] = []
     draw = FigureCanvasAgg.draw
 
     def watch(canvas: FigureCanvasAgg) -> None:
-        seen.append(look(canvas.figure))
+        found.append(canvas.figure)
         draw(canvas)  # type: ignore[no-untyped-call]
 
     monkeypatch.setattr(FigureCanvasAgg, "draw", watch)
-    return seen
+    return found
 
 
-def test_an_animation_runs_along_the_record(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
     result = KINDS["rolls"]()
     trace, plan = result.trace, frame_plan(result, GIF)
-    frames = watched(monkeypatch, lambda figure: figure.axes)
     cursors: list[float] = []
     contacts: list[float] = []
 
     def progress(done: int, total: int) -> None:
         assert total == len(plan.samples)
-        _, end, record = frames[-1]
+        _, end, record = filmed[0].axes
         cursors.append(float(np.asarray(record.lines[1].get_xdata())[0]))
         contacts.append(float(np.asarray(end.lines[1].get_xdata(), float)[0]))
         assert done == len(cursors)
@@ -499,7 +501,8 @@ def test_an_animation_runs_along_the_record(monkeypatch: pytest.MonkeyPatch) -> 
     leaning = rotation != 0.0
     wanted = np.copysign(reach, rotation)[leaning]
     np.testing.assert_allclose(np.array(contacts)[leaning], wanted, rtol=1e-12)
-    _, end, record = frames[-1]
+    assert len(filmed) == 1  # drawn whole once
+    _, end, record = filmed[0].axes
     assert end.get_title() == "lower end of a column, enlarged"
     low, high = end.get_xlim()
     assert high - low < 4.0 * 0.3 * bearing.half_height  # less than twice its width
@@ -509,16 +512,30 @@ def test_an_animation_runs_along_the_record(monkeypatch: pytest.MonkeyPatch) -> 
     assert record.get_xlabel() == "time [s]"
 
 
-def test_mode_shapes_swing_there_and_back(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mode_shapes_swing_there_and_back(filmed: list[Figure]) -> None:
     result = modal(structure(CURVED, 2))
     assert result.rolling is not None
+    seen: list[Any] = []
 
-    def first(figure: Figure) -> Any:
-        return np.array(curve(figure.axes[0], "uplifted")[0])
+    def progress(_done: int, _total: int) -> None:
+        seen.append(np.array(curve(filmed[0].axes[0], "uplifted")[0]))
 
-    frames = watched(monkeypatch, first)
-    modes_film(result, "a title", GIF)
+    modes_film(result, "a title", GIF, progress)
     shape = np.array([0.0, *result.rolling.shapes[:, 0]])
-    steps = np.cos(2.0 * np.pi * np.arange(len(frames)) / len(frames))
-    assert len(frames) == 40
-    np.testing.assert_allclose(frames, steps[:, None] * shape, atol=1e-12)
+    steps = np.cos(2.0 * np.pi * np.arange(len(seen)) / len(seen))
+    assert len(seen) == 40
+    np.testing.assert_allclose(seen, steps[:, None] * shape, atol=1e-12)
+
+
+def test_what_moves_is_seen_moving_and_the_rest_stays() -> None:
+    """The frames themselves: between two of them only what moves has changed."""
+    result = modal(structure(CURVED, 2))
+    with Image.open(io.BytesIO(modes_film(result, "a title", GIF))) as film:
+        frames = []
+        for number in (0, 10, 20):
+            film.seek(number)
+            frames.append(np.asarray(film.convert("L"), dtype=int))
+    moved = np.abs(frames[0] - frames[2]) > 60
+    assert 0.002 < moved.mean() < 0.1
+    assert not moved[: len(moved) // 25].any()  # the title
+    assert (frames[0] < 200).mean() == pytest.approx((frames[2] < 200).mean(), abs=0.02)

@@ -95,7 +95,7 @@ def history_film(
             end.show(float(result.trace.rotation[sample]))
             cursor.set_xdata([result.trace.time[sample]] * 2)
 
-        return Motion(len(plan.samples), show)
+        return Motion(len(plan.samples), show, [*scene.moving, *end.moving, cursor])
 
     return film(draw, 8.0, 5.2, wanted, progress)
 
@@ -115,7 +115,7 @@ def modes_film(
             for line, shape in zip(lines, shapes, strict=True):
                 line.set_xdata(shape * np.cos(2.0 * np.pi * frame / frames))
 
-        return Motion(frames, show)
+        return Motion(frames, show, lines)
 
     return film(draw, *modes_size(result), wanted, progress)
 

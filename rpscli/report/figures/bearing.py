@@ -16,6 +16,7 @@ from rpscli.report.figures.scene_devices import SceneDevices
 from rpscli.report.figures.storey_curve import draw_force
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -57,6 +58,12 @@ class BearingView:
         axes.set_xticks([])
         axes.set_yticks([])
         axes.grid(visible=False)
+
+    @property
+    def moving(self) -> list[Artist]:
+        """What `show` moves."""
+        beam = [] if self.beam is None else [self.beam]
+        return [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
 
     def show(self, rotation: float) -> tuple[float, float]:
         """Lean the column to a rotation [rad]; u_b and v_b there [m].

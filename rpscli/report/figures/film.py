@@ -5,8 +5,10 @@ from __future__ import annotations
 import io
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,7 +17,7 @@ from rpscli.errors import OutputError, UsageError
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.artist import Artist
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
@@ -84,10 +86,14 @@ class FilmRequest:
 
 
 class Motion(NamedTuple):
-    """How a figure moves: so many frames, and what shows each of them, counted from 0."""
+    """How a figure moves: so many frames, what shows each of them, counted from 0, and what moves.
+
+    All that does not move is drawn once, below what does.
+    """
 
     frames: int
     show: Callable[[int], None]
+    moving: Sequence[Artist]
 
 
 def film(
@@ -111,40 +117,40 @@ def film(
         from matplotlib.figure import Figure  # noqa: PLC0415
 
         figure = Figure(figsize=(width, height), dpi=wanted.size / width, layout="constrained")
-        canvas = FigureCanvasAgg(figure)
-        motion = draw(figure)
-
-        def moved() -> Iterator[None]:
-            for frame in range(motion.frames):
-                motion.show(frame)
-                yield
-                figure.set_layout_engine("none")  # the picture must not jump
-                progress(frame + 1, motion.frames)
-
-        if wanted.ending == ".mp4":
-            return _mp4(figure, moved(), wanted.rate)
-        return _gif(canvas, moved(), wanted.rate)
+        canvas: Any = FigureCanvasAgg(figure)
+        frames = _frames(canvas, draw(figure), progress)
+        return _mp4(frames, wanted.rate) if wanted.ending == ".mp4" else _gif(frames, wanted.rate)
 
 
-def _gif(canvas: FigureCanvasAgg, moved: Iterator[None], rate: int) -> bytes:
+def _frames(canvas: Any, motion: Motion, progress: Progress) -> Iterator[Image]:
+    from PIL import Image as Pillow  # noqa: PLC0415
+
+    motion.show(0)
+    for each in motion.moving:
+        each.set_animated(True)  # left out of what is drawn once
+    canvas.draw()
+    canvas.figure.set_layout_engine("none")
+    still = canvas.copy_from_bbox(canvas.figure.bbox)
+    for frame in range(motion.frames):
+        canvas.restore_region(still)
+        motion.show(frame)
+        for each in motion.moving:
+            canvas.figure.draw_artist(each)
+        width, height = canvas.get_width_height()
+        yield Pillow.frombuffer("RGBA", (width, height), canvas.buffer_rgba()).convert("RGB")
+        progress(frame + 1, motion.frames)
+
+
+def _gif(frames: Iterator[Image], rate: int) -> bytes:
     """All frames in one palette, repeated for ever."""
     palette = _palette()
-    frames = [_image(canvas).quantize(palette=palette, dither=NO_DITHER) for _ in moved]
+    first, *others = (frame.quantize(palette=palette, dither=NO_DITHER) for frame in frames)
     buffer = io.BytesIO()
-    frames[0].save(
-        buffer, format="GIF", save_all=True, append_images=frames[1:],
+    first.save(
+        buffer, format="GIF", save_all=True, append_images=others,
         duration=round(1000 / rate), loop=0, optimize=False,
     )  # fmt: skip
     return buffer.getvalue()
-
-
-def _image(canvas: FigureCanvasAgg) -> Image:
-    import numpy as np  # noqa: PLC0415
-    from PIL import Image as Pillow  # noqa: PLC0415
-
-    canvas.draw()  # type: ignore[no-untyped-call]
-    pixels: Any = canvas.buffer_rgba()  # type: ignore[no-untyped-call]
-    return Pillow.fromarray(np.asarray(pixels)[..., :3].copy())
 
 
 def _palette() -> Image:
@@ -161,7 +167,7 @@ def _palette() -> Image:
     return image
 
 
-def _mp4(figure: Figure, moved: Iterator[None], rate: int) -> bytes:
+def _mp4(frames: Iterator[Image], rate: int) -> bytes:
     """Written beside and read again: the encoder goes back in its file.
 
     Raises
@@ -169,15 +175,26 @@ def _mp4(figure: Figure, moved: Iterator[None], rate: int) -> bytes:
     OutputError
         If the encoder fails.
     """
-    from matplotlib.animation import FFMpegWriter  # noqa: PLC0415
-
-    writer = FFMpegWriter(fps=rate, codec="h264")
+    first = next(frames)
     with TemporaryDirectory() as folder:
         file = Path(folder, "film.mp4")
-        try:
-            with writer.saving(figure, str(file), figure.dpi):
-                for _ in moved:
-                    writer.grab_frame()
-        except (subprocess.CalledProcessError, OSError) as error:
-            raise OutputError(f"{ENCODER} could not make the film: {error}") from None
+        command = [
+            shutil.which(ENCODER) or ENCODER, "-loglevel", "error",
+            "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{first.width}x{first.height}",
+            "-r", str(rate), "-i", "-",
+            # players want halved colours, and these an even size
+            "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-pix_fmt", "yuv420p", str(file),
+        ]  # fmt: skip
+        pipe = subprocess.PIPE
+        with subprocess.Popen(command, stdin=pipe, stderr=pipe) as encoder:  # noqa: S603 -- ours
+            assert encoder.stdin is not None, "it is a pipe"
+            with suppress(BrokenPipeError):  # it says why it ended
+                for frame in chain([first], frames):
+                    encoder.stdin.write(frame.tobytes())
+            _, complaint = encoder.communicate()
+        if encoder.returncode:
+            reason = (
+                complaint.decode(errors="replace").strip() or f"it ends with {encoder.returncode}"
+            )
+            raise OutputError(f"{ENCODER} could not make the film: {reason}")
         return file.read_bytes()

@@ -13,6 +13,7 @@ from rpscli.report.figures.levels import level_heights
 from rpscli.report.figures.scene_devices import SceneDevices
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
     from rpscli.analyses.results import TimeHistoryResult
@@ -53,6 +54,12 @@ class Scene:
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
         axes.set_xlabel(self._legend(speed), fontsize=style.small())
         self._frame(axes)
+
+    @property
+    def moving(self) -> list[Artist]:
+        """What `show` moves."""
+        parts = [*self.columns, self.beam, *self.sides, *self.floors, *self.devices.moving]
+        return [*parts, self.clock]
 
     def _legend(self, speed: float) -> str:
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""

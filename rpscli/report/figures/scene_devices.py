@@ -49,6 +49,12 @@ class SceneDevices:
         look: dict[str, Any] = {"color": style.RED, "lw": 1.5, "marker": "s", "markevery": [1]}
         self.brace = axes.plot([], [], **look, ms=5.0)[0] if braced else None
 
+    @property
+    def moving(self) -> list[Line2D]:
+        """All of them."""
+        brace = [] if self.brace is None else [self.brace]
+        return [*(post for _, _, post in self.stops), *self.tendons, *brace]
+
     def show(self, shift: float, lift: float) -> None:
         """Move them with the cap beam, displaced and lifted [m]."""
         for side, gap, post in self.stops:
