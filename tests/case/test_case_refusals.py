@@ -48,7 +48,7 @@ SINGLE_VALUES = [
     ("free_vibration: auto", "overturning_limit: 0.5", "19:31", [">= 1"]),
     ("free_vibration: auto", "recontact_tolerance: 1", "19:33", ["> 0 and < 1"]),
     ("free_vibration: auto", "gravity: 0", "19:21", ["> 0 m/s2"]),
-    ("free_vibration: auto", "max_events: 0", "19:24", ["whole number >= 1"]),
+    ("free_vibration: auto", "max_events: 0", "19:24", ["whole number from 1 to 1000000000"]),
     ("rps: 1", "rps: 2", "1:6: rps = 2", ["this program reads version 1"]),
 ]
 
@@ -213,6 +213,7 @@ FRAMES = [
     ("  column_mass: 5 t\n", "", ["3:1", "give one of cap_beam_mass_ratio or column_mass"]),
     ("  column_mass: 5 t\n", "  cap_beam_mass_ratio: 0\n", ["6:18", "(line 7) contradict"]),
     ("cap_beam_mass: 200 t\n  column_mass: 5 t", "cap_beam_mass_ratio: 0", ["column_mass is miss"]),
+    ("columns: 4", f"columns: {'9' * 400}", ["8:12: podium.columns", "from 1 to 100000"]),
     ("  columns: 4", "  superstructure_mass_ratio: 3", ["8:3", "storeys = 0 (line 2)", "instead"]),
 ]
 

@@ -159,7 +159,7 @@ class PodiumMasses(Section):
     column_mass: Mass | None = Field(
         None, description="m_c of one column; in place of cap_beam_mass_ratio"
     )
-    columns: Annotated[int, Whole(1)] | None = Field(None, description="number N of columns")
+    columns: Annotated[int, Whole(1, 100_000)] | None = Field(None, description="their number N")
 
     @property
     def without_cap_beam(self) -> bool:
@@ -231,7 +231,7 @@ class AnalysisSection(Section):
     accuracy: PositiveRatio = Field(
         1.0, description="time steps are 1/accuracy times the default size"
     )
-    max_events: Annotated[int, Whole(1)] = Field(
+    max_events: Annotated[int, Whole(1, 1_000_000_000)] = Field(
         100_000, description="uplifts, impacts and phase changes after which the analysis gives up"
     )
 
