@@ -246,6 +246,10 @@ def test_confirmation(design_json: DesignJson, workplace: Path) -> None:
     assert any("the best design does not keep" in warning for warning in found["warnings"])
     (verdict,) = found["confirmation"]["robust"]
     assert verdict["beyond"]["count"] == 1
+    (workplace / "broken.at2").write_text("no record")
+    found = design_json(FRAME + "confirm: {records: [broken.at2]}\n", exit_code=5)
+    assert found["confirmed"] is False
+    assert "broken.at2" in found["error"]["message"]
     task = parse_design(FRAME + "confirm: {share: 0.3}\n", "design.yaml")
     assert len(task.study.sources) == 5
     assert len(task.confirming) == 2

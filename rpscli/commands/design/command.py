@@ -24,7 +24,7 @@ from rpscli.commands.sweep.command import warn
 from rpscli.commands.sweep.dry_run import show_dry_run
 from rpscli.commands.sweep.input import SweepChoices, study_folder, study_heading
 from rpscli.commands.sweep.results import collect, first_error
-from rpscli.errors import LimitExceeded, RpsError
+from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files.csv_text import csv_text
@@ -113,7 +113,11 @@ def _conclude(
         folder.add("confirmation.csv", csv_text(columns))
     for name, content in figure_files(figures(answer, given.study.title), given.look).items():
         folder.add(name, content)
-    error = first_error(found._replace(verdicts=[]), len(results.table)) or _limits(answer)
+    error = (
+        first_error(found._replace(verdicts=[]), len(results.table))
+        or _limits(answer)
+        or _unconfirmed(confirmations)
+    )
     results.store.require()
     write(folder, rounds.terminal)
     notes = [*rounds.notes(answer, confirmations), *found.notes]
@@ -136,6 +140,12 @@ def _conclude(
     tables = answer_tables(document, answer, confirmations)
     rounds.terminal.result(concluded(document, error), tables)
     leave(error)
+
+
+def _unconfirmed(confirmations: list[Confirmation]) -> RpsError | None:
+    """Histories of the confirmation that failed."""
+    lines = [f"confirmation: {text}" for each in confirmations for text in each.messages]
+    return StudyIncomplete("\n".join(dict.fromkeys(lines))) if lines else None
 
 
 def _limits(answer: Answer) -> RpsError | None:

@@ -31,11 +31,12 @@ class Confirmation(NamedTuple):
     keys: tuple[str, ...]
     verdicts: list[StudyVerdict]
     records: int
+    messages: tuple[str, ...]
 
     @property
     def exceeded(self) -> bool:
-        """Whether a limit is."""
-        return any(verdict.exceeded for verdict in self.verdicts)
+        """Whether a limit is, or there is no history by which to judge."""
+        return not self.verdicts or any(verdict.exceeded for verdict in self.verdicts)
 
 
 @dataclass(eq=False)
@@ -89,7 +90,13 @@ class Rounds:
                 self.terminal.note(f"confirmation of the {name} design")
                 results, table = self._computed(given, store)
                 made = summary(table, results.fixed_base)
-                yield Confirmation(name, made.keys, judged(table, made), len(task.confirming))
+                yield Confirmation(
+                    name,
+                    made.keys,
+                    judged(table, made),
+                    len(task.confirming),
+                    tuple(table.messages.values()),
+                )
 
     def everything(
         self, answer: Answer, first: StudyInput, store: Store
