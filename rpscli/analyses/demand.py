@@ -21,7 +21,21 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """One history to run: a structure under a record, both of its components times `scale`."""
+    """One history to run: a structure under a record, both of its components times `scale`.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    record
+        Horizontal ground acceleration.
+    settings
+        Accuracy, tolerance, limits.
+    scale
+        Multiplies both components.
+    vertical
+        Vertical ground acceleration with the same time step, positive upwards.
+    """
 
     structure: PodiumStructure
     record: GroundMotion
@@ -72,7 +86,19 @@ def demand(
     *,
     vertical: GroundMotion | None = None,
 ) -> Demand:
-    """Largest demands of one history: those of `time_history`, without its samples."""
+    """Largest demands of one history: those of `time_history`, without its samples.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    record
+        Horizontal ground acceleration.
+    settings
+        Accuracy, tolerance, limits.
+    vertical
+        Vertical ground acceleration with the same time step, positive upwards.
+    """
     chosen = settings or TimeHistorySettings()
     return demands([Request(structure, record, chosen, vertical=vertical)])[0]
 

@@ -18,11 +18,20 @@ Array = NDArray[np.float64]
 class DeviceDemand:
     """Largest demands of one device, SI units.
 
-    Forces are those at the cap beam, of a tendon the tension of one; of rolling resistance the
-    horizontal force that does the same. `stroke` and `velocity` are those of the cap beam, of a
-    tendon its elongation and the rate of that. Forces and velocities are looked at where steps end
-    and where the tilt turns, the strokes everywhere. `energy` is dissipated, by all tendons
-    together. `remaining_prestress` is that of a tendon at the end, upright; None of others.
+    Parameters
+    ----------
+    kind
+        Name of its kind.
+    force
+        At the cap beam [N]: of a tendon the tension of one, of rolling resistance the horizontal
+        force that does the same.
+    stroke, velocity
+        |u_b| [m] and its rate [m/s]; of a tendon its elongation and the rate of that. Forces and
+        velocities are looked at where steps end and where the tilt turns, the strokes everywhere.
+    energy
+        Dissipated, by all tendons together [J].
+    remaining_prestress
+        Of a tendon at the end, upright [N]; None of others.
     """
 
     kind: str
@@ -34,7 +43,15 @@ class DeviceDemand:
 
 
 def device_demands(structure: PodiumStructure, history: History) -> tuple[DeviceDemand, ...]:
-    """Demands of each device, in the order of the structure's."""
+    """Demands of each device, in the order of the structure's.
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    history
+        What its history left behind.
+    """
     rotation = np.array([history.max_rotation])
     _, beam, _ = structure.path(rotation)
     elongation = structure.bearing.tendon_elongation(rotation)
@@ -63,7 +80,15 @@ def largest_force(
     history: History,
     *kinds: type[Device],
 ) -> float | None:
-    """Largest force of any device of these kinds [N]; None if there is none."""
+    """Largest force of any device of these kinds [N]; None if there is none.
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    history
+        What its history left behind.
+    """
     forces = [
         float(history.device_force[i])
         for i, device in enumerate(structure.devices)
@@ -74,11 +99,17 @@ def largest_force(
 
 @dataclass(frozen=True, eq=False)
 class DeviceTrace:
-    """What each device does at the samples, SI units: arrays (samples, devices).
+    """What each device does at the samples: arrays (samples, devices).
 
-    `force` is that on the cap beam, positive to the right, and goes with `displacement`, which is
-    u_b; of a tendon they are tension and elongation of one. `energy` was dissipated so far, and
-    `stored` is over what was stored at rest.
+    Parameters
+    ----------
+    force, displacement
+        Force on the cap beam, positive to the right [N], and u_b [m]; of a tendon tension and
+        elongation of one.
+    energy
+        Dissipated so far [J].
+    stored
+        Energy over what was stored at rest [J].
     """
 
     force: Array
@@ -88,7 +119,15 @@ class DeviceTrace:
 
 
 def device_trace(samples: Array, devices: int) -> DeviceTrace:
-    """From (samples, 4, slots) as the kernel leaves them."""
+    """From (samples, 4, slots) as the kernel leaves them.
+
+    Parameters
+    ----------
+    samples
+        (samples, 4, slots), see `physics.run.Output`.
+    devices
+        How many of the slots are taken.
+    """
     force, displacement, energy, stored = np.moveaxis(samples[:, :, :devices], 1, 0)
     return DeviceTrace(force, displacement, energy, stored)
 

@@ -34,7 +34,7 @@ def failure_text(history: History) -> str | None:
     reason = REASONS.get(history.outcome)
     if reason is None:
         return None
-    phase = PHASE_NAMES[history.motion]
+    phase = PHASE_NAMES[history.phase]
     return (
         f"at t = {history.time:.6g} s, {phase}, theta = {history.rotation + 0.0:.6g} rad: {reason}"
     )

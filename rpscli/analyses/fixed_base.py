@@ -42,6 +42,15 @@ def fixed_base_response(
 ) -> FixedBaseResponse:
     """Run the building of a structure on a fixed base for a number of sampling intervals.
 
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    record
+        Horizontal ground acceleration.
+    intervals
+        How many sampling intervals are followed; zero acceleration after the record.
+
     Raises
     ------
     ValueError

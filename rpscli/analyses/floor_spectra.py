@@ -27,6 +27,7 @@ class FloorSpectra(Shown):
     Attributes
     ----------
     periods : array, shape (p,) [s]
+        Natural periods.
     damping : float
         Share of critical damping.
     pseudo_acceleration : array, shape (n, p) [m/s2]
@@ -51,6 +52,7 @@ def isolated_floor_spectra(
     result : TimeHistoryResult
         With a superstructure.
     periods : array, shape (p,) [s]
+        Natural periods.
     damping : float
         Share of critical damping.
 
@@ -67,7 +69,17 @@ def isolated_floor_spectra(
 def fixed_base_floor_spectra(
     result: TimeHistoryResult, periods: Array = PERIODS, damping: float = DAMPING
 ) -> FloorSpectra | None:
-    """Spectra of the same floors on a fixed base; None where that was not computed."""
+    """Spectra of the same floors on a fixed base; None where that was not computed.
+
+    Parameters
+    ----------
+    result
+        With a superstructure.
+    periods
+        (p,) natural periods [s].
+    damping
+        Share of critical damping.
+    """
     fixed = result.fixed_base
     if fixed is None:
         return None
@@ -84,6 +96,7 @@ def floor_spectra(accelerations: Array, dt: float, periods: Array, damping: floa
     dt : float [s]
         Sampling interval.
     periods : array, shape (p,) [s]
+        Natural periods.
     damping : float
         Share of critical damping.
     """

@@ -21,7 +21,15 @@ from rpscli.shown import Shown, with_unit
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Demand(Shown):
-    """Largest demands of a history; SI units."""
+    """Largest demands of a history; SI units.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    history
+        What its history left behind.
+    """
 
     structure: PodiumStructure
     history: History
@@ -44,7 +52,7 @@ class Demand(Shown):
     @property
     def stays_tilted(self) -> bool:
         """Whether friction holds the storey tilted at the end."""
-        return self.history.motion == state.STUCK
+        return self.history.phase == state.STUCK
 
     @property
     def max_rotation(self) -> float:

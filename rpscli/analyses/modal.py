@@ -94,7 +94,17 @@ class UpliftedModes(Shown):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ModalResult(Shown):
-    """Modes of the structure in each state. Flat ends never roll: `rolling` is None then."""
+    """Modes of the structure in each state. Flat ends never roll: `rolling` is None then.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    fixed_base
+        None without a building.
+    rolling, rocking
+        After uplift, on the arcs and on the edges of the columns.
+    """
 
     structure: PodiumStructure
     fixed_base: FixedBaseModes | None
@@ -159,6 +169,8 @@ def linearised_matrices(
 
     Parameters
     ----------
+    structure
+        Podium, bearings and building.
     kappa
         Dimensionless stiffness of the storey: 2 rho - 1 rolling, -1 rocking.
     angle

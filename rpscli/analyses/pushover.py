@@ -44,6 +44,7 @@ class CapacityCurve(Shown):
     """Whole structure under floor forces lambda p: elastic to the uplift, rigid storey above."""
 
     pattern: str
+    """Name of the pattern, or ``given``."""
     forces: Array
     """(n,) p, scaled to sum 1."""
     roof_displacement: Array
@@ -58,7 +59,23 @@ class CapacityCurve(Shown):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PushoverResult(Shown):
-    """Static characteristics of the storey and capacity curves of the structure."""
+    """Static characteristics of the storey and capacity curves of the structure.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    uplift_force
+        F at 0+ [N].
+    critical_rotation, critical_displacement
+        theta_cr [rad], and u_b there [m].
+    initial_stiffness
+        dF/du_b at 0+ [N/m].
+    curve
+        Restoring force of the storey.
+    capacity
+        One for each load pattern; none without a building.
+    """
 
     structure: PodiumStructure
     uplift_force: float
@@ -155,7 +172,15 @@ def _capacity(
 
 
 def load_pattern(building: Superstructure, pattern: PatternName | Sequence[float]) -> Array:
-    """Floor forces (n,) of sum 1, from the bottom."""
+    """Floor forces (n,) of sum 1, from the bottom.
+
+    Parameters
+    ----------
+    building
+        n storeys on the cap beam.
+    pattern
+        Name of a pattern, or (n,) floor forces in any unit.
+    """
     if isinstance(pattern, str):
         n = building.storeys
         heights = building.storey_heights

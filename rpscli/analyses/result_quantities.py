@@ -64,7 +64,15 @@ class ResultQuantity(NamedTuple):
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:
-    """Values of quantities by name: numbers, lists of them, and None for what is not finite."""
+    """Values of quantities by name: numbers, lists of them, and None for what is not finite.
+
+    Parameters
+    ----------
+    result
+        Has the attributes that the quantities name.
+    quantities
+        Of the table of results.
+    """
     return {quantity.name: plain(getattr(result, quantity.name)) for quantity in quantities}
 
 

@@ -28,9 +28,19 @@ RESTING = (state.FULL_CONTACT, state.STUCK)
 class Energy:
     """Where the energy went [J]: input = damped + devices + impact + stored + residual.
 
-    `impact` is the net loss at impacts and re-contacts; `created` the part of it that was gained
-    where the rigid impact law sets floors in motion (Theory, section 4). `residual` is the error
-    of the integration.
+    Parameters
+    ----------
+    input
+        By the ground.
+    damped, devices
+        Dissipated in the building and in devices.
+    impact, created
+        Net loss at impacts and re-contacts; and the part of it that was gained where the rigid
+        impact law sets floors in motion (Theory, section 4).
+    stored
+        At the end.
+    residual
+        Error of the integration.
     """
 
     input: float
@@ -44,7 +54,15 @@ class Energy:
 
 @dataclass(frozen=True)
 class ColumnForces:
-    """Envelope of the forces at one end of a column [N]; compression is positive."""
+    """Envelope of the forces at one end of a column [N]; compression is positive.
+
+    Parameters
+    ----------
+    shear
+        Largest |F|.
+    largest_normal, least_normal
+        Of N; the least is negative where the contact would pull.
+    """
 
     shear: float
     largest_normal: float
@@ -53,7 +71,21 @@ class ColumnForces:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TimeHistoryResult(Demand):
-    """Response of a structure to a record: its largest demands, samples and events; SI units."""
+    """Response of a structure to a record: its largest demands, samples and events; SI units.
+
+    Parameters
+    ----------
+    record
+        Horizontal ground acceleration.
+    settings
+        Accuracy, tolerance, limits.
+    trace
+        Histories at samples.
+    events
+        In the order of time.
+    fixed_base
+        The same building on a fixed base; None where that was not asked for.
+    """
 
     record: GroundMotion
     settings: TimeHistorySettings
@@ -178,7 +210,7 @@ class TimeHistoryResult(Demand):
                 f"the rigid impact law created {share:.1%} of the energy supplied at impacts;"
                 " compare with `impact: {law: flexible}`"
             )
-        if self.outcome == "survived" and self.history.motion not in RESTING:
+        if self.outcome == "survived" and self.history.phase not in RESTING:
             if self.settings.free_vibration is not None:
                 notes.append(
                     "the storey still moves at the end; a longer `analysis.free_vibration`"

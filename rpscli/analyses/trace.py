@@ -55,7 +55,21 @@ EVENT_NAMES: dict[int, EventKind] = {
 
 @dataclass(frozen=True)
 class Event:
-    """One event of a history. `energy_lost` [J] is negative where an impact created energy."""
+    """One event of a history. `energy_lost` [J] is negative where an impact created energy.
+
+    Parameters
+    ----------
+    time
+        Since the start of the record [s].
+    kind
+        What happened.
+    rotation
+        theta [rad].
+    rotation_rate_before, rotation_rate_after
+        theta' [rad/s].
+    energy_lost
+        [J], negative where an impact created energy.
+    """
 
     time: float
     kind: EventKind
@@ -78,12 +92,32 @@ class Trace(Shown):
     """Histories at the record's samples and on through the free vibration, SI units.
 
     Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements
-    and velocities are relative to the ground; `floor_accelerations` are absolute. `phase` is 0 in
-    full contact, 1 rolling, 2 rocking, 3 held by friction. `driving_moment` is what the ground and
-    the building do about the contact points, 2 R C (V - (N m_c/2 + m_b) a_g); in slow motion
-    without devices it equals the restoring moment 2 R W s B(x) [N m]. Forces at the columns' ends
-    [N] are those of all columns together: F to the right on what is above, N upwards on it. They
-    and energies [J] are those of Theory, section 8.
+    and velocities are relative to the ground.
+
+    Parameters
+    ----------
+    time, ground_acceleration
+        Since the start of the record [s]; a_g [m/s2].
+    rotation, rotation_rate
+        theta [rad], theta' [rad/s].
+    phase
+        0 in full contact, 1 rolling, 2 rocking, 3 held by friction.
+    cap_beam_displacement, lift
+        u_b and v_b [m].
+    floor_displacements, floor_velocities, floor_accelerations
+        [m], [m/s], and absolute [m/s2].
+    drifts, storey_shears
+        d_i [m], k_i d_i [N].
+    driving_moment
+        What the ground and the building do about the contact points, 2 R C (V - (N m_c/2 + m_b)
+        a_g) [N m]; in slow motion without devices it equals the restoring moment 2 R W s B(x).
+    shear_top, shear_bottom, normal_top, normal_bottom
+        Forces at the ends of all columns together [N]: F to the right on what is above, N upwards
+        on it (Theory, section 8).
+    energy_input, energy_damped, energy_impact, energy_stored
+        [J] (Theory, section 8).
+    devices
+        What each device does.
     """
 
     time: Array
@@ -111,7 +145,17 @@ class Trace(Shown):
 
 
 def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trace:
-    """Histories from what the kernel stored at samples every `dt` [s]."""
+    """Histories from what the kernel stored at samples every `dt` [s].
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    dt
+        Sampling interval [s].
+    run
+        What the kernel stored at samples.
+    """
     # Imported here: numba is slow, and the command line imports this module's classes.
     from rpscli.physics.equation_of_motion import contact_forces  # noqa: PLC0415
 
@@ -178,7 +222,15 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
 
 
 def prolonged(acceleration: Array, samples: int) -> Array:
-    """The acceleration at so many samples [m/s2]: zero after the record's end."""
+    """The acceleration at so many samples [m/s2]: zero after the record's end.
+
+    Parameters
+    ----------
+    acceleration
+        (npts,) [m/s2].
+    samples
+        How many are wanted, more than npts or fewer.
+    """
     length = min(samples, len(acceleration))
     return np.pad(acceleration[:length], (0, samples - length))
 
@@ -208,7 +260,17 @@ def base_accelerations(
 
 
 def tilting_inertia(structure: PodiumStructure, B: Array, C: Array, theta: Array) -> Array:
-    """N m_c R^2 A(x) along a path [kg m2]."""
+    """N m_c R^2 A(x) along a path [kg m2].
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    B, C
+        (samples,) contact arm and contact height over R.
+    theta
+        (samples,) [rad]: gives the result its shape.
+    """
     S = B**2 + C**2
     beam = 4.0 * structure.gamma
     A = structure.bearing.inertia_ratio - 1.0 + (1.0 + beam) * S + beam * structure.eta * B**2

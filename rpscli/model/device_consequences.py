@@ -30,7 +30,19 @@ PARTS = (0.25, 0.5, 0.75)
 
 
 class Consequence(NamedTuple):
-    """A number that follows from one device: its name, words, SI unit; None if never reached."""
+    """A number that follows from one device: its name, words, SI unit; None if never reached.
+
+    Parameters
+    ----------
+    name
+        Of the number, in JSON.
+    label
+        The words of a table.
+    unit
+        SI; ``-`` for plain numbers.
+    value
+        None if it is never reached.
+    """
 
     name: str
     label: str
@@ -39,7 +51,21 @@ class Consequence(NamedTuple):
 
 
 class Return(NamedTuple):
-    """Whether the storey comes back from rest at a rotation, and against how much friction."""
+    """Whether the storey comes back from rest at a rotation, and against how much friction.
+
+    Parameters
+    ----------
+    rotation
+        From which it starts at rest [rad].
+    displacement
+        u_b there [m].
+    largest_friction
+        What friction may hold at most for it to come back, a force at the cap beam [N].
+    friction
+        What friction holds at most on the way [N].
+    recentres
+        Whether it comes back to full contact.
+    """
 
     rotation: float
     displacement: float
@@ -79,7 +105,15 @@ def returns(structure: PodiumStructure) -> list[Return]:
 
 
 def consequences(structure: PodiumStructure, device: Device) -> Iterator[Consequence]:
-    """What follows from one device of a structure."""
+    """What follows from one device of a structure.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    device
+        One of its devices.
+    """
     lifting = structure.uplift_force
     if isinstance(device, FrictionDamper):
         yield Consequence("uplift_share", "over W tan(alpha)", "-", device.force / lifting)

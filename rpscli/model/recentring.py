@@ -45,14 +45,32 @@ def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float
 
 
 def yielded(structure: PodiumStructure, tendon: Tendon, farthest: float) -> float:
-    """What a tendon keeps of its elongation after it was drawn to a rotation [m]."""
+    """What a tendon keeps of its elongation after it was drawn to a rotation [m].
+
+    Parameters
+    ----------
+    structure
+        Podium with its bearings.
+    tendon
+        One of its devices.
+    farthest
+        Rotation to which it was drawn [rad].
+    """
     elastic = (tendon.yield_force - tendon.prestress) / tendon.stiffness
     drawn = structure.bearing.tendon_elongation(np.array([farthest]))
     return max(0.0, float(drawn[0]) - elastic)
 
 
 def friction_force(structure: PodiumStructure, rotation: Array) -> Array:
-    """Horizontal force at the cap beam that friction dampers and rolling resistance hold [N]."""
+    """Horizontal force at the cap beam that friction dampers and rolling resistance hold [N].
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    rotation
+        Any shape, |theta| [rad].
+    """
     arm = structure.lever_arm(np.asarray(rotation, dtype=float))
     held = np.zeros_like(arm)
     for device in structure.devices:
@@ -79,6 +97,14 @@ def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> 
 
 
 def recentres(structure: PodiumStructure, rotation: float) -> bool:
-    """Whether the structure comes back to full contact from rest at a rotation [rad], slowly."""
+    """Whether the structure comes back to full contact from rest at a rotation [rad], slowly.
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    rotation
+        |theta| from which it starts [rad].
+    """
     x = np.linspace(rotation / POINTS, rotation, POINTS)
     return bool(np.all(restoring_force(structure, x, rotation) > friction_force(structure, x)))

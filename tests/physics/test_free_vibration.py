@@ -52,7 +52,7 @@ def test_auto_finds_the_largest_demands(seed: int) -> None:
     if short.outcome != "survived":
         return
     assert short.duration < short.record.duration + 40.0
-    assert short.history.motion == FULL_CONTACT
+    assert short.history.phase == FULL_CONTACT
     assert short.max_rotation == long.max_rotation
     assert short.storey_shears.tolist() == long.storey_shears.tolist()
     assert short.floor_accelerations.tolist() == long.floor_accelerations.tolist()

@@ -33,19 +33,40 @@ FIRST_LOG = 4096
 class History:
     """What one history leaves behind besides samples and log, SI units.
 
-    `outcome`, `motion` and the entries of `counts` are coded in `physics.state`. `friction` is the
-    largest |F|/N and `least_normal` the least normal force over the weight on it, each at the upper
-    and at the lower end of the columns.
-    `motion`, `rotation` and `time` are those of the end, after `intervals` of the record's steps.
-    Times that never came are negative. `energies` are input, damped, lost at impacts, and stored at
-    the end; the energy created at impacts counts negatively in what was lost. Input and damped are
-    known of sampled histories only. Arrays of devices have an entry for each slot: largest force
-    [N], largest rate [m/s] and dissipated energy [J], what is stored at the end over the start [J],
-    and the plastic elongation of a tendon [m].
+    Parameters
+    ----------
+    outcome, phase
+        At the end, coded in `physics.state`.
+    rotation, time
+        theta [rad] and time [s] at the end.
+    intervals
+        Sampling intervals that were followed.
+    max_rotation, max_rotation_time
+        max |theta| [rad], and when [s].
+    critical_time
+        When theta_cr was first passed [s]; negative if never.
+    storey_shears, floor_accelerations
+        (n,) largest k_i d_i [N] and absolute accelerations [m/s2].
+    friction, least_normal
+        (2,) largest |F|/N, and least normal force over the weight on it, at the upper and at the
+        lower end of the columns.
+    energies
+        (4,) input, damped, lost at impacts, stored at the end [J]; energy created at impacts counts
+        negatively in what was lost. Input and damped are known of sampled histories only.
+    energy_created, creating_impacts
+        Energy created at impacts [J], and how many did.
+    counts
+        Of events, by the codes of `physics.state`.
+    steps
+        Taylor steps.
+    device_force, device_velocity, device_energy
+        (slots,) largest force [N], largest rate [m/s], dissipated energy [J].
+    device_stored, permanent
+        (slots,) what is stored at the end over the start [J], plastic elongation of a tendon [m].
     """
 
     outcome: int
-    motion: int
+    phase: int
     rotation: float
     time: float
     intervals: int
@@ -69,10 +90,18 @@ class History:
 
 
 def history_of(result: Record, storeys: int) -> History:
-    """The history of one `state.RESULT`."""
+    """The history of one `state.RESULT`.
+
+    Parameters
+    ----------
+    result
+        One `state.RESULT`.
+    storeys
+        n of its structure.
+    """
     return History(
         outcome=int(result.outcome),
-        motion=int(result.phase),
+        phase=int(result.phase),
         rotation=float(result.rotation),
         time=float(result.time),
         intervals=int(result.intervals),
@@ -105,7 +134,15 @@ def history_of(result: Record, storeys: int) -> History:
 
 @dataclass(frozen=True)
 class Request:
-    """A history to run: numbers of its structure and its records among all, and a factor."""
+    """A history to run: numbers of its structure and its records among all, and a factor.
+
+    Parameters
+    ----------
+    system, record, vertical
+        Numbers of its structure and of the two components among all; no vertical one if None.
+    scale
+        Multiplies both components.
+    """
 
     system: int
     record: int
@@ -161,10 +198,20 @@ def run_of(
 class SampledHistory:
     """A history with its samples and events, records of `physics.state`.
 
-    `ground` and `vertical` are the horizontal and the vertical acceleration, as long as the longer
-    component [m/s2]; `samples`
-    (intervals + 1,), `floors` (intervals + 1, 2, n) displacements and velocities [m, m/s] relative
-    to the ground, `log` (events,), `devices` (intervals + 1, 4, slots), see `physics.run.Output`.
+    Parameters
+    ----------
+    history
+        What is left behind at the end.
+    ground, vertical
+        Horizontal and vertical acceleration, as long as the longer component [m/s2].
+    samples
+        (intervals + 1,).
+    floors
+        (intervals + 1, 2, n) displacements [m] and velocities [m/s] relative to the ground.
+    log
+        (events,).
+    devices
+        (intervals + 1, 4, slots), see `physics.run.Output`.
     """
 
     history: History
@@ -177,7 +224,15 @@ class SampledHistory:
 
 
 def longest_history(settings: TimeHistorySettings, record: GroundMotion) -> int:
-    """Samples of a history that never comes to rest."""
+    """Samples of a history that never comes to rest.
+
+    Parameters
+    ----------
+    settings
+        Of these the free vibration.
+    record
+        Horizontal ground acceleration.
+    """
     free = settings.free_vibration
     longest = LONGEST_FREE_VIBRATION if free is None else free
     return record.npts + math.ceil(longest / record.dt) + 1
@@ -187,6 +242,15 @@ def refuse_endless(
     structure: PodiumStructure, settings: TimeHistorySettings, record: GroundMotion
 ) -> None:
     """Refuse a history that may take more memory or time than anybody has.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    settings
+        Of these the accuracy and the free vibration.
+    record
+        Horizontal ground acceleration.
 
     Raises
     ------

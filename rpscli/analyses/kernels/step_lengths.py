@@ -96,7 +96,17 @@ def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, durati
 def most_seconds(
     structure: PodiumStructure, settings: TimeHistorySettings, duration: float
 ) -> float:
-    """About the computing time of that [s], for the parameters of `most_steps`."""
+    """About the computing time of that [s], for the parameters of `most_steps`.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    settings
+        Of these the accuracy.
+    duration
+        Of the record [s].
+    """
     each = STEP_SECONDS + MODE_SECONDS * structure.storeys
     return each * most_steps(structure, settings, duration)
 

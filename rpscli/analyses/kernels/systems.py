@@ -46,7 +46,15 @@ def building_system(building: Superstructure) -> Record:
 
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
-    """The rocking storey."""
+    """The rocking storey.
+
+    Parameters
+    ----------
+    record
+        A `state.SYSTEM`: written.
+    structure
+        Podium, bearings and building.
+    """
     b = structure.bearing
     record.n = structure.storeys
     record.R, record.alpha, record.beta = b.semi_diagonal, b.alpha, b.beta
@@ -67,7 +75,15 @@ LINEAR_SPEED = 1e-8
 
 
 def fill_devices(record: Record, structure: PodiumStructure) -> None:
-    """The devices, each with the constants of its law."""
+    """The devices, each with the constants of its law.
+
+    Parameters
+    ----------
+    record
+        A `state.SYSTEM`: written.
+    structure
+        Podium with its devices.
+    """
     record.columns, record.devices = structure.columns, len(structure.devices)
     speed = math.sqrt(structure.gravity * structure.bearing.semi_diagonal)
     record.linear_speed = LINEAR_SPEED * speed
@@ -83,6 +99,15 @@ def fill_settings(
     record: Record, structure: PodiumStructure, settings: TimeHistorySettings
 ) -> None:
     """How the motion is followed.
+
+    Parameters
+    ----------
+    record
+        A `state.SYSTEM`: written.
+    structure
+        Podium, bearings and building.
+    settings
+        Accuracy, tolerance, limits.
 
     Raises
     ------
@@ -130,6 +155,13 @@ def fill_building(record: Record, building: Superstructure) -> None:
     The weights of `physics.uplifted.demands` are best where what a mode adds to a demand is in
     proportion to its weighted square; modal forces are as large as Gamma_r, if all modes shake
     alike.
+
+    Parameters
+    ----------
+    record
+        A `state.SYSTEM`: written.
+    building
+        n storeys on the cap beam.
     """
     n = record.n = building.storeys
     omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T

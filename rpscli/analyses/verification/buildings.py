@@ -42,7 +42,15 @@ def buildings() -> Iterator[Comparison]:
 
 
 def exact_displacements(building: Superstructure, record: GroundMotion) -> NDArray[np.float64]:
-    """(npts, n) floor displacements on a fixed base [m], by one matrix exponential a sample."""
+    """(npts, n) floor displacements on a fixed base [m], by one matrix exponential a sample.
+
+    Parameters
+    ----------
+    building
+        n storeys on the cap beam.
+    record
+        Horizontal ground acceleration.
+    """
     from scipy.linalg import expm  # noqa: PLC0415 -- slow to load
 
     n, dt = building.storeys, record.dt

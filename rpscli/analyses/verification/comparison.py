@@ -24,6 +24,13 @@ class Known:
 def printed(digits: str, units: float = 0.5) -> Known:
     """A printed number; the tolerance is half of its last digit, or so many of them.
 
+    Parameters
+    ----------
+    digits
+        As printed.
+    units
+        Tolerance in units of the last digit.
+
     >>> printed("0.2014")
     Known(value=0.2014, tolerance=5e-05)
     """
@@ -33,6 +40,13 @@ def printed(digits: str, units: float = 0.5) -> Known:
 
 def within(value: float, share: float) -> Known:
     """A number that holds up to a share of it.
+
+    Parameters
+    ----------
+    value
+        Of the number.
+    share
+        Tolerance over |value|.
 
     >>> within(-2.0, 0.01)
     Known(value=-2.0, tolerance=0.02)
@@ -46,6 +60,10 @@ class Comparison:
 
     Parameters
     ----------
+    expected, computed
+        In this unit.
+    tolerance
+        Largest difference that is still agreement, absolute.
     group
         What it belongs to, with the source of the expected value.
     quantity
@@ -68,5 +86,15 @@ class Comparison:
 
 
 def compare(group: str, quantity: str, unit: str, known: Known, computed: float) -> Comparison:
-    """The comparison of a known number with a computed one."""
+    """The comparison of a known number with a computed one.
+
+    Parameters
+    ----------
+    group, quantity, unit
+        See `Comparison`.
+    known
+        What should come out, with its tolerance.
+    computed
+        What did.
+    """
     return Comparison(group, quantity, unit, known.value, float(computed), known.tolerance)

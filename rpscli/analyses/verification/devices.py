@@ -48,7 +48,15 @@ def devices() -> Iterator[Comparison]:
 
 
 def energy_of_impact(structure: PodiumStructure, rotation: float) -> float:
-    """Kinetic energy of the first impact after a release [J]."""
+    """Kinetic energy of the first impact after a release [J].
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    rotation
+        At release [rad].
+    """
     settings = TimeHistorySettings(initial_rotation=rotation, free_vibration=3.0)
     still = GroundMotion(np.zeros(2), 0.01, "stillness", "made", "made")
     result = time_history(structure, still, settings)

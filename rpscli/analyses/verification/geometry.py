@@ -14,7 +14,17 @@ GROUP = "Geometry, R = 1.5 m, tan a' = 2 tan a (contact geometry, Theory, sectio
 
 
 class Geometry(NamedTuple):
-    """Printed digits of beta, theta_cr [rad], and of u_b and the lift v_b at theta_cr [m]."""
+    """Printed digits of beta, theta_cr [rad], and of u_b and the lift v_b at theta_cr [m].
+
+    Parameters
+    ----------
+    tan_alpha, rho
+        Slenderness, and radius of the arcs.
+    beta, critical_rotation
+        Printed digits [rad].
+    displacement, lift
+        Printed digits of u_b and v_b at theta_cr [m].
+    """
 
     tan_alpha: float
     rho: float

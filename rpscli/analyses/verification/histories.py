@@ -28,7 +28,21 @@ CONVERGED = 2e-7
 
 
 class Reference(NamedTuple):
-    """A history, and what the second integrator finds: max |theta| [rad], V_b/V_st, impacts."""
+    """A history, and what the second integrator finds: max |theta| [rad], V_b/V_st, impacts.
+
+    Parameters
+    ----------
+    record
+        Name of a shipped motion.
+    storeys, tan_alpha, rho
+        Of the paper's structure.
+    max_rotation
+        max |theta| [rad].
+    base_shear_ratio
+        V_b/V_st.
+    impacts
+        How many.
+    """
 
     record: str
     storeys: int

@@ -31,7 +31,19 @@ ROUNDED_GRAVITY = 9.81
 def paper_podium(
     storeys: int, tan_alpha: float, rho: float, semi_diagonal: float = 1.5
 ) -> PodiumStructure:
-    """The paper's: gamma = 10, eta = n, T1 = n/10 s, 5 % in modes 1 and 2 (Theory, section 7)."""
+    """The paper's: gamma = 10, eta = n, T1 = n/10 s, 5 % in modes 1 and 2 (Theory, section 7).
+
+    Parameters
+    ----------
+    storeys
+        n.
+    tan_alpha
+        Slenderness.
+    rho
+        Radius of the arcs; 0 for flat ends.
+    semi_diagonal
+        R [m].
+    """
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, storeys / 10.0, "sine")
     building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
@@ -45,7 +57,17 @@ def block(
     restitution: float | None = None,
     gravity: float = STANDARD_GRAVITY,
 ) -> PodiumStructure:
-    """A rectangular block that stands alone; Housner's restitution unless it is given."""
+    """A rectangular block that stands alone; Housner's restitution unless it is given.
+
+    Parameters
+    ----------
+    half_width, half_height
+        [m].
+    restitution
+        e; None for Housner's.
+    gravity
+        g [m/s2].
+    """
     law = ImpactLaw() if restitution is None else ImpactLaw("value", restitution)
     slope = half_width / half_height
     bearing = Bearing(math.hypot(half_width, half_height), slope, slope, FLAT)
@@ -55,11 +77,29 @@ def block(
 def slender_block(
     size: float, restitution: float | None = None, gravity: float = STANDARD_GRAVITY
 ) -> PodiumStructure:
-    """A block of semi-diagonal `size` so slender that it obeys the linear theory."""
+    """A block of semi-diagonal `size` so slender that it obeys the linear theory.
+
+    Parameters
+    ----------
+    size
+        Semi-diagonal R [m].
+    restitution
+        e; None for Housner's.
+    gravity
+        g [m/s2].
+    """
     alpha = math.atan(SLENDER)
     return block(size * math.sin(alpha), size * math.cos(alpha), restitution, gravity)
 
 
 def motion(acceleration: ArrayLike, dt: float) -> GroundMotion:
-    """A ground motion from its samples [m/s2]."""
+    """A ground motion from its samples [m/s2].
+
+    Parameters
+    ----------
+    acceleration
+        (npts,) [m/s2].
+    dt
+        Sampling interval [s].
+    """
     return GroundMotion(np.asarray(acceleration, dtype=float), dt, "made", "made", "made")

@@ -1,0 +1,100 @@
+"""Every argument of public functions, and every field of public classes, says what it is.
+
+In physics some arguments are handed on everywhere; the package explains those once for all.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import rpscli
+
+ROOT = Path(rpscli.__file__).parent
+HEAD = re.compile(r"(\w+(?:, \w+)*)(?: : .+)?")
+"""Names of a section, and beside them perhaps a type."""
+
+
+def described(docstring: str | None) -> set[str]:
+    """The names that Parameters or Attributes describe, with a line about them below."""
+    lines = (docstring or "").splitlines()
+    names, inside = set[str](), False
+    for line, below in zip(lines, [*lines[1:], ""], strict=True):
+        if below.startswith("---"):
+            inside = line in {"Parameters", "Attributes"}
+        elif inside and (head := HEAD.fullmatch(line)) and below.startswith("    "):
+            names.update(head[1].split(", "))
+    return names
+
+
+def public(body: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.ClassDef]:
+    for node in body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            yield node
+            if isinstance(node, ast.ClassDef):
+                yield from public(node.body)
+
+
+def arguments(function: ast.FunctionDef) -> list[str]:
+    given = function.args
+    names = [one.arg for one in given.posonlyargs + given.args + given.kwonlyargs]
+    return [name for name in names if name not in {"self", "cls"}]
+
+
+def fields(body: list[ast.stmt]) -> tuple[list[str], set[str]]:
+    """Names of the fields, and those with a docstring of their own."""
+    names, explained = list[str](), set[str]()
+    for node, below in zip(body, [*body[1:], ast.Pass()], strict=True):
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            names.append(node.target.id)
+            if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
+                explained.add(node.target.id)
+    return names, explained
+
+
+def unexplained(node: ast.FunctionDef | ast.ClassDef, standing: set[str]) -> set[str]:
+    known = described(ast.get_docstring(node))
+    if isinstance(node, ast.FunctionDef):
+        names, known = arguments(node), known | standing
+    else:
+        names, explained = fields(node.body)
+        known |= explained
+    return set(names) - known if len(names) > 1 else set()
+
+
+def parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(
+    ("source", "missing"),
+    [
+        ("def f(self, a, *, b):\n 'F.'", {"a", "b"}),
+        ("def f(a):\n 'F.'", set()),
+        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a\n     A [m].\n '''", {"b"}),
+        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a, b : int\n     Two.\n '''", set()),
+        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a\n b\n     B.\n '''", {"a"}),
+        ("def f(a, b):\n '''F.\n\n Returns\n -------\n a\n     A.\n b\n     B.\n '''", {"a", "b"}),
+        ("class C:\n 'C.'\n a: int\n 'One.'\n b: int", {"b"}),
+        ("class C:\n 'C.'\n a: int", set()),
+    ],
+)
+def test_what_is_missing_is_found(source: str, missing: set[str]) -> None:
+    (node,) = public(ast.parse(source).body)
+    assert unexplained(node, set()) == missing
+
+
+@pytest.mark.parametrize("room", ["model", "analyses"])
+def test_arguments_and_fields_are_explained(room: str) -> None:
+    standing = described(ast.get_docstring(parsed(ROOT / room / "__init__.py")))
+    missing = {
+        f"{file.relative_to(ROOT)}: {node.name}": names
+        for file in sorted((ROOT / room).rglob("*.py"))
+        for node in public(parsed(file).body)
+        if (names := unexplained(node, standing))
+    }
+    assert not missing
