@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from paper_structures import needs_compiled_kernels
 
 from hunt.trials import hunt, shares
-from rpscli.analyses.kernels.step_lengths import contact_rate, most_steps, uplifted_rate
+from rpscli.analyses.kernels.step_lengths import contact_rate, most_seconds, uplifted_rate
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -32,6 +32,9 @@ pytestmark = pytest.mark.posix  # trials are timed by its signals
 OUTCOMES = {"at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"}
 RESIDUAL = 1e-6
 """Of the energy: what the step is made for."""
+
+MOST_SECONDS = 5.0
+"""Of a history, as it is estimated; longer ones are not followed."""
 
 MOST_STEPS = 300_000
 """Of a history, some seconds; longer ones are followed for a shorter time after the record."""
@@ -123,11 +126,14 @@ def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> T
 
 
 def residual(result: TimeHistoryResult) -> float:
-    """The error of the audit over the largest of its entries."""
-    energy = result.energy
-    started = float(result.trace.energy_stored[0])
-    largest = max(abs(energy.input), energy.damped, abs(energy.impact), energy.stored) + started
-    return abs(energy.residual) / largest if largest > 0.0 else 0.0
+    """The error of the audit over the largest of its entries at any sample.
+
+    At the end the ground may have taken back most of what it gave.
+    """
+    trace = result.trace
+    entries = (trace.energy_input, trace.energy_damped, trace.energy_impact, trace.energy_stored)
+    largest = max(float(np.max(np.abs(entry))) for entry in entries)
+    return abs(result.energy.residual) / largest if largest > 0.0 else 0.0
 
 
 def nothing_pushed(record: GroundMotion, result: TimeHistoryResult) -> bool:
@@ -143,7 +149,7 @@ def judged_history(random: Random) -> str:
         return "refused"
     record, vertical = motions(random)
     chosen = settings(random, system, record)
-    if most_steps(system, chosen, record.duration) > 10 * MOST_STEPS:
+    if most_seconds(system, chosen, record.duration) > MOST_SECONDS:
         return "not followed: stiff floors on light columns take millions of steps"
     here = time_history(system, record, chosen, vertical=vertical, with_fixed_base=False)
     assert here.outcome in OUTCOMES
@@ -168,6 +174,13 @@ def judged_history(random: Random) -> str:
     assert np.array_equal(here.trace.floor_displacements, -there.trace.floor_displacements)
     assert here.history.energies.tolist() == there.history.energies.tolist()
     return here.outcome
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("seed", ["20270-histories 0-60", "20271-histories 2-608"])
+def test_histories_that_lost_too_much(seed: str) -> None:
+    # at coarser steps, and where the last term of a series happened to be small
+    assert judged_history(Random(seed)) in OUTCOMES  # noqa: S311 -- no secret
 
 
 @needs_compiled_kernels

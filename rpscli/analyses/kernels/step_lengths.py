@@ -21,7 +21,7 @@ UPLIFTED_DECAY = 1.0
 """Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
 are unstable beyond about 4. Only strongly overdamped modes come near."""
 
-LAST_TERM = 3e-7
+LAST_TERM = 5e-7
 """Largest last term of the series of a step, over its first three, at accuracy 1; what a series
 omits is smaller still. Steps made for the fastest of several modes hardly ever come near. Where the
 tilt itself changes faster, over one storey, in large rotations of short columns or past theta_cr

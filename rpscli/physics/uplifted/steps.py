@@ -58,11 +58,16 @@ def shorten_step(s: Record, l: int) -> None:
         s.step[l], s.steps_left[l] = most / change, 2.0
 
 
+ONE_BEFORE = 0.06
+"""Of the term before the last: that of a step at its limit, in series of sines and exponentials.
+The last term alone may pass through zero and hide what follows it."""
+
+
 @compiled
 def check_steps(s: Record) -> None:
     """Look at the steps just taken.
 
-    `too_long`: the last term of the tilt's series says that the step is too long for it.
+    `too_long`: the last terms of the tilt's series say that the step is too long for it.
     `accepted`: it is not, and the tilt surely stays in the range of its phase, and is finite.
     `peak_inside`: an accepted step that may hold the largest tilt so far, or passes theta_cr for
     the first time.
@@ -74,7 +79,7 @@ def check_steps(s: Record) -> None:
         cleared = (s.no_event[l] > 0.0) & (abs(path[5]) < math.inf)
         terms = s.dtheta_terms
         first = abs(terms[0, l]) + abs(terms[1, l]) + abs(terms[2, l])
-        last = abs(terms[ORDER, l])
+        last = max(abs(terms[ORDER, l]), ONE_BEFORE * abs(terms[ORDER - 1, l]))
         too_long = (last > s.last_term[l] * first) & (s.steps_left[l] < MOST_STEPS)
         accepted = (cleared | inside) & (not too_long)
         turning = (s.theta_dot[l] > 0.0) & (s.next_theta_dot[l] < 0.0)

@@ -16,7 +16,7 @@ from rpscli.case.schema.fields import Quantity
 from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
-from rpscli.errors import CaseError
+from rpscli.errors import CaseError, RecordError
 from rpscli.records.query import Query, parse_query
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
@@ -183,7 +183,7 @@ def records_without_period(design: Design, options: SpectrumOptions) -> Iterator
         try:
             if request is not None:
                 pulse_of(request.source, options)
-        except CaseError as error:
+        except (CaseError, RecordError) as error:
             yield str(error)
             return
 
