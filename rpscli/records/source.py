@@ -206,7 +206,8 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
         pattern = str(Path(place).expanduser())
         # Path.glob refuses absolute patterns.
         matches = sorted(glob.glob(pattern, root_dir=start, recursive=True))  # noqa: PTH207
-        found = [match for match in matches if is_record(start / match)]
+        files = [match for match in matches if (start / match).is_file()]  # no pipe, no device
+        found = [match for match in files if is_record(start / match)]
     else:
         _require_file(path, source)
         return [source]

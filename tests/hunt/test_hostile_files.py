@@ -173,7 +173,7 @@ def test_folders_of_records(long: bool) -> None:
 
 
 PATHS = [
-    "x" * 5000, "a\0b", "~nouser/x", "", " ", "/dev/zero", "/dev/null", "/", ".", "..",
+    "x" * 5000, "~nouser/x", "", " ", "/dev/zero", "/dev/null", "/", ".", "..",
     "case.yaml/x", "-x", "fifo", "C:/x", "nowhere/x.yaml", "*", "[", "?", "\udce4", "建物.yaml", "http://x/y",
     "loop",
 ]  # fmt: skip

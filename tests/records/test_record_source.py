@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -96,6 +97,13 @@ def test_globs(folder: Path) -> None:
     assert expand_sources(["**/*.txt"], folder=folder)[-1] == "inner/d.txt"
     assert expand_sources([f"{folder}/inner/*"]) == [str(folder / "inner" / "d.txt")]
     assert expand_sources(["*"], folder=folder) == ["a.txt", "b.txt", "c.txt"]
+
+
+@pytest.mark.posix
+def test_globs_open_no_pipe(folder: Path) -> None:
+    before = expand_sources(["*.txt"], folder=folder)
+    os.mkfifo(folder / "pipe.txt")
+    assert expand_sources(["*.txt"], folder=folder) == before
 
 
 def test_order_is_kept_and_nothing_comes_twice(folder: Path) -> None:
