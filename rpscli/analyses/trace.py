@@ -156,45 +156,32 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
     run
         What the kernel stored at samples.
     """
-    # Imported here: numba is slow, and the command line imports this module's classes.
-    from rpscli.physics.equation_of_motion import contact_forces  # noqa: PLC0415
-
-    samples, ground = run.samples, run.ground
+    samples, building = run.samples, structure.superstructure
     theta, rate = samples.theta, samples.theta_dot
     u, du = run.floors[:, 0], run.floors[:, 1]
     b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
     base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
-    a_g = prolonged(ground, len(samples))
+    a_g = prolonged(run.ground, len(samples))
     drifts = np.diff(u, axis=1, prepend=base[:, None])
     shears, forces = np.zeros_like(u), np.zeros_like(u)
-    if (building := structure.superstructure) is not None:
+    if building is not None:
         shears = building.stiffnesses * drifts
         forces = (u - base[:, None]) @ building.stiffness_matrix
         forces = forces + (du - base_rate[:, None]) @ building.damping_matrix
-    beam = 0.5 * structure.columns_mass + structure.cap_beam_mass
-    stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
     devices = device_trace(run.devices, len(structure.devices))
+    stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
     stored += devices.stored.sum(axis=1)
     stored += 0.5 * tilting_inertia(structure, B, C, theta) * rate**2
     if building is not None:
         stored += 0.5 * du**2 @ building.masses
     V = forces.sum(axis=1)
-    across, upwards = base_accelerations(structure, samples, B, C)
-    a_v = 0.0 if run.vertical is None else prolonged(run.vertical, len(samples))
     push, pull = cap_beam_forces(structure, devices, theta)
-    forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
-    shear_top, shear_bottom, normal_top, normal_bottom = forces_of(
-        structure.cap_beam_mass,
-        structure.superstructure_mass,
-        structure.columns_mass,
-        across,
-        upwards,
-        V + push,
-        a_g,
-        structure.gravity + a_v,
-        pull,
+    across, upwards = base_accelerations(structure, samples, B, C)
+    shear_top, shear_bottom, normal_top, normal_bottom = _contact_forces(
+        structure, run, across, upwards, V + push, pull
     )
+    beam = 0.5 * structure.columns_mass + structure.cap_beam_mass
     return Trace(
         time=np.arange(len(samples), dtype=np.float64) * dt,
         ground_acceleration=a_g,
@@ -218,6 +205,34 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
         energy_impact=samples.energy_lost,
         energy_stored=stored,
         devices=devices,
+    )
+
+
+def _contact_forces(
+    structure: PodiumStructure,
+    run: SampledHistory,
+    across: Array,
+    upwards: Array,
+    V: Array,
+    pull: Array,
+) -> tuple[Array, Array, Array, Array]:
+    """Those of the kernels, for all samples at once."""
+    # Imported here: numba is slow, and the command line imports this module's classes.
+    from rpscli.physics.equation_of_motion import contact_forces  # noqa: PLC0415
+
+    forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
+    samples = len(run.samples)
+    a_v = 0.0 if run.vertical is None else prolonged(run.vertical, samples)
+    return forces_of(
+        structure.cap_beam_mass,
+        structure.superstructure_mass,
+        structure.columns_mass,
+        across,
+        upwards,
+        V,
+        prolonged(run.ground, samples),
+        structure.gravity + a_v,
+        pull,
     )
 
 

@@ -73,6 +73,16 @@ class Computed(NamedTuple):
         """The case."""
         return self.requests[0].given
 
+    @property
+    def label(self) -> str:
+        """Name of the case."""
+        return self.requests[0].case_label
+
+    @property
+    def labels(self) -> list[str]:
+        """Names of the records."""
+        return [request.label for request in self.requests]
+
 
 def run_all(
     requests: Sequence[HistoryRequest],
@@ -139,9 +149,8 @@ def _set_folder(
 
 def _add_set(case: Computed) -> None:
     assert case.folder is not None, "the case has several records"
-    labels = [request.label for request in case.requests]
     scalars = [history.document for history in case.histories]
-    case.folder.add("records.csv", csv_text(record_columns(labels, scalars)))
+    case.folder.add("records.csv", csv_text(record_columns(case.labels, scalars)))
     case.folder.add("statistics.csv", csv_text(statistics_columns(case.together)))
     case.folder.add("summary.json", json_text({**heading(), **_set_document(case)}))
 
@@ -149,15 +158,15 @@ def _add_set(case: Computed) -> None:
 def _error(computed: Sequence[Computed]) -> RpsError | None:
     """What ends the command: failed histories, else limits that are exceeded."""
     lines = [
-        f"{request.case_label}, {request.label}: {history.error}"
+        f"{case.label}, {label}: {history.error}"
         for case in computed
-        for request, history in zip(case.requests, case.histories, strict=True)
+        for label, history in zip(case.labels, case.histories, strict=True)
         if isinstance(history.error, AnalysisError)
     ]
     if lines:
         return AnalysisError("\n".join(lines))
     lines = [
-        f"limit exceeded: {case.requests[0].case_label}: {verdict.condition.name}:"
+        f"limit exceeded: {case.label}: {verdict.condition.name}:"
         f" {condition_text(verdict.condition)}; {verdict.beyond}, {verdict.condition.source}"
         for case in computed
         for verdict in case.verdicts
@@ -176,9 +185,9 @@ def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str,
         for name in ("records.csv", "statistics.csv", "summary.json", "run.json")
     ]
     warnings = [
-        f"{request.case_label}, {request.label}: {text}"
+        f"{case.label}, {label}: {text}"
         for case in computed
-        for request, history in zip(case.requests, case.histories, strict=True)
+        for label, history in zip(case.labels, case.histories, strict=True)
         for text in history.document["warnings"]
     ]
     document = {
@@ -194,12 +203,11 @@ def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str,
 
 
 def _set_document(case: Computed) -> dict[str, Any]:
-    labels = [request.label for request in case.requests]
     return {
         "case": case.histories[0].document["case"],
-        "records": labels,
+        "records": case.labels,
         **record_set_document(case.together),
-        "verdicts": [set_verdict_document(verdict, labels) for verdict in case.verdicts],
+        "verdicts": [set_verdict_document(verdict, case.labels) for verdict in case.verdicts],
     }
 
 
@@ -218,9 +226,9 @@ def _tables(computed: Sequence[Computed]) -> Iterator[RenderableType]:
 
 def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> RenderableType:
     rows = [
-        [request.label, _word(history.document["outcome"])]
+        [label, _word(history.document["outcome"])]
         + [shown(large(history.document[q.name], q.unit)[0], DIGITS) for q in quantities]
-        for request, history in zip(case.requests, case.histories, strict=True)
+        for label, history in zip(case.labels, case.histories, strict=True)
     ]
     if len(case.requests) > 1:
         words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
@@ -242,13 +250,13 @@ def _verdict_table(computed: Sequence[Computed]) -> RenderableType:
     for case in computed:
         for verdict in case.verdicts:
             event = verdict.condition.name in EVENTS
-            worst = case.requests[verdict.worst].label
+            worst = case.labels[verdict.worst]
             which = "least" if verdict.condition.from_below else "largest"
             value = shown(verdict.value) if math.isfinite(verdict.value) else "overturned"
             largest = "" if event else f", {which} {value} ({worst})"
             rows.append(
                 [
-                    case.requests[0].case_label,
+                    case.label,
                     verdict.condition.name,
                     "EXCEEDED" if verdict.exceeded else "met",
                     condition_text(verdict.condition),

@@ -22,15 +22,13 @@ from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.reports.comparison import (
     ComparisonOptions,
     ComparisonReport,
-    Maxima,
     Outcomes,
-    agreement,
     comparison_report,
-    threshold,
     uncomparable,
 )
 from rpscli.sweep.reports.intensities import MeasureOptions, intensity
 from rpscli.sweep.reports.study_results import StudyResults
+from rpscli.sweep.statistics.agreement import Maxima, agreement, threshold
 from rpscli.sweep.table import tabulate
 from sweep.made_up import ALPHA, place, stored
 from sweep.small_studies import Make

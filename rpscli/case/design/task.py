@@ -175,16 +175,24 @@ def parse_design(
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
     study = replace(study, document=document)
-    used, held_out = study.sources, confirming
+    used, held_out = _used_and_held_out(document, file, study.sources, confirming)
+    return DesignTask(replace(study, sources=used), file, unknowns, held_out)
+
+
+def _used_and_held_out(
+    document: Document, file: DesignFile, sources: Sequence[str], confirming: Sequence[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Records of the search, and those that the design is confirmed on."""
+    used, held_out = tuple(sources), tuple(confirming)
     if file.confirm is not None and file.confirm.share is not None:
-        used, held_out = _shared(study.sources, file.confirm.share, file.confirm.seed)
+        used, held_out = _shared(used, file.confirm.share, file.confirm.seed)
     elif both := sorted(set(used) & set(held_out)):
         text = f"confirm.records has {listed(both[:3], 'and')}, which the search uses already"
         document.refuse([Fault(("confirm", "records"), f"{text}; name other motions")])
     if file.confirm is not None and not (used and held_out):
-        text = f"confirm.share = {file.confirm.share} of {len(study.sources)} records leaves none"
+        text = f"confirm.share = {file.confirm.share} of {len(sources)} records leaves none"
         document.refuse([Fault(("confirm",), f"{text} on one side; give more records")])
-    return DesignTask(replace(study, sources=used), file, unknowns, held_out)
+    return used, held_out
 
 
 def _study_document(document: Document) -> Document:

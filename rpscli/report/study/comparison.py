@@ -16,17 +16,16 @@ from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.report import Report
 from rpscli.sweep.reports.comparison import (
     FITTED,
-    Agreement,
     Compared,
     ComparisonOptions,
     ComparisonReport,
     Curve,
-    Maxima,
     Outcomes,
     comparison_report,
     fit_faults,
     uncomparable,
 )
+from rpscli.sweep.statistics.agreement import Agreement, Maxima
 from rpscli.sweep.statistics.share import CONFIDENCE
 
 if TYPE_CHECKING:

@@ -99,19 +99,12 @@ def panel_figure(
     def fill(figure: Figure) -> None:
         style.heading(figure, title, note)
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
-        for place, axes in enumerate(grid.flat):
-            if place >= len(shown):
-                axes.set_axis_off()
-                continue
+        for axes, panel, name in zip(grid.flat, shown, names, strict=False):
             axes.locator_params(nbins=MOST_TICKS)
-            draw(axes, shown[place])
+            draw(axes, panel)
             # Without a height matplotlib would look for ticks under the title, at great length.
-            axes.set_title(names[place], y=1.0)
-            if place + columns >= len(shown):
-                axes.set_xlabel(x_label)
-                axes.tick_params(labelbottom=True)
-            if place % columns == 0:
-                axes.set_ylabel(y_label)
+            axes.set_title(name, y=1.0)
+        _label_outside(grid, len(shown), x_label, y_label)
         if limits is not None:
             limits(grid.flat[0])
         # Somebody's figure that lays itself out does so with what is drawn into it.
@@ -124,6 +117,20 @@ def panel_figure(
     width = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
     height = 3.8 if rows == 1 and columns == 1 else 1.0 + (2.6 if columns < 3 else 2.1) * rows
     return style.picture(fill, height, width, None)
+
+
+def _label_outside(grid: Any, panels: int, x_label: str, y_label: str) -> None:
+    """Label axes that have no panel below them or to their left; places without a panel go."""
+    columns = grid.shape[1]
+    for place, axes in enumerate(grid.flat):
+        if place >= panels:
+            axes.set_axis_off()
+            continue
+        if place + columns >= panels:
+            axes.set_xlabel(x_label)
+            axes.tick_params(labelbottom=True)
+        if place % columns == 0:
+            axes.set_ylabel(y_label)
 
 
 def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from rpscli.case.schema.fields import Quantity
@@ -26,12 +25,20 @@ from rpscli.sweep.reports.fragility import BandOptions, binned, fragility_fit, i
 from rpscli.sweep.reports.fragility import Observed as Binned
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, measure_without_period
 from rpscli.sweep.reports.study_results import StudyResults
+from rpscli.sweep.statistics.agreement import (
+    Agreement,
+    Flags,
+    Maxima,
+    Worth,
+    agreement,
+    best_place,
+    maxima,
+    outcome_worth,
+    threshold,
+)
 from rpscli.sweep.statistics.observations import Pairs, observed_pairs, unpaired
 from rpscli.sweep.statistics.pooling import pooling_note, shown_keys
-from rpscli.sweep.statistics.share import Share, share
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
-
-Flags = NDArray[np.bool_]
 
 BASELINES: tuple[Measure, ...] = ("PGA", "PGV")
 """Measures whose thresholds a model has to beat."""
@@ -55,35 +62,6 @@ class ComparisonOptions(BandOptions):
     """Outcomes and maxima beside those that were observed."""
 
     fit: FitSection | None = Field(None, description="choose a parameter, judge it on the rest")
-
-
-class Agreement(NamedTuple):
-    """How often computed and observed outcomes are the same."""
-
-    both: int
-    computed_only: int
-    observed_only: int
-    neither: int
-
-    @property
-    def counted(self) -> int:
-        """All outcomes."""
-        return sum(self)
-
-    @property
-    def agreed(self) -> Share:
-        """The share of equal outcomes."""
-        return share(self.both + self.neither, self.counted)
-
-    @property
-    def computed(self) -> int:
-        """Computed overturnings."""
-        return self.both + self.computed_only
-
-    @property
-    def observed(self) -> int:
-        """Observed overturnings."""
-        return self.both + self.observed_only
 
 
 class Threshold(NamedTuple):
@@ -118,22 +96,6 @@ class Outcomes:
     computed: Curve
 
 
-@dataclass(frozen=True)
-class Maxima:
-    """Computed over observed maxima of one quantity.
-
-    `median` and `dispersion` (standard deviation of the logarithm) are those of the `counted`
-    ratios; `overturned` histories have none, and are infinite in the distance of Kolmogorov and
-    Smirnov between both distributions.
-    """
-
-    counted: int
-    overturned: int
-    median: float
-    dispersion: float
-    distance: float
-
-
 @dataclass(frozen=True, eq=False)
 class Compared:
     """One quantity of one system in one part of the records.
@@ -148,18 +110,6 @@ class Compared:
     found: Outcomes | Maxima
     pairs: Indices
     failed: int
-
-
-class Worth(NamedTuple):
-    """What a fit makes small: the misfit, and then what is off in the count.
-
-    The misfit is the share of wrong outcomes, or the median of |ln(computed/observed)| of maxima;
-    `error` is its standard error, 0 of maxima.
-    """
-
-    misfit: float
-    count_off: float
-    error: float
 
 
 class Candidate(NamedTuple):
@@ -304,84 +254,6 @@ def _same_axis(design: Design, key: str, keys: Iterable[str]) -> bool:
     """Whether a key belongs to the axis of one of others."""
     axes = [set(axis.keys) for axis in design.study.axes] + [{"scale"}]
     return any(key in axis and axis & set(keys) for axis in axes)
-
-
-def outcome_worth(computed: Flags, observed: Flags) -> Worth:
-    """Worth of computed outcomes beside observed ones.
-
-    >>> import numpy as np
-    >>> outcome_worth(np.array([True, True, False, False]), np.array([True, False, False, False]))
-    Worth(misfit=0.25, count_off=0.25, error=0.21650635094610965)
-    """
-    misfit = float(np.mean(computed != observed))
-    error = math.sqrt(misfit * (1.0 - misfit) / len(observed))
-    return Worth(misfit, abs(float(computed.mean() - observed.mean())), error)
-
-
-def best_place(worths: Sequence[Worth]) -> int:
-    """Which worth a fit takes: the best count among those that the misfit does not tell apart.
-
-    Misfits up to one standard error above the least are not told apart (the one-standard-error
-    rule of Breiman et al., Classification and Regression Trees, 1984): the least alone follows
-    chance, and its count is off to either side. Of several equal ones the middle is taken, which a
-    little more data moves least.
-
-    >>> best_place([Worth(0.10, 0.06, 0.03), Worth(0.12, 0.01, 0.03), Worth(0.15, 0.0, 0.03)])
-    1
-    """
-    least = min(worths)
-    near = [worth for worth in worths if worth.misfit <= least.misfit + least.error]
-    best = min(near, key=lambda worth: (worth.count_off, worth.misfit))
-    places = [place for place, worth in enumerate(worths) if worth == best]
-    return places[(len(places) - 1) // 2]
-
-
-def agreement(computed: Flags, observed: Flags) -> Agreement:
-    """Count the four pairs of outcomes.
-
-    >>> import numpy as np
-    >>> agreement(np.array([True, True, False]), np.array([True, False, False]))
-    Agreement(both=1, computed_only=1, observed_only=0, neither=1)
-    """
-    cells = (computed & observed, computed & ~observed, ~computed & observed, ~computed & ~observed)
-    return Agreement(*(int(cell.sum()) for cell in cells))
-
-
-def threshold(intensity: Array, observed: Flags) -> float:
-    """The intensity beyond which all is taken to overturn, chosen as `best_place` says.
-
-    It lies midway (geometrically) between two data, or is the least or twice the largest of them.
-
-    >>> import numpy as np
-    >>> im = np.array([1.0, 2.0, 4.0, 8.0])
-    >>> round(threshold(im, np.array([False, False, True, True])), 3)
-    2.828
-    """
-    levels = np.unique(intensity)
-    cuts = np.array([levels[0], *np.sqrt(levels[1:] * levels[:-1]), 2.0 * levels[-1]])
-    worths = [outcome_worth(intensity >= cut, observed) for cut in cuts]
-    return float(cuts[best_place(worths)])
-
-
-def maxima(computed: Array, observed: Array) -> Maxima:
-    """Compare maxima; computed ones are infinite where the structure overturned.
-
-    >>> import numpy as np
-    >>> found = maxima(np.array([2.0, 8.0, np.inf]), np.array([1.0, 1.0, 1.0]))
-    >>> found.counted, found.overturned, round(found.median, 6), found.distance
-    (2, 1, 4.0, 1.0)
-    """
-    from scipy.stats import ks_2samp  # noqa: PLC0415 -- slow to import
-
-    stood = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
-    logs = np.log(computed[stood] / observed[stood])
-    return Maxima(
-        counted=len(logs),
-        overturned=int(np.isinf(computed).sum()),
-        median=math.exp(float(np.median(logs))) if len(logs) else math.nan,
-        dispersion=float(np.std(logs, ddof=1)) if len(logs) > 1 else math.nan,
-        distance=float(ks_2samp(computed, observed).statistic) if len(observed) else math.nan,
-    )
 
 
 class _Work:
