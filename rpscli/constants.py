@@ -5,3 +5,6 @@ STANDARD_GRAVITY = 9.80665
 
 MOST_STOREYS = 200
 """Storeys that there is room for."""
+
+MOST_JOBS = 1024
+"""Threads of one study; systems refuse to start many thousands."""

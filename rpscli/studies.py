@@ -35,7 +35,8 @@ from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.case.study.study import parse_study, shared_out, study_of
 from rpscli.case.text.document import Document
 from rpscli.case.text.files import read_text
-from rpscli.errors import UsageError, nearest
+from rpscli.constants import MOST_JOBS
+from rpscli.errors import CaseError, UsageError, nearest
 from rpscli.report.figures.look import Look, read_style
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.report.study.folder import study_folder
@@ -91,9 +92,24 @@ def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] 
     return Study(design, StudyContext(design.plan), tuple(overrides))
 
 
+def _as_in_a_file(value: object) -> object:
+    """What JSON does not know: arrays and numbers of numpy, and paths."""
+    if isinstance(value, Path):
+        return str(value)
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{value!r} is no text, number, list or mapping")
+
+
 def _study_of(mapping: Mapping[str, Any], overrides: Sequence[str]) -> CheckedStudy:
     # As a file would say it: arrays of numpy become lists, keys and values what YAML knows.
-    text = json.dumps(mapping, default=lambda value: value.tolist())
+    try:
+        text = json.dumps(mapping, default=_as_in_a_file)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise CaseError(
+            f"<study>: cannot stand in a file: {str(error)[:200]}; use text, numbers, lists, arrays"
+            " and mappings"
+        ) from None
     own, of_base = shared_out(overrides, StudyFile)
     document = apply_overrides(Document("<study>", json.loads(text)), own, model=StudyFile)
     digest = sha256(text.encode()).hexdigest()
@@ -184,6 +200,8 @@ class Study(Shown):
         KeyboardInterrupt
             After Ctrl-C; what is stored stays, and the same call goes on from there.
         """
+        if jobs is not None and not 0 < jobs <= MOST_JOBS:
+            raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
         keeper = _Temporary() if folder is None else None
         place = keeper.place if keeper else Path(folder or "")
         study_folder(self.design, place, self.overrides)
@@ -232,7 +250,7 @@ class StudyResult(Shown):
     def __getitem__(self, name: str) -> Any:
         """(points,) of a varied key or a result, as `points.csv` names it."""
         if name not in self.columns:
-            close = nearest(name, self.columns, 0.6)
+            close = nearest(str(name), self.columns, 0.6)
             hint = f"did you mean {close}?" if close else f"there are {', '.join(self.columns)}"
             raise KeyError(f"{name} is no column; {hint}")
         return self.columns[name]

@@ -171,7 +171,7 @@ def _unknown(named: tuple[str, ...], model: type[BaseModel]) -> Fault:
         if field_at(model, path) is None:
             if section_at(model, path[:-1]) is None:
                 return Fault(
-                    path, f"{dotted(path[:-1])} holds no keys; there is no {dotted(named)}"
+                    path, f"{dotted(path[:-1])} can be set as a whole only, not {dotted(named)}"
                 )
             return unknown_key(model, path)[0]
     return Fault((), "an index alone is not a key of the format")

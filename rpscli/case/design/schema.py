@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import Field, PlainValidator, WithJsonSchema
+from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema
 
-from rpscli.case.schema.fields import Quantity, Whole, refuse
+from rpscli.case.schema.fields import Quantity, Whole, first_fault, refuse
 from rpscli.case.schema.limits import Fractile
 from rpscli.case.schema.section import Section
 from rpscli.case.study.fields import Seed
@@ -56,10 +56,8 @@ def _term(name: object, given: object) -> Term:
         return given
     try:
         return Term.model_validate(written)
-    except ValueError as error:
-        first = error.errors(include_url=False)[0]  # type: ignore[attr-defined]
-        key = ".".join(map(str, first["loc"]))
-        refuse(f"has {name}: {shown(given)}, whose {key} {first['msg']}")
+    except ValidationError as error:
+        refuse(f"has {name}: {shown(given)}, whose {first_fault(error)}")
 
 
 _SUM = {"type": "object", "minProperties": 1}

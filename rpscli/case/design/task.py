@@ -5,9 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.design.schema import PLUS, Aim, DesignFile
 from rpscli.case.overrides import apply_overrides
+from rpscli.case.schema.fields import LARGEST, is_finite
 from rpscli.case.schema.key_units import is_whole, unit
 from rpscli.case.schema.units import in_si
 from rpscli.case.study.axes import Axis, clashes
@@ -213,6 +213,7 @@ def _unknowns(document: Document) -> tuple[tuple[Unknown, ...], list[Fault]]:
         if not isinstance(si, list) or len(si) != 2 or not all(map(_is_number, si)):
             words = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
             text = f"find.{key} = {shown(bounds)} must be two {words}, [least, largest]"
+            text += f", up to {LARGEST:g}"
             faults.append(Fault(("find", key), text))
         elif not si[0] < si[1]:
             text = f"find.{key} = {shown(bounds)} must rise from the least value to the largest"
@@ -226,8 +227,9 @@ def _unknowns(document: Document) -> tuple[tuple[Unknown, ...], list[Fault]]:
     return tuple(unknowns), faults
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+def _is_number(value: object) -> TypeGuard[float]:
+    """A number whose sums and products with others stay finite."""
+    return is_finite(value) and abs(value) <= LARGEST
 
 
 def _tie_faults(document: Document) -> Iterator[Fault]:
@@ -239,7 +241,8 @@ def _tie_faults(document: Document) -> Iterator[Fault]:
             yield Fault(("ties", key), text, at_key=True)
         elif not isinstance(terms, dict) or not all(map(_is_number, terms.values())):
             text = (
-                f"ties.{key} = {shown(terms)} must be a linear sum, {{key: factor, plus: number}}"
+                f"ties.{key} = {shown(terms)} must be a linear sum, {{key: factor, plus: number}},"
+                f" of numbers up to {LARGEST:g}"
             )
             yield Fault(("ties", key), text)
         else:

@@ -132,6 +132,8 @@ def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
         return f"must be a mapping with keys among {names}"
     if kind == "dict_type":
         return "must be a mapping, `key: value`"
+    if kind in {"tuple_type", "list_type"}:
+        return "must be a list"
     if kind == "too_short":
         return "must not be an empty list"
     message = error["msg"]

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, NoReturn, TypeGuard
 
-from pydantic import PlainValidator, WithJsonSchema
+from pydantic import PlainValidator, ValidationError, WithJsonSchema
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rpscli.case.schema.units import KINDS, si_value
@@ -27,6 +27,23 @@ PLAIN = "1"
 def refuse(reason: str) -> NoReturn:
     """Refuse a value; `reason` continues `path = value ...`."""
     raise PydanticCustomError("rps", "{reason}", {"reason": reason})
+
+
+def first_fault(error: ValidationError) -> str:
+    """What is wrong with a part of a value, to stand after what the value is."""
+    first = error.errors(include_url=False)[0]
+    words = {"missing": "is missing", "extra_forbidden": "is not a key that it has"}
+    return f"{'.'.join(map(str, first['loc']))} {words.get(first['type'], first['msg'])}"
+
+
+def is_finite(value: object) -> TypeGuard[float]:
+    """Whether it is a number; one with hundreds of digits counts as infinite."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -73,12 +90,9 @@ class Quantity:
             value = self._with_unit(value)
         if isinstance(value, bool) or not isinstance(value, Real):
             refuse(self._not_a_number)
-        try:
-            x = float(value)
-        except OverflowError:
-            x = math.inf
-        if not math.isfinite(x):
+        if not is_finite(value):
             refuse("must be a finite number")
+        x = float(value)
         if not self._within(x):
             symbol = f" ({self.symbol})" if self.symbol else ""
             remedy = f"; {self.remedy}" if self.remedy else ""

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from numbers import Real
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, PlainValidator, ValidationError, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from rpscli.case.schema.fields import Quantity, Whole, refuse
+from rpscli.case.schema.fields import Quantity, Whole, first_fault, is_finite, refuse
 from rpscli.case.schema.scale_to import measured_value
 from rpscli.case.schema.section import Section
 from rpscli.case.text.faults import shown
@@ -75,17 +73,15 @@ def _of_range(value: dict[str, Any], above: float | None) -> tuple[float, ...]:
     try:
         values = spaced(ValueRange.model_validate(value))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        key = ".".join(str(part) for part in first["loc"])
-        refuse(f"is no range {{low, high, count, spacing}}: {key}: {first['msg']}")
+        refuse(f"is no range {{low, high, count, spacing}}: {first_fault(error)}")
     except ValueError as error:
         refuse(str(error))
     return tuple(_number(item, above) for item in values)
 
 
 def _number(item: object, above: float | None) -> float:
-    if isinstance(item, bool) or not isinstance(item, Real) or not math.isfinite(item):
-        refuse(f"must be numbers, or {{low, high, count}}; {shown(item)} is none")
+    if not is_finite(item):
+        refuse(f"must be finite numbers, or {{low, high, count}}; {shown(item)} is none")
     if above is not None and not float(item) > above:
         refuse(f"must hold values > {above:g}; {shown(item)} is not")
     return float(item)

@@ -15,6 +15,7 @@ import click
 
 from rpscli.commands.shell.completions import FILE, case_keys
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, nearest
 from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
 from rpscli.report.figures.look import FORMATS, Look, read_style
@@ -192,7 +193,7 @@ def run_options(function: Command) -> Command:
         ),
         click.option(
             "--jobs",
-            type=click.IntRange(1),
+            type=click.IntRange(1, MOST_JOBS),
             metavar="N",
             help="Threads; all cores by default.",
         ),

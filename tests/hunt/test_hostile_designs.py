@@ -1,0 +1,104 @@
+"""Design files that were damaged, and studies of Python that no file could say."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+
+from hunt.mutation import mutated
+from hunt.test_hostile_files import CASE_KEYS, CASES, VALUES
+from hunt.trials import hunt, judged, shares
+from rpscli import load_study
+from rpscli.case.design.schema import DesignFile
+from rpscli.case.design.task import parse_design
+from rpscli.case.schema.known_keys import known_paths
+from rpscli.errors import CaseError, UsageError
+
+pytestmark = pytest.mark.posix  # trials are timed by its signals
+
+DESIGN = f"""rps: 1
+base: {CASES}/six_storey.yaml
+find: {{podium.bearing.semi_diagonal: [0.8, 2.0], podium.bearing.slenderness: [0.1, 0.2]}}
+ties: {{podium.bearing.wedge_slenderness: {{podium.bearing.slenderness: 2, plus: 0.01}}}}
+records: ["pulse:sine?amplitude=0.3g&period=0.8", "pulse:sine?amplitude=0.2g&period=1"]
+limits: {{rotation_ratio: 0.5, min_column_force: {{at_least: 50 kN}}}}
+least: [podium.bearing.semi_diagonal, {{max_base_shear: {{times: 1e-6, fractile: 0.84}}}}]
+confirm: {{share: 0.5}}
+search: {{first: 4, most: 8, resamples: 0}}
+"""
+DESIGN_KEYS = [".".join(map(str, path)) for path in known_paths(DesignFile)]
+HUGE = 10**390
+
+
+@pytest.fixture(autouse=True)
+def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@shares
+def test_designs(long: bool) -> None:
+    def trial(random: Random) -> str:
+        Path("design.yaml").write_text(mutated(DESIGN, random), encoding="utf-8", errors="replace")
+        return judged("design", "design.yaml", "--dry-run", places=("design.yaml", ".yaml:"))
+
+    hunt("designs", trial, 12, 1200 if long else None)
+
+
+@shares
+def test_values_of_designs(long: bool) -> None:
+    values = [*VALUES, str(HUGE), "[1, 2]", "[2, 1]", "[.nan, 1]", f"[1, {HUGE}]"]
+    sums = ["{podium.bearing.slenderness: 1e308, plus: 1e308}", "{max_rotation: {fractile: 2}}"]
+
+    def trial(random: Random) -> str:
+        Path("design.yaml").write_text(DESIGN, encoding="utf-8")
+        change = f"{random.choice([*DESIGN_KEYS, *CASE_KEYS])}={random.choice([*values, *sums])}"
+        return judged("design", "design.yaml", "--dry-run", "--set", change)
+
+    hunt("values of designs", trial, 12, 800 if long else None)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (f"find: {{podium.bearing.semi_diagonal: [0.8, {HUGE}]}}", "must be two numbers"),
+        (f"ties: {{superstructure.storeys: {{plus: {HUGE}}}}}", "must be a linear sum"),
+        ("ties: {superstructure.storeys: {podium.bearing.slenderness: 1e308}}", "up to 1e+15"),
+        (f"scale: [{HUGE}]", "must be finite numbers"),
+        ("scale: {factor: [1, 2]}", "low is missing"),
+        ("confirm: {records: 3}", "must be a list"),
+        ("least: {max_rotation: {times: 1, x: 2}}", "x is not a key that it has"),
+    ],
+)
+def test_slips_in_designs_are_told(line: str, said: str) -> None:
+    key = line.split(":", maxsplit=1)[0] + ":"
+    text = "\n".join([*(old for old in DESIGN.splitlines() if not old.startswith(key)), line])
+    with pytest.raises(CaseError, match=re.escape(said)):
+        parse_design(text, "design.yaml")
+
+
+STUDY: dict[str, Any] = {"rps": 1, "analysis": "pushover", "base": f"{CASES}/rigid_frame.yaml"}
+CIRCLE: list[Any] = []
+CIRCLE.append(CIRCLE)
+
+
+@pytest.mark.parametrize("value", [CIRCLE, object(), {1, 2}, 1j, b"x", {(1, 2): 3}])
+def test_studies_that_no_file_could_say(value: object) -> None:
+    with pytest.raises(CaseError, match="cannot stand in a file"):
+        load_study(STUDY | {"title": value})
+
+
+def test_studies_say_paths_and_refuse_numbers_that_are_none() -> None:
+    study = load_study(STUDY | {"base": CASES / "rigid_frame.yaml"})
+    assert len(study) == 1
+    for jobs in (0, -1, 10**9):
+        with pytest.raises(UsageError, match="jobs"):
+            study.run(jobs=jobs)
+    with pytest.raises(CaseError, match="finite"):
+        load_study(STUDY | {"vary": [{"podium.bearing.slenderness": [math.nan]}]})
+    with pytest.raises(KeyError, match="no column"):
+        study.run()[3]  # type: ignore[index]
