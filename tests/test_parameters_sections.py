@@ -88,7 +88,7 @@ def test_what_is_missing_is_found(source: str, missing: set[str]) -> None:
     assert unexplained(node, set()) == missing
 
 
-@pytest.mark.parametrize("room", ["model", "analyses"])
+@pytest.mark.parametrize("room", ["physics", "model", "analyses"])
 def test_arguments_and_fields_are_explained(room: str) -> None:
     standing = described(ast.get_docstring(parsed(ROOT / room / "__init__.py")))
     missing = {

@@ -6,7 +6,25 @@ and finds what happens in them, `full_contact` follows a building on a fixed bas
 uplifts, `transitions` go from one phase of motion to the next, `energy` audits. `driver` strings
 them together. How all this becomes machine code stands in `compile`.
 
-Everywhere `s` is the record of all lanes (`state.STATE`), `l` a lane, `r` a mode, `i` a storey or
-floor, `m` the order of a Taylor term; `system` is the record of a lane's structure, and `block`
-that of steps in full contact.
+What the kernels hand to each other everywhere stands here once:
+
+Parameters
+----------
+s, state
+    The record of all lanes (`state.STATE`), and the array of one that holds it.
+l, lanes
+    A lane, and how many there are.
+r, i, m
+    A mode, a storey or floor or device, the order of a Taylor term; from 0.
+system, systems
+    The record of a lane's structure (`state.SYSTEM`), and (S,) of all structures.
+block, blocks
+    The record of steps in full contact (`state.BLOCK`), and the array that holds it; to the search
+    of events it lends scratch.
+acceleration
+    (samples,) records of the ground end to end [m/s2].
+output, log
+    Where samples and events go (`run.Output`); of these (rows,) `state.EVENT`.
+run
+    The histories, and where their results go (`run.Run`).
 """

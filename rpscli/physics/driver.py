@@ -98,19 +98,7 @@ def integrate_lanes(state: Record, run: Run) -> None:
 
 @kernel
 def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -> None:
-    """A step of all lanes together, as far as it holds no event.
-
-    Parameters
-    ----------
-    state
-        The lanes, an array of one `state.STATE`.
-    systems
-        (S,) `state.SYSTEM`.
-    blocks
-        (1,) `state.BLOCK`: lends scratch to the search of the largest tilt.
-    log
-        (rows,) `state.EVENT`.
-    """
+    """A step of all lanes together, as far as it holds no event."""
     s = state[0]
     take_steps(s)
     check_steps(s)
@@ -127,14 +115,8 @@ def settle_lane(state: Record, l: int, fate: int, run: Run) -> None:
 
     Parameters
     ----------
-    state
-        The lanes, an array of one `state.STATE`.
-    l
-        Which of them.
     fate
         GOES_ON, NOT_ACCEPTED, STANDS or IS_OVER.
-    run
-        The histories.
     """
     s = state[0]
     while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
@@ -146,7 +128,13 @@ def settle_lane(state: Record, l: int, fate: int, run: Run) -> None:
 
 @kernel
 def stand_lane(state: Record, l: int, fate: int, run: Run) -> int:
-    """If it STANDS, the storey of a lane does so until it uplifts or its history ends."""
+    """If it STANDS, the storey of a lane does so until it uplifts or its history ends.
+
+    Parameters
+    ----------
+    fate
+        GOES_ON, NOT_ACCEPTED, STANDS or IS_OVER.
+    """
     if fate != STANDS:
         return fate
     s = state[0]
@@ -161,14 +149,8 @@ def switch_lane(state: Record, l: int, fate: int, run: Run) -> int:
 
     Parameters
     ----------
-    state
-        The lanes, an array of one `state.STATE`.
-    l
-        Which of them.
     fate
         GOES_ON, NOT_ACCEPTED or IS_OVER.
-    run
-        The histories.
     """
     s = state[0]
     system = run.systems[s.system[l]]
@@ -218,7 +200,13 @@ def idle(s: Record, l: int) -> None:
 
 @compiled
 def begin_history(s: Record, l: int, run: Run, history: int) -> int:
-    """Load a history into a lane, at rest at the start of its record: STANDS, or GOES_ON tilted."""
+    """Load a history into a lane, at rest at the start of its record: STANDS, or GOES_ON tilted.
+
+    Parameters
+    ----------
+    history
+        Its number among the requests.
+    """
     request = run.requests[history]
     system = run.systems[request.system]
     load_system(s, l, system)
@@ -298,7 +286,13 @@ def release(s: Record, l: int, system: Record) -> None:
 
 @compiled
 def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
-    """Write what the history leaves behind."""
+    """Write what the history leaves behind.
+
+    Parameters
+    ----------
+    results
+        (P,) `state.RESULT`: written.
+    """
     result = results[s.history[l]]
     if s.phase[l] == FULL_CONTACT:
         result.energy_stored = building_energy(s, l, 0.0)

@@ -28,7 +28,13 @@ def relative_momentum(s: Record, l: int) -> float:
 
 @compiled
 def building_energy(s: Record, l: int, beam_velocity: float) -> float:
-    """Kinetic and strain energy of the floors [J], the cap beam moving at u_b'."""
+    """Kinetic and strain energy of the floors [J], the cap beam moving at u_b'.
+
+    Parameters
+    ----------
+    beam_velocity
+        u_b' [m/s].
+    """
     energy = float(0.5 * s.floors_mass[l] * (beam_velocity * beam_velocity))
     for r in range(s.n):
         q, dq = s.q[r, l], s.dq[0, r, l]
@@ -87,8 +93,6 @@ def book_energy(s: Record, l: int, fraction: float) -> None:
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
     fraction
         How much of the step is booked.
     """

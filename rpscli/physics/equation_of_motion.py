@@ -143,8 +143,6 @@ def cap_beam_acceleration(
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
     B, C
         Contact arm and contact height over R.
     theta_dot, theta_ddot
@@ -172,8 +170,6 @@ def accelerate_rotation(s: Record, l: int, elapsed: float) -> None:
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
     elapsed
         Share of the step that has passed: 1 at its end, 0 at its start.
     """
@@ -309,10 +305,6 @@ def action_term(s: Record, l: int, m: int, V_m: float) -> float:
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
-    m
-        Order of the term.
     V_m
         Term of order m of the base shear V [N].
     """
@@ -330,8 +322,6 @@ def tilting_energy(s: Record, l: int, B: float, C: float, theta_dot: float) -> f
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
     B, C
         Contact arm and contact height over R.
     theta_dot
@@ -408,7 +398,13 @@ def contact_forces(
 
 @compiled
 def friction(shear: float, normal: float) -> float:
-    """|F|/N; infinite once the contact is lost."""
+    """|F|/N; infinite once the contact is lost.
+
+    Parameters
+    ----------
+    shear, normal
+        F and N at one end of the columns [N].
+    """
     return abs(shear) / normal if normal > 0.0 else math.inf
 
 
@@ -427,8 +423,23 @@ def contact_measures(
 ) -> tuple[float, float, float, float]:
     """Friction demands |F|/N and normal forces over the weight on them, upper and lower ends.
 
-    Parameters as in `contact_forces`, and the standard gravity g. Where no mass stands on the
-    columns their upper ends demand nothing: friction 0, normal force infinite.
+    Where no mass stands on the columns their upper ends demand nothing: friction 0, normal force
+    infinite.
+
+    Parameters
+    ----------
+    cap_beam, floors, columns
+        m_b, M_tot, N m_c [kg].
+    across, upwards
+        u_b'' and v_b'' relative to the ground [m/s2].
+    V
+        Base shear of the building, and what devices push the beam with [N].
+    a_g, g_up
+        a_g and g + a_v [m/s2].
+    gravity
+        g [m/s2].
+    pull
+        Vertical force of tendons on the beam, downwards [N].
     """
     upper, lower = cap_beam + floors, cap_beam + floors + columns
     shear_top, shear_bottom, normal_top, normal_bottom = contact_forces(

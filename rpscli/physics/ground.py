@@ -9,7 +9,15 @@ from rpscli.physics.state import INSTANTS, NO_RECORD, Floats, Record
 
 
 class Ground(NamedTuple):
-    """a_g and g + a_v at the start of an interval [m/s2], and their slopes over it [m/s3]."""
+    """How the ground moves in an interval.
+
+    Parameters
+    ----------
+    a_g, g_up
+        a_g and g + a_v at the start of an interval [m/s2].
+    a_g_slope, g_up_slope
+        Their slopes over it [m/s3].
+    """
 
     a_g: float
     a_g_slope: float
@@ -23,10 +31,6 @@ def ground_in(s: Record, l: int, acceleration: Floats, interval: int) -> Ground:
 
     Parameters
     ----------
-    s, l
-        State and lane.
-    acceleration
-        All records end to end [m/s2].
     interval
         Its number, from 0.
     """
@@ -66,8 +70,6 @@ def set_ground_of_block(
     ----------
     s, l, block
         The lanes, which of them, and the block: written.
-    acceleration
-        Records of the ground end to end [m/s2].
     h
         Length of a step [s].
     each
@@ -106,10 +108,6 @@ def copy_samples(
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
-    acceleration
-        Records of the ground end to end [m/s2].
     values, slopes
         (INSTANTS,) [m/s2, m/s3]: written.
     start
@@ -134,7 +132,13 @@ def copy_samples(
 def divide_intervals(
     s: Record, l: int, block: Record, acceleration: Floats, h: float, each: int, steps: int
 ) -> None:
-    """The same where a step does not lead from sample to sample."""
+    """The same where a step does not lead from sample to sample.
+
+    Parameters
+    ----------
+    h, each, steps
+        See `set_ground_of_block`.
+    """
     interval, time = s.interval[l], s.time[l]
     ground = ground_in(s, l, acceleration, interval)
     to_sample = each

@@ -74,7 +74,13 @@ class Run(NamedTuple):
 
 
 def empty_state(storeys: int, lanes: int = LANES) -> Record:
-    """Lanes with nothing to do, an array of one record; all of them are used, or one."""
+    """Lanes with nothing to do, an array of one record; all of them are used, or one.
+
+    Parameters
+    ----------
+    storeys
+        n, for all lanes.
+    """
     state = records(STATE)
     state.n, state.lanes = storeys, lanes
     return state

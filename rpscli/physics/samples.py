@@ -45,7 +45,13 @@ def store_sample(s: Record, l: int, system: Record, output: Output) -> None:
 
 @compiled
 def enter_interval(s: Record, l: int, acceleration: Floats, interval: int) -> bool:
-    """Begin an interval of the record; True if it is beyond the history's end."""
+    """Begin an interval of the record; True if it is beyond the history's end.
+
+    Parameters
+    ----------
+    interval
+        Its number, from 0.
+    """
     s.interval[l] = interval
     set_ground(s, l, acceleration)
     return bool(interval >= s.intervals[l])

@@ -124,7 +124,21 @@ NO_RECORD = -1
 
 
 class Field(NamedTuple):
-    """A field of a record: a number, or an array of the named sizes."""
+    """A field of a record: a number, or an array of the named sizes.
+
+    Parameters
+    ----------
+    name
+        Of the field.
+    sizes
+        Of its axes, by name; none of a number.
+    unit
+        SI; empty for plain numbers.
+    meaning
+        Symbol or formula, and words.
+    by
+        Who writes it.
+    """
 
     name: str
     sizes: str

@@ -24,7 +24,13 @@ WEIGHTS = tuple(float(0.5 * weight) for weight in _WEIGHTS)
 
 @compiled
 def opening(s: Record, l: int, x: float) -> tuple[float, float, float, float]:
-    """Elongation e of a tendon, de/dx, and sine and cosine of psi, at a tilt x in its phase."""
+    """Elongation e of a tendon, de/dx, and sine and cosine of psi, at a tilt x in its phase.
+
+    Parameters
+    ----------
+    x
+        Tilt in the present phase [rad].
+    """
     sine, cosine = sine_cosine(x)
     B, r = s.half_width[l], s.arc_radius[l]
     reach = B + r * x

@@ -59,8 +59,6 @@ def watch(s: Record, l: int, which: int) -> bool:
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
     which
         Number of the function, see this module.
     """
@@ -83,7 +81,13 @@ def watch(s: Record, l: int, which: int) -> bool:
 
 @compiled
 def watch_stop(s: Record, l: int, i: int, second: int) -> bool:
-    """Of a stop: that its gap is open, that it pushes, or does not; second, that it may again."""
+    """Of a stop: that its gap is open, that it pushes, or does not; second, that it may again.
+
+    Parameters
+    ----------
+    second
+        1 for the second function of the device, else 0.
+    """
     branch = s.device_branch[i, l]
     if second > 0 and branch != BEYOND:
         return False
@@ -103,7 +107,13 @@ def watch_stop(s: Record, l: int, i: int, second: int) -> bool:
 
 @compiled
 def watch_tendon(s: Record, l: int, i: int, second: int) -> bool:
-    """Of a tendon: that it is tight, or slack; second, that it does not yield."""
+    """Of a tendon: that it is tight, or slack; second, that it does not yield.
+
+    Parameters
+    ----------
+    second
+        1 for the second function of the device, else 0.
+    """
     branch, limit = s.device_branch[i, l], s.device_constants[i, 2, l]
     if branch == BEYOND or (second > 0 and (branch == IDLE or limit == math.inf)):
         return False
@@ -181,7 +191,13 @@ def locate_change(s: Record, l: int, block: Record) -> tuple[float, int]:
 
 @compiled
 def refined(s: Record, l: int, guess: float) -> float:
-    """The root of the watched polynomial near a guess: Newton's method within the step."""
+    """The root of the watched polynomial near a guess: Newton's method within the step.
+
+    Parameters
+    ----------
+    guess
+        Fraction of the step.
+    """
     t, terms = guess, s.event_terms
     for _ in range(12):
         value, slope = 0.0, 0.0
@@ -199,7 +215,13 @@ def refined(s: Record, l: int, guess: float) -> float:
 
 @compiled
 def change_law(s: Record, l: int, log: Record, which: int) -> None:
-    """What the watched function that fell below zero stands for; the lane is where it did."""
+    """What the watched function that fell below zero stands for; the lane is where it did.
+
+    Parameters
+    ----------
+    which
+        Number of the function, see this module.
+    """
     s.renew[l] = AFTER_PHASE_CHANGE
     if which == 0:
         s.theta_dot[l] = 0.0

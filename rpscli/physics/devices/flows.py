@@ -21,7 +21,13 @@ from rpscli.physics.state import (
 
 @compiled
 def book_devices(s: Record, l: int, fraction: float) -> None:
-    """Book what the devices of a lane dissipate in the first part of its step."""
+    """Book what the devices of a lane dissipate in the first part of its step.
+
+    Parameters
+    ----------
+    fraction
+        How much of the step is booked.
+    """
     terms = rotation_terms(s, l)
     for n in range(len(NODES)):
         t = fraction * NODES[n]
@@ -66,7 +72,13 @@ def observe_devices(s: Record, l: int) -> None:
 
 @compiled
 def raise_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
-    """Raise the largest forces and rates by those at a tilt and its rate."""
+    """Raise the largest forces and rates by those at a tilt and its rate.
+
+    Parameters
+    ----------
+    theta, theta_dot
+        Tilt x [rad] and its rate [rad/s].
+    """
     path, rate, C = cap_beam_path(s, l, theta, theta_dot)
     e, lever, _, _ = opening(s, l, theta)
     for i in range(s.devices[l]):
@@ -86,8 +98,6 @@ def device_at(
 
     Parameters
     ----------
-    s, l, i
-        The lanes, which of them, and which device.
     path, rate, C
         |u_b| [m], its rate [m/s], and C.
     e, e_rate
@@ -104,7 +114,15 @@ def device_at(
 
 @compiled
 def stored_in(s: Record, l: int, i: int, path: float, e: float) -> float:
-    """Energy stored in a device over that at the start [J]; a yielded tendon's may be negative."""
+    """Energy stored in a device over that at the start [J]; a yielded tendon's may be negative.
+
+    Parameters
+    ----------
+    path
+        |u_b| [m].
+    e
+        Elongation of a tendon [m].
+    """
     kind = s.device_kind[i, l]
     if kind == STOP:
         beyond = max(path - s.device_constants[i, 0, l], 0.0)

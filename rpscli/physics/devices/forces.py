@@ -24,8 +24,6 @@ def resistance(s: Record, l: int, i: int, path: float, rate: float) -> float:
 
     Parameters
     ----------
-    s, l, i
-        The lanes, which of them, and which device.
     path, rate
         |u_b| [m] and its rate [m/s].
     """
@@ -45,7 +43,13 @@ def resistance(s: Record, l: int, i: int, path: float, rate: float) -> float:
 
 @compiled
 def tension(s: Record, l: int, i: int, e: float) -> float:
-    """Tension of one tendon of a device that is one [N], at its elongation e [m]; else 0."""
+    """Tension of one tendon of a device that is one [N], at its elongation e [m]; else 0.
+
+    Parameters
+    ----------
+    e
+        Elongation of a tendon [m].
+    """
     if s.device_kind[i, l] != TENDON or s.device_branch[i, l] == IDLE:
         return 0.0
     if s.device_branch[i, l] == WORKING:
@@ -56,7 +60,13 @@ def tension(s: Record, l: int, i: int, e: float) -> float:
 
 @compiled
 def cap_beam_path(s: Record, l: int, theta: float, theta_dot: float) -> tuple[float, float, float]:
-    """|u_b| [m], its rate [m/s], and C, at a tilt in the present phase."""
+    """|u_b| [m], its rate [m/s], and C, at a tilt in the present phase.
+
+    Parameters
+    ----------
+    theta, theta_dot
+        Tilt x [rad] and its rate [rad/s].
+    """
     sine, cosine = sine_cosine(theta)
     phase = phase_constants(s, l)
     C = contact_height(phase, cosine, sine)
@@ -66,7 +76,13 @@ def cap_beam_path(s: Record, l: int, theta: float, theta_dot: float) -> tuple[fl
 
 @compiled
 def set_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
-    """What the devices of a lane do at a tilt and its rate; writes `next_device`, push and pull."""
+    """What the devices of a lane do at a tilt and its rate; writes `next_device`, push and pull.
+
+    Parameters
+    ----------
+    theta, theta_dot
+        Tilt x [rad] and its rate [rad/s].
+    """
     path, rate, C = cap_beam_path(s, l, theta, theta_dot)
     e, lever, lean, rise = opening(s, l, theta)
     resisting, tense = 0.0, 0.0

@@ -187,7 +187,13 @@ def turn(s: Record, l: int, log: Record) -> bool:
 
 @compiled
 def slide(s: Record, l: int, log: Record, side: float) -> None:
-    """Leave a tilt that friction held, to the right or to the left."""
+    """Leave a tilt that friction held, to the right or to the left.
+
+    Parameters
+    ----------
+    side
+        1 to the right, -1 to the left.
+    """
     s.phase[l] = ROLLING if s.phase_c[l] > 0.0 else ROCKING
     s.direction[l], s.renew[l] = side * s.side[l], AFTER_PHASE_CHANGE
     rotation = s.side[l] * s.theta[l]

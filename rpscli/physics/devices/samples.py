@@ -29,8 +29,6 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
     sample
         (4, SLOTS): written.
     """
@@ -52,7 +50,13 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
 
 @compiled
 def leave_devices(s: Record, l: int, result: Record) -> None:
-    """Write what the devices of a lane leave behind at the end of its history."""
+    """Write what the devices of a lane leave behind at the end of its history.
+
+    Parameters
+    ----------
+    result
+        A `state.RESULT`: written.
+    """
     path, _, _ = cap_beam_path(s, l, s.theta[l], 0.0)
     e, _, _, _ = opening(s, l, s.theta[l])
     for i in range(s.devices[l]):

@@ -23,7 +23,7 @@ with  C' = B  and  B' = c - C, so one sine and one cosine give everything else (
     u_b / 2R = u0 + c x - q sin x - p cos x        (odd in theta)
     v_b / 2R = v0 + p sin x - q cos x              (even in theta)
 
-Every function takes floats or arrays, and is compiled by `rpscli.physics.tilt` for the
+Every function takes floats or arrays, and is compiled by `equation_of_motion` for the
 kernels; this module itself needs numpy only.
 """
 
@@ -39,7 +39,15 @@ Value = TypeVar("Value", float, NDArray[np.float64])
 
 
 class Phase(NamedTuple):
-    """Constants of one phase of motion (rolling or rocking), all dimensionless."""
+    """Constants of one phase of motion (rolling or rocking), all dimensionless.
+
+    Parameters
+    ----------
+    p, q, c
+        B = p cos x + q sin x, C = c + p sin x - q cos x.
+    u0, v0
+        Constants of |u_b|/2R and v_b/2R.
+    """
 
     p: float
     q: float
@@ -49,7 +57,15 @@ class Phase(NamedTuple):
 
 
 def rolling_phase(alpha: float, rho: float) -> Phase:
-    """Constants while the contact point travels along the arc (x < beta)."""
+    """Constants while the contact point travels along the arc (x < beta).
+
+    Parameters
+    ----------
+    alpha
+        Slenderness angle of the column [rad].
+    rho
+        r/(2H), r the radius of its arcs.
+    """
     k = 2.0 * rho * math.cos(alpha)
     p, q = math.sin(alpha), k - math.cos(alpha)
     return Phase(p=p, q=q, c=k, u0=p, v0=q)
@@ -78,27 +94,69 @@ def rocking_phase(alpha: float, rho: float, beta: float) -> Phase:
 
 
 def contact_arm(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """B(x): horizontal distance of the weight from the contact point, over R."""
+    """B(x): horizontal distance of the weight from the contact point, over R.
+
+    Parameters
+    ----------
+    phase
+        Constants of the phase of motion.
+    cos_x, sin_x
+        Of the tilt, numbers or arrays.
+    """
     return phase.p * cos_x + phase.q * sin_x
 
 
 def contact_height(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """C(x): du_b/dtheta = 2 R C."""
+    """C(x): du_b/dtheta = 2 R C.
+
+    Parameters
+    ----------
+    phase
+        Constants of the phase of motion.
+    cos_x, sin_x
+        Of the tilt, numbers or arrays.
+    """
     return phase.c + phase.p * sin_x - phase.q * cos_x
 
 
 def squared_distance(phase: Phase, C: float) -> float:
-    """S(x) = B^2 + C^2, from C alone."""
+    """S(x) = B^2 + C^2, from C alone.
+
+    Parameters
+    ----------
+    phase
+        Constants of the phase of motion.
+    C
+        Contact height over R.
+    """
     return phase.p * phase.p + phase.q * phase.q + phase.c * (2.0 * C - phase.c)
 
 
 def cap_beam_displacement(phase: Phase, x: Value, cos_x: Value, sin_x: Value) -> Value:
-    """|u_b| / 2R."""
+    """|u_b| / 2R.
+
+    Parameters
+    ----------
+    phase
+        Constants of the phase of motion.
+    x
+        Tilt, a number or an array [rad].
+    cos_x, sin_x
+        Of the tilt.
+    """
     return phase.u0 + phase.c * x - phase.q * sin_x - phase.p * cos_x
 
 
 def cap_beam_lift(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """v_b / 2R."""
+    """v_b / 2R.
+
+    Parameters
+    ----------
+    phase
+        Constants of the phase of motion.
+    cos_x, sin_x
+        Of the tilt, numbers or arrays.
+    """
     return phase.v0 + phase.p * sin_x - phase.q * cos_x
 
 

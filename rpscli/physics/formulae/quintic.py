@@ -73,7 +73,17 @@ def upper_hull(b: Quintic) -> float:
 
 @compiled
 def offset(b: Quintic, sign: float, level: float) -> Quintic:
-    """Coefficients of sign (f - level)."""
+    """Coefficients of sign (f - level).
+
+    Parameters
+    ----------
+    b
+        Bernstein coefficients of f over [0, 1].
+    sign
+        1 or -1.
+    level
+        In the unit of f.
+    """
     return (
         sign * (b[0] - level),
         sign * (b[1] - level),
@@ -86,7 +96,15 @@ def offset(b: Quintic, sign: float, level: float) -> Quintic:
 
 @compiled
 def value(b: Quintic, t: float) -> float:
-    """f at t."""
+    """f at t.
+
+    Parameters
+    ----------
+    b
+        Bernstein coefficients of f over [0, 1].
+    t
+        Fraction of the step.
+    """
     r = 1.0 - t
     t2, r2 = t * t, r * r
     ends = b[0] * r2 * r2 * r + b[5] * t2 * t2 * t
@@ -114,7 +132,17 @@ def first_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> flo
 
 @compiled
 def search_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
-    """The same for a quintic whose hull does not say that there is none."""
+    """The same for a quintic whose hull does not say that there is none.
+
+    Parameters
+    ----------
+    b
+        Bernstein coefficients of f over [0, 1].
+    settled
+        Corrections of t end below this.
+    piece
+        (6,) scratch.
+    """
     level, index = 0, 0
     while True:
         width = 0.5**level
@@ -179,7 +207,15 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
 
 @compiled
 def descent_in(piece: NDArray[np.float64], settled: float) -> float:
-    """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
+    """The root of a piece that changes sign once, downwards: Newton's method inside a bracket.
+
+    Parameters
+    ----------
+    piece
+        (6,) Bernstein coefficients over the piece.
+    settled
+        Corrections of the root end below this share of it.
+    """
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
     low, high = 0.0, 1.0
     t = b[0] / (b[0] - b[5]) if b[0] > 0.0 > b[5] else 0.5  # where the chord crosses
@@ -201,7 +237,15 @@ def descent_in(piece: NDArray[np.float64], settled: float) -> float:
 
 @compiled
 def slope(b: Quintic, t: float) -> float:
-    """df/dt at t."""
+    """df/dt at t.
+
+    Parameters
+    ----------
+    b
+        Bernstein coefficients of f over [0, 1].
+    t
+        Fraction of the step.
+    """
     r = 1.0 - t
     return 5.0 * (
         (b[1] - b[0]) * r**4

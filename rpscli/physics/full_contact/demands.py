@@ -21,7 +21,15 @@ def clear_contacts(block: Record) -> None:
 
 @compiled
 def mark_samples(block: Record, first: int, last: int, each: int) -> None:
-    """Write `at_sample`: 1 at the instants first, first + each, ... up to last."""
+    """Write `at_sample`: 1 at the instants first, first + each, ... up to last.
+
+    Parameters
+    ----------
+    first, last
+        Instants of the block.
+    each
+        Steps from sample to sample.
+    """
     for k in range(INSTANTS):
         block.at_sample[k] = 0.0
     for k in range(first, last + 1, each):
@@ -30,7 +38,13 @@ def mark_samples(block: Record, first: int, last: int, each: int) -> None:
 
 @compiled
 def may_raise(block: Record, shear: float, acceleration: float) -> bool:
-    """Whether the bounds of a sample are above these, see `uplifted.demands`."""
+    """Whether the bounds of a sample are above these, see `uplifted.demands`.
+
+    Parameters
+    ----------
+    shear, acceleration
+        Weighted squares of the modes that raise no demand.
+    """
     found = 0
     for k in range(INSTANTS):
         more = (block.shear_bound[k] > shear) | (block.acceleration_bound[k] > acceleration)
@@ -42,7 +56,13 @@ def may_raise(block: Record, shear: float, acceleration: float) -> bool:
 def raise_floors_of_block(
     block: Record, system: Record, shears: Floats, accelerations: Floats
 ) -> None:
-    """Raise the largest storey shears [N] and absolute floor accelerations [m/s2], (n,) or more."""
+    """Raise the largest storey shears [N] and absolute floor accelerations [m/s2], (n,) or more.
+
+    Parameters
+    ----------
+    shears, accelerations
+        (n,) or more [N, m/s2]: raised.
+    """
     n = block.n
     threes = n - n % 3
     for i in range(n):
@@ -61,7 +81,13 @@ def raise_floors_of_block(
 
 @compiled
 def largest_at_samples(block: Record, row: Floats) -> float:
-    """Largest absolute value of a row at samples; overwrites the row."""
+    """Largest absolute value of a row at samples; overwrites the row.
+
+    Parameters
+    ----------
+    row
+        (INSTANTS,): overwritten.
+    """
     for k in range(INSTANTS):
         row[k] = block.at_sample[k] * abs(row[k])
     half = INSTANTS // 2  # halved so that the compiler compares vectors
@@ -94,7 +120,10 @@ def add_three_modes(block: Record, system: Record, i: int, r: int) -> None:
 def observe_contacts(block: Record, system: Record, pull: float) -> None:
     """Raise friction demands and lower least normal forces, instant by instant.
 
-    Tendons pull the cap beam down with `pull` [N].
+    Parameters
+    ----------
+    pull
+        Vertical force of tendons on the cap beam, downwards [N].
     """
     for k in range(INSTANTS):
         top, bottom, light_top, light_bottom = contact_measures(

@@ -26,8 +26,6 @@ def fill_work(block: Record, system: Record, which: int, h: float) -> None:
     ----------
     block
         Its `work` of a WHOLE_STEP or a SHORT_STEP is written.
-    system
-        The structure.
     which
         The step.
     h

@@ -48,7 +48,13 @@ def follow_fixed_base(
     floors: NDArray[np.float64],
     largest: Floats,
 ) -> None:
-    """The same for one record each."""
+    """The same for one record each.
+
+    Parameters
+    ----------
+    acceleration, dt, floors, largest
+        See `integrate_fixed_base`.
+    """
     n, instants = system.n, floors.shape[0]
     fill_map(block, system, WHOLE_STEP, dt)
     steps = INSTANTS - 1

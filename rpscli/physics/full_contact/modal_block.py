@@ -24,6 +24,13 @@ def fill_map(block: Record, system: Record, which: int, h: float) -> None:
     """The exact map of every mode over h [s], under the ground's acceleration.
 
     Writes the block's map of a WHOLE_STEP or a SHORT_STEP.
+
+    Parameters
+    ----------
+    which
+        WHOLE_STEP or SHORT_STEP.
+    h
+        Length of the step [s].
     """
     step = block.step_maps[which]
     for r in range(system.n):
@@ -40,6 +47,11 @@ def follow_modes(block: Record, system: Record, which: int) -> None:
     Reads the ground's motion and writes the modes' rows, V with its derivatives and the bounds of
     the demands. Few rows meet in each loop over instants: so the compiler finds it worth checking
     that they do not overlap, and makes vector instructions.
+
+    Parameters
+    ----------
+    which
+        WHOLE_STEP or SHORT_STEP.
     """
     for k in range(INSTANTS):
         block.V[k], block.dV[k], block.ddV[k] = 0.0, 0.0, 0.0
@@ -68,6 +80,11 @@ def move_modes(block: Record, step: Floats) -> None:
 
     What the ground does waits for nothing and comes first, see `add_ground`. Three modes then go
     together, so that none waits for its own last step.
+
+    Parameters
+    ----------
+    step
+        (modes, 8), see `fill_map`.
     """
     n, qs, dqs, forces = block.n, block.qs, block.dqs, block.forces
     threes = n - n % 3
@@ -95,7 +112,13 @@ def move_modes(block: Record, step: Floats) -> None:
 
 @compiled
 def add_ground(block: Record, step: Floats, r: int) -> None:
-    """Write where the ground alone brings mode r in each step, and how fast, to qs and forces."""
+    """Write where the ground alone brings mode r in each step, and how fast, to qs and forces.
+
+    Parameters
+    ----------
+    step
+        (modes, 8), see `fill_map`.
+    """
     a, b, e, d = step[r, 2], step[r, 3], step[r, 6], step[r, 7]
     for k in range(INSTANTS):
         a_g, slope = block.a_g[k], block.a_g_slope[k]
@@ -104,18 +127,40 @@ def add_ground(block: Record, step: Floats, r: int) -> None:
 
 @compiled
 def map_of(step: Floats, r: int) -> Map:
-    """The map of mode r."""
+    """The map of mode r.
+
+    Parameters
+    ----------
+    step
+        (modes, 8), see `fill_map`.
+    """
     return step[r, 0], step[r, 1], step[r, 4], step[r, 5]
 
 
 @compiled
 def mapped(m: Map, q: float, dq: float, still: float, moving: float) -> tuple[float, float]:
-    """Displacement and velocity a step later, with what the ground does to them."""
+    """Displacement and velocity a step later, with what the ground does to them.
+
+    Parameters
+    ----------
+    m
+        What a step makes of the mode left alone.
+    q, dq
+        Modal displacement and velocity at its start.
+    still, moving
+        What the ground adds to either.
+    """
     return m[0] * q + (m[1] * dq + still), m[2] * q + (m[3] * dq + moving)
 
 
 @compiled
 def keep_state(block: Record, k: int) -> None:
-    """Make the state after k steps of the block the present one."""
+    """Make the state after k steps of the block the present one.
+
+    Parameters
+    ----------
+    k
+        Steps of the block.
+    """
     for r in range(block.n):
         block.q[r], block.dq[r] = block.qs[r, k], block.dqs[r, k]

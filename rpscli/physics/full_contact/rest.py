@@ -19,6 +19,11 @@ def is_over(s: Record, l: int, system: Record, block: Record, margin: Margin) ->
     Each mode decays from its present energy, which bounds every demand and the push that could
     uplift the storey again. While uplifted a history is never over: impacts excite the building
     until the storey is down.
+
+    Parameters
+    ----------
+    margin
+        See `uplift_search.margin_of`.
     """
     free = s.interval[l] + 1 - s.npts[l]
     if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
@@ -34,7 +39,13 @@ def modal_speed(system: Record, block: Record, r: int) -> float:
 
 @compiled
 def stays_down(system: Record, block: Record, margin: Margin) -> bool:
-    """Whether the freely vibrating building can never again push hard enough to uplift."""
+    """Whether the freely vibrating building can never again push hard enough to uplift.
+
+    Parameters
+    ----------
+    margin
+        See `uplift_search.margin_of`.
+    """
     largest = 0.0
     for r in range(system.n):
         force = system.omega[r] + system.two_xi_omega[r]

@@ -65,9 +65,18 @@ def modes_from_block(s: Record, l: int, block: Record) -> None:
 
 
 class Plan(NamedTuple):
-    """Steps to take at once: how many, of which length [s]; `each` of them lead to a sample.
+    """Steps to take at once.
 
-    `which` says where their map stands: that of the lane's whole steps is known.
+    Parameters
+    ----------
+    steps
+        How many.
+    h
+        Length of each [s].
+    each
+        How many lead to a sample.
+    which
+        Where their map stands, WHOLE_STEP or SHORT_STEP; that of the lane's whole steps is known.
     """
 
     steps: int
@@ -92,6 +101,11 @@ def plan_block(s: Record, l: int, system: Record, block: Record, finer: int) -> 
 
     They end where the ground acceleration may jump, the history ends, or is looked at to see
     whether anything can still happen.
+
+    Parameters
+    ----------
+    finer
+        Parts of a usual step.
     """
     time, step, i = s.time[l], s.contact_step[l], s.interval[l]
     if finer > 1 or time > 0.0:
@@ -122,14 +136,8 @@ def accept_block(
 
     Parameters
     ----------
-    s, l, system
-        The lanes, which of them, and its structure.
     block, plan
         The steps in full contact, and how they were planned.
-    acceleration
-        Records of the ground end to end [m/s2].
-    output
-        Where samples and events go.
     taken
         Steps that are accepted.
     margin
@@ -177,12 +185,6 @@ def leave_contact(
 
     Parameters
     ----------
-    s, l, system
-        The lanes, which of them, and its structure.
-    block
-        The steps in full contact.
-    output
-        Where samples and events go.
     at
         Accepted steps of the block.
     h

@@ -35,10 +35,19 @@ from rpscli.physics.state import INSTANTS, SHORT_STEP, STUCK, Record
 class Margin(NamedTuple):
     """What the margin against uplift is made of.
 
-    `ground_factor` is 1 + 2 gamma, `shear_share` 2 gamma eta/M_tot [1/kg], and `ground_damping`
-    sum Gamma^2 2 xi w [kg/s]: what the slope of the ground's acceleration adds to V''. To either
-    side the limit is `right` or `left`, tan(alpha) (1 + 2 gamma + 2 gamma eta) in full contact,
-    times g + a_v, and what devices hold, `held_right` or `held_left` [m/s2].
+    Parameters
+    ----------
+    ground_factor
+        1 + 2 gamma.
+    shear_share
+        2 gamma eta/M_tot [1/kg].
+    right, left
+        What multiplies g + a_v in the limit to either side: in full contact tan(alpha) (1 + 2 gamma
+        + 2 gamma eta).
+    held_right, held_left
+        What devices add to the limit [m/s2].
+    ground_damping
+        sum Gamma^2 2 xi w [kg/s]: what the slope of the ground's acceleration adds to V''.
     """
 
     ground_factor: float
@@ -74,7 +83,15 @@ def margin_of(s: Record, l: int, system: Record) -> Margin:
 
 @compiled
 def limit_to(margin: Margin, side: float) -> tuple[float, float]:
-    """What multiplies g + a_v in the limit to a side, and what devices hold [m/s2]."""
+    """What multiplies g + a_v in the limit to a side, and what devices hold [m/s2].
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    side
+        1 to the right, -1 to the left.
+    """
     if side > 0.0:
         return margin.right, margin.held_right
     return margin.left, margin.held_left
@@ -86,8 +103,6 @@ def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
 
     Parameters
     ----------
-    block
-        Steps in full contact.
     margin
         See `margin_of`.
     h
@@ -138,7 +153,16 @@ def margin_path(path: Quintic, limit: float, rise: float, side: float, held: flo
 def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
     """Write `alarm`: 0 for steps in which the margin surely stays positive to both sides.
 
-    `least` is the share of the limit that has to be left for that. Returns whether any is not 0.
+    Returns whether any is not 0.
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    least
+        Share of the limit that has to be left.
     """
     alarms = 0
     for k in range(INSTANTS):
@@ -157,7 +181,17 @@ def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
 
 @compiled
 def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float, float]:
-    """Fraction of the step after k others at which the storey uplifts, and the side (0: none)."""
+    """Fraction of the step after k others at which the storey uplifts, and the side (0: none).
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    k
+        Steps before the one looked at.
+    """
     path = push_path(block, margin, h, k)
     # Where gravity is lost both margins are negative at once: then the push decides.
     lean = 0.0
@@ -185,8 +219,6 @@ def margin_after(
 
     Parameters
     ----------
-    block, system
-        Steps in full contact, and the structure.
     margin
         See `margin_of`.
     h
@@ -226,8 +258,6 @@ def locate_uplift(
 
     Parameters
     ----------
-    block, system
-        Steps in full contact, and the structure.
     margin
         See `margin_of`.
     h

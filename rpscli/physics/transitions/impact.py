@@ -20,7 +20,13 @@ from rpscli.physics.transitions.phases import enter_first_phase
 
 @compiled
 def add_floor_velocity(s: Record, l: int, change: float) -> None:
-    """Add the same velocity to every floor, relative to the cap beam [m/s]."""
+    """Add the same velocity to every floor, relative to the cap beam [m/s].
+
+    Parameters
+    ----------
+    change
+        [m/s].
+    """
     for r in range(s.n):
         s.dq[0, r, l] += s.Gamma[r, l] * change
 
@@ -97,6 +103,11 @@ def is_negligible(system: Record, theta_dot: float, theta_ddot: float) -> bool:
 
     Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
     it reaches x'^2/(2 |x''|).
+
+    Parameters
+    ----------
+    theta_dot, theta_ddot
+        x' [rad/s] and x'' [rad/s2] after the impact.
     """
     least = system.recontact_tolerance * system.alpha
     return theta_ddot < 0.0 and bool(theta_dot**2 < 2.0 * abs(theta_ddot) * least)

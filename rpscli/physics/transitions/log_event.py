@@ -28,8 +28,6 @@ def log_event(
 
     Parameters
     ----------
-    s, l, log
-        State, lane, and the log.
     time
         Since the start of the record [s].
     kind

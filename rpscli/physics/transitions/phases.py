@@ -19,7 +19,13 @@ from rpscli.physics.transitions.log_event import log_event, time_of
 
 @compiled
 def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
-    """Set the constants of a phase of motion and the range that the tilt has in it."""
+    """Set the constants of a phase of motion and the range that the tilt has in it.
+
+    Parameters
+    ----------
+    phase
+        ROLLING or ROCKING.
+    """
     s.phase[l] = phase
     constants = system.rolling if phase == ROLLING else system.rocking
     s.phase_p[l], s.phase_q[l], s.phase_c[l] = constants[0], constants[1], constants[2]
@@ -52,7 +58,13 @@ def event_above(s: Record, l: int, system: Record) -> int:
 
 @compiled
 def uplift(s: Record, l: int, system: Record, log: Record, side: float) -> None:
-    """Leave full contact towards a side; the modes' state is set already."""
+    """Leave full contact towards a side; the modes' state is set already.
+
+    Parameters
+    ----------
+    side
+        1 to the right, -1 to the left.
+    """
     s.side[l], s.renew[l] = side, AFTER_UPLIFT
     enter_first_phase(s, l, system)
     log_event(s, l, log, time_of(s, l), UPLIFT, 0.0, 0.0, 0.0, 0.0)

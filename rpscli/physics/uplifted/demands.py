@@ -72,8 +72,6 @@ def raise_contacts(s: Record, l: int, look: float, across: float, upwards: float
 
     Parameters
     ----------
-    s, l
-        The lanes, and which of them.
     look
         Nothing is raised where this is 0.
     across, upwards
@@ -127,5 +125,13 @@ def set_harmless(s: Record, l: int, system: Record) -> None:
 
 @compiled
 def harmless(largest: float, bound: float) -> float:
-    """What the weighted squares of the modes may reach without raising the largest demand."""
+    """What the weighted squares of the modes may reach without raising the largest demand.
+
+    Parameters
+    ----------
+    largest
+        Largest demand so far [N or m/s2].
+    bound
+        `shear_bound_of` or `acceleration_bound_of`, see `state`.
+    """
     return SURELY * (largest * largest) * bound

@@ -101,12 +101,6 @@ def end_on_event(
 
     Parameters
     ----------
-    s, l, system
-        The lanes, which of them, and its structure.
-    block
-        Lends scratch to the search of the largest tilt.
-    log
-        (rows,) `state.EVENT`.
     fraction
         Fraction of the step at which the event happens.
     level

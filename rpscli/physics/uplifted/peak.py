@@ -50,7 +50,13 @@ def raise_peak(s: Record, l: int, block: Record, log: Record) -> None:
 
 @compiled
 def log_critical_passage(s: Record, l: int, block: Record, log: Record, path: Quintic) -> None:
-    """Note when theta_cr was passed for the first time, within the step just taken."""
+    """Note when theta_cr was passed for the first time, within the step just taken.
+
+    Parameters
+    ----------
+    path
+        The tilt over the step [rad].
+    """
     level, h, side = s.theta_cr[l], s.step[l], s.side[l]
     t = min(first_descent(offset(path, -1.0, level), SETTLED, block.piece), 1.0)
     rate = side * slope(path, t) / h if h > 0.0 else 0.0

@@ -93,7 +93,15 @@ def check_steps(s: Record) -> None:
 
 @compiled
 def chosen(accepted: float, end: float, start: float) -> float:
-    """The end of an accepted step, else its start."""
+    """The end of an accepted step, else its start.
+
+    Parameters
+    ----------
+    accepted
+        1 or 0.
+    end, start
+        In one unit.
+    """
     # Adding zero keeps the compiler from choosing between addresses, lane by lane.
     new = end + 0.0
     return new if accepted > 0.0 else start

@@ -97,7 +97,13 @@ def add_terms(s: Record) -> None:
 def sums(
     t0: float, t1: float, t2: float, t3: float, t4: float, t5: float, t6: float, t7: float
 ) -> tuple[float, float]:
-    """Integral over t/h from 0 to 1, and value at 1, of a series."""
+    """Integral over t/h from 0 to 1, and value at 1, of a series.
+
+    Parameters
+    ----------
+    t0, t1, t2, t3, t4, t5, t6, t7
+        Coefficients of powers of t/h.
+    """
     late = t7 * 0.125 + t6 * (1.0 / 7.0) + t5 * (1.0 / 6.0) + t4 * 0.2
     change = late + t3 * 0.25 + t2 * (1.0 / 3.0) + t1 * 0.5 + t0
     return change, t7 + t6 + t5 + t4 + t3 + t2 + t1 + t0
