@@ -29,7 +29,9 @@ from rpscli.report.figures.record import record_figure
 from rpscli.report.figures.rotation import rotation_figure
 from rpscli.report.figures.selection import selection_figure
 from rpscli.report.figures.storey_curve import storey_curve_figure
-from rpscli.report.files.csv_text import csv_text
+from rpscli.report.figures.thinned import thinned
+from rpscli.report.files.csv_text import csv_lines, csv_text
+from rpscli.report.files.whole_files import Content
 from rpscli.report.tables.floor_spectra import floor_spectra_columns
 from rpscli.report.tables.modal import eigenvalue_columns, mode_columns, shape_columns
 from rpscli.report.tables.pushover import capacity_columns, storey_curve_columns
@@ -38,7 +40,7 @@ from rpscli.report.tables.selection import mean_columns, selection_columns, sele
 from rpscli.report.tables.storeys import storey_columns
 from rpscli.report.tables.timehistory import event_columns, history_columns
 
-Files = Iterator[tuple[str, str | bytes]]
+Files = Iterator[tuple[str, str | Content]]
 """Names and contents."""
 
 
@@ -73,7 +75,7 @@ def timehistory_files(
     result: TimeHistoryResult, title: str, look: Look = USUAL, artists: Artists = ()
 ) -> Files:
     """Files of a time history."""
-    yield "timehistory.csv", csv_text(history_columns(result))
+    yield "timehistory.csv", csv_lines(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
     figures: dict[str, Callable[..., bytes]] = {
@@ -86,7 +88,12 @@ def timehistory_files(
         figures["storey_shears"] = profile_figure
     if result.structure.devices:
         figures["devices"] = devices_figure
-    draws = {stem: partial(draw, result, title) for stem, draw in figures.items()}
+    few = thinned(result)
+    # Profiles are maxima over all samples.
+    draws = {
+        stem: partial(draw, result if draw is profile_figure else few, title)
+        for stem, draw in figures.items()
+    }
     yield from figure_files(draws, look, artists).items()
 
 
@@ -102,7 +109,7 @@ def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUA
 
 def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
     """Files of a ground motion."""
-    yield "record.csv", csv_text(motion_columns(motion))
+    yield "record.csv", csv_lines(motion_columns(motion))
     yield "spectrum.csv", csv_text(spectrum_columns(spectrum))
     yield from figure_files({"record": partial(record_figure, motion, spectrum)}, look).items()
 

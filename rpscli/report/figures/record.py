@@ -8,6 +8,7 @@ import numpy as np
 
 from rpscli.records.measures.integration import displacement, velocity
 from rpscli.report.figures import style
+from rpscli.report.figures.thinned import extremes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +50,8 @@ def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "accelera
         integral = velocity if quantity == "velocity" else displacement
         values = integral(values, motion.dt)
     time, peak = motion.time, int(np.argmax(np.abs(values)))
-    axes.plot(time, values, color=colour, lw=0.7)
+    kept = extremes(values)
+    axes.plot(time[kept], values[kept], color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
     axes.set_xlim(0.0, motion.duration)
     axes.set_xlabel("time [s]")

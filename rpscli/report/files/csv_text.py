@@ -41,10 +41,15 @@ def csv_text(columns: Sequence[Column]) -> str:
     0.5,
     <BLANKLINE>
     """
+    return "".join(csv_lines(columns))
+
+
+def csv_lines(columns: Sequence[Column]) -> Iterator[str]:
+    """The same table line by line, for those that are too long to be in memory as text."""
     cells = [map(_cell, _one_by_one(column.values)) for column in columns]
-    lines = [",".join(column.title for column in columns)]
-    lines += [",".join(row) for row in zip(*cells, strict=True)]
-    return "\n".join(lines) + "\n"
+    yield ",".join(column.title for column in columns) + "\n"
+    for row in zip(*cells, strict=True):
+        yield ",".join(row) + "\n"
 
 
 def quoted(value: object) -> float | int | str | None:

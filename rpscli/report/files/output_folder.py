@@ -16,7 +16,7 @@ from typing import Any
 from rpscli.errors import Refused
 from rpscli.report.files.json_text import SCHEMA_VERSION, json_text
 from rpscli.report.files.versions import versions
-from rpscli.report.files.whole_files import locked, require_writable, write_whole
+from rpscli.report.files.whole_files import Content, locked, require_writable, write_whole
 
 RUN_FILE = "run.json"
 
@@ -74,7 +74,7 @@ class OutputFolder:
         self.folder = folder
         self.run = run
         self.force = force
-        self._contents: dict[Path, bytes] = {}
+        self._contents: dict[Path, Content] = {}
         self._earlier = self._claimed()
 
     @property
@@ -83,7 +83,7 @@ class OutputFolder:
         return [str(path) for path in (*self._contents, self.folder / RUN_FILE)]
 
     @property
-    def contents(self) -> Mapping[Path, bytes]:
+    def contents(self) -> Mapping[Path, Content]:
         """What was collected."""
         return self._contents
 
@@ -95,11 +95,11 @@ class OutputFolder:
             json_text({"sha256": self.run.digest, "inputs": self.run.inputs})
         )
 
-    def add(self, name: str, content: str | bytes) -> None:
+    def add(self, name: str, content: str | Content) -> None:
         """Collect a file of the folder."""
         self.add_at(self.folder / name, content)
 
-    def add_at(self, path: Path, content: str | bytes) -> None:
+    def add_at(self, path: Path, content: str | Content) -> None:
         """Collect a file that stands elsewhere; it is guarded like those of the folder."""
         self._contents[path] = content.encode() if isinstance(content, str) else content
 

@@ -7,11 +7,15 @@ import secrets
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import TypeAlias
 
 from rpscli.errors import OutputError
 
+Content: TypeAlias = bytes | Iterator[str]
+"""Of a file, or its lines, which are made as they are written."""
 
-def write_whole(contents: Mapping[Path, bytes]) -> None:
+
+def write_whole(contents: Mapping[Path, Content]) -> None:
     """Write files so that each appears whole or not at all, in folders that are made if needed.
 
     Raises
@@ -28,7 +32,11 @@ def write_whole(contents: Mapping[Path, bytes]) -> None:
                 raise IsADirectoryError(0, "there is a folder of this name")
             temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
             ready[path] = temporary
-            temporary.write_bytes(data)
+            if isinstance(data, bytes):
+                temporary.write_bytes(data)
+            else:
+                with temporary.open("wb") as file:
+                    file.writelines(map(str.encode, data))
         for path, temporary in ready.items():
             temporary.replace(path)
     except OSError as error:

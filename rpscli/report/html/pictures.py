@@ -36,7 +36,7 @@ def page_look(look: Look) -> Look:
     return Look(FORMATS, look.columns, look.style)
 
 
-def pictures(files: Iterable[tuple[str, str | bytes]]) -> Iterator[tuple[str, dict[str, bytes]]]:
+def pictures(files: Iterable[tuple[str, object]]) -> Iterator[tuple[str, dict[str, bytes]]]:
     """Figures among the files of an analysis: name without ending, and file by ending."""
     found: dict[str, dict[str, bytes]] = {}
     for name, content in files:

@@ -1,0 +1,44 @@
+"""Long histories are drawn with fewer samples, and no peak is lost."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from report.small_results import KINDS
+from rpscli.report.figures import thinned
+from rpscli.report.files.csv_text import Column, csv_lines, csv_text
+
+
+def test_extremes_of_every_stretch_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(thinned, "MOST", 100)
+    monkeypatch.setattr(thinned, "STRETCHES", 10)
+    values = np.random.default_rng(1).normal(size=1003)
+    kept = thinned.extremes(values)
+    assert kept[0] == 0
+    assert kept[-1] == 1002
+    assert len(kept) <= 22
+    for start in range(0, 1003, 101):
+        stretch = values[start : start + 101]
+        among = values[kept[(kept >= start) & (kept < start + 101)]]
+        assert (among.min(), among.max()) == (stretch.min(), stretch.max())
+
+
+def test_thinned_histories_keep_their_peaks(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = KINDS["rolls"]()
+    assert thinned.thinned(result) is result
+    monkeypatch.setattr(thinned, "MOST", 50)
+    monkeypatch.setattr(thinned, "STRETCHES", 10)
+    few = thinned.thinned(result)
+    assert len(few.trace.time) < len(result.trace.time)
+    for name in ("rotation", "ground_acceleration", "driving_moment", "time"):
+        all_of_it, kept = getattr(result.trace, name), getattr(few.trace, name)
+        assert (kept.min(), kept.max()) == (all_of_it.min(), all_of_it.max())
+    assert replace(few, trace=result.trace).max_rotation == result.max_rotation
+
+
+def test_lines_of_a_table_are_its_text() -> None:
+    columns = [Column("time", "s", np.arange(5000.0)), Column("kind", "-", ["a"] * 5000)]
+    assert "".join(csv_lines(columns)) == csv_text(columns)
