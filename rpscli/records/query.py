@@ -30,9 +30,12 @@ _UNITS = {
 LIKENESS = 0.5
 """Of a name to the one that was meant: names of records are long, and made of parts."""
 
+SOME = 12
+"""Known words that are told where there are more than twice as many."""
+
 
 def hint(word: str, known: Sequence[str]) -> str:
-    """What might have been meant: the nearest known word, or else all of them.
+    """What might have been meant: the nearest known word, or else all of them, or some of many.
 
     Parameters
     ----------
@@ -42,7 +45,10 @@ def hint(word: str, known: Sequence[str]) -> str:
         All that may be written.
     """
     close = nearest(word, known, LIKENESS)
-    return f"did you mean {close}?" if close else f"known: {', '.join(known)}"
+    if close:
+        return f"did you mean {close}?"
+    rest = f" and {len(known) - SOME} more" if len(known) > 2 * SOME else ""
+    return f"known: {', '.join(known[:SOME] if rest else known)}{rest}"
 
 
 @dataclass(frozen=True)

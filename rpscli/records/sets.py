@@ -86,7 +86,7 @@ def expand_set(rest: str, source: str) -> list[str]:
         others = f"sets: {', '.join(_SETS)}"
         remedy = others if "*" in wanted.place else hint(wanted.place, wanted.known)
         raise RecordError(
-            f"{source}: no {wanted.word} of FEMA P695 fits {wanted.place!r}; {remedy}"
+            f"{source}: no {wanted.word} of FEMA P695 fits {wanted.place[:60]!r}; {remedy}"
         )
     return [f"{SCHEME}:{place}{wanted.options}" for place in found]
 
@@ -114,7 +114,7 @@ def load_component(rest: str, source: str) -> GroundMotion:
             remedy = f"name {place}/a or {place}/b, or turn the pair: {place}?angle=30"
         elif place in COMPONENTS:
             remedy = f"an angle turns a pair: {place[:-2]}?angle={angle:g}"
-        raise RecordError(f"{source}: FEMA P695 has no {wanted.word} {place!r}; {remedy}")
+        raise RecordError(f"{source}: FEMA P695 has no {wanted.word} {place[:60]!r}; {remedy}")
     folder = _package_folder(source)
     if angle is None:
         return _component(folder, place, source, normalised=normalised)

