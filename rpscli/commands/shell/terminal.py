@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -13,7 +14,7 @@ from rpscli.errors import OutputError
 from rpscli.report.files.json_text import json_text
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from rich.console import Console, RenderableType
 
 PLAIN_WIDTH = 100
 """Columns where the output is no terminal and COLUMNS is not set."""
@@ -52,6 +53,28 @@ class Terminal:
             emit(rendered(tables), sys.stdout)
 
 
+def fitting(shown: RenderableType, console: Console) -> Iterator[RenderableType]:
+    """The parts of a table that is wider than the terminal: its first column begins each."""
+    from rich.measure import Measurement  # noqa: PLC0415
+    from rich.table import Table  # noqa: PLC0415
+
+    def width(table: RenderableType) -> int:
+        return Measurement.get(console, console.options.update(max_width=10_000), table).minimum
+
+    if not isinstance(shown, Table) or len(shown.columns) < 3 or width(shown) <= console.width:
+        yield shown
+        return
+    first, *others = shown.columns
+    while others:
+        for count in range(len(others), 0, -1):
+            part = copy(shown)
+            part.columns = [first, *others[:count]]
+            if count == 1 or width(part) <= console.width:
+                break
+        others = others[count:]
+        yield part
+
+
 def rendered(tables: Iterable[RenderableType]) -> str:
     """Text of tables for the standard output: coloured and as wide as a terminal, if it is one."""
     from rich.console import Console  # noqa: PLC0415 -- `rps --help` does without
@@ -70,10 +93,10 @@ def rendered(tables: Iterable[RenderableType]) -> str:
         markup=False,
         emoji=False,
     )
-    for number, table in enumerate(tables):
+    for number, part in enumerate(part for table in tables for part in fitting(table, console)):
         if number:
             console.print()
-        console.print(table, crop=False)  # too wide is better than cut off
+        console.print(part, crop=False)  # too wide is better than cut off
     page.seek(0)
     return page.read()
 
