@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 from rpscli.analyses.kernels.compilation import compiled
-from rpscli.analyses.kernels.history import History, history_of, run_of
+from rpscli.analyses.kernels.history import History, history_of, refuse_steps, run_of
 from rpscli.analyses.kernels.history import Request as HistoryRequest
+from rpscli.analyses.kernels.step_lengths import longest_time
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import TimeHistorySettings
@@ -117,7 +118,11 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
         if vertical is not None:
             above = motions.number((id(r.vertical), id(r.record), "up"), vertical)
         histories.append(HistoryRequest(system, along, above, r.scale))
-    run = run_of(stacked_systems(systems.items), motions.items, histories)
+    stacked = stacked_systems(systems.items)
+    for r, history in zip(requests, histories, strict=True):
+        seconds = longest_time(r.settings, r.record.duration)
+        refuse_steps(seconds * float(stacked.uplifted_rate[history.system]))
+    run = run_of(stacked, motions.items, histories)
     storeys = requests[0].structure.storeys
     lanes = LANES if len(requests) >= worth_lanes else 1
     with compiled():

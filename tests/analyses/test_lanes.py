@@ -7,12 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import COMPILED, FLAT, building, needs_compiled_kernels, podium, waves
+from paper_structures import (
+    COMPILED,
+    FLAT,
+    building,
+    ground,
+    needs_compiled_kernels,
+    podium,
+    waves,
+)
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.errors import CaseError
 from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
@@ -183,3 +192,11 @@ def test_the_histories_compared_are_of_all_kinds() -> None:
     assert sum(d.impacts > 5 for d in found) > len(found) / 4
     assert any(d.failure is not None and "no longer finite" in d.failure for d in found)
     assert any(d.failure is not None and "max_events" in d.failure for d in found)
+
+
+def test_histories_without_end_are_refused_before_they_begin() -> None:
+    record = ground([0.0, 1.0, 0.0], 1e18)
+    with pytest.raises(
+        CaseError, match="which must not be more than 1e\\+10: the record is too long"
+    ):
+        demands([Request(podium(0), record, TimeHistorySettings())])

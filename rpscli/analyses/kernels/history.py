@@ -265,11 +265,17 @@ def refuse_endless(
             f" {structure.storeys} storeys, {numbers:.3g} numbers, which must not be more than"
             f" {MOST_NUMBERS:.3g}; {remedy}, or resample the record, whose dt is {record.dt:g} s"
         )
-    if (steps := most_steps(structure, settings, record.duration)) > MOST_STEPS:
+    refuse_steps(most_steps(structure, settings, record.duration))
+
+
+def refuse_steps(steps: float) -> None:
+    """Refuse a history of more than `MOST_STEPS`: raises CaseError."""
+    if steps > MOST_STEPS:
         raise CaseError(
             f"the history may take {steps:.3g} steps, which must not be more than {MOST_STEPS:.3g}:"
-            " the highest modes of the building are too stiff or too strongly damped;"
-            f" {remedy}, damp by `modal`, or use fewer storeys"
+            " the record is too long, or the highest modes of the building are too stiff or too"
+            " strongly damped; give a shorter analysis.free_vibration, damp by `modal`, or use"
+            " fewer storeys"
         )
 
 

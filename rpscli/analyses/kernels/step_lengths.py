@@ -88,9 +88,13 @@ def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, durati
     duration
         Of the record [s].
     """
+    return longest_time(settings, duration) * settings.accuracy * uplifted_rate(structure)
+
+
+def longest_time(settings: TimeHistorySettings, duration: float) -> float:
+    """How long a history under a record of some duration may be followed [s]."""
     free = settings.free_vibration
-    longest = duration + (LONGEST_FREE_VIBRATION if free is None else free)
-    return longest * settings.accuracy * uplifted_rate(structure)
+    return duration + (LONGEST_FREE_VIBRATION if free is None else free)
 
 
 def most_seconds(
