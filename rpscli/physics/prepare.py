@@ -25,7 +25,7 @@ from rpscli.physics.run import empty_run, empty_state
 from rpscli.physics.state import GOES_ON
 
 
-def compile_all() -> None:
+def compile_kernel() -> None:
     """Compile the kernel; what fails in a part is left to the first call.
 
     Without a cache, or without machine code at all, there is nothing to prepare.
@@ -42,7 +42,7 @@ def compile_all() -> None:
         ) as other,
     ):
         try:
-            compile_events()
+            compile_one_lane()
             other.wait()
             integrate(empty_run(1), 1)
         except BaseException:
@@ -50,18 +50,17 @@ def compile_all() -> None:
             raise
 
 
-def compile_events() -> None:
-    """What ends a step of one lane, and the building on a fixed base."""
+def compile_one_lane() -> None:
+    """What is done for one lane: it stands, or switches; both call much that is the same."""
     switch_lane(empty_state(1), 0, GOES_ON, empty_run(1))
+    stand_lane(empty_state(1), 0, GOES_ON, empty_run(1))
+
+
+def compile_all_lanes() -> None:
+    """Steps of all lanes, and the building on a fixed base."""
     run, floors, largest = empty_run(1), np.empty((0, 2, 1)), np.zeros((2, 1))
-    integrate_fixed_base(run.acceleration, 1.0, run.systems, run.block, floors, largest)
-
-
-def compile_motion() -> None:
-    """Steps of all lanes, and full contact of one."""
-    run = empty_run(1)
     advance_lanes(empty_state(1), run.systems, run.block, run.output.log)
-    stand_lane(empty_state(1), 0, GOES_ON, run)
+    integrate_fixed_base(run.acceleration, 1.0, run.systems, run.block, floors, largest)
 
 
 @contextmanager
@@ -78,4 +77,4 @@ def garbage_kept() -> Iterator[None]:
 
 if __name__ == "__main__":
     with garbage_kept():
-        compile_motion()
+        compile_all_lanes()

@@ -32,7 +32,7 @@ def is_ready() -> bool:
 def compiled() -> Iterator[None]:
     """Around a call of the kernel: announce the compilation if there is one, and remember it."""
     from rpscli.physics.compile import remember_compiled  # noqa: PLC0415 -- numba is slow
-    from rpscli.physics.prepare import compile_all  # noqa: PLC0415 -- numba is slow
+    from rpscli.physics.prepare import compile_kernel  # noqa: PLC0415 -- numba is slow
 
     if is_ready():
         yield
@@ -41,6 +41,6 @@ def compiled() -> Iterator[None]:
         if _first.acquire(blocking=False):
             for listener in _listeners:
                 told.enter_context(listener())
-            compile_all()
+            compile_kernel()
         yield
     remember_compiled(KERNEL)

@@ -92,7 +92,15 @@ def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, durati
 
 
 def longest_time(settings: TimeHistorySettings, duration: float) -> float:
-    """How long a history under a record of some duration may be followed [s]."""
+    """How long a history may be followed [s].
+
+    Parameters
+    ----------
+    settings
+        Of these the free vibration.
+    duration
+        Of the record [s].
+    """
     free = settings.free_vibration
     return duration + (LONGEST_FREE_VIBRATION if free is None else free)
 
