@@ -55,6 +55,8 @@ def die_before_commit(statement: str) -> None:
 
 if __name__ == "__main__":
     NUMBER = signal.Signals[sys.argv.pop(1)]
+    # Shells have what runs in the background ignore SIGINT, and its children inherit that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     threads.run_batch = compute  # type: ignore[attr-defined]
     Store.add = add  # type: ignore[method-assign, assignment]
     program()
