@@ -49,6 +49,7 @@ def test_a_tonne_is_a_thousand_kilogrammes(mass: float) -> None:
     ("text", "unit", "parts"),
     [
         ("200 kN", "kg", ["is a force", "must be a mass", "W/g"]),
+        ("200 tons", "kg", ["has the unit 'tons'", "write t for 1000 kg"]),
         ("3 kg", "m", ["is a mass", "must be a length: m, cm, mm"]),
         ("3 kN m", "N/m", ["[length]", "must be a stiffness"]),
         ("3 kN/mmm", "N/m", ["'kN/mmm'", "did you mean kN/mm?"]),

@@ -100,7 +100,7 @@ def test_times_that_do_not_begin_at_zero_are_a_warning(tmp_path: Path) -> None:
         ("0 .1\n.02\n.04 .2\n", "a row of 1 numbers among rows of 2"),
         ("0 .1\n.02 .1\nend\n.04 .2\n", r"rec.txt:3: 'end' stands among the values"),
         ("0 .1\n.02 nan\n", "nan"),
-        ("0,00 0,1\n0,02 0,2\n0,04 0,3\n", "no known format"),
+        ("0,00 0,1\n0,02 0,2\n0,04 0,3\n", "decimal commas"),
         ("a\nb\n", "no known format"),
     ],
 )
@@ -174,3 +174,14 @@ def test_steps_survive_the_printing_of_times(tmp_path: Path, step: float, form: 
 def test_round_steps_come_out_exactly(step: float) -> None:
     times = np.cumsum(np.full(9000, step)) - step  # as a loop t = t + dt prints them
     assert uniform_step(times, 1e-12) == step
+
+
+@pytest.mark.parametrize(
+    ("title", "kind"),
+    [("time [s], velocity [cm/s]", "velocity"), ("t (s), disp (mm)", "displacement")],
+)
+def test_columns_of_velocity_are_refused(tmp_path: Path, title: str, kind: str) -> None:
+    rows = "0.00 .1\n0.01 .2\n0.02 .3\n"
+    with pytest.raises(RecordError, match=f":1: .*this is a {kind} record; give the acceleration"):
+        load(tmp_path, f"{title}\n{rows}", "?units=g")
+    assert load(tmp_path, f"velocity file, acc [g]\n{rows}", "").npts == 3

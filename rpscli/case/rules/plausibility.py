@@ -88,6 +88,7 @@ class Usual(NamedTuple):
 HEIGHT = Usual("the height of the columns 2H", "m", 0.3, 10.0)
 SEMI_DIAGONAL = Usual("the semi-diagonal of the columns R", "m", 0.15, 6.0)
 PERIOD = Usual("the first period on a fixed base T1", "s", 0.02, 5.0)
+STOREY_MASS = Usual("the mass of a storey in the mean", "kg", 1e3, 1e7)
 RESTITUTION = Usual("the restitution at impact e", "", 0.5, 1.0)
 FRICTION = Usual("the coefficient podium.friction", "", 0.1, 1.5)
 
@@ -104,7 +105,7 @@ PER_STOREY = ("storey_mass", "storey_height", "stiffness")
 
 
 def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
-    """Sizes, period, restitution and friction; storey shears at uplift."""
+    """Sizes, masses, period, restitution and friction; storey shears at uplift."""
     bearing, building = structure.bearing, structure.superstructure
     yield from HEIGHT.doubts(2.0 * bearing.half_height)
     yield from SEMI_DIAGONAL.doubts(bearing.semi_diagonal)
@@ -113,6 +114,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
         yield from FRICTION.doubts(structure.friction)
     if building is None:
         return
+    yield from STOREY_MASS.doubts(float(building.masses.mean()))
     yield from PERIOD.doubts(float(building.periods[0]))
     share = bearing.slenderness
     if share > STRONGEST:

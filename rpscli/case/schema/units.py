@@ -130,6 +130,14 @@ def in_si(value: object, unit: str) -> object:
         return value
 
 
+def _refuse_ton(written: str) -> None:
+    if written.lower() in {"ton", "tons"}:
+        raise ValueError(
+            f"has the unit {written!r}, which is 1000 kg to some and 907 kg or 1016 kg to others;"
+            " write t for 1000 kg, or use lb"
+        )
+
+
 def common_factor(written: str, unit: str) -> float | None:
     """Factor that turns a value in the unit `written` into `unit`; None if it is not known here.
 
@@ -144,6 +152,7 @@ def _factor(written: str, unit: str) -> float:
     if is_unit_text and (factor := common_factor(written, unit)) is not None:
         return factor
     kind, units = KINDS[unit]
+    _refuse_ton(written)
     found = _parsed(written) if is_unit_text else None
     if found is None:
         guess = nearest(written, units)

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rpscli.errors import OutputError
@@ -34,6 +34,8 @@ class Terminal:
 
     as_json: bool = False
     quiet: bool = False
+    told: set[str] = field(default_factory=set, init=False, compare=False)
+    """The warnings so far, each of which is said once."""
 
     def note(self, text: str) -> None:
         """A line about what goes on, on the standard error."""
@@ -43,7 +45,9 @@ class Terminal:
     def warn(self, texts: Iterable[str]) -> None:
         """Lines that should be read before the numbers are used."""
         for text in texts:
-            self.note(f"warning: {text}")
+            if text not in self.told:
+                self.told.add(text)
+                self.note(f"warning: {text}")
 
     def result(self, document: Mapping[str, Any], tables: Iterable[RenderableType] = ()) -> None:
         """The result, as a document or as tables."""

@@ -40,6 +40,9 @@ _UNITS_KEY = re.compile(r"\bunits?\b\s*(?:[=:]|(?:of|in|are|is)\b)\s*([^,;]+)", 
 _COLUMN_TITLE = re.compile(
     rf"\b(?:acc|accel|acceleration|ag|a)[\s_]*(?:[\[(]|\bin\b)\s*({UNIT_PATTERN})", re.IGNORECASE
 )
+_OTHER_TITLE = re.compile(
+    r"\b(?:(vel|velocity)|disp|displacement)[\s_]*[\[(]\s*(?:[cm]?m|in|ft)\b", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)
@@ -105,9 +108,9 @@ def _table(text: RecordText) -> _Table:
                 index,
             )
     if len(widths) < 2:
-        why = next(filter(None, map(why_no_numbers, text.heads)), "")
+        _refuse_punctuation(text)
         raise text.fault(
-            f"no known format of ground motions: {len(widths)} row(s) of numbers{why}; export the "
+            f"no known format of ground motions: {len(widths)} row(s) of numbers; export the "
             f"record as PEER AT2, or as columns of time and acceleration"
         )
     return _Table(
@@ -116,6 +119,12 @@ def _table(text: RecordText) -> _Table:
         np.array(widths),
         np.array(lines),
     )
+
+
+def _refuse_punctuation(text: RecordText) -> None:
+    for index, line in enumerate(text.heads):
+        if why := why_no_numbers(line):
+            raise text.fault(f"{line.strip()[:40]!r} is no row of numbers{why}", index)
 
 
 def _check_count(text: RecordText, table: _Table) -> None:
@@ -256,7 +265,20 @@ def _stated_units(text: RecordText, header: Sequence[Statement]) -> str | None:
         raise text.fault(
             f"the header states different units: {', '.join(sorted(units))}; correct the header"
         )
+    if not units:
+        _refuse_other_quantities(text, header)
     return units.pop() if units else None
+
+
+def _refuse_other_quantities(text: RecordText, header: Sequence[Statement]) -> None:
+    for line in header:
+        if title := _OTHER_TITLE.search(line.value):
+            raise text.fault(
+                f"the header says {line.value[:60]!r}: this is a"
+                f" {'velocity' if title[1] else 'displacement'} record; give the acceleration"
+                " record of the same station",
+                line.line,
+            )
 
 
 def _unit_after_key(text: RecordText, statement: str, spelling: str, line: int) -> str:

@@ -16,7 +16,10 @@ _BINARY_KINDS = {
     b"\x89HDF": "an HDF5 file; export the record as text",
     b"%PDF": "a PDF document",
     b"\x89PNG": "a picture",
+    b"\xd0\xcf\x11\xe0": "an old Excel or Word file; save the sheet as CSV",
 }
+_SPREADSHEET = re.compile(rb"\APK\x03\x04.*?(?:xl/|opendocument\.spreadsheet)", re.DOTALL)
+_SHEET = "a spreadsheet under another name; save the sheet as CSV"
 _HEADER_WIDTH = 1000  # letters
 _LARGEST_FILE = 200_000_000  # bytes; a day at a hundred samples a second has a tenth
 _SHORTEST_STEP, _LONGEST_STEP = 1e-6, 100.0  # s
@@ -197,7 +200,8 @@ def read_text(
 def _refuse_foreign(path: Path, data: bytes) -> None:
     for magic, kind in _BINARY_KINDS.items():
         if data.startswith(magic):
-            raise RecordError(f"{path}: not a record but {kind}")
+            sheet = _SPREADSHEET.search(data)
+            raise RecordError(f"{path}: not a record but {_SHEET if sheet else kind}")
     if _MARKUP.match(data.removeprefix(b"\xef\xbb\xbf")):
         raise RecordError(
             f"{path}: not a record but a web page, perhaps the log-in page of the database; "
