@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,8 @@ from rpscli.model.devices import Device, RollingResistance, Tendon, name_of
 from rpscli.model.podium import PodiumStructure
 
 Array = NDArray[np.float64]
+Rows: TypeAlias = slice | NDArray[np.intp]
+"""Numbers of samples."""
 
 
 @dataclass(frozen=True)
@@ -117,18 +120,28 @@ class DeviceTrace:
     energy: Array
     stored: Array
 
+    def at(self, rows: Rows) -> DeviceTrace:
+        """Only some samples.
 
-def device_trace(samples: Array, devices: int) -> DeviceTrace:
-    """From (samples, 4, slots) as the kernel leaves them.
+        Parameters
+        ----------
+        rows
+            Their numbers, or a slice.
+        """
+        return DeviceTrace(
+            self.force[rows], self.displacement[rows], self.energy[rows], self.stored[rows]
+        )
+
+
+def device_trace(samples: Array) -> DeviceTrace:
+    """From (samples, 4, devices) as the kernel leaves them.
 
     Parameters
     ----------
     samples
-        (samples, 4, slots), see `physics.run.Output`.
-    devices
-        How many of the slots are taken.
+        (samples, 4, devices), see `physics.run.Output`.
     """
-    force, displacement, energy, stored = np.moveaxis(samples[:, :, :devices], 1, 0)
+    force, displacement, energy, stored = np.moveaxis(samples, 1, 0)
     return DeviceTrace(force, displacement, energy, stored)
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.systems import building_system
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.integration import velocity
 from rpscli.shown import Shown
@@ -79,13 +80,18 @@ def fixed_base_response(
         storey_shears=shears,
         floor_accelerations=accelerations,
         floor_velocities=largest_velocities(floors[:, 1], record),
-        floor_displacements=floors[:, 0],
+        floor_displacements=floors[:, 0].copy(),
         drifts=shears / building.stiffnesses,
-        acceleration_histories=-(
-            floors[:, 0] @ building.stiffness_matrix + floors[:, 1] @ building.damping_matrix
-        )
-        / building.masses,
+        acceleration_histories=_accelerations(building, floors),
     )
+
+
+def _accelerations(building: Superstructure, floors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Absolute ones (samples, n) [m/s2]."""
+    found = floors[:, 0] @ building.stiffness_matrix
+    found += floors[:, 1] @ building.damping_matrix
+    found /= -building.masses
+    return found
 
 
 def largest_velocities(relative: NDArray[np.float64], record: GroundMotion) -> NDArray[np.float64]:
@@ -100,5 +106,4 @@ def largest_velocities(relative: NDArray[np.float64], record: GroundMotion) -> N
     """
     ground = velocity(record.acceleration, record.dt)[: len(relative)]
     ground = np.pad(ground, (0, len(relative) - len(ground)), mode="edge")
-    found: NDArray[np.float64] = np.max(np.abs(relative + ground[:, None]), axis=0)
-    return found
+    return np.array([np.max(np.abs(floor + ground)) for floor in relative.T])

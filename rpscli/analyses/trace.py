@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.device_results import DeviceTrace, cap_beam_forces, device_trace
+from rpscli.analyses.device_results import DeviceTrace, Rows, cap_beam_forces, device_trace
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
@@ -17,6 +17,9 @@ from rpscli.physics.formulae import geometry
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
+
+BLOCK = 50_000
+"""Samples whose quantities are derived at once."""
 
 EventKind = Literal[
     "uplift",
@@ -143,6 +146,18 @@ class Trace(Shown):
     energy_stored: Array
     devices: DeviceTrace
 
+    def at(self, rows: Rows) -> Trace:
+        """Only some samples.
+
+        Parameters
+        ----------
+        rows
+            Their numbers, or a slice.
+        """
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        devices = values.pop("devices").at(rows)
+        return Trace(**{name: of[rows] for name, of in values.items()}, devices=devices)
+
 
 def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trace:
     """Histories from what the kernel stored at samples every `dt` [s].
@@ -156,20 +171,54 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
     run
         What the kernel stored at samples.
     """
-    samples, building = run.samples, structure.superstructure
+    samples = run.samples
+    devices = device_trace(run.devices)
+    return Trace(
+        time=np.arange(len(samples), dtype=np.float64) * dt,
+        ground_acceleration=prolonged(run.ground, len(samples)),
+        rotation=samples.theta,
+        rotation_rate=samples.theta_dot,
+        phase=samples.phase.astype(np.int8),
+        floor_displacements=run.floors[:, 0],
+        floor_velocities=run.floors[:, 1],
+        energy_input=samples.energy_input,
+        energy_damped=samples.energy_damped,
+        energy_impact=samples.energy_lost,
+        devices=devices,
+        **_by_blocks(lambda rows: _derived(structure, run, devices, rows), len(samples)),
+    )
+
+
+def _by_blocks(derived: Callable[[slice], dict[str, Array]], samples: int) -> dict[str, Array]:
+    """Arrays over all samples, of which only a block at a time is in the making."""
+    whole: dict[str, Array] = {}
+    for first in range(0, samples, BLOCK):
+        rows = slice(first, min(first + BLOCK, samples))
+        for name, part in derived(rows).items():
+            if name not in whole:
+                whole[name] = np.empty((samples, *part.shape[1:]))
+            whole[name][rows] = part
+    return whole
+
+
+def _derived(
+    structure: PodiumStructure, run: SampledHistory, all_devices: DeviceTrace, rows: slice
+) -> dict[str, Array]:
+    """What follows from some samples, by the names of `Trace`."""
+    samples, building = run.samples[rows], structure.superstructure
     theta, rate = samples.theta, samples.theta_dot
-    u, du = run.floors[:, 0], run.floors[:, 1]
+    u, du = run.floors[rows, 0], run.floors[rows, 1]
     b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
     base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
-    a_g = prolonged(run.ground, len(samples))
+    a_g = prolonged(run.ground[rows], len(samples))
     drifts = np.diff(u, axis=1, prepend=base[:, None])
     shears, forces = np.zeros_like(u), np.zeros_like(u)
     if building is not None:
         shears = building.stiffnesses * drifts
         forces = (u - base[:, None]) @ building.stiffness_matrix
         forces = forces + (du - base_rate[:, None]) @ building.damping_matrix
-    devices = device_trace(run.devices, len(structure.devices))
+    devices = all_devices.at(rows)
     stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
     stored += devices.stored.sum(axis=1)
     stored += 0.5 * tilting_inertia(structure, B, C, theta) * rate**2
@@ -178,51 +227,40 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
     V = forces.sum(axis=1)
     push, pull = cap_beam_forces(structure, devices, theta)
     across, upwards = base_accelerations(structure, samples, B, C)
+    a_v = 0.0 if run.vertical is None else prolonged(run.vertical[rows], len(samples))
     shear_top, shear_bottom, normal_top, normal_bottom = _contact_forces(
-        structure, run, across, upwards, V + push, pull
+        structure, across, upwards, V + push, a_g, a_v, pull
     )
     beam = 0.5 * structure.columns_mass + structure.cap_beam_mass
-    return Trace(
-        time=np.arange(len(samples), dtype=np.float64) * dt,
-        ground_acceleration=a_g,
-        rotation=theta,
-        rotation_rate=rate,
-        phase=samples.phase.astype(np.int8),
-        cap_beam_displacement=base,
-        lift=diameter * lift,
-        floor_displacements=u,
-        floor_velocities=du,
-        drifts=drifts,
-        storey_shears=shears,
-        floor_accelerations=-forces / building.masses if building is not None else forces,
-        driving_moment=diameter * C * (V - beam * a_g),
-        shear_top=shear_top,
-        shear_bottom=shear_bottom,
-        normal_top=normal_top,
-        normal_bottom=normal_bottom,
-        energy_input=samples.energy_input,
-        energy_damped=samples.energy_damped,
-        energy_impact=samples.energy_lost,
-        energy_stored=stored,
-        devices=devices,
-    )
+    return {
+        "cap_beam_displacement": base,
+        "lift": diameter * lift,
+        "drifts": drifts,
+        "storey_shears": shears,
+        "floor_accelerations": forces if building is None else -forces / building.masses,
+        "driving_moment": diameter * C * (V - beam * a_g),
+        "shear_top": shear_top,
+        "shear_bottom": shear_bottom,
+        "normal_top": normal_top,
+        "normal_bottom": normal_bottom,
+        "energy_stored": stored,
+    }
 
 
 def _contact_forces(
     structure: PodiumStructure,
-    run: SampledHistory,
     across: Array,
     upwards: Array,
     V: Array,
+    a_g: Array,
+    a_v: Array | float,
     pull: Array,
 ) -> tuple[Array, Array, Array, Array]:
-    """Those of the kernels, for all samples at once."""
+    """Those of the kernels, for many samples at once."""
     # Imported here: numba is slow, and the command line imports this module's classes.
     from rpscli.physics.equation_of_motion import contact_forces  # noqa: PLC0415
 
     forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
-    samples = len(run.samples)
-    a_v = 0.0 if run.vertical is None else prolonged(run.vertical, samples)
     return forces_of(
         structure.cap_beam_mass,
         structure.superstructure_mass,
@@ -230,7 +268,7 @@ def _contact_forces(
         across,
         upwards,
         V,
-        prolonged(run.ground, samples),
+        a_g,
         structure.gravity + a_v,
         pull,
     )

@@ -89,11 +89,7 @@ def timehistory_files(
     if result.structure.devices:
         figures["devices"] = devices_figure
     few = thinned(result)
-    # Profiles are maxima over all samples.
-    draws = {
-        stem: partial(draw, result if draw is profile_figure else few, title)
-        for stem, draw in figures.items()
-    }
+    draws = {stem: partial(draw, few, title) for stem, draw in figures.items()}
     yield from figure_files(draws, look, artists).items()
 
 

@@ -16,11 +16,11 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.run import Output, Run, empty_block
-from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, SLOTS, Record, records
+from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, Record, records
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 MOST_NUMBERS = 1e9
-"""Of the samples of one history: 8 GB, of which those that are reached are taken."""
+"""Of one history and what follows from it: 8 GB, of which those that are reached are taken."""
 
 MOST_STEPS = 1e10
 """Of one history: more than an hour."""
@@ -157,6 +157,7 @@ def run_of(
     *,
     rows: int = 0,
     events: int = 0,
+    devices: int = 0,
 ) -> Run:
     """What the kernel needs to run histories, and room for their results.
 
@@ -168,8 +169,8 @@ def run_of(
         Records of the ground; those of the two components of a motion are equally long.
     requests
         The histories.
-    rows, events
-        Samples and events of the first history for which there is room.
+    rows, events, devices
+        Samples, events and devices of the first history for which there is room.
     """
     n = int(systems.n[0])
     starts = np.cumsum([0] + [motion.npts for motion in motions])
@@ -188,7 +189,7 @@ def run_of(
             samples=records(SAMPLE, count=rows),
             floors=np.empty((rows, 2, n)),
             log=records(EVENT, count=events),
-            devices=np.empty((rows, 4, SLOTS)),
+            devices=np.empty((rows, 4, devices)),
         ),
         block=empty_block(n),
     )
@@ -211,7 +212,7 @@ class SampledHistory:
     log
         (events,).
     devices
-        (intervals + 1, 4, slots), see `physics.run.Output`.
+        (intervals + 1, 4, devices), see `physics.run.Output`.
     """
 
     history: History
@@ -238,6 +239,19 @@ def longest_history(settings: TimeHistorySettings, record: GroundMotion) -> int:
     return record.npts + math.ceil(longest / record.dt) + 1
 
 
+def numbers_of_a_sample(structure: PodiumStructure) -> int:
+    """What is known at each sample of a history with everything that follows from it.
+
+    Parameters
+    ----------
+    structure
+        Podium, bearings and building.
+    """
+    # Of a floor u, u', u'', drift and shear, and u, u'' on a fixed base; of the podium time,
+    # ground, u_b, v_b, moment, four forces of all columns and of one, and what is stored.
+    return 7 * structure.storeys + len(SAMPLE) + 14 + 4 * len(structure.devices)
+
+
 def refuse_endless(
     structure: PodiumStructure, settings: TimeHistorySettings, record: GroundMotion
 ) -> None:
@@ -258,12 +272,13 @@ def refuse_endless(
         If it may have more than `MOST_NUMBERS` or `MOST_STEPS`.
     """
     remedy = "give a shorter analysis.free_vibration"
-    numbers = longest_history(settings, record) * (2 * structure.storeys + len(SAMPLE))
+    numbers = float(longest_history(settings, record)) * numbers_of_a_sample(structure)
     if numbers > MOST_NUMBERS:
         raise CaseError(
             f"the history may have {longest_history(settings, record)} samples of"
-            f" {structure.storeys} storeys, {numbers:.3g} numbers, which must not be more than"
-            f" {MOST_NUMBERS:.3g}; {remedy}, or resample the record, whose dt is {record.dt:g} s"
+            f" {structure.storeys} storeys, {8e-9 * numbers:.3g} GB, which must not be more than"
+            f" {8e-9 * MOST_NUMBERS:.3g} GB; {remedy}, or resample the record, whose dt is"
+            f" {record.dt:g} s"
         )
     refuse_steps(most_steps(structure, settings, record.duration))
 
@@ -310,20 +325,26 @@ def sampled_history(
     rows = longest_history(settings, along)
     events = FIRST_LOG
     while True:
-        run = run_of(systems, motions, [request], rows=rows, events=events)
+        run = run_of(
+            systems, motions, [request], rows=rows, events=events, devices=len(structure.devices)
+        )
         with compiled():
             integrate(run, lanes=1)
         history = history_of(run.results[0], structure.storeys)
         if (seen := int(history.counts.sum())) <= events:
             break
         events = seen
-    kept, output = slice(history.intervals + 1), run.output
+        del run  # before there is room for another
+    kept, output = history.intervals + 1, run.output
+    # Shortened in place, which nothing else looks at: a copy would take as much again.
+    for array in (output.floors, output.devices):
+        array.resize((kept, *array.shape[1:]), refcheck=False)
     return SampledHistory(
         history,
         along.acceleration,
         None if upwards is None else upwards.acceleration,
-        output.samples[kept].copy(),
-        output.floors[kept].copy(),
+        output.samples[:kept].copy(),
+        output.floors,
         output.log[:seen],
-        output.devices[kept].copy(),
+        output.devices,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,7 +42,10 @@ def extremes(*curves: NDArray[Any]) -> NDArray[np.intp]:
 
 
 def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
-    """The history with the samples that its figures need; maxima and events stay what they are."""
+    """The history with the samples that its figures need; maxima and events stay what they are.
+
+    But for those of velocities, which are of all samples, and are not drawn: these are no numbers.
+    """
     trace = result.trace
     if len(trace.time) <= MOST:
         return result
@@ -52,19 +55,9 @@ def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
         trace.driving_moment, trace.energy_input, trace.energy_stored,
         *trace.floor_displacements.T[floors], *trace.devices.force.T, *trace.devices.displacement.T,
     )  # fmt: skip
-    return replace(result, trace=_at(trace, kept), fixed_base=_without_histories(result))
-
-
-def _at(traced: Any, kept: NDArray[np.intp]) -> Any:
-    """Each array of a trace, and of those in it, at some samples."""
-    values = {field.name: getattr(traced, field.name) for field in fields(traced)}
-    return replace(
-        traced,
-        **{
-            name: _at(value, kept) if is_dataclass(value) else value[kept]
-            for name, value in values.items()
-        },
-    )
+    few = trace.at(kept)
+    few = replace(few, floor_velocities=np.full_like(few.floor_velocities, np.nan))
+    return replace(result, trace=few, fixed_base=_without_histories(result))
 
 
 def _without_histories(result: TimeHistoryResult) -> Any:
