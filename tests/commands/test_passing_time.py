@@ -6,7 +6,7 @@ import io
 
 import pytest
 
-from rpscli.commands.shell.passing_time import counted
+from rpscli.commands.shell.passing_time import MANY, counted, watched
 from rpscli.commands.shell.terminal import Terminal
 
 
@@ -30,3 +30,9 @@ def test_a_bar_on_a_terminal_one_line_elsewhere(monkeypatch: pytest.MonkeyPatch)
     assert "3/40" in bar
     assert shown(io.StringIO(), Terminal(), monkeypatch) == "drawing\n"
     assert shown(Screen(), Terminal(quiet=True), monkeypatch) == ""
+
+
+def test_many_systems_are_announced_few_are_not(capsys: pytest.CaptureFixture[str]) -> None:
+    for count in (MANY - 1, MANY):
+        assert list(watched("systems examined", Terminal(), range(count))) == list(range(count))
+    assert capsys.readouterr().err == f"{MANY} systems examined\n"

@@ -8,6 +8,9 @@ from contextlib import contextmanager
 
 from rpscli.commands.shell.terminal import Terminal
 
+MANY = 5000
+"""Of what takes a millisecond each."""
+
 _shown: list[str] = []
 
 
@@ -59,3 +62,14 @@ def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("", total=None)
         yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def watched(what: str, terminal: Terminal, numbers: range) -> Iterator[int]:
+    """The numbers; how many are done is shown where they are many."""
+    if len(numbers) < MANY:
+        yield from numbers
+        return
+    with counted(f"{len(numbers)} {what}", terminal) as tell:
+        for number in numbers:
+            tell(number, len(numbers))
+            yield number

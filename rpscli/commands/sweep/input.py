@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rpscli.commands.case_input import RESULTS
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
+from rpscli.commands.shell.passing_time import watched
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import USUAL, Look
@@ -86,7 +88,7 @@ def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> 
     )
     if (section := study.file.sample) and (note := balance_note(section)):
         terminal.warn([note])
-    design = lay_out(study)
+    design = lay_out(study, partial(watched, "systems examined", terminal))
     return StudyInput(design, StudyContext(design.plan), request, look)
 
 

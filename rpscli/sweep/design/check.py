@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path as Folder
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.case import Case, case_from_mapping
@@ -25,6 +25,9 @@ from rpscli.sweep.design.combinations import Combinations
 from rpscli.sweep.design.perturbation import Change
 from rpscli.sweep.evaluation.points import Plan, RecordRequest
 from rpscli.sweep.evaluation.systems import digest_of, record_request, resolved
+
+Watched: TypeAlias = Callable[[range], Iterator[int]]
+"""Goes through numbers and may show how far it is."""
 
 MOST_FAULTY = 8
 """Inadmissible systems after which the search for more gives up."""
@@ -55,9 +58,13 @@ class SystemProperties(NamedTuple):
 
 
 def check_systems(
-    study: Study, plan: Plan, combinations: Combinations, members: Sequence[Change]
+    study: Study,
+    plan: Plan,
+    combinations: Combinations,
+    members: Sequence[Change],
+    watched: Watched = iter,
 ) -> tuple[SystemProperties, ...]:
-    """SystemProperties of all systems, in order.
+    """SystemProperties of all systems, in order; `watched` goes through their numbers.
 
     Raises
     ------
@@ -68,7 +75,7 @@ def check_systems(
     known: dict[RecordRequest, RecordRequest] = {}
     complaints: dict[str, None] = {}
     faulty = 0
-    for system in range(len(combinations)):
+    for system in watched(range(len(combinations))):
         values = combinations.values(system)
         try:
             case = resolved(plan, values)

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
-from rpscli.sweep.design.check import SystemProperties, check_systems
+from rpscli.sweep.design.check import SystemProperties, Watched, check_systems
 from rpscli.sweep.design.combinations import Combinations, combinations_of
 from rpscli.sweep.design.perturbation import Change, changes
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest
@@ -98,8 +98,8 @@ class Design:
         return system_of(resolved(self.plan, self.combinations.values(index)))
 
 
-def lay_out(study: Study) -> Design:
-    """The points of a study; all its systems are examined on the way.
+def lay_out(study: Study, watched: Watched = iter) -> Design:
+    """The points of a study; all its systems are examined on the way, in the hands of `watched`.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def lay_out(study: Study) -> Design:
         study=study,
         plan=plan,
         combinations=combinations,
-        properties=check_systems(study, plan, combinations, members),
+        properties=check_systems(study, plan, combinations, members, watched),
         records=tuple(RecordRequest(source, folder) for source in study.sources) or (None,),
         scales=_scales(scale),
         members=members,
