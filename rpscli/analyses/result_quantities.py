@@ -60,7 +60,7 @@ class ResultQuantity(NamedTuple):
         'duration [s]'
         """
         words = self.symbol or self.label
-        return f"{words} [{self.unit}]" if self.unit else words
+        return f"{words} [{self.unit.replace('/s2', '/s²')}]" if self.unit else words
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:

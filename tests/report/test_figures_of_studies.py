@@ -156,7 +156,12 @@ def labelled(figure: Figure, x_label: str, y_label: str) -> None:
 def markers(axes: Axes, *, hollow: bool) -> Iterator[Line2D]:
     for line in axes.lines:
         filled = line.get_markerfacecolor() != "none"
-        if line.get_marker() not in {"None", ""} and filled != hollow:
+        # Some lines have their markers in the legend only.
+        if (
+            line.get_marker() not in {"None", ""}
+            and line.get_markevery() != []
+            and filled != hollow
+        ):
             yield line
 
 
@@ -190,7 +195,11 @@ def test_the_table_of_overturning(histories: Open) -> None:
 @needs_compiled_kernels
 def test_rotations_against_the_reference(histories: Open) -> None:
     figure, table = histories("rotation")
-    labelled(figure, r"$|\theta_{max}|/\alpha$, flat ends", r"$|\theta_{max}|/\alpha$, the others")
+    labelled(
+        figure,
+        r"$|\theta_{max}|/\alpha$ [-], flat ends",
+        r"$|\theta_{max}|/\alpha$ [-], the others",
+    )
     mine, reference = "rotation_over_alpha", "reference_rotation_over_alpha"
     x_top, y_top = (1.08 * np.nanmax(numbers(table, name)) for name in (reference, mine))
     for slenderness in ("0.1", "0.15"):
@@ -305,8 +314,9 @@ def test_incremental_dynamic_analysis(histories: Open) -> None:
             if up < len(cells):
                 x, y, cut = [*x, edge], [*y, y[-1]], True
             same(line.get_data(), (x, y))
-        labels = [str(line.get_label()) for line in axes.lines[-3:]]
-        assert labels == legend(figure) == [f"{share}% fractile" for share in (16, 50, 84)]
+        labels = [str(line.get_label()) for line in axes.lines[-4:]]
+        names = ["single curves", "16 % fractile", "median", "84 % fractile"]
+        assert labels == legend(figure) == names
         same(axes.get_xlim(), (0.0, 0.97 * edge))
         same(axes.get_ylim(), (0.0, 1.04 * SCALES[-1]))
     assert cut, "no curve that runs out of the frame was looked at"
@@ -317,13 +327,14 @@ def test_fragilities(histories: Open) -> None:
     figure, fits = histories("fragility")
     _, table = histories("fragility_curves")
     _, points = histories("points")
-    labelled(figure, "PGA [m/s2]", "probability of exceeding")
-    assert list(panels(figure)) == ["rotation_ratio > 0.25", "overturning"]
+    labelled(figure, "PGA [m/s²]", "probability of exceedance")
+    assert list(panels(figure)) == ["rotation ratio > 0.25", "overturning"]
     fitted = {(row[RHO], row["limit"]) for row in fits if row["method"] != "none"}
     assert legend(figure) == [name for rho, name in NAMES.items() if rho in dict(fitted)]
     assert {row["method"] for row in fits} >= {"maximum likelihood", "none"}
     assert {(row[RHO], row["limit"]) for row in table} == fitted
-    for title, axes in panels(figure).items():
+    for words, axes in panels(figure).items():
+        title = words.replace("rotation ratio", "rotation_ratio")
         bands = [c for c in axes.collections if isinstance(c, PolyCollection)]
         drawn = [(rho, name) for rho, name in NAMES.items() if (rho, title) in fitted]
         assert len(bands) == len(drawn) == len(list(markers(axes, hollow=False)))
@@ -353,7 +364,7 @@ def test_fragilities(histories: Open) -> None:
             assert all(float(row["exceeded_low"]) <= float(row["exceeded_high"]) for row in data)
         assert axes.get_ylim() == (-0.02, 1.02)
         assert axes.get_xlim()[0] == 0.0
-    assert "bands: 90%; overturning exceeds every limit" in figure.get_suptitle()
+    assert "bands: 90 %; overturning exceeds every limit" in figure.get_suptitle()
 
 
 @needs_compiled_kernels

@@ -55,8 +55,8 @@ PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
     "capacity": (lambda: (pushover(MADE),), "roof displacement [m]", "sum of floor forces ["),
     "mode": (lambda: (modal(MADE), "rolling", 1), "shape [-]", "height [m]"),
     "motion": (lambda: (result().record, "velocity"), TIME, "velocity\n[m/s]"),
-    "spectrum": (lambda: (spectrum_of_record(),), "period [s]", "pseudo-acceleration, 5% damping"),
-    "spectra": (lambda: ([spectrum_of_record()] * 2,), "period [s]", "5% damping [m/s²]"),
+    "spectrum": (lambda: (spectrum_of_record(),), "period [s]", "pseudo-acceleration, 5 % damping"),
+    "spectra": (lambda: ([spectrum_of_record()] * 2,), "period [s]", "5 % damping [m/s²]"),
     "floor_spectrum": (
         lambda: (isolated_floor_spectra(result()), fixed_base_floor_spectra(result()), 3),
         "period [s]",

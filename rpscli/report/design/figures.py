@@ -79,9 +79,10 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
             top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
             axes.set_ylim(0.0, 1.05 * float(min(top, max(10.0 * requirement.bound, 1.0))))
             name = requirement.condition.name
+            words = LIMITS[name].label if name in LIMITS else name
             unit = "share of records" if name in EVENTS else LIMITS[name].axis_label
             axes.set_ylabel(unit)
-            axes.set_title(requirement_label(requirement))
+            axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
         grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
         style.legend_above(grid[0], 5) if len(requirements) == 1 else grid[0].legend()
 

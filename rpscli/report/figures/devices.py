@@ -46,7 +46,7 @@ def draw_device(axes: Axes, result: TimeHistoryResult, index: int) -> None:
     axes.plot(trace.displacement[:, index], factor * force, color=style.BLUE, lw=0.8)
     axes.axhline(0.0, color=style.BLACK, lw=0.5)
     axes.axvline(0.0, color=style.BLACK, lw=0.5)
-    axes.set_title(f"{index} {name_of(device).replace('_', ' ')}", fontsize=style.small())
+    axes.set_title(f"device {index}: {name_of(device).replace('_', ' ')}", fontsize=style.small())
     axes.set_xlabel("elongation of one [m]" if tendon else "$u_b$ [m]")
     axes.set_ylabel(f"{'tension of one' if tendon else 'resistance'} [{prefix}N]")
     axes.locator_params(axis="x", nbins=5)

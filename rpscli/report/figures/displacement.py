@@ -39,7 +39,8 @@ def draw_displacements(axes: Axes, result: TimeHistoryResult) -> None:
     trace = result.trace
     _draw_floors(axes, result, trace.floor_displacements)
     base = "cap beam" if result.structure.cap_beam_mass > 0.0 else "top of the columns"
-    axes.plot(trace.time, trace.cap_beam_displacement, color=style.BLACK, ls="--", label=base)
+    line = "--" if result.structure.storeys else "-"
+    axes.plot(trace.time, trace.cap_beam_displacement, color=style.BLACK, ls=line, label=base)
     axes.set_ylabel("displacement relative\nto the ground [m]")
     style.legend_above(axes, 4)
 

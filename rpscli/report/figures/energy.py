@@ -41,11 +41,11 @@ def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
     )
     parts = [
         (trace.energy_impact, "lost at impacts (net)", style.ORANGE),
-        (trace.energy_stored, "kinetic, elastic and of lift", style.GREEN),
+        (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
     for index, device in enumerate(result.structure.devices):
         energy = trace.devices.energy[:, index]
-        name = f"{index} {name_of(device).replace('_', ' ')}"
+        name = f"device {index}: {name_of(device).replace('_', ' ')}"
         parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
     if result.structure.storeys:
         parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))
@@ -58,4 +58,4 @@ def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
     axes.set_xlim(0.0, trace.time[-1])
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"energy [{prefix}J]")
-    style.legend_above(axes, 4)
+    style.legend_above(axes, 3 if result.structure.devices else 4)

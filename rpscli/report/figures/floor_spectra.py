@@ -35,7 +35,7 @@ def floor_spectra_figure(
     floors = shown_floors(len(isolated.displacement))
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, record, f"{isolated.damping:.0%} damping")
+        style.heading(figure, title, record, f"{style.percent(isolated.damping)} damping")
         grid = figure.subplots(2, len(floors), squeeze=False, sharex=True, sharey="row")
         for column, floor in enumerate(floors):
             for row, name in enumerate(("pseudo_acceleration", "displacement")):
@@ -46,7 +46,7 @@ def floor_spectra_figure(
         for axes in grid[:, 0]:  # once all are drawn, since a row shares its limits
             axes.set_ylim(bottom=0.0)
         grid[0, 0].set_ylabel(style.folded(figure, "pseudo-acceleration [m/s²]"))
-        grid[1, 0].set_ylabel("displacement [m]")
+        grid[1, 0].set_ylabel("spectral displacement [m]")
         handles, names = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, names, loc="outside lower center", ncols=2)
 
@@ -76,6 +76,6 @@ def draw_floor_spectrum(
     axes.set_xlabel("period [s]")
     words = {
         "pseudo_acceleration": "pseudo-acceleration [m/s²]",
-        "displacement": "displacement [m]",
+        "displacement": "spectral displacement [m]",
     }
     axes.set_ylabel(f"floor {floor}, {words[name]}")

@@ -65,6 +65,6 @@ def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
     """Pseudo-acceleration against period."""
     axes.plot(spectrum.periods, spectrum.pseudo_acceleration, color=style.RED, lw=1.3)
     axes.set_xlabel("period [s]")
-    axes.set_ylabel(f"pseudo-acceleration, {spectrum.damping:.0%} damping [m/s²]")
+    axes.set_ylabel(f"pseudo-acceleration, {style.percent(spectrum.damping)} damping [m/s²]")
     axes.set_xlim(0.0, spectrum.periods[-1])
     axes.set_ylim(bottom=0.0)

@@ -42,7 +42,9 @@ def _draw_spectra(axes: Axes, selection: Selection) -> None:
     )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlim=(selection.periods[0], selection.periods[-1]))
     axes.set_xlabel("period [s]")
-    axes.set_ylabel(f"pseudo-acceleration, {selection.target.damping:.0%} damping [m/s²]")
+    axes.set_ylabel(
+        f"pseudo-acceleration, {style.percent(selection.target.damping)} damping [m/s²]"
+    )
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(FuncFormatter(lambda value, _: _second_tick(value)))

@@ -41,7 +41,7 @@ def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
         axes.plot(periods, each, color=style.GREY, lw=0.6, alpha=0.7, label=label)
     axes.plot(periods, np.median(values, axis=0), color=style.RED, lw=1.6, label="median")
     axes.set_xlabel("period [s]")
-    axes.set_ylabel(f"pseudo-acceleration, {damping:.0%} damping [m/s²]")
+    axes.set_ylabel(f"pseudo-acceleration, {style.percent(damping)} damping [m/s²]")
     axes.set_xlim(0.0, periods[-1])
     axes.set_ylim(bottom=0.0)
     style.legend_above(axes, 2)

@@ -40,13 +40,14 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
     u, F, back = curve.displacement, factor * curve.force, factor * curve.unloading_force
     returns = bool(np.any(back != F))
     if returns:
-        axes.plot([], [], color=style.GREY, lw=1.5, ls="--", label="on the way back")
         axes.axhline(0.0, color=style.GREY, lw=0.6)
     axes.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
     for inside, colour, name in _phases(result):
         axes.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
         if returns:
             axes.plot(u[inside], back[inside], color=colour, lw=1.5, ls="--")
+    if returns:
+        axes.plot([], [], color=style.GREY, lw=1.5, ls="--", label="on the way back")
     rises = F[1] > F[0] > 0.15 * F.max()  # and there is room below
     _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else 6.0))
     if 0.0 < beta < result.critical_rotation:

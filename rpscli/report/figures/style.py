@@ -5,11 +5,12 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, cast
 
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import SMALL, in_force, quiet_matplotlib
@@ -57,6 +58,7 @@ STYLE: dict[str, Any] = {
     "svg.hashsalt": "rps",  # the same data give the same file
 }
 
+Entry = TypeVar("Entry")
 Target: TypeAlias = "Figure | SubFigure"
 
 METADATA: dict[str, dict[str, None]] = {
@@ -197,16 +199,45 @@ def small() -> float:
 def heading(figure: Figure, *parts: str) -> None:
     """What the figure belongs to and how to read it, above it.
 
-    What does not fit beside the first part, the title, stands below it; lines are cut to the width.
+    What does not fit beside the first part, the title, stands in at most two lines below it; lines
+    are cut to the width.
     """
     title, *others = [part for part in parts if part] or [""]
     most = int(LETTERS_PER_INCH * inches(figure)[0] * 8.0 / small())
     lines = ["   |   ".join((title, *others))]
     if others and len(lines[0]) > most:
-        lines = [title, "   |   ".join(others)]
+        remarks = "   |   ".join(others)
+        lines = [title, *wrap(remarks, most, max_lines=2, placeholder="...")]
     cut = [line if len(line) <= most else f"{line[: most - 3]}..." for line in lines]
     # A dollar sign in a title begins no formula.
     figure.suptitle("\n".join(cut), fontsize=small(), color=GREY, parse_math=False)
+
+
+def percent(share: float) -> str:
+    """A share in per cent.
+
+    >>> percent(0.05), percent(0.975)
+    ('5 %', '97.5 %')
+    """
+    return f"{100.0 * share:.3g} %"
+
+
+def typeset(text: str) -> str:
+    """A text of tables as figures show it.
+
+    >>> typeset("PGA [m/s2]")
+    'PGA [m/s²]'
+    """
+    return text.replace("m/s2", "m/s²")
+
+
+def in_rows(entries: Sequence[Entry], columns: int) -> list[Entry]:
+    """Entries in the order in which a legend that fills column by column reads row by row.
+
+    >>> in_rows("abcde", 3)
+    ['a', 'd', 'b', 'e', 'c']
+    """
+    return [entry for column in range(columns) for entry in entries[column::columns]]
 
 
 def legend_above(axes: Axes, columns: int) -> None:
@@ -216,7 +247,10 @@ def legend_above(axes: Axes, columns: int) -> None:
         widest = max(_letters(str(text)) for text in axes.get_legend_handles_labels()[1])
         room = (width - 0.5) / (0.4 + widest / LETTERS_PER_INCH)
         columns = max(1, min(columns, int(room)))
+    handles, names = axes.get_legend_handles_labels()
     axes.legend(
+        in_rows(handles, columns),
+        in_rows(names, columns),
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0, 1.0, 0.1),
         ncols=columns,

@@ -9,6 +9,7 @@ import numpy as np
 
 from rpscli.records.measures.intensity import intensity_measures
 from rpscli.records.measures.spectrum import ResponseSpectrum, response_spectrum
+from rpscli.report.figures import style
 from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.record import record_figure
@@ -30,7 +31,7 @@ def motion_pictures(motion: GroundMotion, look: Look) -> Picture:
     return Picture(
         {name.removeprefix("r."): content for name, content in files.items()},
         f"{motion.name}: acceleration, velocity and displacement of the ground, and the response"
-        f" spectrum at {DAMPING:.0%} of critical damping.",
+        f" spectrum at {style.percent(DAMPING)} of critical damping.",
     )
 
 
@@ -51,7 +52,7 @@ def motions_section(
             Picture(
                 files,
                 f"Response spectra of {len(shown)} records before they are scaled, at"
-                f" {DAMPING:.0%} of critical damping, with their median.",
+                f" {style.percent(DAMPING)} of critical damping, with their median.",
             )
         )
     if len(motions) > MOST_ROWS:

@@ -181,7 +181,7 @@ def comparison_figure(report: ComparisonReport, title: str) -> bytes:
     down = -(-len(shown) // across)
 
     def draw(figure: Figure) -> None:
-        notes = [f"records: {judged[0].part}", f"bands: {report.confidence:.0%}"]
+        notes = [f"records: {judged[0].part}", f"bands: {style.percent(report.confidence)}"]
         if len(judged) > len(shown):
             notes.append(f"the first {len(shown)} of {len(judged)} panels")
         style.heading(figure, title, *notes)

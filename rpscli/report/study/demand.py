@@ -51,6 +51,11 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
         (s.rotation_ratio.max(initial=0.0) for p in report.panels for s in p.series), default=0.0
     )
 
+    across = np.linspace(0.3, 1.0, 8) * highest
+    top = max(
+        (s.base_shear_ratio.max(initial=0.0) for p in report.panels for s in p.series), default=0.0
+    )
+
     def draw(axes: Axes, panel: DemandPanel) -> None:
         for place, series in enumerate(panel.series):
             axes.plot(
@@ -66,8 +71,11 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
                 f"saturation at {fit.break_x:.3f}, {fit.break_y:.2f}"
                 f"\nslope kₛ {fit.slope_after:.2f} beyond"
             )
+        # Where the curve runs through the lower right, the upper left is free.
+        rising = fit is not None and bool(np.min(fit(across)) < 0.25 * top)
         axes.text(
-            0.96, 0.05, text, transform=axes.transAxes, ha="right", va="bottom",
+            0.04 if rising else 0.96, 0.95 if rising else 0.05, text, transform=axes.transAxes,
+            ha="left" if rising else "right", va="top" if rising else "bottom",
             fontsize=0.9 * style.small(),
             bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
         )  # fmt: skip

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rpscli.case.conditions import LIMITS
+from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import (
@@ -21,6 +23,7 @@ from rpscli.sweep.reports.fragility import (
     Fragility,
     FragilityOptions,
     FragilityReport,
+    LimitState,
     fragility_report,
     limit_states,
 )
@@ -112,6 +115,7 @@ def fragility_figure(report: FragilityReport, title: str) -> bytes:
             dashes = "--" if curve.fit.method == "penalised" else "-"
             axes.plot(
                 curve.grid, curve.fit.curve, dashes, color=shade(place), lw=1.4,
+                marker=marker(place), ms=3.2, markevery=[],  # the legend shows both
                 label=labels(report.series_keys, curve.values) or None,
             )  # fmt: skip
             if len(curves) <= MOST_BANDS:
@@ -123,7 +127,7 @@ def fragility_figure(report: FragilityReport, title: str) -> bytes:
         axes.set_ylim(-0.02, 1.02)
         axes.set_xlim(left=0.0, auto=True)
 
-    notes = [f"bands: {report.confidence:.0%}"]
+    notes = ["markers: observed", f"bands: {style.percent(report.confidence)}"]
     if any(c.fit.method == "penalised" for c in report.curves):
         notes.append("dashed: separated data, penalised fit")
     if any(limit.threshold is not None for limit in limits):
@@ -132,17 +136,31 @@ def fragility_figure(report: FragilityReport, title: str) -> bytes:
         notes.append(f"{missing} of {len(report.curves)} curves without a fit, see CSV")
     notes += [over(report.pooled), left_out(sum(c.failed for c in panels[0]) if panels else 0)]
     return panel_figure(
-        Layout([limit.label for limit in limits], _side_by_side(len(panels))),
+        Layout([limit_name(limit) for limit in limits], side_by_side(len(panels))),
         panels,
         draw,
         title=title,
         x_label=f"{measure_name(report.intensity)} [{report.intensity.unit}]",
-        y_label="probability of exceeding",
+        y_label="probability of exceedance",
         note=remarks(*notes),
     )
 
 
-def _side_by_side(panels: int) -> int:
+def limit_name(limit: LimitState) -> str:
+    """The limit state in the words of the results.
+
+    >>> limit_name(LimitState("drift_ratio", 0.002)), limit_name(LimitState("max_lift", 0.1))
+    ('drift ratio > 0.002', 'lift of the building > 0.1 m')
+    """
+    if limit.result not in LIMITS:
+        return limit.label
+    known = LIMITS[limit.result]
+    unit = f" {known.unit}" if known.unit not in {"", "-"} else ""
+    return limit.label.replace(limit.result, known.label, 1) + unit
+
+
+def side_by_side(panels: int) -> int:
+    """How many panels of limit states stand in a row."""
     return 2 if panels == 4 else max(1, min(3, panels))
 
 

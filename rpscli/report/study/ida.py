@@ -62,11 +62,14 @@ def ida_figure(report: IdaReport, title: str) -> bytes:
         levels = np.concatenate([[0.0], panel.levels])
         # Evenly through all of them: more would only blacken the panel.
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
-            axes.plot(*_run_out(curve, levels, edge), color=style.GREY, lw=0.5, alpha=0.5)
+            axes.plot(
+                *_run_out(curve, levels, edge), color=style.GREY, lw=0.5, alpha=0.5,
+                label="single curves",
+            )  # fmt: skip
         for fractile, (colour, line), share in zip(panel.fractiles, LINES, FRACTILES, strict=True):
             axes.plot(
                 *_run_out(fractile, levels, edge), color=colour, ls=line, lw=1.8,
-                label=f"{share:.0%} fractile",
+                label="median" if share == 0.5 else f"{style.percent(share)} fractile",
             )  # fmt: skip
 
     name, unit = _level(report)

@@ -55,8 +55,7 @@ def label(key: str, value: object) -> str:
         return plain(value) if value else "no devices"
     if key == "title":
         return plain(value)
-    unit = unit_of(key) if isinstance(value, int | float) else "-"
-    return f"{symbol(key)} = {plain(value)}{'' if unit == '-' else f' {unit}'}"
+    return f"{symbol(key)} = {plain(value)}{_unit_behind(key, value)}"
 
 
 def labels(keys: Iterable[str], values: Values) -> str:
@@ -68,7 +67,7 @@ def plain(value: object) -> str:
     """A value as text: numbers short, devices by their kinds, lists as the study has them.
 
     >>> plain(0.25), plain([]), plain([{"kind": "stop", "gap": 0.2, "stiffness": 1e6}])
-    ('0.25', 'none', 'stop 0.2')
+    ('0.25', 'none', 'stop 0.2 m')
     """
     if isinstance(value, float):
         return f"{value:g}"
@@ -78,9 +77,18 @@ def plain(value: object) -> str:
 
 
 def _device(device: dict[str, object]) -> str:
-    """The kind of a device and the first of its values."""
-    values = [plain(value) for key, value in device.items() if key != "kind"]
+    """The kind of a device and the first of its values, with its unit."""
+    values = [
+        f"{plain(value)}{_unit_behind(f'podium.devices.{key}', value)}"
+        for key, value in device.items()
+        if key != "kind"
+    ]
     return " ".join([str(device["kind"]).replace("_", " "), *values[:1]])
+
+
+def _unit_behind(key: str, value: object) -> str:
+    unit = unit_of(key) if isinstance(value, int | float) else "-"
+    return "" if unit == "-" else f" {unit}"
 
 
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import ResultQuantity
@@ -63,6 +64,7 @@ def lines_figure(report: LinesReport, title: str) -> bytes:
     names = dict(zip(report.results, words, strict=True))
 
     def draw(axes: Axes, panel: LinesPanel) -> None:
+        among = _coincident(panel.lines)
         for line in panel.lines:
             place = series.index(line.values)
             if len(series) == 1:
@@ -71,7 +73,8 @@ def lines_figure(report: LinesReport, title: str) -> bytes:
             pair = (line.y, x) if options.upright else (x, line.y)
             parts = (labels(report.series_keys, line.values), names[line.result])
             axes.plot(
-                *pair, _dashes(line.dashed, line.result, solid), lw=1.4,
+                *pair, lw=1.4,
+                ls=_staggered(place, among) if line.dashed else _dashes(line.result, solid),
                 color=colour(place, count),
                 marker="o" if len(x) < 25 and not line.dashed else "", ms=3.0,
                 label=", ".join(filter(None, parts)) or None,
@@ -99,7 +102,7 @@ def _beyond(report: LinesReport) -> str:
     """Fractiles are larger than any demand where so many overturned."""
     lines = [line for panel in report.panels for line in panel.lines]
     unbounded = any(y == float("inf") for line in lines for y in line.y)
-    return "not drawn where so many overturned" if unbounded else ""
+    return f"not drawn where the {report.statistic} overturned" if unbounded else ""
 
 
 def _say_what_is_left_out(axes: Axes, line: Line, x: list[float], *, statistic: str) -> None:
@@ -135,9 +138,24 @@ def _abscissae(values: tuple[object, ...]) -> tuple[list[float], list[str]]:
     return [float(i) for i in range(len(values))], [plain(value) for value in values]
 
 
-def _dashes(dashed: bool, result: str, solid: list[str]) -> str:  # noqa: FBT001 -- of a line
-    """Each solid result has its own line; comparisons are dashed."""
-    return "--" if dashed else ("-", "-.", ":")[solid.index(result) % 3]
+def _dashes(result: str, solid: list[str]) -> str:
+    """Each solid result has its own line."""
+    return ("-", "-.", ":")[solid.index(result) % 3]
+
+
+def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
+    """Dashes that show each of so many series, up to three, that lie on each other.
+
+    >>> _staggered(0, 1), _staggered(1, 3)
+    ('--', (2, (2, 4)))
+    """
+    return (2 * place, (2, 2 * min(among, 3) - 2)) if among > 1 else "--"
+
+
+def _coincident(lines: Iterable[Line]) -> int:
+    """How many dashed lines lie on each other, if all of them do; else 1."""
+    paths = [tuple(plain(y) for y in line.y) for line in lines if line.dashed]
+    return len(paths) if len(set(paths)) == 1 else 1
 
 
 def _axis(name: str) -> str:

@@ -62,9 +62,10 @@ def overturning_figure(table: OverturningTable, title: str) -> bytes:
                 axes.text(x, y + 0.08, second, ha="center", va="top", fontsize=0.75 * style.small())
         axes.set_xticks(
             range(len(table.columns)),
-            [_stacked(table.column_keys, values) for values in table.columns],
+            [style.typeset(_stacked(table.column_keys, values)) for values in table.columns],
         )
-        axes.set_yticks(range(len(rows)), [labels(table.row_keys, values) for values in rows])
+        names = [style.typeset(labels(table.row_keys, values)) for values in rows]
+        axes.set_yticks(range(len(rows)), names)
         axes.tick_params(length=0, labeltop=True, labelbottom=False)
         axes.grid(visible=False)
 

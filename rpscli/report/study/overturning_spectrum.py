@@ -77,6 +77,8 @@ def spectrum_figure(report: SpectrumReport, title: str) -> bytes:
     def draw_outcomes(axes: Axes, series: SpectrumSeries) -> None:
         for word, name, shade, mark, size in LOOKS:
             chosen = np.array([outcome.startswith(word) for outcome in series.shown])
+            if not chosen.any():
+                continue
             axes.plot(
                 series.frequency_ratio[chosen], series.amplitude_ratio[chosen], ls="",
                 color=shade, marker=mark, ms=size, mew=0.0, label=name,

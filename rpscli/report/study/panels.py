@@ -103,7 +103,7 @@ def panel_figure(
             axes.locator_params(nbins=MOST_TICKS)
             draw(axes, panel)
             # Without a height matplotlib would look for ticks under the title, at great length.
-            axes.set_title(name, y=1.0)
+            axes.set_title(style.typeset(name), y=1.0)
         _label_outside(grid, len(shown), x_label, y_label)
         if limits is not None:
             limits(grid.flat[0])
@@ -127,10 +127,10 @@ def _label_outside(grid: Any, panels: int, x_label: str, y_label: str) -> None:
             axes.set_axis_off()
             continue
         if place + columns >= panels:
-            axes.set_xlabel(x_label)
+            axes.set_xlabel(style.typeset(x_label))
             axes.tick_params(labelbottom=True)
         if place % columns == 0:
-            axes.set_ylabel(y_label)
+            axes.set_ylabel(style.typeset(y_label))
 
 
 def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
@@ -144,7 +144,11 @@ def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
     widest = max(len(name) for name in found)
     room = style.inches(figure)[0] * LETTERS_AN_INCH
     columns = max(1, min(len(found), 5, int(room / (widest + 7))))
-    figure.legend(found.values(), found.keys(), loc=place, ncols=columns)
+    names = [style.typeset(name) for name in found]
+    handles = [*found.values()]
+    if columns > 2:  # two columns are read downwards
+        handles, names = style.in_rows(handles, columns), style.in_rows(names, columns)
+    figure.legend(handles, names, loc=place, ncols=columns)
     return math.ceil(len(found) / columns)
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rpscli.report.files.csv_text import Column, quoted
-from rpscli.report.study.fragility import measure_name
+from rpscli.report.study.fragility import limit_name, measure_name, side_by_side
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import Layout, colour, over, panel_figure, remarks
 from rpscli.report.study.report import Report
@@ -80,6 +82,8 @@ def _systems(report: RiskReport, risks: list[Risk] | tuple[Risk, ...]) -> list[C
 
 def risk_figure(report: RiskReport, title: str) -> bytes:
     """One panel a limit state: what share of its rate comes from which intensities."""
+    from matplotlib.ticker import LogLocator  # noqa: PLC0415
+
     found = report.fragilities
     limits = [limit for limit in found.limits if found.fitted(limit)]
     values = list(dict.fromkeys(risk.fragility.values for risk in report.known))
@@ -98,11 +102,15 @@ def risk_figure(report: RiskReport, title: str) -> bytes:
 
     def limit_axes(axes: Axes) -> None:
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter("")
+        axes.set_xlim(*_shown(report))
         axes.set_ylim(bottom=0.0)
 
-    names = [f"{limit.label}\n{_chance(report, limit)}" for limit in limits]
+    names = [f"{limit_name(limit)}\n{_chance(report, limit)}" for limit in limits]
     return panel_figure(
-        Layout(names, min(3, len(limits))),
+        Layout(names, side_by_side(len(limits))),
         limits,
         draw,
         title=title,
@@ -113,11 +121,22 @@ def risk_figure(report: RiskReport, title: str) -> bytes:
     )
 
 
+def _shown(report: RiskReport) -> tuple[float, float]:
+    """The intensities from which more than a hundredth of the largest share comes."""
+    lows, highs = [], []
+    for risk in report.known:
+        edges, rates = risk.contributions
+        counting = np.flatnonzero(rates[:-1] >= 0.01 * rates[:-1].max())
+        lows.append(float(edges[counting[0]]))
+        highs.append(float(edges[counting[-1] + 1]))
+    return 0.9 * min(lows), 1.1 * max(highs)
+
+
 def _chance(report: RiskReport, limit: LimitState) -> str:
     """Probability within a life, of the only curve or of the least and the largest."""
     rates = [risk.rate for risk in report.known if risk.fragility.limit == limit]
     ends = [f"{probability(rate, report.years):.2g}" for rate in (min(rates), max(rates))]
-    return f"{' to '.join(dict.fromkeys(ends))} in {report.years:g} years"
+    return f"P = {' to '.join(dict.fromkeys(ends))} in {report.years:g} years"
 
 
 REPORT = Report(

@@ -74,8 +74,8 @@ def rotation_figure(report: RotationReport, title: str) -> bytes:
         report.panels,
         draw,
         title=title,
-        x_label=rf"$|\theta_{{max}}|/\alpha$, {label(report.key, report.reference)}",
-        y_label=r"$|\theta_{max}|/\alpha$, the others",
+        x_label=rf"$|\theta_{{max}}|/\alpha$ [-], {label(report.key, report.reference)}",
+        y_label=r"$|\theta_{max}|/\alpha$ [-], the others",
         limits=lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),
         note="; ".join(filter(None, ["open markers: overturned", left_out(report.failed)])),
     )

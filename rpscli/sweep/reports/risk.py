@@ -180,8 +180,8 @@ def _notes(fragility: Fragility, hazard: Hazard, above: Array, lost: int) -> Ite
         )
     if (beyond := above[-2] / above[0]) > CLEARLY:
         yield (
-            f"{beyond:.0%} of the annual rate come from beyond the last intensity of the hazard"
-            " curve, which is continued with its last slope; extend the curve"
+            f"{100.0 * beyond:.0f} % of the annual rate come from beyond the last intensity of the"
+            " hazard curve, which is continued with its last slope; extend the curve"
         )
     if lost:
         yield f"{lost} bootstrap samples do not grow with the intensity, and are left out of bands"

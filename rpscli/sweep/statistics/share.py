@@ -40,8 +40,8 @@ class Share(NamedTuple):
         if not self.of:
             return "-"
         if self.number in {0, self.of}:
-            return f"above {self.low:.2g}" if self.number else f"below {self.high:.2g}"
-        return f"{self.low:.2g} to {self.high:.2g}"
+            return f"above {self.low:#.2g}" if self.number else f"below {self.high:#.2g}"
+        return f"{self.low:#.2g} to {self.high:#.2g}"
 
     def __str__(self) -> str:
         """Counts and interval.
