@@ -26,6 +26,7 @@ After the axes come
 
 from __future__ import annotations
 
+from rpscli.report.figures.arguments import examined
 from rpscli.report.figures.bearing import draw_bearing as bearing
 from rpscli.report.figures.bearing import draw_end as bearing_end
 from rpscli.report.figures.capacity import draw_capacity as capacity
@@ -75,3 +76,6 @@ __all__ = [
     "structure",
     "style",
 ]
+
+for _name in __all__[: __all__.index("style")]:
+    globals()[_name] = examined(globals()[_name])

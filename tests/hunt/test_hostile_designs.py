@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -12,12 +13,12 @@ import pytest
 
 from hunt.mutation import mutated
 from hunt.test_hostile_files import CASE_KEYS, CASES, VALUES
-from hunt.trials import hunt, judged, shares
-from rpscli import load_study
+from hunt.trials import LONGEST_LINE, hunt, judged, shares
+from rpscli import load_case, load_record, load_study
 from rpscli.case.design.schema import DesignFile
 from rpscli.case.design.task import parse_design
 from rpscli.case.schema.known_keys import known_paths
-from rpscli.errors import CaseError, UsageError
+from rpscli.errors import CaseError, RpsError, UsageError
 
 pytestmark = pytest.mark.posix  # trials are timed by its signals
 
@@ -102,3 +103,26 @@ def test_studies_say_paths_and_refuse_numbers_that_are_none() -> None:
         load_study(STUDY | {"vary": [{"podium.bearing.slenderness": [math.nan]}]})
     with pytest.raises(KeyError, match="no column"):
         study.run()[3]  # type: ignore[index]
+
+
+PLACES = ["x" * 5000, f"new/{'x' * 5000}", "a/" * 3000, "a\0b", "file/x"]
+
+
+@pytest.mark.parametrize("place", PLACES, ids=["name", "path", "depth", "zero byte", "file"])
+def test_folders_that_cannot_be_are_told_to_python_as_well(place: str) -> None:
+    Path("file").touch()
+    study = load_study(STUDY)
+    result = study.run()
+    calls: list[Callable[[], object]] = [
+        lambda: study.run(place),
+        lambda: result.write(place),
+        lambda: result.write("new", style=place),
+        lambda: load_study(place),
+        lambda: load_case(place),
+        lambda: load_record(place),
+    ]
+    for call in calls:
+        with pytest.raises(RpsError) as refusal:
+            call()
+        assert len(str(refusal.value)) < LONGEST_LINE
+    assert [each.name for each in Path().iterdir()] == ["file"]

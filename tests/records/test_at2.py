@@ -179,6 +179,7 @@ def test_steps_that_cannot_be_a_rounded_rate_are_not_doubted(tmp_path: Path, ste
         (at2(units="VELOCITY TIME SERIES IN UNITS OF CM/S"), "this is a velocity record"),
         (at2(units="DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "this is a displacement record"),
         (at2(units="ACCELERATION TIME SERIES IN UNITS OF CM/S"), "no unit of acceleration"),
+        (at2(npts=f"NPTS= {'9' * 5000}, DT= .01 SEC"), r":4: the line of NPTS.* has 5019 letters"),
     ],
 )
 def test_refuses(tmp_path: Path, text: str, message: str) -> None:

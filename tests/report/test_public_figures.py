@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from paper_structures import podium
 
 from report.small_results import CURVED, curve, history, is_drawn, structure
 from rpscli import figures
@@ -22,6 +24,7 @@ from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_flo
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.errors import UsageError
 from rpscli.model.devices import ViscousDamper
 from rpscli.records.measures.spectrum import response_spectrum
 
@@ -128,3 +131,42 @@ def test_the_module_does_not_load_matplotlib() -> None:
 def test_its_description_names_every_panel() -> None:
     named = set(re.findall(r"`(\w+)`", figures.__doc__ or ""))
     assert set(figures.__all__) <= named
+
+
+def test_other_axes_and_other_results_are_refused() -> None:
+    for axes in (None, 3, Figure()):
+        with pytest.raises(UsageError, match="needs Axes of matplotlib"):
+            figures.rotation(axes, result())  # type: ignore[arg-type]
+    for drawn in (None, result().structure):
+        with pytest.raises(UsageError, match="rotation: needs TimeHistoryResult of rpscli"):
+            figures.rotation(Figure().subplots(), drawn)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "said"),
+    [
+        ("device", (-1,), "'-1' is none of the devices"),
+        ("device", ("a",), "'a' is none of the devices"),
+        ("mode", ("rolling", -1), "'-1' is none of the modes; there are 0, 1"),
+        ("mode", ("rolling", 99), "none of the modes"),
+        ("mode", ("sliding", 1), "none of the phases; there are rolling, rocking"),
+        ("motion", ("jerk",), "there are acceleration, velocity, displacement"),
+        ("floor_spectrum", (None, 0), "'0' is none of the floors; there are 1"),
+        ("bearing", (math.nan,), "must be less than a quarter turn"),
+        ("bearing", (10.0,), "must be less than a quarter turn"),
+    ],
+)
+def test_panels_that_are_not_there_are_refused(
+    name: str, other: tuple[object, ...], said: str
+) -> None:
+    drawn = PANELS[name][0]()[0]
+    with pytest.raises(UsageError, match=said):
+        getattr(figures, name)(Figure().subplots(), drawn, *other)
+
+
+def test_nothing_to_draw_is_told() -> None:
+    single = pushover(podium(0))
+    with pytest.raises(UsageError, match="has no capacity curve"):
+        figures.capacity(Figure().subplots(), single)
+    with pytest.raises(UsageError, match="no spectra to be drawn"):
+        figures.spectra(Figure().subplots(), [])

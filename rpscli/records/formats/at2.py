@@ -90,6 +90,7 @@ def read_at2(text: RecordText) -> GroundMotion:
     text.single_channel()
     header = _find_header(text)
     if header is None:
+        _refuse_overlong(text)
         raise text.fault(
             "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain columns "
             "of numbers rename it to .txt and give ?dt= and ?units="
@@ -113,6 +114,17 @@ def read_at2(text: RecordText) -> GroundMotion:
         f"{'; '.join(title) or 'no title'}; values in {unit}",
         (*doubts, *warnings),
     )
+
+
+def _refuse_overlong(text: RecordText) -> None:
+    """Refuse a line of NPTS that is longer than what is looked at."""
+    for index, head in enumerate(text.heads[:_HEADER_LINES]):
+        if "NPTS" in head and (length := len(text.lines[index])) > len(head):
+            raise text.fault(
+                f"the line of NPTS, {head.strip()[:40]!r}..., has {length} letters, of which a"
+                f" header has {len(head)} at most; correct it, or fetch the file again",
+                index,
+            )
 
 
 def _find_header(text: RecordText) -> _Header | None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rpscli.errors import UsageError
 from rpscli.report.figures import style
 from rpscli.report.figures.column_outline import contact_points, leaning_outline
 from rpscli.report.figures.scene_devices import SceneDevices
@@ -118,6 +119,8 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
 
 def draw_bearing(axes: Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
     """A column at a rotation [rad]: its dimensions at rest, displacement and lift if it leans."""
+    if not abs(rotation) < 0.5 * math.pi:
+        raise UsageError(f"rotation = {rotation:g} rad must be less than a quarter turn, 1.57 rad")
     bearing, critical = structure.bearing, structure.critical_rotation
     view = BearingView(axes, structure)
     u, v = view.show(rotation)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rpscli.errors import UsageError
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
 
 def draw_capacity(axes: Axes, result: PushoverResult) -> None:
     """Sum of floor forces against roof displacement by pattern, and where it uplifts."""
+    if not result.capacity:
+        raise UsageError("a structure without storeys has no capacity curve; draw `storey_curve`")
     factor, prefix = style.engineering(max(c.sum_of_floor_forces.max() for c in result.capacity))
     for k, curve in enumerate(result.capacity):
         colour, line = LOOKS[k % len(LOOKS)]

@@ -8,6 +8,7 @@ import numpy as np
 
 from rpscli.model.devices import Tendon, name_of
 from rpscli.report.figures import style
+from rpscli.report.figures.arguments import require
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,6 +40,7 @@ def draw_device(axes: Axes, result: TimeHistoryResult, index: int) -> None:
     Resistance is the force on the cap beam turned round, so that a loop that dissipates runs
     clockwise and its area is the energy.
     """
+    require("devices", index, range(len(result.structure.devices)))
     trace, device = result.trace.devices, result.structure.devices[index]
     tendon = isinstance(device, Tendon)
     force = trace.force[:, index] if tendon else -trace.force[:, index]

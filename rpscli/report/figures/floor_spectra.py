@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
+from rpscli.report.figures.arguments import require
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,6 +63,7 @@ def draw_floor_spectrum(
 ) -> None:
     """The spectrum of a floor, counted from 1, or its `displacement`; beside the fixed base."""
     place = floor - 1
+    require("floors", floor, range(1, len(isolated.displacement) + 1))
     axes.plot(
         isolated.periods, getattr(isolated, name)[place], color=style.BLUE, label="on bearings"
     )

@@ -141,9 +141,11 @@ def read_style(path: Path) -> dict[str, Any]:
     passed_on, logger.propagate = logger.propagate, False
     try:
         found = cast("dict[str, Any]", rc_params_from_file(path, use_default_template=False))
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "is no text"
-        raise UsageError(f"--style {path}: cannot be read: {reason}") from None
+        raise UsageError(
+            f"--style {str(path)[:200]}: cannot be read: {reason}; name a style file of matplotlib"
+        ) from None
     finally:
         logger.removeHandler(complaints)
         logger.propagate = passed_on

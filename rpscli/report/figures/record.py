@@ -8,6 +8,7 @@ import numpy as np
 
 from rpscli.records.measures.integration import displacement, velocity
 from rpscli.report.figures import style
+from rpscli.report.figures.arguments import require
 from rpscli.report.figures.thinned import extremes
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
 
 def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "acceleration") -> None:
     """Acceleration, velocity or displacement of the ground against time, and the peak."""
+    require("quantities of a motion", quantity, QUANTITIES)
     unit, colour = QUANTITIES[quantity]
     values = motion.acceleration
     if quantity != "acceleration":

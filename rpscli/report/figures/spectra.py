@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rpscli.errors import UsageError
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
     spectra
         At the same periods and damping.
     """
+    if not spectra:
+        raise UsageError("no spectra to be drawn; give `response_spectrum` of a record at least")
     periods, damping = spectra[0].periods, spectra[0].damping
     values = np.array([spectrum.pseudo_acceleration for spectrum in spectra])
     for place, each in enumerate(values):

@@ -79,6 +79,8 @@ def require_writable(folder: Path) -> None:
     OutputError
         If it cannot.
     """
+    if "\0" in str(folder):
+        raise OutputError(f"{str(folder)[:200]!r}: no path holds a zero byte; correct the name")
     try:
         existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
     except OSError as error:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rpscli.report.files.output_folder import OutputFolder, Run
+from rpscli.report.files.whole_files import require_writable
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.store import FILE
 
@@ -23,6 +24,7 @@ def study_folder(
     A folder with a store belongs to its study, which the store itself looks after: after a kill
     there may be files there that no `run.json` speaks of.
     """
+    require_writable(place)
     study, plan = design.study, design.plan
     inputs = {
         "study": study.document.content,
