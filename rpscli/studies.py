@@ -41,6 +41,7 @@ from rpscli.report.figures.look import Look, read_style
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.report.study.folder import study_folder
 from rpscli.report.study.registry import REPORTS
+from rpscli.report.study.report import add_notes
 from rpscli.report.study.requirements import requirement_faults
 from rpscli.report.study.statistics import summary_columns, verdict_columns
 from rpscli.shown import Shown
@@ -314,8 +315,7 @@ class StudyResult(Shown):
         if self.study.design.plan.analysis == "timehistory":
             notes += self._summary.notes
         for name, request in self.study.reports.items():
-            found = REPORTS[request.kind].notes(self.report(name))
-            notes += [f"{name}: {note}" for note in found]
+            add_notes(notes, name, REPORTS[request.kind].notes(self.report(name)))
         return notes
 
     def report(self, name: str) -> Any:

@@ -51,7 +51,7 @@ def command(word: str, terminal: Terminal) -> None:
     keys = _keys(word)
     results = [quantity for quantity in _results() if quantity.name == word]
     words = [row for row in glossary() if word.lower() in _names(row[0])]
-    options = _report_options(word)
+    reports, options = _reports(word), _report_options(word)
     if not (keys or results or words or options):
         raise UsageError(f"explain {word}: {_hint(word)}")
     document = {
@@ -61,9 +61,10 @@ def command(word: str, terminal: Terminal) -> None:
         "keys": [key._asdict() for key in keys],
         "results": [_of_result(quantity) for quantity in results],
         "words": [{"word": name, "meaning": meaning} for name, meaning in words],
+        "reports": [{"report": name, "meaning": meaning} for name, meaning in reports],
         "options": [key._asdict() for key in options],
     }
-    terminal.result(document, _tables(keys, results, words, options))
+    terminal.result(document, _tables(keys, results, words, reports, options))
 
 
 def _formats() -> Iterator[KeyReference]:
@@ -92,6 +93,14 @@ def _keys(word: str) -> list[KeyReference]:
         if hits := [key for key in found if called(key)]:
             return hits
     return []
+
+
+def _reports(word: str) -> list[tuple[str, str]]:
+    """The report of a name, and what it is."""
+    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+
+    found = REPORTS.get(word)
+    return [] if found is None else [(word, (found.options.__doc__ or "").split("\n")[0])]
 
 
 def _report_options(word: str) -> list[KeyReference]:
@@ -144,6 +153,7 @@ def _tables(
     keys: Iterable[KeyReference],
     results: Iterable[ResultQuantity],
     words: Iterable[tuple[str, str]],
+    reports: Iterable[tuple[str, str]],
     options: Iterable[KeyReference],
 ) -> Iterator[RenderableType]:
     for key in keys:
@@ -163,6 +173,9 @@ def _tables(
         yield listing(rows)
     for name, meaning in words:
         yield title(name)
+        yield sentence(meaning)
+    for name, meaning in reports:
+        yield title(f"{name}, a report of studies")
         yield sentence(meaning)
     for option in options:
         yield title(f"option {option.key}")

@@ -119,7 +119,7 @@ def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
         ("superstructure.stiffness", ["N/m"]),
         ("friction_demand", ["friction demand |F|/N", "limits.friction_demand"]),
         ("p_ext", ["frequency parameter"]),
-        ("demand", ["option"]),
+        ("demand", ["demand, a report of studies", "its bilinear summary", "option series"]),
         ("law", ["flexible, rigid, value", "left out", "section 4"]),
     ],
 )

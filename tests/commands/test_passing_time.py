@@ -36,3 +36,13 @@ def test_many_systems_are_announced_few_are_not(capsys: pytest.CaptureFixture[st
     for count in (MANY - 1, MANY):
         assert list(watched("systems examined", Terminal(), range(count))) == list(range(count))
     assert capsys.readouterr().err == f"{MANY} systems examined\n"
+
+
+def test_a_warning_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal = Terminal()
+    terminal.warn(["R is unusual", "e is unusual"])
+    terminal.warn(["e is unusual", "contact is lost"])
+    said = capsys.readouterr().err.splitlines()
+    assert said == [
+        f"warning: {text}" for text in ("R is unusual", "e is unusual", "contact is lost")
+    ]

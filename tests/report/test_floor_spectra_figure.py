@@ -21,12 +21,12 @@ def test_the_figure_has_a_panel_for_the_lowest_floor_and_the_roof(figures: list[
     (figure,) = figures
     drawn = [axes for axes in figure.axes if axes.axison]
     assert [axes.get_title() for axes in drawn] == [
-        f"scale = {scale}, floor = {floor}" for scale in (1, 2) for floor in (1, 3)
+        f"scale = {scale}, floor {floor}" for scale in (1, 2) for floor in (1, 3)
     ]
     for axes, floor in zip(drawn, (0, 2, 0, 2), strict=True):
         assert axes.get_xscale() == "log"
         assert axes.get_ylim()[0] == 0.0
         lines = {line.get_label(): line.get_ydata() for line in axes.lines}
         np.testing.assert_array_equal(lines["on bearings, median"], values[1, floor])
-        np.testing.assert_array_equal(lines["fixed base, 84 %"], values[2, floor])
-        assert np.isnan(np.asarray(lines["on bearings, 84 %"])).all()
+        np.testing.assert_array_equal(lines["fixed base, 84 % fractile"], values[2, floor])
+        assert np.isnan(np.asarray(lines["on bearings, 84 % fractile"])).all()

@@ -62,14 +62,34 @@ def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> Rend
     for key, value in design["values"].items():
         unit = unit_of(key)
         name = symbol(key) if unit == "-" else f"{symbol(key)} [{unit}]"
-        end = f"{ends[key]} of its range" if key in ends else ""
+        least = "least" if symbol(key) in design["aims"] else ""
+        end = f"{ends[key]} of its range" if key in ends else least
         rows.append((name, end, shown(value, DIGITS), _interval(intervals[key])))
-    for aim, value in zip(document["least"], design["aims"].values(), strict=True):
+    for aim, value in _further_aims(document, design):
         name, interval = aim["aim"], intervals.get(aim["aim"], ())
         limits = [large(end, aim["unit"])[0] or 0.0 for end in interval]
         number, unit = large(value, aim["unit"])
-        rows.append((f"{name} {unit}".rstrip(), "least", shown(number, DIGITS), _interval(limits)))
+        rows.append(
+            (
+                f"{name} [{unit}]" if unit else name,
+                "least",
+                shown(number, DIGITS),
+                _interval(limits),
+            )
+        )
     return table(("", "", head, "95 % of resamples"), rows, words=2)
+
+
+def _further_aims(
+    document: dict[str, Any], design: dict[str, Any]
+) -> Iterator[tuple[dict[str, str], float]]:
+    """What is to be least and is not itself one of the values of a design."""
+    from rpscli.report.study.labels import symbol  # noqa: PLC0415 -- pydantic is slow
+
+    names = {symbol(key) for key in design["values"]}
+    for aim, value in zip(document["least"], design["aims"].values(), strict=True):
+        if aim["aim"] not in names:
+            yield aim, value
 
 
 def _interval(interval: Iterable[float]) -> str:
@@ -101,21 +121,27 @@ def _requirements(document: dict[str, Any], answer: Answer) -> RenderableType:
 def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """How sharp the answer is, and how it hangs on the choice of records."""
     from rpscli.report.study.labels import label  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.sweep.reports.intensities import unit_of  # noqa: PLC0415
     from rpscli.sweep.search.answer import ROBUST  # noqa: PLC0415 -- numpy is slow
 
     records = document["records"]
     for end, word in zip(document["bracket"] or (), ("smaller", "larger"), strict=False):
         if end is not None:
-            yield f"the next {word} value that fails", shown(end, 6)
+            (key,) = document["best"]["values"]
+            unit = unit_of(key).removesuffix("-")
+            yield f"the next {word} value that fails", f"{shown(end, 6)} {unit}".rstrip()
     if not records["resamples"]:
         return
     share = 100.0 * records["passing_share_of_best"]
     yield "the best design passes in", f"{share:.0f} % of {records['resamples']} resamples"
     if (robust := document["robust"]) is not None:
-        values = ", ".join(label(*item) for item in robust["values"].items())
-        aims = zip(document["least"], robust["aims"].values(), strict=True)
-        found = ", ".join(f"{aim['aim']} {measured(value, aim['unit'])}" for aim, value in aims)
-        yield f"the best in {100.0 * ROBUST:g} % of them", f"{values}: {found}"
+        found = [
+            label(key, float(shown(value, DIGITS)) if isinstance(value, float) else value)
+            for key, value in robust["values"].items()
+        ]
+        aims = _further_aims(document, robust)
+        found += [f"{aim['aim']} {measured(value, aim['unit'])}" for aim, value in aims]
+        yield f"the best in {100.0 * ROBUST:g} % of them", ", ".join(found)
     if records["without_answer"]:
         yield "nothing passes in", f"{records['without_answer']} of them"
     aim, unit = document["least"][0].values()

@@ -102,13 +102,14 @@ def _report(
 ) -> None:
     """Add the files of a report, and what it has to say about its numbers."""
     from rpscli.report.study.registry import REPORTS  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.study.report import add_notes  # noqa: PLC0415
 
     report = REPORTS[request.kind]
     numbers = report.numbers(results, request.options)
     title = request.options.title or given.study.title
     for name, content in list(report.files(numbers, request.stem, title, given.look)):
         folder.add(name, content)
-    found.notes.extend(f"{request.stem}: {note}" for note in report.notes(numbers))
+    add_notes(found.notes, request.stem, report.notes(numbers))
     if lines := list(report.findings(numbers)):
         found.findings[request.stem] = lines
 

@@ -36,12 +36,13 @@ def aim_label(aim: Aim) -> str:
 
     >>> from rpscli.case.design.schema import Term
     >>> aim_label({"podium.bearing.semi_diagonal": Term(times=2.0), "max_base_shear": Term()})
-    '2 R + base shear, 50 %'
+    '2 R + base shear, median'
     """
     terms = []
     for name, term in aim.items():
         known = LIMITS.get(name)
-        words = symbol(name) if known is None else f"{known.label}, {100.0 * term.fractile:g} %"
+        fractile = "median" if term.fractile == 0.5 else f"{100.0 * term.fractile:g} % fractile"
+        words = symbol(name) if known is None else f"{known.label}, {fractile}"
         terms.append(words if term.times == 1.0 else f"{term.times:g} {words}")
     return " + ".join(terms)
 

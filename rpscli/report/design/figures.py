@@ -33,7 +33,7 @@ SHARES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 BEST: dict[str, Any] = {
     "ls": "", "marker": "*", "ms": 11.0, "color": style.ORANGE, "mec": style.BLACK, "mew": 0.6,
-    "zorder": 5, "label": "best",
+    "zorder": 5, "clip_on": False, "label": "best",
 }  # fmt: skip
 
 
@@ -141,7 +141,9 @@ def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
     # Triangles of the unit square: ranges of different sizes would make needles of them.
     triangles = Triangulation(*answer.places.T).triangles
     between = Triangulation(answer.values[:, 0], answer.values[:, 1], triangles)
-    filled = axes.tricontourf(between, answer.passing_share, levels=SHARES, cmap="YlGn", alpha=0.75)
+    # A share of one at all corners of a triangle would be outside the last level.
+    shares = np.clip(answer.passing_share, 1e-6, 1.0 - 1e-6)
+    filled = axes.tricontourf(between, shares, levels=SHARES, cmap="YlGn", alpha=0.55)
     figure.colorbar(filled, ax=axes, label="share of resamples of the records that pass")
 
 
@@ -153,7 +155,14 @@ def _draw_designs(axes: Axes, answer: Answer, x: int, y: int) -> None:
     ):
         if chosen.any():
             of_mark: dict[str, Any] = mark
-            axes.plot(answer.values[chosen, x], answer.values[chosen, y], ls="", ms=3.2, **of_mark)
+            axes.plot(
+                answer.values[chosen, x],
+                answer.values[chosen, y],
+                ls="",
+                ms=3.2,
+                clip_on=False,
+                **of_mark,
+            )
     _mark(axes, answer, answer.values[:, [x, y]])
     axes.set_xlabel(axis_label(answer.task.keys[x]))
     axes.set_ylabel(axis_label(answer.task.keys[y]))
@@ -170,7 +179,7 @@ def front_figure(answer: Answer, title: str) -> bytes:
         labels.append(f"{aim_label(aim)} [{prefix}{unit}]")
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, f"{len(answer.front)} designs of the front")
+        style.heading(figure, title, f"{len(answer.front)} designs on the front")
         axes = figure.subplots()
         for chosen, mark in (
             (answer.valid & ~answer.passes, {"marker": "v", "color": style.RED, "label": "fails"}),

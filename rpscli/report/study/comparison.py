@@ -209,7 +209,10 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
         _curves(found), (style.BLACK, style.BLUE), "os", strict=True
     ):
         if curve.fitted:
-            axes.plot(curve.grid, curve.fit.curve, color=colour, lw=1.4, label=name)
+            axes.plot(
+                curve.grid, curve.fit.curve, color=colour, lw=1.4, label=name,
+                marker=marker, ms=3.2, markevery=[],  # the legend shows both
+            )  # fmt: skip
             axes.fill_between(curve.grid, *curve.fit.band, color=colour, alpha=0.15, lw=0)
         axes.plot(
             curve.binned.intensity, curve.binned.share, ls="", marker=marker, ms=3.2, color=colour
@@ -217,7 +220,10 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
     intensity = report.intensity.values[report.pairs.points[each.pairs]]
     quantity = report.quantities.index(each.quantity)
     differ = report.computed[quantity, each.pairs] - report.pairs.values[quantity, each.pairs]
-    for sign, height, name in ((1.0, 1.05, "computed only"), (-1.0, -0.05, "observed only")):
+    for sign, height, name in (
+        (1.0, 1.05, "above: computed only"),
+        (-1.0, -0.05, "below: observed only"),
+    ):
         chosen = intensity[differ == sign]
         axes.plot(
             chosen, np.full(len(chosen), height), ls="", marker="|", ms=6, color=style.RED,
@@ -229,10 +235,13 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
     line += f"; overturned {counts.computed}, observed {counts.observed}"
     axes.set_title(_heading_of(report, each, line), fontsize=style.small())
     axes.set_xscale("log")
+    axes.xaxis.set_major_formatter("{x:g}")
     axes.set_ylim(-0.1, 1.1)
     axes.set_xlabel(f"{measure_name(report.intensity)} [{report.intensity.unit}]")
     axes.set_ylabel("probability of overturning")
-    axes.legend(loc="center left", fontsize=style.small())
+    axes.legend(
+        loc="upper left", bbox_to_anchor=(0.0, 0.94), fontsize=0.9 * style.small(), handlelength=1.4
+    )
 
 
 def _draw_maxima(axes: Axes, report: ComparisonReport, each: Compared, found: Maxima) -> None:

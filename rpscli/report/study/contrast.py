@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,14 +19,17 @@ from rpscli.sweep.reports.contrast import (
     ContrastReport,
     contrast_report,
 )
+from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.reports.rotation import unknown_reference
 from rpscli.sweep.table import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-STRONGEST = 30.0
-"""Change at which the colours end [%]."""
+SCALES = (2.0, 5.0, 10.0, 20.0, 30.0)
+"""Changes at which the colours may end [%]."""
+FEW_COLUMNS = 4
+"""Of a map, whose names have room side by side."""
 
 NAMES = {quantity.name: quantity.label for quantity in LIMITED}
 
@@ -63,13 +66,18 @@ def contrast_figure(report: ContrastReport, title: str) -> bytes:
         place = panels.index(values[:ahead]), rows.index(values[ahead:down])
         changes[:, *place, columns.index(values[down:])] = _changes(cell)
 
+    largest = np.nanmax(np.abs(changes), initial=0.0)
+    strongest = next((end for end in SCALES if end >= largest), SCALES[-1])
+
+    ends: Literal["both", "neither"] = "both" if largest > strongest else "neither"
+
     def draw(figure: Figure) -> None:
         about = f"{plain(report.value)} over {plain(report.reference)}, median over the motions"
         style.heading(figure, title, about, left_out(report.failed))
         grid = figure.subplots(len(names), len(panels), squeeze=False, sharex=True, sharey=True)
         for (line, place), axes in np.ndenumerate(grid):
             image = axes.imshow(
-                changes[line, place], cmap="RdBu_r", vmin=-STRONGEST, vmax=STRONGEST, aspect="auto"
+                changes[line, place], cmap="RdBu_r", vmin=-strongest, vmax=strongest, aspect="auto"
             )
             axes.grid(visible=False)
             axes.tick_params(length=0)
@@ -78,13 +86,14 @@ def contrast_figure(report: ContrastReport, title: str) -> bytes:
             if place == 0:
                 axes.set_ylabel(f"{names[line]}\n{_named(options.rows)}")
         small = style.small()
+        turned = 90 if len(columns) > FEW_COLUMNS else 0
         ticks = [_ticked(column) for column in columns]
         for axes in grid[:, 0]:
             axes.set_yticks(range(len(rows)), [_ticked(row) for row in rows], fontsize=small)
         for axes in grid[-1]:
-            axes.set_xticks(range(len(columns)), ticks, fontsize=small, rotation=90)
+            axes.set_xticks(range(len(columns)), ticks, fontsize=small, rotation=turned)
             axes.set_xlabel(_named(options.columns))
-        figure.colorbar(image, ax=grid, label="change [%]", shrink=0.6, extend="both")
+        figure.colorbar(image, ax=grid, label="change [%]", shrink=0.6, extend=ends)
 
     return style.picture(draw, 1.0 + len(names) * max(1.4, 0.12 * len(rows)))
 
@@ -96,7 +105,9 @@ def _changes(cell: Contrast) -> Array:
 
 
 def _named(keys: Sequence[str]) -> str:
-    return ", ".join(symbol(key) for key in keys)
+    return ", ".join(
+        symbol(key) if unit_of(key) == "-" else f"{symbol(key)} [{unit_of(key)}]" for key in keys
+    )
 
 
 def _ticked(values: Values) -> str:

@@ -80,7 +80,7 @@ def demand_sample_figure(report: DemandSampleReport, title: str) -> bytes:
 
     def draw(axes: Axes, sample: DemandSample) -> None:
         reached = np.where(sample.overturned[:, None] > 0.0, np.inf, sample.accelerations)
-        for share, dashes, name in ((0.5, "-", "median"), (HIGH, "--", "84 %")):
+        for share, dashes, name in ((0.5, "-", "median"), (HIGH, "--", "84 % fractile")):
             values = np.quantile(reached, share, axis=0, method="inverted_cdf")
             axes.plot(
                 np.where(np.isfinite(values), values, np.nan), range(len(values)), "o",

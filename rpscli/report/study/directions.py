@@ -79,11 +79,11 @@ def directions_figure(report: DirectionsReport, title: str) -> bytes:
                 curve.angles, np.where(stood, curve.drawn, np.nan), lw=0.8, alpha=0.55,
                 color=style.BLUE, marker=".", ms=3.0, label="pairs",
             )  # fmt: skip
-            fallen = curve.angles[curve.drawn == np.inf]
-            axes.plot(
-                fallen, np.full(len(fallen), top), ls="", marker="o", ms=3.4, mfc="none",
-                color=style.RED, clip_on=False, label="overturned",
-            )  # fmt: skip
+            if len(fallen := curve.angles[curve.drawn == np.inf]):
+                axes.plot(
+                    fallen, np.full(len(fallen), top), ls="", marker="o", ms=3.4, mfc="none",
+                    color=style.RED, clip_on=False, label="overturned",
+                )  # fmt: skip
             if worst is not None and np.isfinite(worst.worst):
                 axes.plot(
                     worst.worst_angle, worst.worst, ls="", marker="^", ms=4.5, color=style.BLACK,

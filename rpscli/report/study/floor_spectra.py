@@ -77,7 +77,7 @@ def floor_spectra_figure(report: FloorSpectraReport, title: str) -> bytes:
                 axes.plot(
                     report.periods, np.where(np.isfinite(values), values, np.nan), ls=dashes,
                     color=colour, lw=1.3,
-                    label=f"{name}, {'median' if row == 1 else '84 %'}",
+                    label=f"{name}, {'median' if row == 1 else '84 % fractile'}",
                 )  # fmt: skip
 
     def limits(axes: Axes) -> None:

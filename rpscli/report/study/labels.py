@@ -55,6 +55,8 @@ def label(key: str, value: object) -> str:
         return plain(value) if value else "no devices"
     if key == "title":
         return plain(value)
+    if key == "floor":
+        return f"floor {plain(value)}"
     return f"{symbol(key)} = {plain(value)}{_unit_behind(key, value)}"
 
 

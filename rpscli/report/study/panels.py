@@ -143,7 +143,8 @@ def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
         return 0
     widest = max(len(name) for name in found)
     room = style.inches(figure)[0] * LETTERS_AN_INCH
-    columns = max(1, min(len(found), 5, int(room / (widest + 7))))
+    most = max(1, min(len(found), 5, int(room / (widest + 7))))
+    columns = math.ceil(len(found) / math.ceil(len(found) / most))  # so that rows are even
     names = [style.typeset(name) for name in found]
     handles = [*found.values()]
     if columns > 2:  # two columns are read downwards

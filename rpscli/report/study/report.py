@@ -83,3 +83,15 @@ class Report(Generic[Options, Numbers]):
             yield f"{stem}{suffix}", text
         if self.drawable(numbers):
             yield from figure_files({stem: partial(self.figure, numbers, title)}, look).items()
+
+
+def add_notes(notes: list[str], name: str, found: Iterable[str]) -> None:
+    """Notes under the name of their report; what another report has said is not said again.
+
+    >>> notes = ["fragility: the data are separated"]
+    >>> add_notes(notes, "risk", ["the data are separated", "the hazard curve is continued"])
+    >>> notes
+    ['fragility: the data are separated', 'risk: the hazard curve is continued']
+    """
+    told = {note.partition(": ")[2] for note in notes}
+    notes += [f"{name}: {note}" for note in found if note not in told]

@@ -117,7 +117,11 @@ def risk_figure(report: RiskReport, title: str) -> bytes:
         x_label=f"{measure_name(found.intensity)} [{found.intensity.unit}]",
         y_label="share of the annual rate [%]",
         limits=limit_axes,
-        note=remarks("dashed: half of the rate from either side", over(found.pooled)),
+        note=remarks(
+            f"P: probability in {report.years:g} years",
+            "dashed: half of the rate from either side",
+            over(found.pooled),
+        ),
     )
 
 
@@ -136,7 +140,7 @@ def _chance(report: RiskReport, limit: LimitState) -> str:
     """Probability within a life, of the only curve or of the least and the largest."""
     rates = [risk.rate for risk in report.known if risk.fragility.limit == limit]
     ends = [f"{probability(rate, report.years):.2g}" for rate in (min(rates), max(rates))]
-    return f"P = {' to '.join(dict.fromkeys(ends))} in {report.years:g} years"
+    return f"P = {' to '.join(dict.fromkeys(ends))}"
 
 
 REPORT = Report(

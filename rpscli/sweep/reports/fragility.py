@@ -134,12 +134,14 @@ class FragilityReport:
     @property
     def notes(self) -> list[str]:
         """What is pooled, what overturning does to limits, and what keeps fits from being plain."""
-        named = ((c, zip(self.series_keys, c.values, strict=True)) for c in self.curves)
         return [*self.pooling, *self._overturning] + [
-            f"{c.limit.label}{''.join(f', {key} = {value}' for key, value in keys)}: {c.fit.note}"
-            for c, keys in named
-            if c.fit.note
+            f"{self.named(curve)}: {curve.fit.note}" for curve in self.curves if curve.fit.note
         ]
+
+    def named(self, curve: Fragility) -> str:
+        """A curve's limit state with the values of its systems."""
+        keys = zip(self.series_keys, curve.values, strict=True)
+        return curve.limit.label + "".join(f", {key} = {value}" for key, value in keys)
 
     @property
     def _overturning(self) -> list[str]:

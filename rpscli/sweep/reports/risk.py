@@ -90,9 +90,8 @@ class RiskReport:
     @property
     def notes(self) -> list[str]:
         """What keeps fragilities and rates from being plain."""
-        found = [
-            f"{risk.fragility.limit.label}: {note}" for risk in self.risks for note in risk.notes
-        ]
+        named = self.fragilities.named
+        found = [f"{named(risk.fragility)}: {note}" for risk in self.risks for note in risk.notes]
         return [*self.fragilities.notes, *dict.fromkeys(found)]
 
 
@@ -184,7 +183,10 @@ def _notes(fragility: Fragility, hazard: Hazard, above: Array, lost: int) -> Ite
             " hazard curve, which is continued with its last slope; extend the curve"
         )
     if lost:
-        yield f"{lost} bootstrap samples do not grow with the intensity, and are left out of bands"
+        yield (
+            f"{lost} bootstrap samples have fragilities that do not grow with the intensity, and"
+            " are left out of the bands"
+        )
 
 
 def _probability(fragility: Fragility, intensity: float) -> float:
