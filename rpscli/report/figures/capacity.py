@@ -30,7 +30,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
         close.set_xlim(0.0, 3.0 * uplift)
         close.locator_params(axis="x", nbins=5)
         whole.set_xlabel(style.folded(figure, "roof displacement [m]"))
-        close.set_xlabel(style.folded(figure, "roof displacement, near uplift [m]"))
+        close.set_xlabel(style.folded(figure, "near uplift [m]"))
         close.set_ylabel("")
         columns = 5 if style.inches(figure)[0] >= style.WIDTH else 2
         legend = close.get_legend_handles_labels()

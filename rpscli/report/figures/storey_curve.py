@@ -49,7 +49,9 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
     if returns:
         axes.plot([], [], color=style.GREY, lw=1.5, ls="--", label="on the way back")
     rises = F[1] > F[0] > 0.15 * F.max()  # and there is room below
-    _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else 6.0))
+    # Above the name of beta, if that stands to the left of its point.
+    higher = 18.0 if returns else 6.0
+    _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else higher))
     if 0.0 < beta < result.critical_rotation:
         at = int(np.searchsorted(curve.rotation, beta))
         side = (-7.0 if F[at + 1] > F[at] else 7.0, 6.0)

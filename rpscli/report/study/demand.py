@@ -10,6 +10,7 @@ from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import (
+    break_if_narrow,
     by_values,
     colour,
     left_out,
@@ -56,6 +57,8 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
         (s.base_shear_ratio.max(initial=0.0) for p in report.panels for s in p.series), default=0.0
     )
 
+    apart = break_if_narrow()
+
     def draw(axes: Axes, panel: DemandPanel) -> None:
         for place, series in enumerate(panel.series):
             axes.plot(
@@ -68,8 +71,8 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
             x = np.array([0.0, fit.break_x, max(highest, fit.break_x)])
             axes.plot(x, fit(x), color=style.BLACK, lw=1.6, label="bilinear fit")
             text = (
-                f"saturation at {fit.break_x:.3f}, {fit.break_y:.2f}"
-                f"\nslope kₛ {fit.slope_after:.2f} beyond"
+                f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
+                f"\nslope kₛ{apart}{fit.slope_after:.2f} beyond"
             )
         # Where the curve runs through the lower right, the upper left is free.
         rising = fit is not None and bool(np.min(fit(across)) < 0.25 * top)

@@ -191,6 +191,11 @@ def _wrapped(names: Sequence[str], columns: int) -> list[str]:
     return ["\n".join(name.rsplit(", ", 1)) for name in names]
 
 
+def break_if_narrow() -> str:
+    """What stands between the parts of a text inside a panel: a new line in narrow figures."""
+    return "\n" if style.room(style.WIDTH) < style.WIDTH else " "
+
+
 def over(pooled: Sequence[str]) -> str:
     """A remark on what differs within a panel.
 

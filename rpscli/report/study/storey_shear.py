@@ -9,7 +9,14 @@ import numpy as np
 from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
-from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
+from rpscli.report.study.panels import (
+    break_if_narrow,
+    by_values,
+    left_out,
+    over,
+    panel_figure,
+    remarks,
+)
 from rpscli.report.study.report import Report
 from rpscli.sweep.reports.storey_shear import (
     StoreyProfile,
@@ -50,6 +57,8 @@ def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
     """Mean and largest shears of survivors, with both counts; the scale is common."""
     in_kn = report.unit == "kN"
 
+    apart = break_if_narrow()
+
     def draw(axes: Axes, profile: StoreyProfile) -> None:
         edges = np.arange(len(profile.mean) + 1)
         for attribute, name, colour, line in LOOKS:
@@ -63,8 +72,9 @@ def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
             )
         axes.set_ylim(0.0, len(profile.mean))
         axes.locator_params(axis="y", integer=True)
+        every = profile.counted + profile.overturned
         axes.text(
-            0.96, 0.95, f"{profile.counted} survivors of {profile.counted + profile.overturned}",
+            0.96, 0.95, f"{profile.counted} survivors{apart}of {every}",
             transform=axes.transAxes, ha="right", va="top", fontsize=0.9 * style.small(),
         )  # fmt: skip
 
