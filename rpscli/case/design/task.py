@@ -154,8 +154,8 @@ def parse_design(
     if not is_design(document):
         kind = "case" if is_case(document) else "study" if "base" in document.content else "file"
         raise CaseError(
-            f"{name}: is a {kind} without `find`, and a design is wanted here: a base case, find,"
-            " records, limits and least; see `rps explain find`"
+            f"{name}: this is a {kind} without `find`, but a design is wanted here: a base case,"
+            " find, records, limits and least; see `rps explain find`"
         )
     of_design, of_base = shared_out(overrides, DesignFile)
     document = apply_overrides(document, of_design, model=DesignFile)
@@ -263,7 +263,10 @@ def _aim_faults(file: DesignFile) -> Iterator[Fault]:
         elif name not in keys and name not in results:
             guess = nearest(name, [*keys, *results])
             hint = f"did you mean {guess}?" if guess else f"use {listed(keys)}, or a result"
-            yield Fault(("least",), f"least: {name} is no result and changes with nothing; {hint}")
+            yield Fault(
+                ("least",),
+                f"least: {name} is neither a result nor a key that `find` changes; {hint}",
+            )
         elif name in keys and "fractile" in _given(file.least, name):
             yield Fault(("least",), f"least: {name} is a key, without fractiles; take it out")
 

@@ -88,7 +88,7 @@ class Usual(NamedTuple):
 HEIGHT = Usual("the height of the columns 2H", "m", 0.3, 10.0)
 SEMI_DIAGONAL = Usual("the semi-diagonal of the columns R", "m", 0.15, 6.0)
 PERIOD = Usual("the first period on a fixed base T1", "s", 0.02, 5.0)
-STOREY_MASS = Usual("the mass of a storey in the mean", "kg", 1e3, 1e7)
+STOREY_MASS = Usual("the mean mass of a storey", "t", 1.0, 10_000.0)
 RESTITUTION = Usual("the restitution at impact e", "", 0.5, 1.0)
 FRICTION = Usual("the coefficient podium.friction", "", 0.1, 1.5)
 
@@ -114,7 +114,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
         yield from FRICTION.doubts(structure.friction)
     if building is None:
         return
-    yield from STOREY_MASS.doubts(float(building.masses.mean()))
+    yield from STOREY_MASS.doubts(1e-3 * float(building.masses.mean()))
     yield from PERIOD.doubts(float(building.periods[0]))
     share = bearing.slenderness
     if share > STRONGEST:

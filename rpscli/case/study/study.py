@@ -151,11 +151,13 @@ def parse_study(
     document = read_yaml(text, name)
     if is_case(document):
         raise CaseError(
-            f"{name}: is a case, and a study is wanted here; `rps timehistory {name}` computes it,"
-            " `rps init --study` writes a study"
+            f"{name}: this is a case, but a study is wanted here; `rps timehistory {name}` computes"
+            " it, `rps init --study` writes a study"
         )
     if is_design(document):
-        raise CaseError(f"{name}: is a design, and a study is wanted here; use `rps design {name}`")
+        raise CaseError(
+            f"{name}: this is a design, but a study is wanted here; use `rps design {name}`"
+        )
     of_study, of_base = shared_out(overrides, StudyFile)
     document = apply_overrides(document, of_study, model=StudyFile)
     digest = hashlib.sha256(text.encode()).hexdigest()

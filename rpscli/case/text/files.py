@@ -101,9 +101,10 @@ def _similar(path: Path) -> str:
     folder = path.parent
     if not folder.is_dir():
         return f"; the folder {folder} does not exist either"
-    found = nearest(path.name, (item.name for item in folder.iterdir() if item.is_file()))
-    if found:
-        return f"; did you mean {folder / found}?"
+    # By what stands before the dot: all cases end alike.
+    names = {item.stem: item.name for item in folder.iterdir() if item.is_file()}
+    if found := nearest(path.stem, names):
+        return f"; did you mean {folder / names[found]}?"
     return "; `rps init` writes a case to start from"
 
 
