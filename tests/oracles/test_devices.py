@@ -27,6 +27,7 @@ from .devices import (
     Viscous,
 )
 from .full_contact import LinearGround
+from .locking import Locking, drifts_at_the_end
 from .reference_systems import GRAVITY, podium
 from .second_integrator import OracleResult, _Simulation, simulate
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
@@ -324,26 +325,12 @@ def test_a_tendon_that_yields_loses_prestress_or_all_of_it(reach: float) -> None
 @pytest.mark.parametrize("share", [0.2, 0.4])
 def test_locking_in_the_limit_with_friction_needs_no_small_tolerance(share: float) -> None:
     system = replace(podium(2, 0.15, 0.0), restitution=0.6)
-    force = share * StoreyLagrangian(system).lifted_mass * GRAVITY * 0.15
+    friction = Friction(share * StoreyLagrangian(system).lifted_mass * GRAVITY * 0.15)
+    exact = drifts_at_the_end(system, 1e-12, "limit", friction)
 
-    def vibration(tolerance: float, locking: Literal["relative", "limit"]) -> Array:
-        result = simulate(
-            system,
-            np.zeros(1),
-            0.02,
-            free_vibration=2.0,
-            recontact_tolerance=tolerance,
-            initial_rotation=0.02,
-            locking=locking,
-            devices=(Friction(force),),
-        )
-        assert result.theta[-1] == 0.0
-        return result.drifts[-20:]
-
-    exact = vibration(1e-12, "limit")
-
-    def missed(tolerance: float, locking: Literal["relative", "limit"]) -> float:
-        return float(np.max(np.abs(vibration(tolerance, locking) - exact)) / np.max(np.abs(exact)))
+    def missed(tolerance: float, locking: Locking) -> float:
+        found = drifts_at_the_end(system, tolerance, locking, friction)
+        return float(np.max(np.abs(found - exact)) / np.max(np.abs(exact)))
 
     # what "relative" leaves out is of the order of w, what "limit" does of that of w^2
     assert missed(1e-8, "limit") < 1e-4

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
 import pytest
 from scipy.signal import lsim
 
-from .crossings import Array
 from .full_contact import LinearGround
+from .locking import drifts_at_the_end
 from .reference_systems import GRAVITY, block, podium, pulse, slender_block
 from .second_integrator import _Simulation, simulate
 from .storey_lagrangian import Contact, StoreyLagrangian
@@ -150,19 +151,7 @@ def test_locking_in_the_limit_needs_no_small_tolerance(
 ) -> None:
     system = replace(podium(2, 0.15, 0.0), law=law, restitution=restitution)
 
-    def vibration(tolerance: float, locking: Literal["relative", "limit"]) -> Array:
-        result = simulate(
-            system,
-            np.zeros(1),
-            0.02,
-            free_vibration=2.0,
-            recontact_tolerance=tolerance,
-            initial_rotation=0.02,
-            locking=locking,
-        )
-        assert result.theta[-1] == 0.0
-        return result.drifts[-20:]
-
+    vibration = partial(drifts_at_the_end, system)
     followed_far = vibration(1e-11, "limit")
     size = float(np.max(np.abs(followed_far)))
     # "relative" leaves out a part that shrinks like the square root of the tolerance
