@@ -9,13 +9,14 @@ import click
 from rpscli.commands.case_input import write
 from rpscli.commands.design.rounds import Rounds
 from rpscli.commands.design.tables import answer_tables, nothing_passes
-from rpscli.commands.shell.completions import FILE, case_keys
+from rpscli.commands.shell.completions import FILE
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     figure_options,
     output_options,
+    overrides_option,
     run_options,
     terminal_options,
 )
@@ -39,15 +40,7 @@ if TYPE_CHECKING:
 
 @click.command("design")
 @click.argument("design", metavar="DESIGN", type=FILE)
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    shell_complete=case_keys,
-    help="Put a value over the file's own (--set search.most=64) or over its base case's;"
-    " repeatable.",
-)
+@overrides_option("Put a value over the file's own (--set search.most=64) or over its base case's")
 @run_options
 @figure_options
 @output_options

@@ -16,7 +16,12 @@ from rpscli.commands.motion import FACTOR, MotionRequest
 from rpscli.commands.report.case_page import PageDone, case_page
 from rpscli.commands.report.subject import HISTORY, earlier_case, earlier_results, is_study
 from rpscli.commands.shell.failure import leave
-from rpscli.commands.shell.options import CaseRequest, terminal_options
+from rpscli.commands.shell.options import (
+    CaseRequest,
+    overrides_option,
+    style_option,
+    terminal_options,
+)
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import Refused, UsageError
 from rpscli.report.figures.look import Look, read_style
@@ -34,13 +39,7 @@ from rpscli.report.files.whole_files import require_writable, write_whole
     metavar="FILE.html",
     help="The page; results/<name>/report.html by default.",
 )
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Put a value over the case's or the study's own; repeatable.",
-)
+@overrides_option("Put a value over the case's or the study's own")
 @click.option("--record", metavar="SRC", help="Ground motion in place of the case's own.")
 @click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
 @click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
@@ -52,13 +51,7 @@ from rpscli.report.files.whole_files import require_writable, write_whole
     metavar="WHAT",
     help="A limit besides those of the case or study, as in `rps timehistory`; repeatable.",
 )
-@click.option(
-    "--style",
-    "style_file",
-    type=click.Path(path_type=Path),
-    metavar="FILE.mplstyle",
-    help="matplotlib's settings for the figures.",
-)
+@style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is no report.")
 @terminal_options
 def command(

@@ -53,14 +53,28 @@ def terminal_options(function: Command) -> Command:
     return command
 
 
-_overrides = click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    shell_complete=case_keys,
-    help="Put a value over the case's own, such as"
-    " --set podium.bearing.curvature_ratio=1.5; repeatable.",
+def overrides_option(meaning: str) -> Callable[[Command], Command]:
+    """--set, with what it does for the command, as `overrides`."""
+    return click.option(
+        "--set",
+        "overrides",
+        multiple=True,
+        metavar="KEY=VALUE",
+        shell_complete=case_keys,
+        help=f"{meaning}; repeatable.",
+    )
+
+
+_overrides = overrides_option(
+    "Put a value over the case's own, such as --set podium.bearing.curvature_ratio=1.5"
+)
+
+style_option = click.option(
+    "--style",
+    "style_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE.mplstyle",
+    help="matplotlib's settings for the figures: fonts, sizes, lines.",
 )
 
 
@@ -89,13 +103,7 @@ def figure_options(function: Command) -> Command:
         type=click.Choice(("1", "2")),
         help="Make figures as wide as one column of a journal (89 mm), or two (178 mm).",
     )
-    @click.option(
-        "--style",
-        "style_file",
-        type=click.Path(path_type=Path),
-        metavar="FILE.mplstyle",
-        help="matplotlib's settings for the figures: fonts, sizes, lines.",
-    )
+    @style_option
     @functools.wraps(function)
     def command(
         *, figures: str | None, columns: str | None, style_file: Path | None, **rest: Any

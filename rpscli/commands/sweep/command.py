@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from rpscli.commands.acceptance import parse_condition
-from rpscli.commands.shell.completions import FILE, case_keys, condition_names
+from rpscli.commands.shell.completions import FILE, condition_names
 from rpscli.commands.shell.failure import INTERRUPTED, concluded, leave
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     figure_options,
     output_options,
+    overrides_option,
     run_options,
     terminal_options,
 )
@@ -50,14 +51,9 @@ WARNINGS_SHOWN = 5
 
 @click.command("sweep")
 @click.argument("study", metavar="STUDY", type=FILE)
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    shell_complete=case_keys,
-    help="Put a value over the study's own (--set 'scale=[1, 2]') or over its base case's"
-    " (--set podium.bearing.slenderness=0.2); repeatable.",
+@overrides_option(
+    "Put a value over the study's own (--set 'scale=[1, 2]') or over its base case's"
+    " (--set podium.bearing.slenderness=0.2)"
 )
 @run_options
 @click.option(
