@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -140,6 +140,14 @@ def groups(design: Design, keys: Sequence[str], within: Indices | None = None) -
             values = tuple(_value(known[_axis(known, key)], key, at, known) for key in keys)
             found.append(Group(values, numbers[chosen]))
     return found
+
+
+def computed_groups(table: Table, keys: Sequence[str]) -> Iterator[tuple[Group, Indices]]:
+    """Groups with points that did not fail, and these points."""
+    for group in groups(table.design, keys):
+        points = group.points[~table.failed[group.points]]
+        if len(points):
+            yield group, points
 
 
 def _axis(known: Sequence[Dimension], key: str) -> int:

@@ -12,7 +12,7 @@ from rpscli.case.study.reports import ReportOptions
 from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.run.schedule import LARGEST_BATCH
 from rpscli.sweep.statistics.pooling import apart, shown_keys
-from rpscli.sweep.table import Array, Indices, groups, leading_keys
+from rpscli.sweep.table import Array, Indices, computed_groups, leading_keys
 
 
 class DemandSampleOptions(ReportOptions):
@@ -64,10 +64,7 @@ def demand_sample_report(study: StudyResults, _options: DemandSampleOptions) -> 
     table, design = study.table, study.table.design
     keys = apart(design, leading_keys(design))
     samples = []
-    for group in groups(design, keys):
-        points = group.points[~table.failed[group.points]]
-        if not len(points):
-            continue
+    for group, points in computed_groups(table, keys):
         floors, drifts = _of_floors(study, points.tolist())
         columns = {name: table.columns[name][points] for name in COLUMNS}
         samples.append(

@@ -20,7 +20,7 @@ from rpscli.case.study.reports import ReportOptions
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
-from rpscli.sweep.table import Array, groups, leading_keys
+from rpscli.sweep.table import Array, computed_groups, leading_keys
 
 FRACTILES = (0.16, 0.50, 0.84)
 
@@ -70,10 +70,7 @@ def floor_spectra_report(study: StudyResults, options: FloorSpectraOptions) -> F
     table, design = study.table, study.table.design
     keys = apart(design, leading_keys(design))
     panels = []
-    for group in groups(design, keys):
-        points = group.points[~table.failed[group.points]]
-        if not len(points):
-            continue
+    for group, points in computed_groups(table, keys):
         spectra = np.array([_spectra(study, int(p), options.damping) for p in points])
         # An overturned history is larger than any demand; its building on a fixed base is not.
         spectra[table.overturned[points], 0] = np.inf
