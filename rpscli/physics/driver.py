@@ -62,38 +62,48 @@ def integrate(run: Run, lanes: int = LANES) -> None:
 
 
 @kernel
-def integrate_lanes(state: Record, run: Run) -> None:
+def integrate_lanes(state: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- see below
     """The same, in lanes that are made already: an array of one `state.STATE`.
 
     What many samples need is handed on by itself: of each array in a tuple references are counted.
+    What becomes of a lane is decided here: in a function of its own it would cost a tenth of the
+    speed, and all that it calls would be compiled once more.
     """
     s = state[0]
     systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block
     s.audited, s.equipped = 1 if output.samples.shape[0] > 0 else 0, has_devices(systems)
     s.waiting, active = 0, s.lanes
-    for l in range(s.lanes):
-        s.history[l], s.accepted[l] = NO_HISTORY, 0.0
-        s.renew[l] = NOTHING_NEW
-        # Not the constant by itself: numba would compile once more, for it alone.
-        fate = IS_OVER if s.history[l] == NO_HISTORY else GOES_ON
-        settle_lane(state, l, fate, run)
-        active -= s.history[l] == NO_HISTORY
+    begun = False
     while active > 0:
-        advance_lanes(state, systems, block, output.log)
+        if begun:
+            advance_lanes(state, systems, block, output.log)
         for l in range(s.lanes):
-            if s.waits[l] == 0.0 or s.history[l] == NO_HISTORY:
+            fate = IS_OVER
+            if not begun:  # each takes its first history
+                s.history[l], s.accepted[l], s.renew[l] = NO_HISTORY, 0.0, NOTHING_NEW
+            elif s.waits[l] == 0.0 or s.history[l] == NO_HISTORY:
                 continue
-            fate = NOT_ACCEPTED
-            if s.accepted[l] > 0.0 and s.steps_left[l] > 0.0:
+            elif s.accepted[l] == 0.0:
+                fate = NOT_ACCEPTED
+            elif s.steps_left[l] > 0.0:
                 plan_steps(s, l)
                 fate = GOES_ON
-            elif s.accepted[l] > 0.0:
+            else:
                 fate = next_interval(s, l, acceleration)
                 if s.audited > 0:
                     store_sample(s, l, systems[s.system[l]], output)
-            if fate != GOES_ON or s.renew[l] != NOTHING_NEW:
-                settle_lane(state, l, fate, run)
-                active -= s.history[l] == NO_HISTORY
+            while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
+                system = systems[s.system[l]]
+                if fate == NOT_ACCEPTED:
+                    fate = resolve_step(s, l, system, block[0], output.log)
+                elif fate == STANDS:
+                    fate = stand(s, l, system, block[0], acceleration, output)
+                elif fate == GOES_ON:
+                    fate = go_on_renewed(s, l, system, output)
+                else:
+                    fate = next_history(s, l, run)
+            active -= s.history[l] == NO_HISTORY
+        begun = True
 
 
 @kernel
@@ -109,57 +119,17 @@ def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -
     accept_steps(s)
 
 
-@compiled
-def settle_lane(state: Record, l: int, fate: int, run: Run) -> None:
-    """What comes of a step that one lane cannot simply go on from, until it can.
-
-    Parameters
-    ----------
-    fate
-        GOES_ON, NOT_ACCEPTED, STANDS or IS_OVER.
-    """
-    s = state[0]
-    while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
-        if fate == STANDS:
-            fate = stand_lane(state, l, fate, run)
-        else:
-            fate = switch_lane(state, l, fate, run)
-
-
 @kernel
-def stand_lane(state: Record, l: int, fate: int, run: Run) -> int:
-    """If it STANDS, the storey of a lane does so until it uplifts or its history ends.
+def next_history(s: Record, l: int, run: Run) -> int:
+    """A lane's history is over: STANDS or GOES_ON with the next, if there is one.
 
     Parameters
     ----------
-    fate
-        GOES_ON, NOT_ACCEPTED, STANDS or IS_OVER.
+    run
+        Its requests wait, its results are written.
     """
-    if fate != STANDS:
-        return fate
-    s = state[0]
-    fate = stand(s, l, run.systems[s.system[l]], run.block[0], run.acceleration, run.output)
-    plan_steps(s, l)
-    return fate
-
-
-@kernel
-def switch_lane(state: Record, l: int, fate: int, run: Run) -> int:
-    """A step ends on an event, a phase begins, or the next history does; what the lane does then.
-
-    Parameters
-    ----------
-    fate
-        GOES_ON, NOT_ACCEPTED or IS_OVER.
-    """
-    s = state[0]
-    system = run.systems[s.system[l]]
-    if fate == NOT_ACCEPTED:
-        return resolve_step(s, l, system, run.block[0], run.output.log)
-    if fate == GOES_ON:
-        return go_on_renewed(s, l, system, run.output) if s.renew[l] != NOTHING_NEW else fate
     if s.history[l] != NO_HISTORY:
-        finish_history(s, l, system, run.results)
+        finish_history(s, l, run.systems[s.system[l]], run.results)
     if s.waiting < run.requests.shape[0]:
         s.waiting += 1
         return begin_history(s, l, run, s.waiting - 1)

@@ -1,8 +1,8 @@
 """The first compilation of the kernels, by two processes side by side.
 
-numba takes one core for half a minute. What the kernel calls is compiled into numba's cache, one
+numba takes one core for most of a minute. What the kernel calls is compiled into numba's cache, one
 part here and one by a second process, each by calls that have nothing to do; the kernel then finds
-it there.
+it there. The parts are chosen so that what they have in common, which is compiled twice, is little.
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ import numba
 import numpy as np
 
 from rpscli.physics.compile import cache_folder
-from rpscli.physics.driver import advance_lanes, integrate, stand_lane, switch_lane
+from rpscli.physics.driver import advance_lanes, integrate, next_history
 from rpscli.physics.full_contact.fixed_base import integrate_fixed_base
+from rpscli.physics.full_contact.stand import stand
 from rpscli.physics.run import empty_run, empty_state
-from rpscli.physics.state import GOES_ON
+from rpscli.physics.state import NO_HISTORY, Record
+from rpscli.physics.uplifted.locate_event import go_on_renewed, resolve_step
 
 
 def compile_kernel() -> None:
@@ -42,7 +44,7 @@ def compile_kernel() -> None:
         ) as other,
     ):
         try:
-            compile_one_lane()
+            compile_phases()
             other.wait()
             integrate(empty_run(1), 1)
         except BaseException:
@@ -50,17 +52,28 @@ def compile_kernel() -> None:
             raise
 
 
-def compile_one_lane() -> None:
-    """What is done for one lane: it stands, or switches; both call much that is the same."""
-    switch_lane(empty_state(1), 0, GOES_ON, empty_run(1))
-    stand_lane(empty_state(1), 0, GOES_ON, empty_run(1))
-
-
-def compile_all_lanes() -> None:
-    """Steps of all lanes, and the building on a fixed base."""
-    run, floors, largest = empty_run(1), np.empty((0, 2, 1)), np.zeros((2, 1))
-    advance_lanes(empty_state(1), run.systems, run.block, run.output.log)
+def compile_phases() -> None:
+    """Full contact, what begins a phase or a history, and the building on a fixed base."""
+    run, s = empty_run(1), no_histories()[0]
+    stand(s, 0, run.systems[0], run.block[0], run.acceleration, run.output)
+    next_history(s, 0, run)
+    go_on_renewed(s, 0, run.systems[0], run.output)
+    floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
     integrate_fixed_base(run.acceleration, 1.0, run.systems, run.block, floors, largest)
+
+
+def compile_steps() -> None:
+    """Uplifted steps of all lanes, and those of one that end on an event."""
+    run, state = empty_run(1), no_histories()
+    advance_lanes(state, run.systems, run.block, run.output.log)
+    resolve_step(state[0], 0, run.systems[0], run.block[0], run.output.log)
+
+
+def no_histories() -> Record:
+    """Lanes for which there is nothing to do."""
+    state = empty_state(1)
+    state.history[:] = NO_HISTORY
+    return state
 
 
 @contextmanager
@@ -77,4 +90,4 @@ def garbage_kept() -> Iterator[None]:
 
 if __name__ == "__main__":
     with garbage_kept():
-        compile_all_lanes()
+        compile_steps()

@@ -366,7 +366,7 @@ STATE = (
     Field("n", "", WHOLE, "storeys, and modes: the same in all lanes", "run.empty_state"),
     Field("lanes", "", WHOLE, "lanes in use: 1 or all", "run.empty_state"),
     Field("audited", "", WHOLE, "1 where energy flows are integrated", "driver"),
-    Field("waiting", "", WHOLE, "number of the next request", "driver.switch_lane"),
+    Field("waiting", "", WHOLE, "number of the next request", "driver.next_history"),
 )
 
 BLOCK = (

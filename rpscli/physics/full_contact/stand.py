@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics.compile import compiled
+from rpscli.physics.compile import compiled, kernel
 from rpscli.physics.devices.rest import begin_excursion, hold_block, resting_pull, slide
 from rpscli.physics.full_contact.demands import (
     clear_contacts,
@@ -40,6 +40,7 @@ from rpscli.physics.state import (
     GOES_ON,
     INSTANTS,
     IS_OVER,
+    NO_HISTORY,
     SHORT_STEP,
     STUCK,
     WHOLE_STEP,
@@ -48,6 +49,7 @@ from rpscli.physics.state import (
 )
 from rpscli.physics.transitions.phases import uplift
 from rpscli.physics.uplifted.demands import set_harmless
+from rpscli.physics.uplifted.steps import plan_steps
 
 
 @compiled
@@ -211,10 +213,40 @@ def leave_contact(
 
 
 @compiled
+def search_block(
+    block: Record, margin: Margin, plan: Plan, least: float
+) -> tuple[int, float, float, bool]:
+    """How many steps end before uplift, the fraction of the next, the side, and whether it comes.
+
+    Parameters
+    ----------
+    block, plan
+        The steps in full contact, and how they were planned.
+    margin
+        See `uplift_search.margin_of`.
+    least
+        Zero to locate uplift; else the steps end before the first with less of the limit left than
+        this share, and the side is zero.
+    """
+    if not raise_alarms(block, margin, plan.h, least):
+        return plan.steps, 0.0, 0.0, False
+    for taken in range(plan.steps):
+        if block.alarm[taken] > 0.0:
+            if least > 0.0:
+                return taken, 0.0, 0.0, True
+            fraction, side = first_uplift(block, margin, plan.h, taken)
+            if side != 0.0:
+                return taken, fraction, side, True
+    return plan.steps, 0.0, 0.0, False
+
+
+@kernel
 def stand(
     s: Record, l: int, system: Record, block: Record, acceleration: Floats, output: Output
 ) -> int:
     """Follow a lane in full contact, or stuck: GOES_ON when it begins to move, or IS_OVER."""
+    if s.history[l] == NO_HISTORY:
+        return IS_OVER
     margin = margin_of(s, l, system)
     pull = resting_pull(s, l)
     modes_to_block(s, l, block)
@@ -227,15 +259,7 @@ def stand(
         plan = plan_block(s, l, system, block, FINE if fine else 1)
         set_ground_of_block(s, l, block, acceleration, plan.h, plan.each, plan.steps)
         follow_modes(block, system, plan.which)
-        alarms = raise_alarms(block, margin, plan.h, 0.0 if fine else NEAR)
-        taken, fraction, alarm = 0 if alarms else plan.steps, 0.0, False
-        while taken < plan.steps and not alarm:
-            alarm = block.alarm[taken] > 0.0
-            if alarm and fine:
-                fraction, side = first_uplift(block, margin, plan.h, taken)
-                alarm = side != 0.0
-            if not alarm:
-                taken += 1
+        taken, fraction, side, alarm = search_block(block, margin, plan, 0.0 if fine else NEAR)
         mark_samples(block, plan.each, taken, plan.each)
         if may_raise(block, s.shear_harmless[l], s.acceleration_harmless[l]):
             raise_floors_of_block(block, system, s.storey_shear[l], s.floor_acceleration[l])
@@ -254,4 +278,5 @@ def stand(
     if over:
         modes_from_block(s, l, block)
     hand_over_contacts(s, l, block)
+    plan_steps(s, l)
     return IS_OVER if over else GOES_ON

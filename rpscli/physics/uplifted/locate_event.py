@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.compile import compiled
+from rpscli.physics.compile import compiled, kernel
 from rpscli.physics.devices.events import change_law, has_friction, locate_change
 from rpscli.physics.devices.flows import book_devices, observe_devices
 from rpscli.physics.devices.forces import set_devices
@@ -34,6 +34,7 @@ from rpscli.physics.state import (
     IMPACT,
     IS_OVER,
     NO_EVENT,
+    NO_HISTORY,
     NOTHING_NEW,
     OVERTURNED_ROCKING,
     OVERTURNED_ROLLING,
@@ -169,13 +170,15 @@ def next_interval(s: Record, l: int, acceleration: Floats) -> int:
     return GOES_ON
 
 
-@compiled
+@kernel
 def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) -> int:
     """Deal with a step that was not accepted: GOES_ON or IS_OVER.
 
     After a false alarm the same step is taken once more, and passes. A step that is too long for
     its series is taken again at half the length, as are those after it up to the next sample.
     """
+    if s.history[l] == NO_HISTORY:
+        return IS_OVER
     if s.too_long[l] > 0.0:
         s.step[l], s.steps_left[l] = 0.5 * s.step[l], 2.0 * s.steps_left[l]
         if s.kinked[l] > 0.0:
@@ -193,9 +196,11 @@ def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) 
     return IS_OVER if s.outcome[l] >= 0 or too_many_events(s, l, system) else GOES_ON
 
 
-@compiled
+@kernel
 def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
     """Compute accelerations anew: GOES_ON, or STANDS after the last impact or held by friction."""
+    if s.history[l] == NO_HISTORY:
+        return IS_OVER
     if s.devices[l] > 0:
         set_devices(s, l, s.theta[l], s.theta_dot[l])
     renew_accelerations(s, l)
