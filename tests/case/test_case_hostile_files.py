@@ -126,3 +126,19 @@ def test_a_decimal_comma_in_braces_is_named() -> None:
     assert named == ["c.yaml:2:38: superstructure.period = 0,3 has a decimal comma; write 0.3"]
     assert not any("the key 3" in line for line in lines)
     assert "the key 3 must be text" in text_refusal("a: {b: 0, 3}\n")
+
+
+@pytest.mark.parametrize(
+    ("written", "remedy"),
+    [
+        ("0,3", "a decimal comma: write 0.3"),
+        ("0,300", "a decimal comma: write 0.300"),
+        ("12,5 t", "a decimal comma: write 12.5 t"),
+        ("1,500", "digits are not grouped, write 1500"),
+        ("1,234,567", "digits are not grouped, write 1234567"),
+        ("1 000", "digits are not grouped, write 1000"),
+    ],
+)
+def test_a_comma_is_taken_for_what_it_is(building: str, written: str, remedy: str) -> None:
+    message = text_refusal(building.replace("200 t", f"{written}"))
+    assert message.endswith(f"; {remedy}")

@@ -1,4 +1,4 @@
-"""Design files that were damaged, and studies of Python that no file could say."""
+"""Damaged design files, studies of Python that no file could say, films and drawings."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 from hunt.mutation import mutated
 from hunt.test_hostile_files import CASE_KEYS, CASES, VALUES
@@ -18,7 +19,9 @@ from rpscli import load_case, load_record, load_study
 from rpscli.case.design.schema import DesignFile
 from rpscli.case.design.task import parse_design
 from rpscli.case.schema.known_keys import known_paths
+from rpscli.cli import program
 from rpscli.errors import CaseError, RpsError, UsageError
+from rpscli.report.figures.look import read_style
 
 pytestmark = pytest.mark.posix  # trials are timed by its signals
 
@@ -126,3 +129,72 @@ def test_folders_that_cannot_be_are_told_to_python_as_well(place: str) -> None:
             call()
         assert len(str(refusal.value)) < LONGEST_LINE
     assert [each.name for each in Path().iterdir()] == ["file"]
+
+
+FILMS = [f"{'x' * 300}.gif", "file/a.gif", "folder.gif", "a.gif", "a.mp4", "a", "a.avi"]
+REALS = ["0", "nan", "inf", "-1", "1e-300", "1e300", "0.5", "2", "1e9", "x"]
+FILM_OPTIONS = ["--animate-speed", "--animate-from", "--animate-to", "--animate-size"]
+
+
+@shares
+def test_films(long: bool) -> None:
+    """What cannot be shown is refused, most of it before the history, and leaves nothing behind."""
+    case, record = f"{CASES}/rigid_frame.yaml", "pulse:sine?amplitude=0.3g&period=0.8"
+
+    def trial(random: Random) -> str:
+        Path("file").touch()
+        Path("folder.gif").mkdir(exist_ok=True)
+        before = {*Path().rglob("*")}
+        chosen = random.sample(FILM_OPTIONS, random.choice([1, 1, 2]))
+        wishes = [word for option in chosen for word in (option, random.choice(REALS))]
+        arguments = ["--record", record, "--animate", random.choice(FILMS), *wishes, "-o", "out"]
+        result = CliRunner().invoke(
+            program, ["timehistory", case, *arguments, "--figures", "none", "--force"]
+        )
+        shown = f"{' '.join(arguments)[:300]}: {result.stderr[-500:]}"
+        assert "internal error" not in result.stderr, shown
+        if result.exit_code:
+            # The command line is at fault, or the place: no input is.
+            assert result.exit_code in {1, 2}, shown
+            assert "error: " in result.stderr, shown
+            assert max(map(len, result.stderr.splitlines())) <= LONGEST_LINE, shown
+            assert not [each for each in {*Path().rglob("*")} - before if each.is_file()], shown
+        return f"exit {result.exit_code}"
+
+    hunt("films", trial, 8, 200 if long else None)
+
+
+EXTREMES = {
+    "podium.bearing.semi_diagonal": ["1e-9", "1e9", "1e300", "0"],
+    "podium.bearing.slenderness": ["1e-12", "0.2999999", "0.3", "10", "1e300"],
+    "podium.bearing.wedge_slenderness": ["0.1500000001", "0.999", "1", "1e9"],
+    "podium.bearing.curvature_ratio": ["0", "0.075", "1e-9", "1e9", "critical"],
+    "superstructure": ["null", "{storeys: 1}"],
+    "title": ["$\\frac{$", "''", f"{'y' * 4000}", "日本語"],
+    "podium.devices": [
+        "[{kind: stop, gap: 1e9, stiffness: 1}]",
+        "[{kind: stop, gap: 1e-9, stiffness: 1e9}]",
+        "[{kind: tendon, stiffness: 1e7, prestress: 1}]",
+    ],
+}
+
+
+@shares
+def test_drawings_of_bearings(long: bool) -> None:
+    def trial(random: Random) -> str:
+        keys = random.sample(list(EXTREMES), random.choice([1, 1, 2]))
+        changes = [f"{key}={random.choice(EXTREMES[key])}" for key in keys]
+        options = [word for change in changes for word in ("--set", change)]
+        case, formats = f"{CASES}/rigid_frame.yaml", random.choice(["png", "svg,pdf"])
+        end = judged("check", case, "--draw", "--figures", formats, "-o", "drawn", *options)
+        if end == "done":
+            assert all(Path("drawn", f"bearing.{each}").is_file() for each in formats.split(","))
+        return end
+
+    hunt("drawings", trial, 8, 300 if long else None)
+
+
+def test_styles_are_files(tmp_path: Path) -> None:
+    for place in ("/dev/zero", str(tmp_path), "a\0b"):
+        with pytest.raises(UsageError, match="cannot be read"):
+            read_style(Path(place))

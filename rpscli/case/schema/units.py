@@ -198,5 +198,9 @@ def _hint(quantity: Any) -> str:
 
 
 def _grouped(text: str) -> str:
+    # 1,500 is more than a thousand; 0,3 and 12,5 and 0,300 are no groups.
+    comma = text.count(",") == 1 and re.match(r"\d+,\d", text)
+    if comma and not re.match(r"[1-9]\d{0,2},\d{3}\b", text):
+        return f"; a decimal comma: write {text.replace(',', '.')}"
     digits = re.sub(r"(?<=\d)[_, '](?=\d)", "", text)
     return f"; digits are not grouped, write {digits}" if digits != text else ""

@@ -231,7 +231,7 @@ def output_options(function: Command) -> Command:
         "-o",
         "--output",
         "place",
-        type=click.Path(path_type=Path),
+        type=click.Path(path_type=Path, readable=False),
         metavar="DIR",
         help="Folder of the results; results/<name>/<command> by default.",
     )

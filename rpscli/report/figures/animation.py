@@ -54,13 +54,14 @@ def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
         )
     last = last if last > first else time[-1]
     length = (last - first) / wanted.speed if wanted.speed else min(last - first, USUAL_LENGTH)
-    frames = max(int(length * wanted.rate), 2)
-    if frames > MOST_FRAMES:
+    count = length * wanted.rate
+    if count > MOST_FRAMES:
         raise UsageError(
-            f"--animate-speed {wanted.speed:g}: {last - first:.4g} s make {frames} frames, and"
+            f"--animate-speed {wanted.speed:g}: {last - first:.4g} s make {count:.5g} frames, and"
             f" {MOST_FRAMES} are the most; let it run faster, or show a part with --animate-from"
             " and --animate-to"
         )
+    frames = max(int(count), 2)
     at = np.linspace(first, last, frames)
     samples = np.minimum(np.searchsorted(time, at), len(time) - 1)
     return Plan(samples, float((last - first) * wanted.rate / frames))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.errors import OutputError, UsageError
 from rpscli.report.figures import style
+from rpscli.report.files.whole_files import require_writable_file
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -52,6 +54,8 @@ class FilmRequest:
     ------
     UsageError
         If there is no such format here, or no such part.
+    OutputError
+        If it cannot be written there.
     """
 
     file: Path
@@ -69,10 +73,17 @@ class FilmRequest:
                 f"--animate {self.file}: MP4 needs the program {ENCODER}, which is not on the"
                 f" path; install it, or write {self.file.with_suffix('.gif')}"
             )
+        for option, value in (("speed", self.speed), ("from", self.first), ("to", self.last)):
+            if value is not None and not math.isfinite(value):
+                raise UsageError(
+                    f"--animate-{option} {value:g}: must be a finite number; leave it out to show"
+                    " all that moves"
+                )
         if self.last is not None and (self.first or 0.0) >= self.last:
             raise UsageError(
                 f"--animate-to {self.last:g} must be later than --animate-from {self.first or 0:g}"
             )
+        require_writable_file(self.file)
 
     @property
     def ending(self) -> str:

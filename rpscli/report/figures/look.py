@@ -140,7 +140,8 @@ def read_style(path: Path) -> dict[str, Any]:
     logger.addHandler(complaints)
     passed_on, logger.propagate = logger.propagate, False
     try:
-        found = cast("dict[str, Any]", rc_params_from_file(path, use_default_template=False))
+        settings = rc_params_from_file(_regular(path), use_default_template=False)
+        found = cast("dict[str, Any]", settings)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "is no text"
         raise UsageError(
@@ -153,6 +154,13 @@ def read_style(path: Path) -> dict[str, Any]:
         reasons = "; ".join(" ".join(text.split()) for text in complaints.texts)
         raise UsageError(f"--style {path}: {reasons}")
     return dict(found)  # can be sent to another process
+
+
+def _regular(path: Path) -> Path:
+    """The path, but of a device or a pipe, which may have no end."""
+    if path.exists() and not path.is_file():
+        raise OSError(0, "is no file")
+    return path
 
 
 class _Complaints(logging.Handler):

@@ -91,6 +91,22 @@ def require_writable(folder: Path) -> None:
         raise OutputError(f"{folder}: no permission to write there; name another place with -o")
 
 
+def require_writable_file(file: Path) -> None:
+    """Whether a file can be made or replaced.
+
+    Raises
+    ------
+    OutputError
+        If it cannot.
+    """
+    require_writable(file.parent)
+    try:
+        if file.is_dir():
+            raise IsADirectoryError(0, "there is a folder of this name")
+    except OSError as error:
+        raise _not_written(file, error) from None
+
+
 def _not_written(path: Path, error: OSError) -> OutputError:
     reason = error.strerror or str(error)
     return OutputError(
