@@ -14,7 +14,6 @@ from rpscli.physics.state import (
     REQUEST,
     RESULT,
     SAMPLE,
-    SLOTS,
     STATE,
     SYSTEM,
     Floats,
@@ -37,7 +36,8 @@ class Output(NamedTuple):
     log
         (rows,) `state.EVENT`.
     devices
-        (rows, 4, SLOTS) force [N], displacement [m], dissipated and stored energy [J] of devices.
+        (rows, 4, devices) force [N], displacement [m], dissipated and stored energy [J] of all
+        devices.
     """
 
     samples: Record
@@ -106,7 +106,7 @@ def empty_run(storeys: int) -> Run:
             samples=records(SAMPLE, count=0),
             floors=np.empty((0, 2, storeys)),
             log=records(EVENT, count=0),
-            devices=np.empty((0, 4, SLOTS)),
+            devices=np.empty((0, 4, 0)),
         ),
         block=empty_block(storeys),
     )

@@ -157,7 +157,6 @@ def run_of(
     *,
     rows: int = 0,
     events: int = 0,
-    devices: int = 0,
 ) -> Run:
     """What the kernel needs to run histories, and room for their results.
 
@@ -169,8 +168,8 @@ def run_of(
         Records of the ground; those of the two components of a motion are equally long.
     requests
         The histories.
-    rows, events, devices
-        Samples, events and devices of the first history for which there is room.
+    rows, events
+        Samples and events of the first history for which there is room.
     """
     n = int(systems.n[0])
     starts = np.cumsum([0] + [motion.npts for motion in motions])
@@ -189,7 +188,7 @@ def run_of(
             samples=records(SAMPLE, count=rows),
             floors=np.empty((rows, 2, n)),
             log=records(EVENT, count=events),
-            devices=np.empty((rows, 4, devices)),
+            devices=np.empty((rows, 4, int(systems.devices.max()))),
         ),
         block=empty_block(n),
     )
@@ -325,9 +324,7 @@ def sampled_history(
     rows = longest_history(settings, along)
     events = FIRST_LOG
     while True:
-        run = run_of(
-            systems, motions, [request], rows=rows, events=events, devices=len(structure.devices)
-        )
+        run = run_of(systems, motions, [request], rows=rows, events=events)
         with compiled():
             integrate(run, lanes=1)
         history = history_of(run.results[0], structure.storeys)

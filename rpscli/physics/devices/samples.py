@@ -30,7 +30,7 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
     Parameters
     ----------
     sample
-        (4, SLOTS): written.
+        (4, devices): written.
     """
     stuck, stands = s.phase[l] == STUCK, s.phase[l] == FULL_CONTACT
     path, rate, C = cap_beam_path(s, l, s.theta[l], s.theta_dot[l])
