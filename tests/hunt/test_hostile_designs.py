@@ -73,6 +73,7 @@ def test_values_of_designs(long: bool) -> None:
         (f"ties: {{superstructure.storeys: {{plus: {HUGE}}}}}", "must be a linear sum"),
         ("ties: {superstructure.storeys: {podium.bearing.slenderness: 1e308}}", "up to 1e+15"),
         (f"scale: [{HUGE}]", "must be finite numbers"),
+        ("find: {podium.bearing.semi_diagonal: [1, 1]}", "or leave the key to the case"),
         ("scale: {factor: [1, 2]}", "low is missing"),
         ("confirm: {records: 3}", "must be a list"),
         ("least: {max_rotation: {times: 1, x: 2}}", "x is not a key that it has"),

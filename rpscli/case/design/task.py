@@ -217,7 +217,9 @@ def _unknowns(document: Document) -> tuple[tuple[Unknown, ...], list[Fault]]:
             faults.append(Fault(("find", key), text))
         elif not si[0] < si[1]:
             text = f"find.{key} = {shown(bounds)} must rise from the least value to the largest"
-            faults.append(Fault(("find", key), f"{text}; exchange them"))
+            faults.append(
+                Fault(("find", key), f"{text}; exchange them, or leave the key to the case")
+            )
         else:
             unknowns.append(Unknown(key, float(si[0]), float(si[1])))
     for key, place in varied_paths(document).items():
