@@ -89,9 +89,7 @@ def integrate_lanes(state: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- 
                 plan_steps(s, l)
                 fate = GOES_ON
             else:
-                fate = next_interval(s, l, acceleration)
-                if s.audited > 0:
-                    store_sample(s, l, systems[s.system[l]], output)
+                fate = next_interval(s, l, acceleration, systems[s.system[l]], output)
             while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
                 system = systems[s.system[l]]
                 if fate == NOT_ACCEPTED:
@@ -132,7 +130,10 @@ def next_history(s: Record, l: int, run: Run) -> int:
         finish_history(s, l, run.systems[s.system[l]], run.results)
     if s.waiting < run.requests.shape[0]:
         s.waiting += 1
-        return begin_history(s, l, run, s.waiting - 1)
+        fate = begin_history(s, l, run, s.waiting - 1)
+        if fate == GOES_ON:
+            plan_steps(s, l)
+        return fate
     idle(s, l)
     return GOES_ON
 
@@ -199,7 +200,6 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     set_ground(s, l, run.acceleration)
     if system.initial_rotation != 0.0:
         release(s, l, system)
-        plan_steps(s, l)
         return GOES_ON
     store_sample(s, l, system, run.output)
     s.next_a_g[l], s.next_g_up[l] = s.a_g[l], s.g_up[l]

@@ -158,9 +158,12 @@ def too_many_events(s: Record, l: int, system: Record) -> bool:
 
 
 @compiled
-def next_interval(s: Record, l: int, acceleration: Floats) -> int:
+def next_interval(s: Record, l: int, acceleration: Floats, system: Record, output: Output) -> int:
     """Enter the record's next interval: GOES_ON, or IS_OVER at the history's end."""
-    if enter_interval(s, l, acceleration, s.interval[l] + 1):
+    over = enter_interval(s, l, acceleration, s.interval[l] + 1)
+    if s.audited > 0:
+        store_sample(s, l, system, output)
+    if over:
         return IS_OVER
     if s.interval[l] + 1 == s.npts[l]:
         s.renew[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
@@ -196,6 +199,21 @@ def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) 
     return IS_OVER if s.outcome[l] >= 0 or too_many_events(s, l, system) else GOES_ON
 
 
+@compiled
+def go_on_turned(s: Record, l: int, system: Record, output: Output, after: int) -> int:
+    """At a standstill of the tilt: GOES_ON, or STANDS if friction holds it.
+
+    Parameters
+    ----------
+    after
+        AFTER_RELEASE or AFTER_TURNING.
+    """
+    stuck = turn(s, l, output.log)
+    if after == AFTER_RELEASE:
+        store_sample(s, l, system, output)
+    return STANDS if stuck else GOES_ON
+
+
 @kernel
 def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
     """Compute accelerations anew: GOES_ON, or STANDS after the last impact or held by friction."""
@@ -213,10 +231,7 @@ def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
         # At the threshold theta'' is zero but for rounding, and about to grow.
         s.theta_ddot[l] = max(s.theta_ddot[l], 0.0)
     elif after in (AFTER_RELEASE, AFTER_TURNING):
-        stuck = turn(s, l, output.log)
-        if after == AFTER_RELEASE:
-            store_sample(s, l, system, output)
-        return STANDS if stuck else GOES_ON
+        return go_on_turned(s, l, system, output, after)
     elif after == AFTER_IMPACT and comes_to_rest(s, l, system, output.log):
         return STANDS
     if s.kinked[l] > 0.0:
