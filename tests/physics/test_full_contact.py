@@ -153,3 +153,21 @@ def test_undamped_modes_do_no_work() -> None:
         podium(3, superstructure=building(3, damping=ModalDamping(0.0))), waves(4.0, 0.02, 0.2, 4)
     )
     assert result.energy.damped == 0.0
+
+
+@pytest.mark.parametrize("slenderness", [0.05, 0.07, 0.1, 0.13, 0.15, 0.2, 0.3])
+@pytest.mark.parametrize("excess", [-1e-15, 0.0, 1e-15])
+def test_a_peak_that_equals_the_limit_is_full_contact(slenderness: float, excess: float) -> None:
+    frame = podium(0, slenderness, 0.5)
+    limit = frame.uplift_acceleration * (1.0 + excess)
+    for shape in ([0.0, 0.5, 1.0, 0.5], [0.0, 1.0, 1.0, 1.0], [0.0, -1.0, 1.0, -1.0]):
+        result = time_history(frame, ground(np.multiply(shape, limit), 0.1))
+        assert (result.outcome, result.uplifts) == ("at_rest", 0)
+
+
+@pytest.mark.parametrize("excess", [1e-12, 1e-10, 1e-8, 1e-6, 1e-4])
+def test_a_peak_beyond_the_limit_uplifts_and_lands(excess: float) -> None:
+    frame = podium(0, 0.15, 0.5)
+    limit = frame.uplift_acceleration * (1.0 + excess)
+    result = time_history(frame, ground(np.multiply([0.0, 0.5, 1.0, 0.5], limit), 0.1))
+    assert (result.outcome, result.uplifts) == ("survived", 1)

@@ -31,6 +31,10 @@ from rpscli.physics.formulae.quintic import (
 from rpscli.physics.full_contact.modal_block import fill_map, map_of, mapped
 from rpscli.physics.state import INSTANTS, SHORT_STEP, STUCK, Record
 
+ROUNDING = 1e-13
+"""Share of the limit within which the margin is zero. Were it the last bit that decides, a motion
+whose peak is the limit itself would uplift and land again and again, without time passing."""
+
 
 class Margin(NamedTuple):
     """What the margin against uplift is made of.
@@ -203,7 +207,8 @@ def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float
         factor, held = limit_to(margin, sign)
         limit = factor * block.g_up[k]
         rise = factor * (block.g_up_slope[k] * h)
-        t = first_descent(margin_path(path, limit, rise, sign, held), SETTLED, block.piece)
+        beyond = limit + ROUNDING * (abs(limit) + held)
+        t = first_descent(margin_path(path, beyond, rise, sign, held), SETTLED, block.piece)
         if t < first:
             first, side = t, sign
     return first, side
