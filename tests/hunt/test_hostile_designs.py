@@ -31,6 +31,7 @@ find: {{podium.bearing.semi_diagonal: [0.8, 2.0], podium.bearing.slenderness: [0
 ties: {{podium.bearing.wedge_slenderness: {{podium.bearing.slenderness: 2, plus: 0.01}}}}
 records: ["pulse:sine?amplitude=0.3g&period=0.8", "pulse:sine?amplitude=0.2g&period=1"]
 limits: {{rotation_ratio: 0.5, min_column_force: {{at_least: 50 kN}}}}
+whole_histories: true
 least: [podium.bearing.semi_diagonal, {{max_base_shear: {{times: 1e-6, fractile: 0.84}}}}]
 confirm: {{share: 0.5}}
 search: {{first: 4, most: 8, resamples: 0}}
@@ -42,6 +43,11 @@ HUGE = 10**390
 @pytest.fixture(autouse=True)
 def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+
+
+def test_the_design_is_sound() -> None:
+    Path("design.yaml").write_text(DESIGN, encoding="utf-8")
+    assert judged("design", "design.yaml", "--dry-run") == "done"
 
 
 @shares

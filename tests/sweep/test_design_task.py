@@ -284,7 +284,12 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         ("2, plus", "2, pluss", "14:", "needs pluss, which is not under find"),
         (f"least: {SLENDERNESS}", "least: max_rotatoin", "19:8", "did you mean max_rotation?"),
         (f"least: {SLENDERNESS}", "least: {max_rotation: {fractil: 1}}", "19:8", "fractil"),
-        (f"least: {SLENDERNESS}", "least: drift_ratio", "19:8", "is no result of this structure"),
+        (
+            f"least: {SLENDERNESS}",
+            "least: drift_ratio",
+            "19:8",
+            "drift_ratio needs superstr",
+        ),
         (f"least: {SLENDERNESS}", "least: max_roof_displacement", "19:8", "whole_histories: true"),
         (f"least: {SLENDERNESS}", f"least: {{{SLENDERNESS}: {{fractile: 0.5}}}}", "19:8", "a key"),
         ("limits: {uplift: 0.3}\n", "", "", "limits is missing"),

@@ -24,9 +24,9 @@ def require_results(given: StudyInput, conditions: Iterable[Condition]) -> None:
     """
     from rpscli.report.study.requirements import (  # noqa: PLC0415 -- numpy is slow
         lacking,
-        needs_of,
         requirement_faults,
     )
+    from rpscli.sweep.design.check import needs_of  # noqa: PLC0415 -- numpy is slow
 
     design = given.design
     design.study.document.refuse(requirement_faults(design))

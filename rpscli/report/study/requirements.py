@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import FRICTION
 from rpscli.case.text.faults import Fault
 from rpscli.report.study.registry import REPORTS
+from rpscli.sweep.design.check import needs_of
 from rpscli.sweep.design.layout import Design
 
 
@@ -20,15 +20,6 @@ def requirement_faults(design: Design) -> Iterator[Fault]:
 def lacking(design: Design, name: str) -> bool:
     """Whether some system of a study cannot have a result."""
     return any(name in properties.lacking for properties in design.properties)
-
-
-def needs_of(name: str) -> str:
-    """What a study must have for a result, in words."""
-    needs = {quantity.name: quantity.needs for quantity in (*HISTORY, *SAMPLED)}[name]
-    if name in {quantity.name for quantity in SAMPLED}:
-        alike = f" and {needs} in all systems" if needs else ""
-        return f"{name} needs `whole_histories: true` in the study{alike}"
-    return f"{name} needs {needs}, which not every system of the study has"
 
 
 def _limit_faults(design: Design) -> Iterator[Fault]:

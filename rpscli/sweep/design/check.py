@@ -137,6 +137,15 @@ def lacking(study: Study, case: Case) -> frozenset[str]:
     )
 
 
+def needs_of(name: str) -> str:
+    """What a study must have for a result, in words."""
+    needs = {quantity.name: quantity.needs for quantity in (*HISTORY, *SAMPLED)}[name]
+    if name in {quantity.name for quantity in SAMPLED}:
+        alike = f" and {needs} in all systems" if needs else ""
+        return f"{name} needs `whole_histories: true`{alike}"
+    return f"{name} needs {needs}, which not every system of the study has"
+
+
 def _has(*kinds: type) -> Callable[[PodiumStructure], bool]:
     return lambda structure: any(isinstance(device, kinds) for device in structure.devices)
 

@@ -9,6 +9,7 @@ from rpscli.case.conditions import EVENTS
 from rpscli.case.design.task import DesignTask
 from rpscli.case.text.faults import Fault
 from rpscli.errors import CaseError
+from rpscli.sweep.design.check import needs_of
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.search.answer import Answer
 from rpscli.sweep.search.judgement import Requirement, demands_of, judge, weights_of
@@ -103,7 +104,8 @@ class Search:
         lacking = frozenset.union(*(properties.lacking for properties in design.properties))
         for name in self.names:
             if name in lacking and name not in EVENTS:
-                document.refuse([Fault(("least",), f"{name} is no result of this structure")])
+                where = "least" if any(name in aim for aim in self.task.file.least) else "limits"
+                document.refuse([Fault((where,), f"{where}: {needs_of(name)}")])
 
     def add(self, places: Array, values: Array, valid: Flags, table: Table | None) -> None:
         """Take in a round; `table` has the points of its valid designs."""
