@@ -80,6 +80,9 @@ def check_steps(s: Record) -> None:
         terms = s.dtheta_terms
         first = abs(terms[0, l]) + abs(terms[1, l]) + abs(terms[2, l])
         last = max(abs(terms[ORDER, l]), ONE_BEFORE * abs(terms[ORDER - 1, l]))
+        # Where the tilt begins with t^3, at uplift, A has its terms 3, 6, ... and the series gaps.
+        omitted = s.per_A[l] * abs(s.A_terms[ORDER - 1, l] * terms[2, l])
+        last = max(last, omitted)
         too_long = (last > s.last_term[l] * first) & (s.steps_left[l] < MOST_STEPS)
         accepted = (cleared | inside) & (not too_long)
         turning = (s.theta_dot[l] > 0.0) & (s.next_theta_dot[l] < 0.0)
