@@ -19,7 +19,7 @@ from rpscli.physics.devices.samples import leave_devices
 from rpscli.physics.energy import book_energy, building_energy, uplifted_energy
 from rpscli.physics.full_contact.stand import stand
 from rpscli.physics.ground import set_ground
-from rpscli.physics.run import Run, empty_state
+from rpscli.physics.run import Output, Run, empty_state
 from rpscli.physics.samples import store_sample
 from rpscli.physics.state import (
     AFTER_RELEASE,
@@ -89,7 +89,9 @@ def integrate_lanes(state: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- 
                 plan_steps(s, l)
                 fate = GOES_ON
             else:
-                fate = next_interval(s, l, acceleration, systems[s.system[l]], output)
+                fate = next_interval(s, l, acceleration)
+                if s.audited > 0:
+                    keep_sample(s, l, systems, output)
             while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
                 system = systems[s.system[l]]
                 if fate == NOT_ACCEPTED:
@@ -115,6 +117,12 @@ def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -
     observe_ends(s)
     observe_lanes(s, systems, blocks[0], log)
     accept_steps(s)
+
+
+@compiled
+def keep_sample(s: Record, l: int, systems: Record, output: Output) -> None:
+    """Store the sample at which a lane has arrived."""
+    store_sample(s, l, systems[s.system[l]], output)
 
 
 @kernel

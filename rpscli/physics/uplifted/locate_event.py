@@ -158,12 +158,9 @@ def too_many_events(s: Record, l: int, system: Record) -> bool:
 
 
 @compiled
-def next_interval(s: Record, l: int, acceleration: Floats, system: Record, output: Output) -> int:
+def next_interval(s: Record, l: int, acceleration: Floats) -> int:
     """Enter the record's next interval: GOES_ON, or IS_OVER at the history's end."""
-    over = enter_interval(s, l, acceleration, s.interval[l] + 1)
-    if s.audited > 0:
-        store_sample(s, l, system, output)
-    if over:
+    if enter_interval(s, l, acceleration, s.interval[l] + 1):
         return IS_OVER
     if s.interval[l] + 1 == s.npts[l]:
         s.renew[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
