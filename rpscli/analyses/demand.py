@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 from rpscli.analyses.kernels.compilation import compiled
-from rpscli.analyses.kernels.history import History, history_of, refuse_steps, run_of
+from rpscli.analyses.kernels.history import History, histories_of, refuse_steps, run_of
 from rpscli.analyses.kernels.history import Request as HistoryRequest
 from rpscli.analyses.kernels.step_lengths import longest_time
 from rpscli.analyses.kernels.systems import stacked_systems
@@ -127,7 +127,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
     lanes = LANES if len(requests) >= worth_lanes else 1
     with compiled():
         integrate(run, lanes)
-    return [history_of(result, storeys) for result in run.results]
+    return histories_of(run.results, storeys)
 
 
 class _Distinct(Generic[Item]):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,46 +90,52 @@ class History:
     permanent: NDArray[np.float64]
 
 
-def history_of(result: Record, storeys: int) -> History:
-    """The history of one `state.RESULT`.
+def histories_of(results: Record, storeys: int) -> list[History]:
+    """The histories of some `state.RESULT`.
 
     Parameters
     ----------
-    result
-        One `state.RESULT`.
+    results
+        Records of `state.RESULT`.
     storeys
-        n of its structure.
+        n of their structures.
     """
+    # Fields by attribute take numpy ten times as long.
+    plain = results.view(np.dtype((np.void, results.dtype)), np.ndarray)
+    return [_history_of(result, storeys) for result in plain]
+
+
+def _history_of(result: Any, storeys: int) -> History:
     return History(
-        outcome=int(result.outcome),
-        phase=int(result.phase),
-        rotation=float(result.rotation),
-        time=float(result.time),
-        intervals=int(result.intervals),
-        max_rotation=float(result.max_theta),
-        max_rotation_time=float(result.max_theta_time),
-        critical_time=float(result.critical_time),
-        storey_shears=result.storey_shear[:storeys].copy(),
-        floor_accelerations=result.floor_acceleration[:storeys].copy(),
-        friction=np.array([result.friction_top, result.friction_bottom]),
-        least_normal=np.array([result.normal_top, result.normal_bottom]),
+        outcome=int(result["outcome"]),
+        phase=int(result["phase"]),
+        rotation=float(result["rotation"]),
+        time=float(result["time"]),
+        intervals=int(result["intervals"]),
+        max_rotation=float(result["max_theta"]),
+        max_rotation_time=float(result["max_theta_time"]),
+        critical_time=float(result["critical_time"]),
+        storey_shears=result["storey_shear"][:storeys].copy(),
+        floor_accelerations=result["floor_acceleration"][:storeys].copy(),
+        friction=np.array([result["friction_top"], result["friction_bottom"]]),
+        least_normal=np.array([result["normal_top"], result["normal_bottom"]]),
         energies=np.array(
             [
-                result.energy_input,
-                result.energy_damped,
-                result.energy_lost,
-                result.energy_stored + result.device_stored.sum(),
+                result["energy_input"],
+                result["energy_damped"],
+                result["energy_lost"],
+                result["energy_stored"] + result["device_stored"].sum(),
             ]
         ),
-        energy_created=float(result.energy_created),
-        creating_impacts=int(result.creating_impacts),
-        counts=result.events.copy(),
-        steps=int(result.steps),
-        device_force=result.device_force.copy(),
-        device_velocity=result.device_velocity.copy(),
-        device_energy=result.device_energy.copy(),
-        device_stored=result.device_stored.copy(),
-        permanent=result.permanent.copy(),
+        energy_created=float(result["energy_created"]),
+        creating_impacts=int(result["creating_impacts"]),
+        counts=result["events"].copy(),
+        steps=int(result["steps"]),
+        device_force=result["device_force"].copy(),
+        device_velocity=result["device_velocity"].copy(),
+        device_energy=result["device_energy"].copy(),
+        device_stored=result["device_stored"].copy(),
+        permanent=result["permanent"].copy(),
     )
 
 
@@ -174,11 +181,13 @@ def run_of(
     n = int(systems.n[0])
     starts = np.cumsum([0] + [motion.npts for motion in motions])
     given = records(REQUEST, count=len(requests))
-    for row, request in zip(given, requests, strict=True):
-        motion, above = motions[request.record], request.vertical
-        row.system, row.record = request.system, starts[request.record]
-        row.vertical = NO_RECORD if above is None else starts[above]
-        row.npts, row.dt, row.scale = motion.npts, motion.dt, request.scale
+    along = [motions[request.record] for request in requests]
+    above = [request.vertical for request in requests]
+    given.system = [request.system for request in requests]
+    given.record = [starts[request.record] for request in requests]
+    given.vertical = [NO_RECORD if number is None else starts[number] for number in above]
+    given.npts, given.dt = [motion.npts for motion in along], [motion.dt for motion in along]
+    given.scale = [request.scale for request in requests]
     return Run(
         systems=systems,
         requests=given,
@@ -327,7 +336,7 @@ def sampled_history(
         run = run_of(systems, motions, [request], rows=rows, events=events)
         with compiled():
             integrate(run, lanes=1)
-        history = history_of(run.results[0], structure.storeys)
+        history = histories_of(run.results, structure.storeys)[0]
         if (seen := int(history.counts.sum())) <= events:
             break
         events = seen
