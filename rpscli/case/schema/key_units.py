@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any, get_args
 
 from rpscli.case.schema.case_file import CaseFile
@@ -10,6 +11,7 @@ from rpscli.case.schema.fields import Quantity, Whole
 from rpscli.case.schema.known_keys import field_at
 
 
+@lru_cache(maxsize=1024)
 def unit(key: str) -> str:
     """SI unit of a case key; ``-`` for plain numbers and words.
 
