@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -123,6 +124,33 @@ def test_the_second_ctrl_c_stops_at_once(
         assert len(store.outcomes()) == 9  # the second batch is still under way
     over.set()
     assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.posix
+def test_a_ctrl_c_given_to_another_thread_is_heard(
+    study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    design = lay_out(study_of())
+    context = StudyContext(design.plan)
+    heard = threading.Event()
+
+    def one_batch(context: StudyContext, points: Sequence[Point]) -> list[Row]:
+        time.sleep(0.5)  # until the main thread waits
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        os.kill(os.getpid(), signal.SIGINT)  # only this thread takes it: the waiting one sleeps on
+        assert heard.wait(20.0)
+        return run_batch(context, points)
+
+    monkeypatch.setattr("rpscli.sweep.run.threads.run_batch", one_batch)
+    keys = all_keys(design, context)
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        with Store(workplace) as store:
+            begin = resume(design, keys, store, retry_failed=False)
+            finish = run(design, begin, store, Threads(context, 1), announce=heard.set)
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    assert (finish.computed, finish.interrupted) == (9, True)
 
 
 def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:

@@ -8,12 +8,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from queue import SimpleQueue
+from contextlib import suppress
+from queue import Empty, SimpleQueue
 from threading import Lock, Thread
 
 from rpscli.sweep.evaluation.batch import Row, run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
+
+
+HEARING = 0.2
+"""Seconds after which who waits for a batch looks up.
+
+A Ctrl-C that comes between the last look and the beginning of the wait, or that is given to another
+thread, wakes nobody; on Windows none does.
+"""
 
 
 def available_cores() -> int:
@@ -64,7 +73,10 @@ class Threads:
 
     def _waiting(self) -> list[list[Row] | _End]:
         """Everything that has been said: if the writer is slow it gets more at a time."""
-        said = [self._done.get()]
+        said: list[list[Row] | _End] = []
+        while not said:
+            with suppress(Empty):
+                said.append(self._done.get(timeout=HEARING))
         while not self._done.empty():
             said.append(self._done.get())
         return said
