@@ -16,7 +16,6 @@ from rpscli.sweep.evaluation.batch import Row, run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
 
-
 HEARING = 0.2
 """Seconds after which who waits for a batch looks up.
 
