@@ -55,6 +55,8 @@ def device_demands(structure: PodiumStructure, history: History) -> tuple[Device
     history
         What its history left behind.
     """
+    if not structure.devices:
+        return ()
     rotation = np.array([history.max_rotation])
     _, beam, _ = structure.path(rotation)
     elongation = structure.bearing.tendon_elongation(rotation)

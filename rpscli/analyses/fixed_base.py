@@ -57,25 +57,11 @@ def fixed_base_response(
     ValueError
         If there is no building.
     """
-    from rpscli.physics.full_contact.fixed_base import integrate_fixed_base  # noqa: PLC0415
-    from rpscli.physics.run import empty_block  # noqa: PLC0415
-
     building = structure.superstructure
     if building is None:
         raise ValueError("a structure without superstructure has no fixed-base response")
-    floors, largest = (
-        np.empty((intervals + 1, 2, building.storeys)),
-        np.zeros((2, building.storeys)),
-    )
-    integrate_fixed_base(
-        record.acceleration,
-        record.dt,
-        building_system(building),
-        empty_block(building.storeys),
-        floors,
-        largest,
-    )
-    shears, accelerations = largest
+    floors = np.empty((intervals + 1, 2, building.storeys))
+    shears, accelerations = _follow(building, record, intervals, floors)
     return FixedBaseResponse(
         storey_shears=shears,
         floor_accelerations=accelerations,
@@ -84,6 +70,43 @@ def fixed_base_response(
         drifts=shears / building.stiffnesses,
         acceleration_histories=_accelerations(building, floors),
     )
+
+
+def fixed_base_shears(
+    building: Superstructure, record: GroundMotion, intervals: int
+) -> NDArray[np.float64]:
+    """Largest storey shears (n,) [N] from the bottom, without all that needs every sample.
+
+    Parameters
+    ----------
+    building
+        On a fixed base.
+    record, intervals
+        See `fixed_base_response`.
+    """
+    nowhere = np.empty((0, 2, building.storeys))
+    shears: NDArray[np.float64] = _follow(building, record, intervals, nowhere)[0]
+    return shears
+
+
+def _follow(
+    building: Superstructure, record: GroundMotion, intervals: int, floors: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Largest shears and accelerations (2, n); displacements and velocities go to `floors`."""
+    from rpscli.physics.full_contact.fixed_base import integrate_fixed_base  # noqa: PLC0415
+    from rpscli.physics.run import empty_block  # noqa: PLC0415
+
+    largest = np.zeros((2, building.storeys))
+    integrate_fixed_base(
+        record.acceleration,
+        record.dt,
+        intervals + 1,
+        building_system(building),
+        empty_block(building.storeys),
+        floors,
+        largest,
+    )
+    return largest
 
 
 def _accelerations(building: Superstructure, floors: NDArray[np.float64]) -> NDArray[np.float64]:

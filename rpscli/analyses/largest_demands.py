@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -82,14 +83,12 @@ class Demand(Shown):
     @property
     def max_cap_beam_displacement(self) -> float:
         """Largest |u_b| [m]; u_b grows with |theta|."""
-        _, u, _ = self.structure.path(np.array([self.max_rotation]))
-        return float(u[0])
+        return self._paths[0][0]
 
     @property
     def max_lift(self) -> float:
         """Largest v_b, by which the building is lifted [m]; it grows up to theta_cr."""
-        _, _, v = self.structure.path(np.array([min(self.max_rotation, self.critical_rotation)]))
-        return float(v[0])
+        return self._paths[1][1]
 
     @property
     def residual_rotation(self) -> float:
@@ -99,8 +98,16 @@ class Demand(Shown):
     @property
     def residual_displacement(self) -> float:
         """|u_b| at the end of the history [m]; 0 in full contact."""
-        _, u, _ = self.structure.path(np.array([self.residual_rotation]))
-        return float(u[0])
+        return self._paths[0][2]
+
+    @cached_property
+    def _paths(self) -> tuple[list[float], list[float]]:
+        """u_b and v_b [m] at the largest rotation, at the largest up to theta_cr, at the end."""
+        highest = min(self.max_rotation, self.critical_rotation)
+        _, u, v = self.structure.path(
+            np.array([self.max_rotation, highest, self.residual_rotation])
+        )
+        return u.tolist(), v.tolist()
 
     @property
     def devices(self) -> tuple[DeviceDemand, ...]:

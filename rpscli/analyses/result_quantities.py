@@ -82,16 +82,16 @@ def plain(value: Any) -> Any:
     >>> plain({"a": (1.0, float("inf")), "z": 1 + 2j})
     {'a': [1.0, None], 'z': [1.0, 2.0]}
     """
-    if hasattr(value, "tolist"):
+    if type(value) is not float and hasattr(value, "tolist"):
         value = value.tolist()
-    if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, float):
+        return value + 0.0 if math.isfinite(value) else None  # no -0.0
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
     if isinstance(value, complex):
         return [plain(value.real), plain(value.imag)]
-    if isinstance(value, float):
-        return value + 0.0 if math.isfinite(value) else None  # no -0.0
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
     return value
 
 

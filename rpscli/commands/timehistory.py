@@ -36,7 +36,7 @@ from rpscli.commands.timehistory_run import (
     history_requests,
 )
 from rpscli.errors import UsageError
-from rpscli.report.figures.drawing import artists
+from rpscli.report.figures.drawing import Artists, artists
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 
@@ -100,22 +100,25 @@ def command(
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
     conditions = [parse_condition(text) for text in fail_on]
-    motions = list(single_motions(records, MotionRequest(**motion)))
-    cases = read_cases(requests, terminal)
-    histories = [
-        replace(history, floor_spectra=floor_spectra)
-        for history in history_requests(cases, motions, output)
-    ]
-    if len(histories) == 1:
-        _one(histories[0], conditions, look, film, terminal)
-        return
-    if film is not None:
-        raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
-    from rpscli.commands.timehistory_set import run_all  # noqa: PLC0415 -- numpy is slow
-
-    chosen = look if look.formats is not None else replace(look, formats=())
-    with artists(len(histories) * FIGURES * len(chosen.endings)) as drawing:
+    several = len(requests) > 1 or len(records) > 1
+    wanted = replace(look, formats=()) if several and look.formats is None else look
+    # Before numpy is there: it may begin threads, which a copy of the process would be without.
+    with artists(FIGURES * len(wanted.endings)) as drawing:
+        motions = list(single_motions(records, MotionRequest(**motion)))
+        cases = read_cases(requests, terminal)
+        histories = [
+            replace(history, floor_spectra=floor_spectra)
+            for history in history_requests(cases, motions, output)
+        ]
         announce_compilation(terminal, moving=True)
+        if len(histories) == 1:
+            _one(histories[0], conditions, look, drawing, film, terminal)
+            return
+        if film is not None:
+            raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
+        from rpscli.commands.timehistory_set import run_all  # noqa: PLC0415 -- numpy is slow
+
+        chosen = look if look.formats is not None else replace(look, formats=())
         run_all(histories, conditions, chosen, drawing, output, terminal)
 
 
@@ -123,15 +126,14 @@ def _one(
     request: HistoryRequest,
     conditions: Sequence[Condition],
     look: Look,
+    drawing: Artists,
     film: FilmRequest | None,
     terminal: Terminal,
 ) -> None:
     from rpscli.commands.timehistory_tables import timehistory_tables  # noqa: PLC0415
 
     title = request.given.case.title
-    with artists(FIGURES * len(look.endings)) as drawing:
-        announce_compilation(terminal, moving=True)
-        done, result = compute(request, conditions, look, drawing, terminal)
+    done, result = compute(request, conditions, look, drawing, terminal)
     if film is not None:
         from rpscli.report.figures.animation import history_film  # noqa: PLC0415
 

@@ -59,7 +59,7 @@ def compile_phases() -> None:
     next_history(s, 0, run)
     go_on_renewed(s, 0, run.systems[0], run.output)
     floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
-    integrate_fixed_base(run.acceleration, 1.0, run.systems, run.block, floors, largest)
+    integrate_fixed_base(run.acceleration, 1.0, 0, run.systems, run.block, floors, largest)
 
 
 def compile_steps() -> None:

@@ -25,7 +25,7 @@ def point_columns(table: Table) -> Columns:
     rows = [described(design, point) for point in design]
     columns = {name: array([in_si(row[name], units[name]) for row in rows]) for name in rows[0]}
     if "scale" in units:
-        columns["scale"] = np.array([scale_of(table, number) for number in range(len(table))])
+        columns["scale"] = np.array([scale_of(table, point) for point in design])
     return {**columns, "outcome": table.outcomes, **table.columns}
 
 

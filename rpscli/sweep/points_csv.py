@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from rpscli.case.schema.units import in_si
 from rpscli.sweep.design.described import described, identifying_columns
 from rpscli.sweep.design.layout import Design
+from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.table import Table
@@ -22,19 +23,21 @@ def points_csv(table: Table) -> Iterator[str]:
     """The text, in pieces. Numbers have all their digits; what does not exist is empty."""
     design = table.design
     histories = design.plan.analysis == "timehistory"
-    results = SCALARS[design.plan.analysis]
+    results = [
+        (table.columns[path].tolist(), quantity.whole)
+        for path, quantity in SCALARS[design.plan.analysis].items()
+    ]
+    names = units_of_columns(design)
+    units = dict(names)
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(f"{name} [{of}]" for name, of in units_of_columns(design))
+    writer.writerow(f"{name} [{of}]" for name, of in names)
     for number, point in enumerate(design):
-        cells = [_cell(value, unit_of(name)) for name, value in described(design, point).items()]
+        cells = [_cell(value, units[name]) for name, value in described(design, point).items()]
         if histories:
-            cells.append(_number(scale_of(table, number)))
+            cells.append(_number(scale_of(table, point)))
         cells.append(str(table.outcomes[number]))
-        cells += [
-            _number(float(table.columns[path][number]), whole=quantity.whole)
-            for path, quantity in results.items()
-        ]
+        cells += [_number(column[number], whole=whole) for column, whole in results]
         writer.writerow(cells)
         if number % LINES_A_PIECE == LINES_A_PIECE - 1:
             yield buffer.getvalue()
@@ -43,23 +46,21 @@ def points_csv(table: Table) -> Iterator[str]:
     yield buffer.getvalue()
 
 
-def units_of_columns(design: Design) -> Iterator[tuple[str, str]]:
+def units_of_columns(design: Design) -> list[tuple[str, str]]:
     """Names and units of all columns."""
-    for name in identifying_columns(design):
-        yield name, unit_of(name)
+    columns = [(name, unit_of(name)) for name in identifying_columns(design)]
     if design.plan.analysis == "timehistory":
-        yield "scale", "-"
-    yield "outcome", "-"
-    for path, quantity in SCALARS[design.plan.analysis].items():
-        yield path, quantity.unit
+        columns.append(("scale", "-"))
+    columns.append(("outcome", "-"))
+    results = SCALARS[design.plan.analysis]
+    return columns + [(path, quantity.unit) for path, quantity in results.items()]
 
 
-def scale_of(table: Table, number: int) -> float:
+def scale_of(table: Table, point: Point) -> float:
     """The factor on the record; known beforehand unless a measure decides about it."""
     if table.design.plan.measure is None:
-        point = table.design[number]
         return point.scale * point.scale_change
-    return float(table.scale[number])
+    return float(table.scale[point.number])
 
 
 def _number(value: float, *, whole: bool = False) -> str:

@@ -65,7 +65,7 @@ class Table:
 def tabulate(design: Design, stored: Iterable[Stored | None]) -> Table:
     """Columns from the rows of the store, given in the order of the study."""
     names, count = SCALARS[design.plan.analysis], len(design)
-    values = np.full((len(names), count), np.nan)
+    values = np.full((count, len(names)), np.nan)
     outcomes = np.full(count, MISSING, dtype="U20")
     scale = np.full(count, np.nan)
     messages: dict[int, str] = {}
@@ -77,13 +77,10 @@ def tabulate(design: Design, stored: Iterable[Stored | None]) -> Table:
         if row.outcome == FAILED:
             messages[number] = row.message or "no reason was given"
         scale[number] = row.results.get("scale", np.nan)
-        for place, name in enumerate(names):
-            value = value_at(row.results, name)
-            if value is not None:
-                values[place, number] = value
+        values[number] = [value_at(row.results, name) for name in names]  # NaN for None
         profile = row.results.get("storey_shears", ())
         shears[number, : len(profile)] = profile
-    columns = dict(zip(names, values, strict=True))
+    columns = dict(zip(names, np.ascontiguousarray(values.T), strict=True))
     return Table(design, outcomes, scale, columns, messages, shears)
 
 

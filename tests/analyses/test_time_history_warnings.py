@@ -14,7 +14,7 @@ from paper_structures import (
     waves,
 )
 
-from rpscli.analyses.fixed_base import fixed_base_response
+from rpscli.analyses.fixed_base import fixed_base_response, fixed_base_shears
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import RayleighDamping
@@ -79,6 +79,10 @@ def test_the_yardstick_goes_on_through_the_free_vibration() -> None:
     assert len(swaying) == len(result.trace.time) == record.npts + 25
     assert np.argmax(swaying) >= record.npts
     assert result.fixed_base.drifts[0] == pytest.approx(np.max(swaying), rel=1e-14)
+    building = result.structure.superstructure
+    assert building is not None
+    shears = fixed_base_shears(building, record, record.npts + 24)
+    assert shears.tolist() == result.fixed_base.storey_shears.tolist()
 
 
 def test_a_frame_has_no_yardstick() -> None:

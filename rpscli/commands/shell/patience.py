@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
-from rpscli.case.case import Case
 from rpscli.commands.shell.passing_time import passing_time
 from rpscli.commands.shell.terminal import Terminal
+
+if TYPE_CHECKING:
+    from rpscli.case.case import Case
 
 LONG = 10.0
 """What is worth a word [s]."""

@@ -15,6 +15,7 @@ from rpscli.physics.state import INSTANTS, WHOLE_STEP, Floats, Record
 def integrate_fixed_base(
     acceleration: Floats,
     dt: float,
+    instants: int,
     systems: Record,
     blocks: Record,
     floors: NDArray[np.float64],
@@ -28,21 +29,25 @@ def integrate_fixed_base(
         (npts,) of the ground [m/s2], zero after the last sample.
     dt
         Sampling interval [s].
+    instants
+        How many samples are followed.
     systems, blocks
         (1,) its `state.SYSTEM`, and room for a block.
     floors
-        (instants, 2, n): written with floor displacements [m] and velocities [m/s].
+        (instants, 2, n): written with floor displacements [m] and velocities [m/s]; (0, 2, n) if
+        nobody asks for them.
     largest
         (2, n): written with the largest storey shears k_i d_i [N] and absolute floor
         accelerations [m/s2].
     """
-    follow_fixed_base(acceleration, dt, systems[0], blocks[0], floors, largest)
+    follow_fixed_base(acceleration, dt, instants, systems[0], blocks[0], floors, largest)
 
 
 @compiled
 def follow_fixed_base(
     acceleration: Floats,
     dt: float,
+    instants: int,
     system: Record,
     block: Record,
     floors: NDArray[np.float64],
@@ -52,10 +57,10 @@ def follow_fixed_base(
 
     Parameters
     ----------
-    acceleration, dt, floors, largest
+    acceleration, dt, instants, floors, largest
         See `integrate_fixed_base`.
     """
-    n, instants = system.n, floors.shape[0]
+    n = system.n
     fill_map(block, system, WHOLE_STEP, dt)
     steps = INSTANTS - 1
     for first in range(0, instants, steps):
@@ -69,7 +74,7 @@ def follow_fixed_base(
         last = min(steps, instants - first) - 1
         mark_samples(block, 0, last, 1)
         raise_floors_of_block(block, system, largest[0], largest[1])
-        for k in range(last + 1):
+        for k in range(last + 1 if floors.shape[0] else 0):
             for i in range(n):
                 u, du = 0.0, 0.0
                 for r in range(n):

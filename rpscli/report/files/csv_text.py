@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _PIECE = 4096  # rows
 
@@ -62,13 +62,14 @@ def quoted(value: object) -> float | int | str | None:
     return text
 
 
-def _one_by_one(values: Iterable[object]) -> Iterator[object]:
-    if not isinstance(values, np.ndarray):
+def _one_by_one(values: Iterable[object] | NDArray[Any]) -> Iterator[object]:
+    if not hasattr(values, "tolist"):  # numpy need not be there
         yield from values
         return
+    array = cast("NDArray[Any]", values)
     # Piece by piece, since as objects numbers take four times the memory.
-    for start in range(0, len(values), _PIECE):
-        yield from values[start : start + _PIECE].tolist()
+    for start in range(0, len(array), _PIECE):
+        yield from array[start : start + _PIECE].tolist()
 
 
 def _cell(value: object) -> str:

@@ -36,12 +36,13 @@ MOST_FAULTY = 8
 class SystemProperties(NamedTuple):
     """What the layout of points and statistics must know of a system, SI units.
 
-    `period` is T1 on a fixed base, `frequency_parameter` that of the rigid frame, p_hat;
-    `building` is a digest of the superstructure, empty without one; `limits` are those of the study
-    or, where it has none, of the case; `lacking` names results that the system cannot have;
-    `doubts` are what is unusual about it.
+    `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
+    that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
+    `limits` are those of the study or, where it has none, of the case; `lacking` names results
+    that the system cannot have; `doubts` are what is unusual about it.
     """
 
+    values: Values
     digest: bytes
     storeys: int
     period: float | None
@@ -79,7 +80,7 @@ def check_systems(
         values = combinations.values(system)
         try:
             case = resolved(plan, values)
-            properties.append(_properties(study, case, known))
+            properties.append(_properties(study, values, case, known))
             _refuse_restitution(study, case, members)
             _refuse_missing(study, plan, case)
         except CaseError as error:
@@ -94,13 +95,14 @@ def check_systems(
 
 
 def _properties(
-    study: Study, case: Case, known: dict[RecordRequest, RecordRequest]
+    study: Study, values: Values, case: Case, known: dict[RecordRequest, RecordRequest]
 ) -> SystemProperties:
     structure, building = case.structure, case.structure.superstructure
     request = record_request(case)
     if request is not None:
         request = known.setdefault(request, request)
     return SystemProperties(
+        values=values,
         digest=digest_of(case.document),
         storeys=structure.storeys,
         period=None if building is None else float(building.periods[0]),

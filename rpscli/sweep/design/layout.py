@@ -78,7 +78,7 @@ class Design:
         return Point(
             number=index,
             system=system,
-            values=self.combinations.values(system),
+            values=properties.values,
             record=self.records[record] or properties.record,
             scale=properties.scale if given is None else given,
             member=member,
@@ -95,7 +95,7 @@ class Design:
 
     def system(self, index: int) -> System:
         """One of the systems, resolved anew."""
-        return system_of(resolved(self.plan, self.combinations.values(index)))
+        return system_of(resolved(self.plan, self.properties[index].values))
 
 
 def lay_out(study: Study, watched: Watched = iter) -> Design:

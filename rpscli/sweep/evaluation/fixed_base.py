@@ -7,15 +7,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.fixed_base import fixed_base_response
+from rpscli.analyses.fixed_base import fixed_base_shears
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
 
-def fixed_base_shears(structure: PodiumStructure, motion: GroundMotion) -> NDArray[np.float64]:
+def reference_shears(structure: PodiumStructure, motion: GroundMotion) -> NDArray[np.float64]:
     """Largest storey shears (n,) [N] from the bottom, under an unscaled motion."""
     building = structure.superstructure
     assert building is not None, "only buildings have a response"
     # The largest shear after the end of the record comes within a period.
     after = math.ceil(float(building.periods[0]) / motion.dt)
-    return fixed_base_response(structure, motion, motion.npts - 1 + after).storey_shears
+    return fixed_base_shears(building, motion, motion.npts - 1 + after)

@@ -99,6 +99,8 @@ def value_at(results: Results, path: str) -> Any:
     1.7
     """
     value: Any = results
+    if "." not in path:
+        return value.get(path)
     for part in path.split("."):
         if isinstance(value, list):
             index = int(part) if part.isdecimal() else len(value)

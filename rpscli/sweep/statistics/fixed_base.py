@@ -18,7 +18,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.fixed_base import fixed_base_shears
+from rpscli.sweep.evaluation.fixed_base import reference_shears
 from rpscli.sweep.evaluation.points import RecordRequest
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import Array
@@ -45,6 +45,7 @@ def fixed_base_references(
     known = {key: np.array(shears) for key, shears in store.fixed_base().items()}
     keys: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, Run] = {}
+    structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
     for system, properties in enumerate(design.properties):
         if not properties.building:
             continue
@@ -54,7 +55,9 @@ def fixed_base_references(
             try:
                 if key not in known and key not in runs:
                     motion = context.records.motion(request).horizontal
-                    runs[key] = Run(key, design.system(system).structure, motion)
+                    if properties.building not in structures:
+                        structures[properties.building] = design.system(system).structure
+                    runs[key] = Run(key, structures[properties.building], motion)
             except RecordError:
                 continue
             keys[system, request] = key
@@ -77,4 +80,4 @@ def _computed(runs: Iterable[Run], jobs: int) -> dict[bytes, Array]:
 
 
 def _response(run: Run) -> tuple[bytes, Array]:
-    return run.key, fixed_base_shears(run.structure, run.motion)
+    return run.key, reference_shears(run.structure, run.motion)
