@@ -1,8 +1,10 @@
 """In which order points are computed: batches that share sizes of building and records.
 
 The order of computation is not the order of the study. Points with one number of storeys stand
-together, and among them those of one record, because the kernels run fastest on them; systems come
-in blocks, so that all the systems of a block can be held in memory while the records pass.
+together, and among them those of one record, because the kernels run fastest on them; the tallest
+buildings come first, so that the last batches, for which not all threads are needed, are short.
+Systems come in blocks, so that all the systems of a block can be held in memory while the records
+pass.
 """
 
 from __future__ import annotations
@@ -41,7 +43,7 @@ def _blocks(design: Design, pending: Sequence[int]) -> Iterator[list[int]]:
     systems = max(1, min(SYSTEMS_KEPT // 2, LARGEST_BLOCK // of_system))
 
     def order(number: int) -> tuple[int, int, int]:
-        return _storeys(design, number), _record(design, number), number
+        return -_storeys(design, number), _record(design, number), number
 
     for _, block in groupby(pending, key=lambda number: number // (of_system * systems)):
         yield sorted(block, key=order)
