@@ -102,7 +102,7 @@ def command(
     conditions = [parse_condition(text) for text in fail_on]
     several = len(requests) > 1 or len(records) > 1
     wanted = replace(look, formats=()) if several and look.formats is None else look
-    # Before numpy is there: it may begin threads, which a copy of the process would be without.
+    # At once: they load matplotlib while this process loads the rest.
     with artists(FIGURES * len(wanted.endings)) as drawing:
         motions = list(single_motions(records, MotionRequest(**motion)))
         cases = read_cases(requests, terminal)

@@ -316,5 +316,4 @@ def _digest(fields: Iterable[bytes | str | None]) -> bytes:
     return digest.digest()
 
 
-def _json(value: object) -> str:
-    return json.dumps(value, separators=(",", ":"), allow_nan=False)
+_json = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
