@@ -7,6 +7,7 @@ Results of which small values are bad have `at_least` in place of `at_most`.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Annotated, Any, Self
 
 from pydantic import Discriminator, Field, Tag, create_model, model_validator
@@ -45,11 +46,14 @@ def _limit(quantity: ResultQuantity) -> Any:
     """A number, or a mapping with more to say."""
     unit = quantity.unit if quantity.unit in KINDS else PLAIN
     zero = quantity.whole or quantity.from_below
-    bound = Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)
-    number = Annotated[float, bound]
-    key = "at_least" if quantity.from_below else "at_most"
-    fields: Any = {key: (number, Field(description=f"admissible {quantity.label}"))}
-    rule = create_model(f"Limit_{quantity.name}", __base__=LimitRule, **fields)
+    return _limit_of(unit, zero, "at_least" if quantity.from_below else "at_most")
+
+
+@cache
+def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whether 0 is admissible
+    number = Annotated[float, Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)]
+    fields: Any = {key: (number, Field(description="admissible value"))}
+    rule = create_model(f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, **fields)
     return Annotated[
         Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")],
         Discriminator(_form),
