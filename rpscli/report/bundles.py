@@ -78,16 +78,15 @@ def timehistory_files(
     yield "timehistory.csv", csv_lines(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
+    # What takes longest comes first, so that no process draws on alone at the end.
     figures: dict[str, Callable[..., bytes]] = {
+        **({"storey_shears": profile_figure} if result.structure.storeys else {}),
+        **({"devices": devices_figure} if result.structure.devices else {}),
         "rotation": rotation_figure,
         "displacements": displacement_figure,
         "moment_rotation": moment_figure,
         "energy": energy_figure,
     }
-    if result.structure.storeys:
-        figures["storey_shears"] = profile_figure
-    if result.structure.devices:
-        figures["devices"] = devices_figure
     few = thinned(result)
     draws = {stem: partial(draw, few, title) for stem, draw in figures.items()}
     yield from figure_files(draws, look, artists).items()
