@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.events import Event
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.analyses.trace import Event
 from rpscli.model.devices import name_of
 from rpscli.report.files.csv_text import Column, columns_of
 
