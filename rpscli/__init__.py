@@ -93,7 +93,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import a public name now that it is wanted."""
-    from importlib import import_module  # noqa: PLC0415 -- not every import of rpscli needs it
+    from importlib import import_module  # not every import of rpscli needs it
 
     if name == "__version__":
         return import_module("rpscli.report.files.versions").program_version()

@@ -50,7 +50,7 @@ class Program(LazyGroup):
             raise
         except BaseException as error:  # noqa: BLE001 -- the last stop of every error
             # Imported now, when it is needed.
-            from rpscli.commands.shell.failure import report  # noqa: PLC0415
+            from rpscli.commands.shell.failure import report
 
             code = report(error, as_json="--json" in words)
         sys.exit(code or 0)
@@ -59,7 +59,7 @@ class Program(LazyGroup):
 def _show_version(ctx: click.Context, option: click.Parameter, value: object) -> None:
     del option
     if value and not ctx.resilient_parsing:
-        from rpscli.report.files.versions import program_version  # noqa: PLC0415
+        from rpscli.report.files.versions import program_version
 
         click.echo(f"rps {program_version()}")
         ctx.exit()

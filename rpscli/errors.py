@@ -87,7 +87,7 @@ def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | Non
     >>> nearest("colour", ["slenderness"]) is None
     True
     """
-    import difflib  # noqa: PLC0415 -- needed by those who made a mistake only
+    import difflib  # needed by those who made a mistake only
 
     folded = {name.lower().replace("-", "_"): name for name in known}
     found = difflib.get_close_matches(word.lower().replace("-", "_"), folded, 1, likeness)

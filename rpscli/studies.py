@@ -273,7 +273,7 @@ class StudyResult(Shown):
 
     def to_dataframe(self) -> Any:
         """The columns as a table of pandas, which must be installed."""
-        import pandas as pd  # noqa: PLC0415 -- not everybody has it
+        import pandas as pd  # not everybody has it
 
         return pd.DataFrame(self.columns)
 

@@ -42,7 +42,7 @@ def motion(path: Path) -> GroundMotion:
 
 def outcomes(workbook: Path) -> dict[int, list[tuple[str, int]]]:
     """Of each test: titles of the columns, of which the first two are measured, and outcomes."""
-    import openpyxl  # noqa: PLC0415 -- not among what rps needs
+    import openpyxl  # not among what rps needs
 
     sheet = openpyxl.load_workbook(workbook, data_only=True).worksheets[0]
     heads, *rows = sheet.iter_rows(values_only=True)

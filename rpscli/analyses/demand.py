@@ -105,7 +105,7 @@ def demand(
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
-    from rpscli.physics.driver import integrate  # noqa: PLC0415
+    from rpscli.physics.driver import integrate
 
     systems = _Distinct[tuple[PodiumStructure, TimeHistorySettings]]()
     motions = _Distinct[GroundMotion]()

@@ -190,7 +190,7 @@ def _contact_forces(
 ) -> tuple[Array, Array, Array, Array]:
     """Those of the kernels, for many samples at once."""
     # Imported here: numba is slow, and the command line imports this module's classes.
-    from rpscli.physics.equation_of_motion import contact_forces  # noqa: PLC0415
+    from rpscli.physics.equation_of_motion import contact_forces
 
     forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
     return forces_of(

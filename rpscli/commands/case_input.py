@@ -34,7 +34,7 @@ class CaseInput:
 
 def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
     """Read and check a case; its warnings go to the terminal."""
-    from rpscli.case.case import load_case  # noqa: PLC0415 -- pydantic and yaml are slow
+    from rpscli.case.case import load_case
 
     case = load_case(request.source, request.overrides)
     terminal.warn(case.warnings)

@@ -52,8 +52,8 @@ def command(
     if not draw and (output != OutputRequest(None, force=False) or look != USUAL):
         raise UsageError("only --draw writes something; options of files and figures go with it")
     given = read_case(request, terminal)
-    from rpscli.model.device_consequences import device_consequences  # noqa: PLC0415
-    from rpscli.report.tables.derived import derived_quantities  # noqa: PLC0415 -- numpy is slow
+    from rpscli.model.device_consequences import device_consequences
+    from rpscli.report.tables.derived import derived_quantities
 
     structure = given.case.structure
     derived = derived_quantities(structure) | device_consequences(structure)
@@ -78,7 +78,7 @@ def command(
 
 def _drawn(given: CaseInput, output: OutputRequest, look: Look, terminal: Terminal) -> list[str]:
     """Draw the bearing; the files that there are of it."""
-    from rpscli.report.bundles import bearing_files  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.bundles import bearing_files
 
     folder = case_folder(given, output, "check")
     for name, content in bearing_files(given.case.structure, given.case.title, look):

@@ -18,13 +18,13 @@ def device_tables(structure: PodiumStructure) -> Iterator[RenderableType]:
     """Each device's numbers, uplift with all of them, and from where the storey re-centres."""
     if not structure.devices:
         return
-    from rpscli.model.device_consequences import (  # noqa: PLC0415 -- numpy is slow
+    from rpscli.model.device_consequences import (
         consequences,
         returns,
         uplift_acceleration,
         uplift_force,
     )
-    from rpscli.model.devices import name_of  # noqa: PLC0415
+    from rpscli.model.devices import name_of
 
     found = [
         (f"{index} {name_of(device)}", item.label, item.value, item.unit)

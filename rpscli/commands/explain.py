@@ -69,10 +69,10 @@ def command(word: str, terminal: Terminal) -> None:
 
 def _formats() -> Iterator[KeyReference]:
     # pydantic is slow.
-    from rpscli.case.design.schema import DesignFile  # noqa: PLC0415
-    from rpscli.case.schema.case_file import CaseFile  # noqa: PLC0415
-    from rpscli.case.schema.reference import key_references  # noqa: PLC0415
-    from rpscli.case.study.schema import StudyFile  # noqa: PLC0415
+    from rpscli.case.design.schema import DesignFile
+    from rpscli.case.schema.case_file import CaseFile
+    from rpscli.case.schema.reference import key_references
+    from rpscli.case.study.schema import StudyFile
 
     known = set()
     for model in (CaseFile, StudyFile, DesignFile):
@@ -97,7 +97,7 @@ def _keys(word: str) -> list[KeyReference]:
 
 def _reports(word: str) -> list[tuple[str, str]]:
     """The report of a name, and what it is."""
-    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+    from rpscli.report.study.registry import REPORTS
 
     found = REPORTS.get(word)
     return [] if found is None else [(word, (found.options.__doc__ or "").split("\n")[0])]
@@ -105,8 +105,8 @@ def _reports(word: str) -> list[tuple[str, str]]:
 
 def _report_options(word: str) -> list[KeyReference]:
     """Options of the report of a name."""
-    from rpscli.case.schema.reference import key_references  # noqa: PLC0415
-    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+    from rpscli.case.schema.reference import key_references
+    from rpscli.report.study.registry import REPORTS
 
     return list(key_references(REPORTS[word].options)) if word in REPORTS else []
 
@@ -137,7 +137,7 @@ def _names(entry: str) -> list[str]:
 
 
 def _hint(word: str) -> str:
-    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+    from rpscli.report.study.registry import REPORTS
 
     keys = [key.key for key in _formats()]
     names = [name for entry, _ in glossary() for name in _names(entry)]
@@ -193,7 +193,7 @@ def _lines(key: KeyReference) -> Iterator[tuple[str, str]]:
     if key.words:
         yield "words", ", ".join(key.words)
     if key.key.split(".")[-1] == "reports":
-        from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
+        from rpscli.report.study.registry import REPORTS
 
         yield "names", f"{', '.join(REPORTS)}; `rps explain NAME` lists the options of one"
     if key.keys:

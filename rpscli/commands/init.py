@@ -31,7 +31,7 @@ def command(
     file: Path | None, *, study: bool, editor: bool, force: bool, terminal: Terminal
 ) -> None:
     """Write a commented case to FILE (case.yaml or study.yaml by default; - prints it)."""
-    from rpscli.case.text.files import starter_text  # noqa: PLC0415
+    from rpscli.case.text.files import starter_text
 
     text = starter_text(study=study)
     kind = "study" if study else "case"

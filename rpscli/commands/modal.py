@@ -53,14 +53,14 @@ def command(
     """
     given = read_case(request, terminal)
     folder = case_folder(given, output, "modal")
-    from rpscli.analyses.modal import modal  # noqa: PLC0415 -- numpy is slow
-    from rpscli.report.bundles import modal_files  # noqa: PLC0415
+    from rpscli.analyses.modal import modal
+    from rpscli.report.bundles import modal_files
 
     result = modal(given.case.structure)
     for name, content in modal_files(result, given.case.title, look):
         folder.add(name, content)
     if film is not None:
-        from rpscli.report.figures.animation import modes_film  # noqa: PLC0415
+        from rpscli.report.figures.animation import modes_film
 
         with counted("drawing the animation", terminal) as progress:
             draw = partial(modes_film, result, given.case.title, film, progress)

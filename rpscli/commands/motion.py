@@ -61,7 +61,7 @@ def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator
     if not records:
         yield request
         return
-    from rpscli.records.source import expand_sources  # noqa: PLC0415 -- numpy is slow
+    from rpscli.records.source import expand_sources
 
     single = expand_sources(records)
     if len(single) > 1 and request.vertical is not None:
@@ -100,8 +100,8 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     RecordError
         If a record cannot be read or scaled, or the components have different time steps.
     """
-    from rpscli.records.ground_motion import MotionComponents  # noqa: PLC0415 -- numpy is slow
-    from rpscli.records.source import load_record  # noqa: PLC0415
+    from rpscli.records.ground_motion import MotionComponents
+    from rpscli.records.source import load_record
 
     given = case.record if request.record is None else None
     vertical: GroundMotion | None = None
@@ -136,7 +136,7 @@ def _factor(case: Case, request: MotionRequest, motion: GroundMotion) -> float:
 
 
 def _factor_to(case: Case, target: ScaleToSection, motion: GroundMotion, source: str) -> float:
-    from rpscli.records.measures.measure import factor_to, measured  # noqa: PLC0415
+    from rpscli.records.measures.measure import factor_to, measured
 
     period = target.period
     if target.measure == "Sa" and period is None:
@@ -150,7 +150,7 @@ def _factor_to(case: Case, target: ScaleToSection, motion: GroundMotion, source:
 
 def _parsed_target(text: str) -> ScaleToSection:
     """What `--scale-to` asks for: ``PGA=0.4g``, ``PGV=0.5 m/s``, or ``Sa(0.6 s)=1 g``."""
-    from rpscli.case.schema.scale_to import scale_to_of  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.case.schema.scale_to import scale_to_of
 
     try:
         return scale_to_of(text)

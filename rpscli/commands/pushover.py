@@ -57,8 +57,8 @@ def command(
     figure bearing: columns at rest, where rolling ends and at the critical rotation.
     """
     given = read_case(request, terminal)
-    from rpscli.analyses.pushover import PATTERNS, pushover  # noqa: PLC0415 -- numpy is slow
-    from rpscli.report.bundles import pushover_files  # noqa: PLC0415
+    from rpscli.analyses.pushover import PATTERNS, pushover
+    from rpscli.report.bundles import pushover_files
 
     if patterns and given.case.structure.superstructure is None:
         raise UsageError("--pattern: the case has no storeys to push at")
@@ -83,7 +83,7 @@ def command(
 
 
 def _pattern(text: str) -> PatternName | list[float]:
-    from rpscli.analyses.pushover import PATTERNS  # noqa: PLC0415 -- numpy is slow
+    from rpscli.analyses.pushover import PATTERNS
 
     for name in PATTERNS:
         if text == name:

@@ -116,7 +116,7 @@ def command(
             return
         if film is not None:
             raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
-        from rpscli.commands.timehistory_set import run_all  # noqa: PLC0415 -- numpy is slow
+        from rpscli.commands.timehistory_set import run_all
 
         chosen = look if look.formats is not None else replace(look, formats=())
         run_all(histories, conditions, chosen, drawing, output, terminal)
@@ -130,12 +130,12 @@ def _one(
     film: FilmRequest | None,
     terminal: Terminal,
 ) -> None:
-    from rpscli.commands.timehistory_tables import timehistory_tables  # noqa: PLC0415
+    from rpscli.commands.timehistory_tables import timehistory_tables
 
     title = request.given.case.title
     done, result = compute(request, conditions, look, drawing, terminal)
     if film is not None:
-        from rpscli.report.figures.animation import history_film  # noqa: PLC0415
+        from rpscli.report.figures.animation import history_film
 
         with counted("drawing the animation", terminal) as progress:
             draw = partial(history_film, result, title, film, progress)

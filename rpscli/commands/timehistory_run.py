@@ -124,8 +124,8 @@ def compute(
     terminal: Terminal,
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
-    from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
-    from rpscli.report.bundles import floor_spectra_files, timehistory_files  # noqa: PLC0415
+    from rpscli.analyses.timehistory import time_history
+    from rpscli.report.bundles import floor_spectra_files, timehistory_files
 
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):

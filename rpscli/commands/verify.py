@@ -34,7 +34,7 @@ def command(terminal: Terminal) -> None:
     Takes some seconds, half a minute if the kernels have to be compiled first. The exit code is 6
     if a single number is off.
     """
-    from rpscli.analyses.verification.suite import verification  # noqa: PLC0415 -- numpy is slow
+    from rpscli.analyses.verification.suite import verification
 
     announce_compilation(terminal, moving=True)
     found = list(verification())

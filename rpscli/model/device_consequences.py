@@ -160,7 +160,7 @@ def _tilt(structure: PodiumStructure, length: float, *, elongation: bool) -> flo
     end = 2.0 * structure.critical_rotation
     if excess(end) < 0.0:
         return None
-    from scipy.optimize import brentq  # noqa: PLC0415 -- scipy is slow to import
+    from scipy.optimize import brentq
 
     return float(brentq(excess, 0.0, end))
 

@@ -195,7 +195,7 @@ class GroundMotion(Shown):
         >>> motion.scaled_to("PGA", 1.5).acceleration.tolist()
         [0.0, 1.0, -1.5]
         """
-        from rpscli.records.measures.measure import (  # noqa: PLC0415 -- measures measure motions
+        from rpscli.records.measures.measure import (  # measures measure motions
             MEASURE_UNITS,
             factor_to,
             measured,

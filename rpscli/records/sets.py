@@ -152,8 +152,8 @@ def _package_folder(source: str) -> Path:
 
 @lru_cache(maxsize=256)
 def _component(folder: Path, component: str, source: str, *, normalised: bool) -> GroundMotion:
-    import h5py  # noqa: PLC0415 -- part of an optional extra
-    import hdf5plugin  # noqa: F401, PLC0415 -- registers the compression of the files
+    import h5py  # part of an optional extra
+    import hdf5plugin  # noqa: F401 -- registers the compression of the files
 
     name, record, side = component.split("/")
     column = "NormalizedAcceleration" if normalised else "RecordedAcceleration"

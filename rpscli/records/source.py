@@ -120,7 +120,7 @@ def _read(
     if path.is_dir():
         raise RecordError(f"{path}: a folder; name one of its files")
     _require_file(path, source)
-    from rpscli.records.formats.registry import read_record  # noqa: PLC0415 -- sets and pulses are no files
+    from rpscli.records.formats.registry import read_record  # sets and pulses are no files
 
     return read_record(
         path,
@@ -193,7 +193,7 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
         return sets.expand_set(rest, source)
     if scheme:
         return [source]
-    from rpscli.records.formats.registry import is_record  # noqa: PLC0415 -- see above
+    from rpscli.records.formats.registry import is_record
 
     place, options = _split_options(source)
     suffix = f"?{options}" if options else ""

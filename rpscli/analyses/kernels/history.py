@@ -323,7 +323,7 @@ def sampled_history(
         If the time steps differ.
     """
     # Imported here: compiling or loading kernels costs time that other commands need not pay.
-    from rpscli.physics.driver import integrate  # noqa: PLC0415
+    from rpscli.physics.driver import integrate
 
     along, upwards = MotionComponents(record, vertical).of_one_length
     motions = [along] if upwards is None else [along, upwards]

@@ -51,7 +51,7 @@ def exact_displacements(building: Superstructure, record: GroundMotion) -> NDArr
     record
         Horizontal ground acceleration.
     """
-    from scipy.linalg import expm  # noqa: PLC0415 -- slow to load
+    from scipy.linalg import expm
 
     n, dt = building.storeys, record.dt
     flow = np.zeros((2 * n + 2, 2 * n + 2))

@@ -103,7 +103,7 @@ def pulses() -> Iterator[Comparison]:
 
 def half_sine_threshold(p: float) -> float:
     """a_p/(alpha g) = 1/sin(psi), with (w/p) sin psi - cos psi = exp[-(p/w)(pi - psi)]."""
-    from scipy.optimize import brentq  # noqa: PLC0415 -- slow to load
+    from scipy.optimize import brentq
 
     w = 2.0 * math.pi
 
@@ -115,7 +115,7 @@ def half_sine_threshold(p: float) -> float:
 
 def polygon_threshold(p: float) -> float:
     """a_p/(alpha g) for which the integral of exp(-s) a/(g alpha) from uplift is 1, s = p t."""
-    from scipy.optimize import brentq  # noqa: PLC0415 -- slow to load
+    from scipy.optimize import brentq
 
     def excess(amplitude: float) -> float:
         # Uplift is on the first side; each side is integrated exactly.

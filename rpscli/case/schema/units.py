@@ -165,7 +165,7 @@ def _factor(written: str, unit: str) -> float:
 
 @cache
 def _registry() -> pint.UnitRegistry[Any]:
-    import pint  # noqa: PLC0415 -- half a second, for unusual units only
+    import pint  # half a second, for unusual units only
 
     return pint.UnitRegistry()
 
@@ -173,7 +173,7 @@ def _registry() -> pint.UnitRegistry[Any]:
 @cache
 def _parsed(written: str) -> Any:
     """One of the unit as a pint quantity, or None if there is no such unit."""
-    import pint  # noqa: PLC0415 -- see above
+    import pint
 
     text = EXPONENT.sub(r"**\1", written.replace("·", "*").replace("µ", "u"))
     try:

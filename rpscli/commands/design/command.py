@@ -62,9 +62,9 @@ def command(
     Every point is stored as it ends: after an interruption the same command goes on. The exit code
     is 10 if no design passes.
     """
-    from rpscli.case.design.task import read_design  # noqa: PLC0415 -- pydantic is slow
-    from rpscli.sweep.search.search import Search  # noqa: PLC0415 -- numpy is slow
-    from rpscli.sweep.store import Store  # noqa: PLC0415 -- sqlite is slow
+    from rpscli.case.design.task import read_design
+    from rpscli.sweep.search.search import Search
+    from rpscli.sweep.store import Store
 
     chosen = SweepChoices(**choices)
     chosen.require_sense()
@@ -91,10 +91,10 @@ def _conclude(
     confirmations: list[Confirmation],
     folder: OutputFolder,
 ) -> None:
-    from rpscli.report.design.answer import answer_document, design_columns  # noqa: PLC0415
-    from rpscli.report.design.figures import figures  # noqa: PLC0415
-    from rpscli.report.figures.drawing import figure_files  # noqa: PLC0415
-    from rpscli.report.study.statistics import verdict_columns, verdict_document  # noqa: PLC0415
+    from rpscli.report.design.answer import answer_document, design_columns
+    from rpscli.report.design.figures import figures
+    from rpscli.report.figures.drawing import figure_files
+    from rpscli.report.study.statistics import verdict_columns, verdict_document
 
     found = collect(given, results, (), folder)
     folder.add("designs.csv", csv_text(design_columns(answer, range(len(answer.places)))))

@@ -79,9 +79,9 @@ class Rounds:
 
     def confirm(self, answer: Answer, store: Store) -> Iterator[Confirmation]:
         """Judge the best and the robust design under other motions, if there are any."""
-        from rpscli.sweep.search.answer import NONE  # noqa: PLC0415 -- numpy is slow
-        from rpscli.sweep.statistics.summary import summary  # noqa: PLC0415
-        from rpscli.sweep.statistics.verdicts import judged  # noqa: PLC0415
+        from rpscli.sweep.search.answer import NONE
+        from rpscli.sweep.statistics.summary import summary
+        from rpscli.sweep.statistics.verdicts import judged
 
         task, designs = answer.task, {"best": answer.best, "robust": answer.robust}
         for name, place in designs.items():
@@ -107,7 +107,7 @@ class Rounds:
 
     def notes(self, answer: Answer, confirmations: list[Confirmation]) -> Iterator[str]:
         """What the user should know about the answer."""
-        from rpscli.sweep.search.answer import NONE  # noqa: PLC0415 -- numpy is slow
+        from rpscli.sweep.search.answer import NONE
 
         if invalid := int((~answer.valid).sum()):
             reason = next(iter(self.search.faults))
@@ -123,8 +123,8 @@ class Rounds:
 
     def _laid_out(self, study: Study, earlier: StudyInput | None = None) -> StudyInput:
         """A study with its points; records are shared with an earlier one."""
-        from rpscli.sweep.design.layout import lay_out  # noqa: PLC0415 -- numpy is slow
-        from rpscli.sweep.evaluation.context import StudyContext  # noqa: PLC0415
+        from rpscli.sweep.design.layout import lay_out
+        from rpscli.sweep.evaluation.context import StudyContext
 
         design = lay_out(study)
         context = StudyContext(design.plan)
@@ -134,11 +134,11 @@ class Rounds:
 
     def _computed(self, given: StudyInput, store: Store) -> tuple[StudyResults, Table]:
         """Compute what is not stored; leave if the user interrupts."""
-        from rpscli.sweep.reports.study_results import StudyResults  # noqa: PLC0415
-        from rpscli.sweep.run.keys import all_keys  # noqa: PLC0415 -- numpy is slow
-        from rpscli.sweep.run.resume import remember, resume  # noqa: PLC0415
-        from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
-        from rpscli.sweep.table import tabulate  # noqa: PLC0415
+        from rpscli.sweep.reports.study_results import StudyResults
+        from rpscli.sweep.run.keys import all_keys
+        from rpscli.sweep.run.resume import remember, resume
+        from rpscli.sweep.run.threads import available_cores
+        from rpscli.sweep.table import tabulate
 
         keys = all_keys(given.design, given.context)
         start = resume(given.design, keys, store, retry_failed=self.choices.retry_failed)

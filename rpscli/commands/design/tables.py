@@ -53,8 +53,8 @@ def answer_tables(
 
 
 def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> RenderableType:
-    from rpscli.report.study.labels import symbol  # noqa: PLC0415 -- pydantic is slow
-    from rpscli.sweep.reports.intensities import unit_of  # noqa: PLC0415
+    from rpscli.report.study.labels import symbol
+    from rpscli.sweep.reports.intensities import unit_of
 
     intervals = document["records"]["intervals"]
     ends = {item["key"]: item["end"] for item in document["at_bounds"]}
@@ -84,7 +84,7 @@ def _further_aims(
     document: dict[str, Any], design: dict[str, Any]
 ) -> Iterator[tuple[dict[str, str], float]]:
     """What is to be least and is not itself one of the values of a design."""
-    from rpscli.report.study.labels import symbol  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.report.study.labels import symbol
 
     names = {symbol(key) for key in design["values"]}
     for aim, value in zip(document["least"], design["aims"].values(), strict=True):
@@ -120,9 +120,9 @@ def _requirements(document: dict[str, Any], answer: Answer) -> RenderableType:
 
 def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """How sharp the answer is, and how it hangs on the choice of records."""
-    from rpscli.report.study.labels import label  # noqa: PLC0415 -- pydantic is slow
-    from rpscli.sweep.reports.intensities import unit_of  # noqa: PLC0415
-    from rpscli.sweep.search.answer import ROBUST  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.study.labels import label
+    from rpscli.sweep.reports.intensities import unit_of
+    from rpscli.sweep.search.answer import ROBUST
 
     records = document["records"]
     for end, word in zip(document["bracket"] or (), ("smaller", "larger"), strict=False):
@@ -157,8 +157,8 @@ def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 def nothing_passes(answer: Answer) -> str:
     """Which requirement stands in the way least, if no design passes; else nothing."""
-    from rpscli.report.design.answer import requirement_label  # noqa: PLC0415
-    from rpscli.sweep.search.answer import NONE  # noqa: PLC0415
+    from rpscli.report.design.answer import requirement_label
+    from rpscli.sweep.search.answer import NONE
 
     if answer.best != NONE:
         return ""

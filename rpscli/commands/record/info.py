@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 @source_options
 def command(motion: GroundMotion, terminal: Terminal) -> None:
     """What was understood of SRC, and its intensity measures in SI units."""
-    from rpscli.records.measures.intensity import intensity_measures  # noqa: PLC0415
-    from rpscli.report.tables.record import record_document  # noqa: PLC0415
+    from rpscli.records.measures.intensity import intensity_measures
+    from rpscli.report.tables.record import record_document
 
     measures = intensity_measures(motion)
     document = {**heading(), "command": "record info", **record_document(motion, measures)}

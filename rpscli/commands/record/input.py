@@ -39,7 +39,7 @@ def source_options(function: Command) -> Command:
         terminal: Terminal,
         **rest: Any,
     ) -> None:
-        from rpscli.records.source import load_record  # noqa: PLC0415 -- numpy is slow
+        from rpscli.records.source import load_record
 
         motion = load_record(source, dt=dt, units=units)
         if scale != 1.0:

@@ -35,12 +35,12 @@ def command(motion: GroundMotion, output: OutputRequest, terminal: Terminal, loo
 
     Writes record.csv, spectrum.csv and the figure record.
     """
-    import numpy as np  # noqa: PLC0415 -- slow
+    import numpy as np
 
-    from rpscli.records.measures.intensity import intensity_measures  # noqa: PLC0415
-    from rpscli.records.measures.spectrum import response_spectrum  # noqa: PLC0415
-    from rpscli.report.bundles import record_files  # noqa: PLC0415
-    from rpscli.report.tables.record import record_document  # noqa: PLC0415
+    from rpscli.records.measures.intensity import intensity_measures
+    from rpscli.records.measures.spectrum import response_spectrum
+    from rpscli.report.bundles import record_files
+    from rpscli.report.tables.record import record_document
 
     folder = record_folder(motion, output, "plot")
     periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])

@@ -108,11 +108,11 @@ def command(
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.
     """
-    from rpscli.records.selection import SelectionRequest, select  # noqa: PLC0415 -- numpy is slow
-    from rpscli.records.source import expand_sources, load_record  # noqa: PLC0415
-    from rpscli.records.targets.source import load_target  # noqa: PLC0415
-    from rpscli.report.bundles import selection_files  # noqa: PLC0415
-    from rpscli.report.tables.selection import selection_document  # noqa: PLC0415
+    from rpscli.records.selection import SelectionRequest, select
+    from rpscli.records.source import expand_sources, load_record
+    from rpscli.records.targets.source import load_target
+    from rpscli.report.bundles import selection_files
+    from rpscli.report.tables.selection import selection_document
 
     spectrum = load_target(target)
     wanted_pgv = _pgv(scale_by, pgv, spectrum)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def blocks_of(shown: Iterable[RenderableType]) -> Iterator[Block]:
     """The same tables and lines; titles are left out, since the page has its own."""
-    from rich.table import Table as ShownTable  # noqa: PLC0415 -- where a page is made
+    from rich.table import Table as ShownTable
 
     for each in shown:
         if isinstance(each, ShownTable):

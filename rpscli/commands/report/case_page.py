@@ -69,7 +69,7 @@ def case_page(
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
         sections = _sections(given, motion, None, look, ())
         return PageDone(case.title, "Structure", sections, concluded(document, None), None)
-    from rpscli.report.html.pictures import page_look  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.html.pictures import page_look
 
     # A place for the files, which are not written there.
     (request,) = history_requests([given], [motion], OutputRequest(Path(), force=True))
@@ -91,9 +91,9 @@ def _sections(
     look: Look,
     stored: Sequence[Block],
 ) -> list[Section]:
-    from rpscli.report.html import sections as shared  # noqa: PLC0415 -- numpy is slow
-    from rpscli.report.html.motions import motion_pictures  # noqa: PLC0415
-    from rpscli.report.html.page import Section  # noqa: PLC0415
+    from rpscli.report.html import sections as shared
+    from rpscli.report.html.motions import motion_pictures
+    from rpscli.report.html.page import Section
 
     case = given.case
     made = [
@@ -120,15 +120,15 @@ def _components(request: HistoryRequest) -> list[Any]:
 
 
 def _record_tables(result: TimeHistoryResult) -> Iterator[Any]:
-    from rpscli.commands.record.info import record_tables  # noqa: PLC0415
-    from rpscli.records.measures.intensity import intensity_measures  # noqa: PLC0415
+    from rpscli.commands.record.info import record_tables
+    from rpscli.records.measures.intensity import intensity_measures
 
     return record_tables(result.record, intensity_measures(result.record))
 
 
 def _in_short(done: HistoryResult, result: TimeHistoryResult) -> Iterator[Block]:
-    from rpscli.commands.timehistory_tables import limits_table, outcome_text  # noqa: PLC0415
-    from rpscli.report.html.page import Notice  # noqa: PLC0415
+    from rpscli.commands.timehistory_tables import limits_table, outcome_text
+    from rpscli.report.html.page import Notice
 
     yield f"Outcome: {outcome_text(result)}."
     if result.failure:
@@ -145,14 +145,14 @@ def _in_short(done: HistoryResult, result: TimeHistoryResult) -> Iterator[Block]
 
 def notices(texts: Sequence[str]) -> Iterator[Block]:
     """What must be read before the numbers are used."""
-    from rpscli.report.html.page import Notice  # noqa: PLC0415
+    from rpscli.report.html.page import Notice
 
     return (Notice(f"Warning: {text}") for text in texts)
 
 
 def _response(request: HistoryRequest, result: TimeHistoryResult) -> list[Block]:
-    from rpscli.commands.timehistory_tables import outcome_table, storeys_table  # noqa: PLC0415
-    from rpscli.report.html.pictures import Picture, pictures  # noqa: PLC0415
+    from rpscli.commands.timehistory_tables import outcome_table, storeys_table
+    from rpscli.report.html.pictures import Picture, pictures
 
     tables = [outcome_table(result)]
     if result.structure.storeys:
@@ -163,7 +163,7 @@ def _response(request: HistoryRequest, result: TimeHistoryResult) -> list[Block]
 
 
 def _input(given: CaseInput, request: HistoryRequest | None) -> list[Block]:
-    from rpscli.report.html.sections import input_table, listing  # noqa: PLC0415
+    from rpscli.report.html.sections import input_table, listing
 
     case = given.case
     motions = {}
@@ -189,7 +189,7 @@ def programs() -> str:
 
 
 def _repeat(given: CaseInput, motion: MotionRequest) -> Iterator[Block]:
-    from rpscli.report.html.page import Code  # noqa: PLC0415
+    from rpscli.report.html.page import Code
 
     words = [given.request.source]
     for override in given.request.overrides:
@@ -211,9 +211,9 @@ def _repeat(given: CaseInput, motion: MotionRequest) -> Iterator[Block]:
 
 def _stored(earlier: Earlier, request: HistoryRequest, done: HistoryResult) -> list[Block]:
     """Whether case, record and results are those of the stored results."""
-    import hashlib  # noqa: PLC0415
+    import hashlib
 
-    from rpscli.report.html.page import Notice  # noqa: PLC0415
+    from rpscli.report.html.page import Notice
 
     found: list[Block] = []
     file = earlier.file

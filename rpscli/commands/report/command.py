@@ -82,7 +82,7 @@ def command(
     name: str
     make: Callable[[], PageDone]
     if study:
-        from rpscli.commands.report.study_page import read_subject, study_page  # noqa: PLC0415
+        from rpscli.commands.report.study_page import read_subject, study_page
 
         made = read_subject(request, earlier, look, terminal)
         folder = None if earlier is None else earlier.folder
@@ -130,7 +130,7 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
     require_writable(file.parent)
     if force or not file.exists():
         return
-    from rpscli.report.html.page import is_about  # noqa: PLC0415 -- matplotlib's style is slow
+    from rpscli.report.html.page import is_about
 
     try:
         own = is_about(file.read_bytes(), name)
@@ -144,7 +144,7 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
 
 
 def _write(file: Path, name: str, done: PageDone, terminal: Terminal) -> None:
-    from rpscli.report.html.page import MOST_BYTES, page  # noqa: PLC0415
+    from rpscli.report.html.page import MOST_BYTES, page
 
     made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
     subtitle = f"{done.subtitle}. Made by rps {program_version()} on {made}."

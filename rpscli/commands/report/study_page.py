@@ -71,10 +71,10 @@ def study_page(
     KeyboardInterrupt
         If it was stopped between two points.
     """
-    from rpscli.sweep.reports.study_results import StudyResults  # noqa: PLC0415 -- numpy is slow
-    from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
-    from rpscli.sweep.store import Store  # noqa: PLC0415 -- sqlite is slow
-    from rpscli.sweep.table import tabulate  # noqa: PLC0415
+    from rpscli.sweep.reports.study_results import StudyResults
+    from rpscli.sweep.run.threads import available_cores
+    from rpscli.sweep.store import Store
+    from rpscli.sweep.table import tabulate
 
     require_results(given, list(conditions))
     folder = study_folder(given, OutputRequest(place, force=False))

@@ -65,15 +65,15 @@ def is_study(source: str) -> bool:
     """Whether a file is a study: these have a case at their base."""
     if source == "-":
         return False
-    from rpscli.case.text.files import read_text  # noqa: PLC0415 -- yaml is slow
-    from rpscli.case.text.yaml_text import read_yaml  # noqa: PLC0415
+    from rpscli.case.text.files import read_text
+    from rpscli.case.text.yaml_text import read_yaml
 
     return "base" in read_yaml(read_text(source), source).content
 
 
 def earlier_case(earlier: Earlier) -> tuple[CaseInput, MotionRequest]:
     """The case and the motion of earlier results, as they were then."""
-    from rpscli.case.case import parse_case  # noqa: PLC0415 -- pydantic and yaml are slow
+    from rpscli.case.case import parse_case
 
     run, file = earlier.run, earlier.file
     folder = earlier.folder if file is None else file.parent

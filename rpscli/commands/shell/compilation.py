@@ -22,11 +22,11 @@ def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
     moving
         Show on a terminal that something goes on; not where a bar shows it already.
     """
-    from rpscli.analyses.kernels.compilation import announce_to  # noqa: PLC0415 -- numpy is slow
+    from rpscli.analyses.kernels.compilation import announce_to
 
     @contextmanager
     def told() -> Iterator[None]:
-        from rpscli.physics.compile import cache_folder  # noqa: PLC0415 -- numba is slow
+        from rpscli.physics.compile import cache_folder
 
         often = "once for this version" if cache_folder() else f"each time: {NOWHERE}"
         terminal.note(f"compiling the kernel, {often}: half a minute")

@@ -15,8 +15,8 @@ def case_keys(
     """Keys of a case that hold a value, after `--set`; what they mean beside them."""
     del ctx, option
     # pydantic is slow.
-    from rpscli.case.schema.case_file import CaseFile  # noqa: PLC0415
-    from rpscli.case.schema.known_keys import field_at, known_paths, section_of  # noqa: PLC0415
+    from rpscli.case.schema.case_file import CaseFile
+    from rpscli.case.schema.known_keys import field_at, known_paths, section_of
 
     found: list[CompletionItem | str] = []
     for path in known_paths(CaseFile):
@@ -31,7 +31,7 @@ def condition_names(
 ) -> list[CompletionItem | str]:
     """Events and results after `--fail-on`, these with the unit of their limit."""
     del ctx, option
-    from rpscli.case.conditions import EVENTS, LIMITS  # noqa: PLC0415
+    from rpscli.case.conditions import EVENTS, LIMITS
 
     labels = {name: f"records that {verb}" for name, verb in EVENTS.items()}
     labels |= {name: f"{quantity.label} [{quantity.unit}]" for name, quantity in LIMITS.items()}

@@ -30,8 +30,8 @@ def passing_time(what: str, terminal: Terminal) -> Iterator[None]:
     if _shown or terminal.quiet or sys.stderr is None or not sys.stderr.isatty():
         yield
         return
-    from rich.console import Console  # noqa: PLC0415 -- other commands do without
-    from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn  # noqa: PLC0415
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn
 
     columns = (SpinnerColumn(), what, TimeElapsedColumn())
     _shown.append(what)
@@ -50,8 +50,8 @@ def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None
         terminal.note(what)
         yield lambda *_: None
         return
-    from rich.console import Console  # noqa: PLC0415 -- other commands do without
-    from rich.progress import (  # noqa: PLC0415
+    from rich.console import Console
+    from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
         Progress,

@@ -29,7 +29,7 @@ def patience(case: Case, duration: float, terminal: Terminal) -> Iterator[None]:
     terminal
         Where to say it.
     """
-    from rpscli.analyses.kernels.step_lengths import (  # noqa: PLC0415 -- numpy is slow
+    from rpscli.analyses.kernels.step_lengths import (
         most_seconds,
         most_steps,
     )

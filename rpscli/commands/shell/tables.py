@@ -16,14 +16,14 @@ LONGEST_WORD, LONGEST_HEAD = 30, 14
 
 def title(text: str) -> Text:
     """A heading above tables."""
-    from rich.text import Text  # noqa: PLC0415
+    from rich.text import Text
 
     return Text(text, style="bold")
 
 
 def sentence(text: str) -> Text:
     """A remark between tables."""
-    from rich.text import Text  # noqa: PLC0415
+    from rich.text import Text
 
     return Text(text)
 
@@ -41,8 +41,8 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1
         So many columns from the left hold words, which fold where the terminal is narrow; those
         after them hold numbers, which stand right and are never broken.
     """
-    from rich import box  # noqa: PLC0415
-    from rich.table import Table  # noqa: PLC0415
+    from rich import box
+    from rich.table import Table
 
     made = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     cells = list(rows)
@@ -62,7 +62,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1
 
 def listing(rows: Iterable[tuple[str, str]]) -> Table:
     """Names and what they stand for, without a head."""
-    from rich.table import Table  # noqa: PLC0415
+    from rich.table import Table
 
     made = Table(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     made.add_column()

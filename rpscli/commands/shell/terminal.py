@@ -59,8 +59,8 @@ class Terminal:
 
 def fitting(shown: RenderableType, console: Console) -> Iterator[RenderableType]:
     """The parts of a table that is wider than the terminal: its first column begins each."""
-    from rich.measure import Measurement  # noqa: PLC0415
-    from rich.table import Table  # noqa: PLC0415
+    from rich.measure import Measurement
+    from rich.table import Table
 
     def width(table: RenderableType) -> int:
         return Measurement.get(console, console.options.update(max_width=10_000), table).minimum
@@ -81,7 +81,7 @@ def fitting(shown: RenderableType, console: Console) -> Iterator[RenderableType]
 
 def rendered(tables: Iterable[RenderableType]) -> str:
     """Text of tables for the standard output: coloured and as wide as a terminal, if it is one."""
-    from rich.console import Console  # noqa: PLC0415 -- `rps --help` does without
+    from rich.console import Console
 
     screen = sys.stdout is not None and sys.stdout.isatty()
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"

@@ -93,7 +93,7 @@ def command(
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)
         return
-    from rpscli.sweep.store import Store  # noqa: PLC0415 -- sqlite is slow
+    from rpscli.sweep.store import Store
 
     folder = study_folder(given, output)
     with Store(folder.folder, fresh=chosen.fresh) as store:
@@ -138,10 +138,10 @@ def _conclude(
     conditions: list[Condition],
     terminal: Terminal,
 ) -> None:
-    from rpscli.commands.case_input import write  # noqa: PLC0415
-    from rpscli.sweep.reports.study_results import StudyResults  # noqa: PLC0415 -- numpy is slow
-    from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
-    from rpscli.sweep.table import tabulate  # noqa: PLC0415
+    from rpscli.commands.case_input import write
+    from rpscli.sweep.reports.study_results import StudyResults
+    from rpscli.sweep.run.threads import available_cores
+    from rpscli.sweep.table import tabulate
 
     table = tabulate(given.design, store.stored(start.keys))
     results = StudyResults(table, start.keys, store, given.context, available_cores())
@@ -189,7 +189,7 @@ def _statistics(found: Collected) -> dict[str, Any]:
     """Statistics and verdicts in JSON."""
     if found.summary is None:
         return {}
-    from rpscli.report.study.statistics import summary_document, verdict_document  # noqa: PLC0415
+    from rpscli.report.study.statistics import summary_document, verdict_document
 
     keys = found.summary.keys
     return {

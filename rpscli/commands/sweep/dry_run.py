@@ -25,7 +25,7 @@ GUESSED_POINT_SECONDS = 0.01
 
 def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -> None:
     """Count, first and last points, and an estimate of the time."""
-    from rpscli.sweep.run.threads import available_cores  # noqa: PLC0415
+    from rpscli.sweep.run.threads import available_cores
 
     design = given.design
     jobs = choices.jobs or available_cores()
@@ -57,7 +57,7 @@ def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -
 
 def _described(design: Design, number: int) -> dict[str, Any]:
     """A point with its factor on the record, where no measure decides about it."""
-    from rpscli.sweep.design.described import described  # noqa: PLC0415 -- numpy is slow
+    from rpscli.sweep.design.described import described
 
     point = design[number]
     factor = point.scale * point.scale_change
@@ -67,8 +67,8 @@ def _described(design: Design, number: int) -> dict[str, Any]:
 
 def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
     """Time of the whole study [s], and where the number comes from."""
-    from rpscli.analyses.kernels.compilation import is_ready  # noqa: PLC0415 -- numpy is slow
-    from rpscli.sweep.run.estimate import estimated_seconds  # noqa: PLC0415
+    from rpscli.analyses.kernels.compilation import is_ready
+    from rpscli.sweep.run.estimate import estimated_seconds
 
     if given.design.plan.analysis == "timehistory" and not is_ready():
         seconds = GUESSED_POINT_SECONDS * len(given.design) / jobs
@@ -77,7 +77,7 @@ def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
 
 
 def _tables(document: dict[str, Any], points: list[dict[str, Any]]) -> Iterator[RenderableType]:
-    from rpscli.report.study.labels import label  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.report.study.labels import label
 
     yield title(document["study"]["title"])
     counts = [(name, str(document[name])) for name in ("points", "systems", "records", "scales")]

@@ -59,7 +59,7 @@ class StudyInput:
     @property
     def doubts(self) -> list[str]:
         """What is unusual about its systems, each kind once."""
-        from rpscli.case.rules.plausibility import doubts_of_many  # noqa: PLC0415
+        from rpscli.case.rules.plausibility import doubts_of_many
 
         return doubts_of_many([properties.doubts for properties in self.design.properties])
 
@@ -71,12 +71,12 @@ class StudyInput:
 
 def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> StudyInput:
     """Read and check a study and all its systems."""
-    from rpscli.case.study.study import parse_study  # noqa: PLC0415
-    from rpscli.case.text.files import read_text  # noqa: PLC0415 -- pydantic and yaml are slow
-    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415
-    from rpscli.sweep.design.layout import lay_out  # noqa: PLC0415
-    from rpscli.sweep.design.sampling import balance_note  # noqa: PLC0415
-    from rpscli.sweep.evaluation.context import StudyContext  # noqa: PLC0415
+    from rpscli.case.study.study import parse_study
+    from rpscli.case.text.files import read_text
+    from rpscli.report.study.registry import REPORTS
+    from rpscli.sweep.design.layout import lay_out
+    from rpscli.sweep.design.sampling import balance_note
+    from rpscli.sweep.evaluation.context import StudyContext
 
     piped = request.source == "-"
     study = parse_study(
@@ -94,7 +94,7 @@ def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> 
 
 def study_folder(given: StudyInput, output: OutputRequest, command: str = "sweep") -> OutputFolder:
     """The folder of a study's results, or a design's."""
-    from rpscli.report.study import folder  # noqa: PLC0415 -- sqlite is slow
+    from rpscli.report.study import folder
 
     place = output.place or RESULTS / given.study.name / command
     overrides = given.request.overrides

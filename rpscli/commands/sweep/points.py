@@ -25,8 +25,8 @@ def begin(given: StudyInput, store: Store, choices: SweepChoices, terminal: Term
     Refused
         If the store holds another study, or `--report-only` lacks points.
     """
-    from rpscli.sweep.run.keys import all_keys  # noqa: PLC0415 -- numpy is slow
-    from rpscli.sweep.run.resume import remember, resume  # noqa: PLC0415
+    from rpscli.sweep.run.keys import all_keys
+    from rpscli.sweep.run.resume import remember, resume
 
     keys = all_keys(given.design, given.context)
     start = resume(given.design, keys, store, retry_failed=choices.retry_failed)
@@ -45,7 +45,7 @@ def compute(
     given: StudyInput, start: Resume, store: Store, choices: SweepChoices, terminal: Terminal
 ) -> Finish:
     """Compute what is not stored yet."""
-    from rpscli.sweep.run.runner import Finish, run  # noqa: PLC0415 -- numba is slow
+    from rpscli.sweep.run.runner import Finish, run
 
     if not start.pending:
         return Finish(0, 0, 0.0, interrupted=False)
@@ -68,10 +68,10 @@ def compute(
 
 def _engine(given: StudyInput, choices: SweepChoices, terminal: Terminal) -> Engine:
     if choices.scheduler:
-        from rpscli.sweep.run.cluster import Cluster  # noqa: PLC0415 -- an optional extra
+        from rpscli.sweep.run.cluster import Cluster  # an optional extra
 
         return Cluster(choices.scheduler, given.design.plan)
-    from rpscli.sweep.run.threads import Threads, available_cores  # noqa: PLC0415
+    from rpscli.sweep.run.threads import Threads, available_cores
 
     if given.design.plan.analysis == "timehistory":
         announce_compilation(terminal)

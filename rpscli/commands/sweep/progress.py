@@ -70,8 +70,8 @@ def duration(seconds: float) -> str:
 
 @contextmanager
 def _bar(kept: int, total: int) -> Iterator[Report]:
-    from rich.console import Console  # noqa: PLC0415 -- slow to import
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn  # noqa: PLC0415
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
     columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:

@@ -22,11 +22,11 @@ def require_results(given: StudyInput, conditions: Iterable[Condition]) -> None:
     UsageError
         If `--fail-on` names the result.
     """
-    from rpscli.report.study.requirements import (  # noqa: PLC0415 -- numpy is slow
+    from rpscli.report.study.requirements import (
         lacking,
         requirement_faults,
     )
-    from rpscli.sweep.design.check import needs_of  # noqa: PLC0415 -- numpy is slow
+    from rpscli.sweep.design.check import needs_of
 
     design = given.design
     design.study.document.refuse(requirement_faults(design))

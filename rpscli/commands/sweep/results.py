@@ -56,7 +56,7 @@ def collect(
     given: StudyInput, results: StudyResults, conditions: Sequence[Condition], folder: OutputFolder
 ) -> Collected:
     """Add all files to the folder. A report that fails does not take the others with it."""
-    from rpscli.sweep.points_csv import points_csv  # noqa: PLC0415 -- numpy is slow
+    from rpscli.sweep.points_csv import points_csv
 
     folder.add("points.csv", "".join(points_csv(results.table)))
     failures = list(_failures(given, results.table, folder))
@@ -79,10 +79,10 @@ def collect(
 def _with_statistics(
     found: Collected, results: StudyResults, conditions: Sequence[Condition], folder: OutputFolder
 ) -> Collected:
-    from rpscli.report.study.statistics import summary_columns, verdict_columns  # noqa: PLC0415
-    from rpscli.sweep.statistics.scales import scale_notes  # noqa: PLC0415
-    from rpscli.sweep.statistics.summary import summary  # noqa: PLC0415
-    from rpscli.sweep.statistics.verdicts import judged  # noqa: PLC0415
+    from rpscli.report.study.statistics import summary_columns, verdict_columns
+    from rpscli.sweep.statistics.scales import scale_notes
+    from rpscli.sweep.statistics.summary import summary
+    from rpscli.sweep.statistics.verdicts import judged
 
     made = summary(results.table, results.fixed_base)
     verdicts = judged(results.table, made, conditions)
@@ -101,8 +101,8 @@ def _report(
     found: Collected,
 ) -> None:
     """Add the files of a report, and what it has to say about its numbers."""
-    from rpscli.report.study.registry import REPORTS  # noqa: PLC0415 -- numpy is slow
-    from rpscli.report.study.report import add_notes  # noqa: PLC0415
+    from rpscli.report.study.registry import REPORTS
+    from rpscli.report.study.report import add_notes
 
     report = REPORTS[request.kind]
     numbers = report.numbers(results, request.options)
@@ -115,7 +115,7 @@ def _report(
 
 
 def _failures(given: StudyInput, table: Table, folder: OutputFolder) -> Iterator[Failure]:
-    from rpscli.sweep.design.described import reproduction  # noqa: PLC0415
+    from rpscli.sweep.design.described import reproduction
 
     base = given.study.base_file
     if base is None and table.messages:
@@ -128,7 +128,7 @@ def _failures(given: StudyInput, table: Table, folder: OutputFolder) -> Iterator
 
 
 def _failure_columns(failures: list[Failure]) -> list[Column]:
-    from rpscli.report.files.csv_text import quoted  # noqa: PLC0415
+    from rpscli.report.files.csv_text import quoted
 
     return [
         Column("point", "-", [failure.point for failure in failures]),

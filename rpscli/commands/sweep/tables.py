@@ -65,9 +65,9 @@ def summary_tables(summary: Summary) -> Iterator[RenderableType]:
 def _system_columns(
     summary: Summary, rows: Sequence[tuple[object, ...]]
 ) -> tuple[list[str], list[list[str]]]:
-    from rpscli.case.schema.units import in_si  # noqa: PLC0415 -- pydantic is slow
-    from rpscli.report.study.labels import plain, symbol  # noqa: PLC0415
-    from rpscli.sweep.reports.intensities import unit_of  # noqa: PLC0415
+    from rpscli.case.schema.units import in_si
+    from rpscli.report.study.labels import plain, symbol
+    from rpscli.sweep.reports.intensities import unit_of
 
     units = [unit_of(key) for key in summary.keys]
     named = zip(map(symbol, summary.keys), units, strict=True)
@@ -113,7 +113,7 @@ def found(verdict: StudyVerdict) -> str:
 
 def verdict_lines(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[str]:
     """Each exceeded limit in a line."""
-    from rpscli.report.study.labels import labels  # noqa: PLC0415 -- pydantic is slow
+    from rpscli.report.study.labels import labels
 
     lines = []
     for verdict in verdicts:

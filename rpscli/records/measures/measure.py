@@ -38,11 +38,11 @@ def measured(
         Of Sa, a share of critical damping.
     """
     if measure == "Sa":
-        from rpscli.records.measures.spectrum import spectral_acceleration  # noqa: PLC0415
+        from rpscli.records.measures.spectrum import spectral_acceleration
 
         assert period is not None, "Sa is asked for at a period"
         return spectral_acceleration(motion, period, damping)
-    from rpscli.records.measures.intensity import intensity_measures  # noqa: PLC0415
+    from rpscli.records.measures.intensity import intensity_measures
 
     return float(getattr(intensity_measures(motion), measure.lower()))
 

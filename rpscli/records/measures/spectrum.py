@@ -102,7 +102,7 @@ def _peaks(motion: GroundMotion, period: float, damping: float) -> tuple[float, 
     """Peak displacement [m] and total acceleration [m/s2] of one oscillator."""
     if period == 0.0:
         return 0.0, motion.pga
-    from scipy.signal import lfilter  # noqa: PLC0415 -- scipy is slow to import
+    from scipy.signal import lfilter
 
     ground, dt = _refined(motion, period)
     w = 2.0 * math.pi / period
@@ -147,7 +147,7 @@ def _step_matrices(
     Exponential of the system extended by the ground acceleration and its slope, with the step as
     the unit of time. The closed formulae lose all digits where w dt is small.
     """
-    from scipy.linalg import expm  # noqa: PLC0415 -- scipy is slow to import
+    from scipy.linalg import expm
 
     k = w * dt
     system = np.zeros((4, 4))

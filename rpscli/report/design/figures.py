@@ -136,7 +136,7 @@ def region_figure(answer: Answer, title: str) -> bytes:
 
 def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
     """The share of the resamples in which a design passes, between the designs."""
-    from matplotlib.tri import Triangulation  # noqa: PLC0415
+    from matplotlib.tri import Triangulation
 
     # Triangles of the unit square: ranges of different sizes would make needles of them.
     triangles = Triangulation(*answer.places.T).triangles

@@ -32,7 +32,7 @@ def artists(figures: int = MOST_ARTISTS) -> Iterator[Artists]:
     They are copies of this process, to be made early: what is in memory by then must be copied as
     soon as it is touched, which takes longer than to load it once more. They end with it.
     """
-    import multiprocessing  # noqa: PLC0415 -- where drawing is wanted
+    import multiprocessing
 
     ends: list[Connection] = []
     for _ in range(min(_cores_for_copies(), figures)):

@@ -124,8 +124,8 @@ def film(
         Of the figure [in], which lays itself out once.
     """
     with style.in_style():
-        from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415
-        from matplotlib.figure import Figure  # noqa: PLC0415
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
 
         figure = Figure(figsize=(width, height), dpi=wanted.size / width, layout="constrained")
         canvas: Any = FigureCanvasAgg(figure)
@@ -134,7 +134,7 @@ def film(
 
 
 def _frames(canvas: Any, motion: Motion, progress: Progress) -> Iterator[Image]:
-    from PIL import Image as Pillow  # noqa: PLC0415
+    from PIL import Image as Pillow
 
     motion.show(0)
     for each in motion.moving:
@@ -166,9 +166,9 @@ def _gif(frames: Iterator[Image], rate: int) -> bytes:
 
 def _palette() -> Image:
     """The inks of the pictures, each in steps towards white: what smooth edges need."""
-    import numpy as np  # noqa: PLC0415
-    from matplotlib.colors import to_rgb  # noqa: PLC0415
-    from PIL import Image as Pillow  # noqa: PLC0415
+    import numpy as np
+    from matplotlib.colors import to_rgb
+    from PIL import Image as Pillow
 
     inks = np.array([to_rgb(ink) for ink in (style.BLACK, style.BLUE, style.RED)])
     steps = np.linspace(0.0, 1.0, 32)[:, None, None]

@@ -133,7 +133,7 @@ def read_style(path: Path) -> dict[str, Any]:
         If there is no such file, or it says what matplotlib does not understand.
     """
     quiet_matplotlib()
-    from matplotlib import rc_params_from_file  # noqa: PLC0415 -- slow
+    from matplotlib import rc_params_from_file
 
     complaints = _Complaints()
     logger = logging.getLogger("matplotlib")

@@ -28,7 +28,7 @@ def selection_figure(selection: Selection, title: str) -> bytes:
 
 
 def _draw_spectra(axes: Axes, selection: Selection) -> None:
-    from matplotlib.ticker import FuncFormatter  # noqa: PLC0415
+    from matplotlib.ticker import FuncFormatter
 
     for place, one in enumerate(selection.chosen):
         axes.plot(

@@ -91,7 +91,7 @@ def picture(
         return b""
     now = in_force()
     with in_style(), _no_noise():
-        from matplotlib.figure import Figure  # noqa: PLC0415
+        from matplotlib.figure import Figure
 
         figure = Figure(figsize=(now.look.width(width), height), layout=layout)
         draw(figure)
@@ -131,7 +131,7 @@ def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) 
     UsageError
         If they are no subplot.
     """
-    from matplotlib.axes import Axes  # noqa: PLC0415
+    from matplotlib.axes import Axes
 
     kept = Kept(_in_place_of(target) if isinstance(target, Axes) else target)
     token = _kept.set(kept)
@@ -168,7 +168,7 @@ def room(usual: float) -> float:
 def in_style() -> Iterator[None]:
     """Figures that are made inside look like those that the program writes."""
     quiet_matplotlib()
-    import matplotlib.style  # noqa: PLC0415
+    import matplotlib.style
 
     # "default" first: a user's own matplotlibrc must not change what a report looks like.
     with matplotlib.style.context(["default", STYLE, in_force().look.settings]):
@@ -191,7 +191,7 @@ def inches(figure: Target) -> tuple[float, float]:
 
 def small() -> float:
     """Size of small letters [pt], inside a figure that is being drawn."""
-    import matplotlib as mpl  # noqa: PLC0415
+    import matplotlib as mpl
 
     return SMALL * float(mpl.rcParams["font.size"])
 

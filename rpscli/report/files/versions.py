@@ -21,7 +21,7 @@ def versions() -> dict[str, str | None]:
 
 
 def _installed(package: str) -> str | None:
-    from importlib import metadata  # noqa: PLC0415 -- slow, and `rps --help` does without
+    from importlib import metadata
 
     try:
         return metadata.version(package)

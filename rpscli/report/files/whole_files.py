@@ -63,7 +63,7 @@ def locked(folder: Path) -> Iterator[None]:
         # The system lets go when the process ends, however it ends. Where folders cannot be locked
         # (Windows, some file systems of networks), two processes must not write to one.
         with suppress(ImportError, OSError):
-            import fcntl  # noqa: PLC0415 -- not on every system
+            import fcntl  # not on every system
 
             handle = os.open(folder, os.O_RDONLY)
             lock.callback(os.close, handle)

@@ -74,7 +74,7 @@ def figures(shown: Sequence[Picture], room: int) -> list[Element]:
 
 def _few_colours(image: bytes) -> bytes:
     """The image with a palette, which takes a third of the room; our figures have few colours."""
-    from PIL import Image  # noqa: PLC0415 -- rarely needed
+    from PIL import Image
 
     small = io.BytesIO()
     with Image.open(io.BytesIO(image)) as full:

@@ -35,7 +35,7 @@ def colour(place: int, count: int = 0) -> str:
     """A colour for each of so many series: distinct ones, or shades of a scale beyond eight."""
     if count <= len(COLOURS):
         return COLOURS[place % len(COLOURS)]
-    from matplotlib import colormaps, colors  # noqa: PLC0415
+    from matplotlib import colormaps, colors
 
     return colors.to_hex(colormaps["viridis"](place / (count - 1)))
 

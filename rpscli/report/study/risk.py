@@ -82,7 +82,7 @@ def _systems(report: RiskReport, risks: list[Risk] | tuple[Risk, ...]) -> list[C
 
 def risk_figure(report: RiskReport, title: str) -> bytes:
     """One panel a limit state: what share of its rate comes from which intensities."""
-    from matplotlib.ticker import LogLocator  # noqa: PLC0415
+    from matplotlib.ticker import LogLocator
 
     found = report.fragilities
     limits = [limit for limit in found.limits if found.fitted(limit)]

@@ -29,7 +29,7 @@ def sample(section: SampleSection) -> Array:
 
 def unit_cube(section: SampleSection, dimensions: int) -> Array:
     """(size, dimensions) of the section's sequence, in the unit cube."""
-    from scipy.stats import qmc  # noqa: PLC0415 -- slow to import
+    from scipy.stats import qmc
 
     engine = {"sobol": qmc.Sobol, "latin_hypercube": qmc.LatinHypercube}[section.method]
     sequence: Any = engine(dimensions, seed=np.random.default_rng(section.seed))
@@ -69,7 +69,7 @@ def _values(unit: Array, given: tuple[float, float] | RangeSection) -> Array:
 
 
 def _normal_quantile(unit: Array) -> Array:
-    from scipy.special import ndtri  # noqa: PLC0415 -- slow to import
+    from scipy.special import ndtri
 
     # A scrambled sequence may hit zero, whose quantile is minus infinity.
     return np.asarray(ndtri(np.maximum(unit, 1e-16)))

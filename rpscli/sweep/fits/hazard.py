@@ -147,7 +147,7 @@ def rates_above(hazard: Hazard, median: float, beta: float, intensities: Array) 
     intensities
         (n,) not below the first point of the curve.
     """
-    from scipy.special import ndtr  # noqa: PLC0415 -- slow to import
+    from scipy.special import ndtr
 
     x, height = np.log(hazard.intensity), np.log(hazard.rate)
     slopes = -np.diff(height) / np.diff(x)
@@ -166,7 +166,7 @@ def _pieces(
     height: Array, slope: Array, start: Array, end: Array, middle: float, beta: float
 ) -> Array:
     """Integrals of H dP over power laws that have the logarithm `height` at their start."""
-    from scipy.special import log_ndtr  # noqa: PLC0415 -- slow to import
+    from scipy.special import log_ndtr
 
     constant = height + slope * (start - middle) + 0.5 * (slope * beta) ** 2
     low, high = ((y - middle) / beta + slope * beta for y in (start, end))

@@ -187,6 +187,6 @@ def _moments(fit: Probit) -> tuple[Array, Array]:
 
 
 def _probability(fit: Probit, grid: Array) -> Array:
-    from scipy.special import ndtr  # noqa: PLC0415 -- slow to import
+    from scipy.special import ndtr
 
     return np.asarray(ndtr(fit.intercept[:, None] + fit.slope[:, None] * np.log(grid)))

@@ -113,7 +113,7 @@ class _Evaluated(NamedTuple):
 def _evaluated(
     at: Array, z: Array, y: NDArray[np.bool_], weights: Array, penalty: Array
 ) -> _Evaluated:
-    from scipy.special import ndtr  # noqa: PLC0415 -- slow to import
+    from scipy.special import ndtr
 
     eta = np.clip(at[0][:, None] + at[1][:, None] * z, -LARGEST, LARGEST)
     tail = ndtr(-np.abs(eta))  # the small one of both, which must not lose digits

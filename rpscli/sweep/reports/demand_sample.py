@@ -87,7 +87,7 @@ COLUMNS = ("pga", "max_cap_beam_displacement", "residual_rotation")
 
 def _of_floors(study: StudyResults, numbers: Sequence[int]) -> tuple[Array, Array]:
     """(m, n) largest accelerations of the floors [m/s2] and drift ratios of the storeys."""
-    from rpscli.analyses.demand import demands  # noqa: PLC0415 -- numba is slow
+    from rpscli.analyses.demand import demands
 
     requests = [study.context.history(study.table.design[number]) for number in numbers]
     parts = [requests[f : f + LARGEST_BATCH] for f in range(0, len(requests), LARGEST_BATCH)]

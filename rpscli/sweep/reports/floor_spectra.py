@@ -96,7 +96,7 @@ def floor_spectra_report(study: StudyResults, options: FloorSpectraOptions) -> F
 
 def _spectra(study: StudyResults, number: int, damping: float) -> NDArray[np.float64]:
     """(2, 2, n, p) isolated and fixed base; pseudo-acceleration and displacement."""
-    from rpscli.analyses.timehistory import time_history  # noqa: PLC0415 -- numba is slow
+    from rpscli.analyses.timehistory import time_history
 
     given = study.context.history(study.table.design[number])
     up = given.vertical and given.vertical.scaled(given.scale)

@@ -70,7 +70,7 @@ class Cluster:
 
     def __init__(self, address: str, plan: Plan) -> None:
         try:
-            import distributed  # noqa: PLC0415 -- an optional extra
+            import distributed  # an optional extra
         except ModuleNotFoundError:
             raise UsageError('--scheduler needs Dask; run: pip install "rpscli[cluster]"') from None
         self._dask: Any = distributed

@@ -46,7 +46,7 @@ def neighbours(places: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     >>> [pair.tolist() for pair in neighbours(np.array([[0.0], [1.0], [0.4]]))]
     [[0, 1], [2, 2]]
     """
-    from scipy.spatial.distance import cdist  # noqa: PLC0415 -- slow to import
+    from scipy.spatial.distance import cdist
 
     squares = np.asarray(cdist(places, places, "sqeuclidean"))
     pairs = {

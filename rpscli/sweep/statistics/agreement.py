@@ -138,7 +138,7 @@ def maxima(computed: Array, observed: Array) -> Maxima:
     >>> found.counted, found.overturned, round(found.median, 6), found.distance
     (2, 1, 4.0, 1.0)
     """
-    from scipy.stats import ks_2samp  # noqa: PLC0415 -- slow to import
+    from scipy.stats import ks_2samp
 
     stood = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
     logs = np.log(computed[stood] / observed[stood])

@@ -59,7 +59,7 @@ def share(number: int, of: int) -> Share:
         All histories that did not fail [-].
     """
     # Not `scipy.stats.binomtest`, whose import takes as long as a thousand histories.
-    from scipy.special import betaincinv  # noqa: PLC0415 -- slow to import
+    from scipy.special import betaincinv
 
     if not of:
         return Share(0, 0, float("nan"), float("nan"))

@@ -245,7 +245,7 @@ class HeyokaBatch:
     """A compiled integrator of eight lanes for one podium."""
 
     def __init__(self, podium: Rocking, dt: float, tol: float = 1e-4) -> None:
-        import heyoka as hy  # noqa: PLC0415
+        import heyoka as hy
 
         self.dt, self.serve = dt, server(podium, dt)
         rows = 2 * len(podium.masses) + 2
@@ -299,7 +299,7 @@ class HeyokaBatch:
 
 def empty_batch_step_seconds() -> float:
     """What one call of `step` costs if there is next to nothing to integrate."""
-    import heyoka as hy  # noqa: PLC0415
+    import heyoka as hy
 
     x, limits = hy.make_vars("x"), np.full(LANES, 1e-3)
     empty = hy.taylor_adaptive_batch([(x, 0.0 * x)], np.zeros((1, LANES)), tol=1e-4)

@@ -30,7 +30,7 @@ GOOD = (-4294967297, -4294967299)
 
 def equations(podium: Rocking) -> list[tuple[Any, Any]]:
     """The mirrored equations of motion as heyoka's expressions, as in `rocking.rates`."""
-    import heyoka as hy  # noqa: PLC0415
+    import heyoka as hy
 
     n = len(podium.masses)
     R, gamma, eta = podium.R, podium.gamma, podium.eta
@@ -70,7 +70,7 @@ class HeyokaRocking:
     def __init__(
         self, podium: Rocking, dt: float, tol: float = 1e-4, *, alone: bool = False
     ) -> None:
-        import heyoka as hy  # noqa: PLC0415
+        import heyoka as hy
 
         self.podium, self.landing = podium, Landing(podium)
         self.dt, self.base = dt, fixed_base_of(podium, dt)
@@ -201,7 +201,7 @@ def refuse_failure(code: int) -> None:
 
 def empty_step_seconds() -> float:
     """What one call of `step` costs if there is next to nothing to integrate."""
-    import heyoka as hy  # noqa: PLC0415
+    import heyoka as hy
 
     x = hy.make_vars("x")
     return seconds_a_call(hy.taylor_adaptive([(x, 0.0 * x)], [0.0], tol=1e-4).step, 1e-3)

@@ -18,7 +18,7 @@ class HeyokaStanding:
     """A compiled integrator of the building on a fixed base, with uplift as its terminal event."""
 
     def __init__(self, base: FixedBase, tol: float) -> None:
-        import heyoka as hy  # noqa: PLC0415
+        import heyoka as hy
 
         n = len(base.push) // 2
         self.dt = base.dt

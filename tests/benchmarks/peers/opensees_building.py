@@ -18,7 +18,7 @@ class OpenSeesBuilding:
 
     def base_shear(self, record: Floats, dt: float, *, look: bool) -> float:
         """Run the record; the largest elastic base shear at samples if looked at, else 0."""
-        import openseespy.opensees as ops  # noqa: PLC0415
+        import openseespy.opensees as ops
 
         n = len(self.podium.masses)
         ops.wipe()
