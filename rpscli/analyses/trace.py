@@ -153,7 +153,7 @@ def _derived(
     devices = all_devices.at(rows)
     stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
     stored += devices.stored.sum(axis=1)
-    stored += 0.5 * tilting_inertia(structure, B, C, theta) * rate**2
+    stored += 0.5 * tilting_inertia(structure, B, C) * rate**2
     if building is not None:
         stored += 0.5 * du**2 @ building.masses
     V = forces.sum(axis=1)
@@ -234,18 +234,25 @@ def base_accelerations(
     B, C
         Contact arm and contact height over R (samples,).
     """
-    b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
-    theta, square = samples.theta, samples.theta_dot**2
-    side = np.sign(theta) + (theta == 0.0) * np.sign(samples.theta_ddot)
-    constant = np.where(samples.phase == state.ROLLING, b.rolling.c, b.rocking.c)
-    across = diameter * (C * samples.theta_ddot + side * B * square)
-    upwards = diameter * (side * B * samples.theta_ddot + (constant - C) * square)
+    from rpscli.physics.equation_of_motion import cap_beam_acceleration
+
+    b = structure.bearing
+    side = np.sign(samples.theta) + (samples.theta == 0.0) * np.sign(samples.theta_ddot)
+    across, upwards = cap_beam_acceleration(
+        side,
+        2.0 * b.semi_diagonal,
+        np.where(samples.phase == state.ROLLING, b.rolling.c, b.rocking.c),
+        B,
+        C,
+        samples.theta_dot,
+        side * samples.theta_ddot,
+    )
     moves = samples.phase != state.FULL_CONTACT
     return np.where(moves, across, 0.0), np.where(moves, upwards, 0.0)
 
 
-def tilting_inertia(structure: PodiumStructure, B: Array, C: Array, theta: Array) -> Array:
-    """N m_c R^2 A(x) along a path [kg m2].
+def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
+    """N m_c R^2 A(x) along a path (samples,) [kg m2].
 
     Parameters
     ----------
@@ -253,10 +260,9 @@ def tilting_inertia(structure: PodiumStructure, B: Array, C: Array, theta: Array
         Podium, bearings and building.
     B, C
         (samples,) contact arm and contact height over R.
-    theta
-        (samples,) [rad]: gives the result its shape.
     """
-    S = B**2 + C**2
-    beam = 4.0 * structure.gamma
-    A = structure.bearing.inertia_ratio - 1.0 + (1.0 + beam) * S + beam * structure.eta * B**2
-    return structure.columns_mass * structure.bearing.semi_diagonal**2 * A * np.ones_like(theta)
+    from rpscli.physics.equation_of_motion import inertia
+
+    io_1, beam = structure.bearing.inertia_ratio - 1.0, 4.0 * structure.gamma
+    A = inertia(io_1, 1.0 + beam, beam * structure.eta, B**2 + C**2, B)
+    return np.asarray(structure.columns_mass * structure.bearing.semi_diagonal**2 * A)

@@ -33,14 +33,18 @@ OPTIONS: dict[str, Any] = {
 }
 
 SOURCES = Path(__file__).parent
+CONSTANTS = SOURCES.parent / "constants.py"
+"""The one module outside of the sources that decides about a kernel: how large its records are."""
 
 
-def sources_digest(folder: Path) -> str:
-    """Digest of all Python sources below a folder, their places included."""
+def sources_digest(folder: Path, *others: Path) -> str:
+    """Digest of all Python sources below a folder, their places included, and of other files."""
     digest = hashlib.sha256()
     for source in sorted(folder.rglob("*.py")):
         digest.update(str(source.relative_to(folder).as_posix()).encode())
         digest.update(source.read_bytes())
+    for other in others:
+        digest.update(other.read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -50,7 +54,7 @@ def cache_folder() -> Path | None:
     place = user_cache()
     if place is None:
         return None
-    folder = place / f"kernels-{sources_digest(SOURCES)}"
+    folder = place / f"kernels-{sources_digest(SOURCES, CONSTANTS)}"
     folder.mkdir(exist_ok=True)
     return folder
 

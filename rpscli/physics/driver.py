@@ -17,6 +17,7 @@ from rpscli.physics.devices.flows import book_devices, observe_devices
 from rpscli.physics.devices.rest import load_devices, release_devices
 from rpscli.physics.devices.samples import leave_devices
 from rpscli.physics.energy import book_energy, building_energy, uplifted_energy
+from rpscli.physics.equation_of_motion import load_factors
 from rpscli.physics.full_contact.stand import stand
 from rpscli.physics.ground import set_ground
 from rpscli.physics.run import Output, Run, empty_state
@@ -218,10 +219,10 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
 @compiled
 def load_system(s: Record, l: int, system: Record) -> None:
     """Constants of the structure, folded as the equation of motion wants them."""
-    ground_factor, carried = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
+    ground_factor, building = load_factors(system.gamma, system.eta)
     s.diameter[l], s.io_1[l] = 2.0 * system.R, system.Io - 1.0
-    s.one_4gamma[l], s.four_gamma_eta[l] = 1.0 + 4.0 * system.gamma, 2.0 * carried
-    s.weight_over_R[l] = (ground_factor + carried) / system.R
+    s.one_4gamma[l], s.four_gamma_eta[l] = 1.0 + 4.0 * system.gamma, 2.0 * building
+    s.weight_over_R[l] = (ground_factor + building) / system.R
     s.ground_over_R[l] = ground_factor / system.R
     s.shear_factor[l] = 2.0 / (system.columns_mass * system.R)
     s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass

@@ -27,12 +27,19 @@ follows from those before it by sums of products (A. Jorba and M. Zou, Exp. Math
 from __future__ import annotations
 
 import math
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.formulae import geometry
 from rpscli.physics.formulae.geometry import Phase
 from rpscli.physics.formulae.trigonometry import sine_cosine
 from rpscli.physics.state import Record
+
+Number = TypeVar("Number", float, NDArray[np.float64])
+"""Numbers in the kernels, arrays where samples follow from what was stored."""
 
 contact_arm = compiled(geometry.contact_arm)
 contact_height = compiled(geometry.contact_height)
@@ -51,21 +58,19 @@ def phase_constants(s: Record, l: int) -> Phase:
 
 
 @compiled
-def inertia(
-    io_1: float, one_4gamma: float, four_gamma_eta: float, phase: Phase, B: float, C: float
-) -> float:
-    """A(x) = Io - 1 + (1 + 4 gamma) S + 4 gamma eta B^2 (paper, Table 1).
+def inertia(io_1: float, one_4gamma: float, four_gamma_eta: float, S: Number, B: Number) -> Number:
+    """A(x) = Io - 1 + (1 + 4 gamma) S + 4 gamma eta B^2 (paper, Table 1); numbers or arrays.
 
     Parameters
     ----------
     io_1, one_4gamma, four_gamma_eta
         Io - 1, 1 + 4 gamma, 4 gamma eta.
-    phase
-        Constants of the phase of motion.
-    B, C
-        Contact arm and contact height over R.
+    S
+        B^2 + C^2, see `squared_distance`.
+    B
+        Contact arm over R.
     """
-    return io_1 + one_4gamma * squared_distance(phase, C) + four_gamma_eta * (B * B)
+    return io_1 + one_4gamma * S + four_gamma_eta * (B * B)
 
 
 @compiled
@@ -137,20 +142,32 @@ def rotation_acceleration(
 
 @compiled
 def cap_beam_acceleration(
-    s: Record, l: int, B: float, C: float, theta_dot: float, theta_ddot: float
-) -> tuple[float, float]:
-    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8).
+    side: Number,
+    diameter: float,
+    c: Number,
+    B: Number,
+    C: Number,
+    theta_dot: Number,
+    theta_ddot: Number,
+) -> tuple[Number, Number]:
+    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8); numbers or arrays.
 
     Parameters
     ----------
+    side
+        1 for a tilt to the right, -1 to the left.
+    diameter
+        2 R [m].
+    c
+        That of the phase of motion.
     B, C
         Contact arm and contact height over R.
     theta_dot, theta_ddot
         x' and x'' [rad/s, rad/s2].
     """
     square = theta_dot * theta_dot
-    across = s.side[l] * s.diameter[l] * (C * theta_ddot + B * square)
-    return across, s.diameter[l] * (B * theta_ddot + (s.phase_c[l] - C) * square)
+    across = side * diameter * (C * theta_ddot + B * square)
+    return across, diameter * (B * theta_ddot + (c - C) * square)
 
 
 # Accelerations at the end of a step.
@@ -180,7 +197,8 @@ def accelerate_rotation(s: Record, l: int, elapsed: float) -> None:
     time = s.time[l] + elapsed * s.step[l]
     a_g = s.a_g[l] + s.a_g_slope[l] * time
     g_up = s.g_up[l] + s.g_up_slope[l] * time
-    per_A = 1.0 / inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], phase, B, C)
+    S = squared_distance(phase, C)
+    per_A = 1.0 / inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], S, B)
     D = inertia_slope(s.one_4gamma[l], s.four_gamma_eta[l], phase, B, C)
     action = horizontal_action(s, l, a_g, s.next_V[l])
     s.next_theta_ddot[l] = rotation_acceleration(
@@ -328,9 +346,22 @@ def tilting_energy(s: Record, l: int, B: float, C: float, theta_dot: float) -> f
         x' [rad/s].
     """
     phase = phase_constants(s, l)
-    A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], phase, B, C)
+    S = squared_distance(phase, C)
+    A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], S, B)
     square = s.diameter[l] * s.diameter[l]
     return float(0.125 * s.columns_mass[l] * square * A * (theta_dot * theta_dot))
+
+
+@compiled
+def load_factors(gamma: float, eta: float) -> tuple[float, float]:
+    """1 + 2 gamma and 2 gamma eta: columns with the cap beam, and the building, over N m_c / 2.
+
+    Parameters
+    ----------
+    gamma, eta
+        Cap beam over columns, building over cap beam.
+    """
+    return 1.0 + 2.0 * gamma, 2.0 * gamma * eta
 
 
 @compiled

@@ -145,7 +145,13 @@ class OneLane:
         """u_b'' and v_b'' [m/s2]; the accelerations must be known."""
         s = self.s
         found: tuple[float, float] = cap_beam_acceleration(
-            s, 0, s.B[0], s.C[0], s.theta_dot[0], s.theta_ddot[0]
+            s.side[0],
+            s.diameter[0],
+            s.phase_c[0],
+            s.B[0],
+            s.C[0],
+            s.theta_dot[0],
+            s.theta_ddot[0],
         )
         return found
 

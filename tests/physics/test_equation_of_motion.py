@@ -170,7 +170,7 @@ def inertia_and_slope(state: State, shift: float = 0.0) -> tuple[float, float]:
     C = contact_height(phase, math.cos(x), math.sin(x))
     beam, building = s.one_4gamma[0], s.four_gamma_eta[0]
     return (
-        inertia(s.io_1[0], beam, building, phase, B, C),
+        inertia(s.io_1[0], beam, building, B * B + C * C, B),
         inertia_slope(beam, building, phase, B, C),
     )
 

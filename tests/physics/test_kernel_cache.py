@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import pickle
 import shutil
@@ -17,6 +18,7 @@ from paper_structures import needs_compiled_kernels
 
 from rpscli.physics import compile as compilation
 from rpscli.physics.compile import (
+    CONSTANTS,
     cache_folder,
     is_compiled,
     kernel,
@@ -99,17 +101,34 @@ def test_the_folder_is_named_after_the_sources(
     sources = tmp_path / "physics"
     shutil.copytree(compilation.SOURCES, sources, ignore=shutil.ignore_patterns("__pycache__"))
     fresh_folder.setattr(compilation, "SOURCES", sources)
-    before, digest = cache_folder(), sources_digest(sources)
+    before, digest = cache_folder(), sources_digest(sources, CONSTANTS)
     assert before is not None
     assert before.name == f"kernels-{digest}"
-    assert digest == sources_digest(Path(compilation.__file__).parent)  # wherever they are
+    here = Path(compilation.__file__).parent
+    assert digest == sources_digest(here, CONSTANTS)  # wherever they are
     with (sources / source).open("a") as file:
         file.write("\n")
     cache_folder.cache_clear()
     after = cache_folder()
     assert after is not None
     assert before != after
-    assert digest != sources_digest(sources)
+    assert digest != sources_digest(sources, CONSTANTS)
+
+
+def test_all_that_decides_about_a_kernel_is_in_the_digest(tmp_path: Path) -> None:
+    """What physics imports of the rest decides about no number, but for the constants."""
+    imported = {
+        name
+        for source in compilation.SOURCES.rglob("*.py")
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom)
+        and (name := str(node.module)).startswith("rpscli.")
+        and not name.startswith("rpscli.physics")
+    }
+    assert imported <= {"rpscli.constants", "rpscli.errors", "rpscli.user_cache"}
+    changed = tmp_path / "constants.py"
+    changed.write_text(CONSTANTS.read_text(encoding="utf-8").replace("200", "64"))
+    assert sources_digest(tmp_path, CONSTANTS) != sources_digest(tmp_path, changed)
 
 
 def test_a_source_that_moves_to_another_folder_counts_as_changed(tmp_path: Path) -> None:

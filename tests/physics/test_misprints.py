@@ -26,7 +26,7 @@ def inertia(structure: PodiumStructure, x: float) -> tuple[float, float, float]:
     B = contact_arm(phase, math.cos(x), math.sin(x))
     C = contact_height(phase, math.cos(x), math.sin(x))
     beam, building = 1.0 + 4.0 * gamma, 4.0 * gamma * eta
-    A = equation_of_motion.inertia(1.0 / 3.0, beam, building, phase, B, C)
+    A = equation_of_motion.inertia(1.0 / 3.0, beam, building, B * B + C * C, B)
     return A, equation_of_motion.inertia_slope(beam, building, phase, B, C), -C * B
 
 

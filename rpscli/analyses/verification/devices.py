@@ -64,4 +64,4 @@ def energy_of_impact(structure: PodiumStructure, rotation: float) -> float:
     at = np.zeros(1)
     b = structure.bearing
     B, C = np.sin(b.alpha) + at, np.cos(b.alpha) + at
-    return float(0.5 * tilting_inertia(structure, B, C, at)[0] * rate**2)
+    return float(0.5 * tilting_inertia(structure, B, C)[0] * rate**2)

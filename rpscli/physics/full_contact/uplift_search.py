@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from rpscli.physics.compile import compiled
 from rpscli.physics.devices.rest import arms, holding
-from rpscli.physics.equation_of_motion import uplift_push
+from rpscli.physics.equation_of_motion import load_factors, uplift_push
 from rpscli.physics.formulae.quintic import (
     NO_PASSAGE,
     SETTLED,
@@ -66,12 +66,12 @@ class Margin(NamedTuple):
 @compiled
 def margin_of(s: Record, l: int, system: Record) -> Margin:
     """What the margin of a structure at rest is made of, in full contact or stuck."""
-    ground_factor, carried = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
+    ground_factor, building = load_factors(system.gamma, system.eta)
     damping = 0.0
     for r in range(system.n):
         damping += system.Gamma[r] * system.Gamma[r] * system.two_xi_omega[r]
-    share = carried / system.floors_mass if system.n > 0 else 0.0
-    limit = math.tan(system.alpha) * (ground_factor + carried)
+    share = building / system.floors_mass if system.n > 0 else 0.0
+    limit = math.tan(system.alpha) * (ground_factor + building)
     right, left, held_right, held_left = limit, limit, 0.0, 0.0
     if s.devices[l] > 0:
         elastic, friction = holding(s, l)
@@ -79,7 +79,7 @@ def margin_of(s: Record, l: int, system: Record) -> Margin:
         held_right, held_left = elastic + friction, elastic + friction
         if s.phase[l] == STUCK:
             B, C = arms(s, l)
-            right = s.side[l] * B / C * (ground_factor + carried)
+            right = s.side[l] * B / C * (ground_factor + building)
             left, elastic = -right, s.side[l] * elastic
             held_right, held_left = friction + elastic, friction - elastic
     return Margin(ground_factor, share, right, left, held_right, held_left, damping)

@@ -55,7 +55,13 @@ def observe_ends(s: Record) -> None:
         s.demands_rise[l] = s.at_sample[l] if sheared | accelerated else 0.0
     for l in range(lanes):
         across, upwards = cap_beam_acceleration(
-            s, l, s.next_B[l], s.next_C[l], s.next_theta_dot[l], s.next_theta_ddot[l]
+            s.side[l],
+            s.diameter[l],
+            s.phase_c[l],
+            s.next_B[l],
+            s.next_C[l],
+            s.next_theta_dot[l],
+            s.next_theta_ddot[l],
         )
         raise_contacts(s, l, s.at_sample[l], across, upwards, s.next_V[l] + s.next_push[l])
     for l in range(lanes):
