@@ -92,3 +92,22 @@ def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | Non
     folded = {name.lower().replace("-", "_"): name for name in known}
     found = difflib.get_close_matches(word.lower().replace("-", "_"), folded, 1, likeness)
     return folded[found[0]] if found else None
+
+
+def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7) -> str:
+    """What to say of a word that is not known.
+
+    Parameters
+    ----------
+    word, known, likeness
+        See `nearest`.
+    otherwise
+        What to say if no known word is like it.
+
+    Examples
+    --------
+    >>> hint("slendernes", ["slenderness"], "")
+    'did you mean slenderness?'
+    """
+    meant = nearest(word, known, likeness)
+    return f"did you mean {meant}?" if meant else otherwise

@@ -36,7 +36,7 @@ from rpscli.case.study.study import parse_study, shared_out, study_of
 from rpscli.case.text.document import Document
 from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import CaseError, UsageError, nearest
+from rpscli.errors import CaseError, UsageError, hint
 from rpscli.report.figures.look import Look, read_style
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.report.study.folder import study_folder
@@ -251,9 +251,8 @@ class StudyResult(Shown):
     def __getitem__(self, name: str) -> Any:
         """(points,) of a varied key or a result, as `points.csv` names it."""
         if name not in self.columns:
-            close = nearest(str(name), self.columns, 0.6)
-            hint = f"did you mean {close}?" if close else f"there are {', '.join(self.columns)}"
-            raise KeyError(f"{name} is no column; {hint}")
+            there_are = f"there are {', '.join(self.columns)}"
+            raise KeyError(f"{name} is no column; {hint(str(name), self.columns, there_are, 0.6)}")
         return self.columns[name]
 
     @cached_property

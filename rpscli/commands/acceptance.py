@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rpscli.case.conditions import EVENTS, LIMITS, Condition, conditions_of
-from rpscli.errors import LimitExceeded, UsageError, nearest
+from rpscli.errors import LimitExceeded, UsageError, hint
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
@@ -58,9 +58,8 @@ def parse_condition(text: str) -> Condition:
         return Condition(name, 0.0, "--fail-on")
     if name not in LIMITS and name not in EVENTS:
         known = [*EVENTS, *(f"{limited}=VALUE" for limited in LIMITS)]
-        close = nearest(name, [*EVENTS, *LIMITS], 0.6)
-        hint = f"did you mean {close}?" if close else f"known are {', '.join(known)}"
-        raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {hint}")
+        meant = hint(name, [*EVENTS, *LIMITS], f"known are {', '.join(known)}", 0.6)
+        raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")
     try:
         limit = float(value)
     except ValueError:

@@ -243,12 +243,8 @@ class MotionComponents:
     scale: float = 1.0
 
     def __post_init__(self) -> None:
-        if self.vertical is not None and self.vertical.dt != self.horizontal.dt:
-            raise RecordError(
-                f"{self.vertical.source}: the vertical record has dt = {self.vertical.dt} s, the"
-                f" horizontal one {self.horizontal.dt} s: they must agree; resample one of them"
-                f" with `rps record convert {self.vertical.source} --resample {self.horizontal.dt}`"
-            )
+        if self.vertical is not None:
+            require_one_step(self.horizontal, self.vertical, "vertical")
 
     def scaled(self, factor: float) -> MotionComponents:
         """Both components times `factor`."""
@@ -270,6 +266,22 @@ class MotionComponents:
             return along, up
         npts = max(along.npts, up.npts)
         return _prolonged(along, npts), _prolonged(up, npts)
+
+
+def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:
+    """Refuse components of different time steps.
+
+    Raises
+    ------
+    RecordError
+        That calls the other one by its name, and says how to resample it.
+    """
+    if one.dt != other.dt:
+        raise RecordError(
+            f"{other.source}: the {name} record has dt = {other.dt} s, {one.source} {one.dt} s:"
+            " they must agree; resample one of them with"
+            f" `rps record convert {other.source} --resample {one.dt}`"
+        )
 
 
 def _prolonged(motion: GroundMotion, npts: int) -> GroundMotion:

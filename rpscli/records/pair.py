@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rpscli.errors import RecordError
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, require_one_step
 from rpscli.records.query import Query, parse_query
 
 HALF_TURN = 180.0
@@ -73,11 +72,7 @@ def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMo
     >>> rotated(north, east, 30.0).acceleration.round(6).tolist()
     [1.732051, 2.0]
     """
-    if first.dt != second.dt:
-        raise RecordError(
-            f"{first.source}: the components have dt = {first.dt} s and {second.dt} s; resample one"
-            f" of them with `rps record convert FILE --resample {min(first.dt, second.dt)}`"
-        )
+    require_one_step(first, second, "second")
     cosine, sine = _exact_at_right_angles(angle)
     values = np.zeros(max(first.npts, second.npts))
     values[: first.npts] += cosine * first.acceleration

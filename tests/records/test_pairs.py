@@ -58,7 +58,7 @@ def test_a_spectrum_over_directions_comes_back_after_half_a_turn() -> None:
 
 
 def test_two_time_steps() -> None:
-    with pytest.raises(RecordError, match=r"dt = 0.01 s and 0.02 s; resample one .* 0.01"):
+    with pytest.raises(RecordError, match=r"dt = 0.02 s, .* 0.01 s: .* --resample 0.01"):
         rotated(motion([1.0, 2.0]), motion([1.0, 2.0], 0.02), 30.0)
 
 

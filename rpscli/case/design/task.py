@@ -32,7 +32,7 @@ from rpscli.case.text.document import Document, is_case, is_design
 from rpscli.case.text.faults import Fault, listed, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, nearest
+from rpscli.errors import CaseError, hint
 
 Array = NDArray[np.float64]
 
@@ -263,11 +263,10 @@ def _aim_faults(file: DesignFile) -> Iterator[Fault]:
         if name in sampled and not file.whole_histories:
             yield Fault(("least",), f"least: {name} needs `whole_histories: true`; add it")
         elif name not in keys and name not in results:
-            guess = nearest(name, [*keys, *results])
-            hint = f"did you mean {guess}?" if guess else f"use {listed(keys)}, or a result"
+            meant = hint(name, [*keys, *results], f"use {listed(keys)}, or a result")
             yield Fault(
                 ("least",),
-                f"least: {name} is neither a result nor a key that `find` changes; {hint}",
+                f"least: {name} is neither a result nor a key that `find` changes; {meant}",
             )
         elif name in keys and "fractile" in _given(file.least, name):
             yield Fault(("least",), f"least: {name} is a key, without fractiles; take it out")

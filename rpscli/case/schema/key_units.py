@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
-from typing import Any, get_args
 
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.fields import Quantity, Whole
-from rpscli.case.schema.known_keys import field_at
+from rpscli.case.schema.known_keys import field_at, marks_of
 
 
 @lru_cache(maxsize=1024)
@@ -31,14 +29,7 @@ def is_whole(key: str) -> bool:
     return any(isinstance(mark, Whole) for mark in _marks_of(key))
 
 
-def _marks_of(key: str) -> Iterator[object]:
+def _marks_of(key: str) -> list[object]:
     path = tuple(part for part in key.split(".") if not part.isdecimal())
-    if field := field_at(CaseFile, path):
-        yield from (*field.metadata, *_marks(field.annotation))
-
-
-def _marks(annotation: Any) -> Iterator[object]:
-    """What stands inside `Annotated`, in any branch of a union."""
-    yield from getattr(annotation, "__metadata__", ())
-    for part in get_args(annotation):
-        yield from _marks(part)
+    field = field_at(CaseFile, path)
+    return marks_of(field) if field else []

@@ -37,6 +37,17 @@ def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:
     return model
 
 
+def marks_of(field: FieldInfo) -> list[object]:
+    """What a field's annotation says besides its type, in any branch of a union."""
+
+    def inside(annotation: Any) -> Iterator[object]:
+        yield from getattr(annotation, "__metadata__", ())
+        for part in get_args(annotation):
+            yield from inside(part)
+
+    return [*field.metadata, *inside(field.annotation)]
+
+
 def field_at(model: type[BaseModel], path: Path) -> FieldInfo | None:
     """What the format says of the key at a path, or None if it does not know the key."""
     parent = section_at(model, path[:-1])

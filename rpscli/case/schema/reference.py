@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rpscli.case.schema.fields import PLAIN, Quantity, Whole
-from rpscli.case.schema.known_keys import known_paths, section_at, section_of
+from rpscli.case.schema.known_keys import known_paths, marks_of, section_at, section_of
 
 SECTIONS = {
     "superstructure": "7",
@@ -81,7 +81,7 @@ def key_references(model: type[BaseModel]) -> Iterator[KeyReference]:
 
 
 def _reference(key: str, field: FieldInfo) -> KeyReference:
-    marks = [*field.metadata, *_marks(field.annotation)]
+    marks = marks_of(field)
     quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
     whole = next((mark for mark in marks if isinstance(mark, Whole)), None)
     section = section_of(field.annotation)
@@ -105,13 +105,6 @@ def _sections(key: str) -> str:
     parts = key.split(".")
     parents = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
     return next((SECTIONS[parent] for parent in parents if parent in SECTIONS), "")
-
-
-def _marks(annotation: Any) -> Iterator[object]:
-    """What stands inside `Annotated`, in any branch of a union."""
-    yield from getattr(annotation, "__metadata__", ())
-    for part in get_args(annotation):
-        yield from _marks(part)
 
 
 def _words(field: FieldInfo) -> Iterator[str]:

@@ -16,7 +16,7 @@ from pydantic import (
 
 from rpscli.case.schema.fields import Quantity, refuse
 from rpscli.case.schema.section import Section
-from rpscli.errors import nearest
+from rpscli.errors import hint
 from rpscli.records.measures.measure import MEASURE_UNITS, Measure
 
 _TARGET = re.compile(r"\s*([A-Za-z]+)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
@@ -78,9 +78,8 @@ def scale_to_of(text: str) -> ScaleToSection:
     name, period, value = found.groups()
     measure = next((known for known in MEASURE_UNITS if known.lower() == name.lower()), None)
     if measure is None:
-        close = nearest(name, MEASURE_UNITS, 0.6)
-        hint = f"did you mean {close}?" if close else f"known are {', '.join(MEASURE_UNITS)}"
-        raise ValueError(f"{name} is no measure; {hint}")
+        known_are = f"known are {', '.join(MEASURE_UNITS)}"
+        raise ValueError(f"{name} is no measure; {hint(name, MEASURE_UNITS, known_are, 0.6)}")
     given: dict[str, Any] = {"measure": measure, "value": _number(value)}
     if period is not None:
         given["period"] = _number(period)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rpscli.case.text.faults import listed
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import nearest
+from rpscli.errors import hint
 
 if TYPE_CHECKING:
     import pint
@@ -155,9 +155,8 @@ def _factor(written: str, unit: str) -> float:
     _refuse_ton(written)
     found = _parsed(written) if is_unit_text else None
     if found is None:
-        guess = nearest(written, units)
-        hint = f"did you mean {guess}?" if guess else f"use {listed(units)}"
-        raise ValueError(f"has the unknown unit {written!r}; it must be {kind}: {hint}")
+        meant = hint(written, units, f"use {listed(units)}")
+        raise ValueError(f"has the unknown unit {written!r}; it must be {kind}: {meant}")
     if found.dimensionality != _parsed(unit).dimensionality:
         raise ValueError(f"is {_kind(found)}, but must be {kind}: {listed(units)}{_hint(found)}")
     return float(found.to(_parsed(unit).units).magnitude)

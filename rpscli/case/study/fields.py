@@ -13,7 +13,6 @@ from rpscli.case.schema.section import Section
 from rpscli.case.text.faults import shown
 
 Number = Annotated[float, Quantity()]
-Positive = Annotated[float, Quantity(above=0)]
 Seed = Annotated[int, Whole(0)]
 DampingRatio = Annotated[
     float,

@@ -18,7 +18,7 @@ from rpscli.case.study.axes import Axis
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, Path, Place, listed, shown
 from rpscli.case.text.files import read_text
-from rpscli.errors import CaseError, nearest
+from rpscli.errors import CaseError, hint
 
 RECORD, OVERTURNED = "record", "overturned"
 PATH: Path = ("observed",)
@@ -154,11 +154,11 @@ def _title_faults(
         if column in names[:place]:
             yield _fault(name, line, f"the column {shown(column)} stands twice; take one out")
         if column not in (*known, *results):
-            guess = nearest(column, (*known, *results))
-            hint = f"did you mean {guess}?" if guess else f"the study varies {listed(known, 'and')}"
+            varied = f"the study varies {listed(known, 'and')}"
+            meant = hint(column, (*known, *results), varied)
             yield _fault(
                 name, line,
-                f"the column {shown(column)} is neither a varied key nor a result; {hint}",
+                f"the column {shown(column)} is neither a varied key nor a result; {meant}",
             )  # fmt: skip
         elif (reason := _wrong_unit(column, unit)) is not None:
             yield _fault(name, line, f"{shown(column)} [{unit}] {reason}")

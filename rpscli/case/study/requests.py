@@ -8,7 +8,7 @@ from rpscli.case.schema.check import schema_check
 from rpscli.case.study.reports import ReportKinds, ReportRequest
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
-from rpscli.errors import nearest
+from rpscli.errors import hint
 
 OF_THE_STUDY = ("points", "failed", "statistics", "verdicts")
 """Stems of files that every study leaves."""
@@ -48,9 +48,8 @@ def _faults(document: Document, path: Path, item: object, kinds: ReportKinds) ->
         yield Fault(path, text)
         return
     if kind not in kinds:
-        guess = nearest(kind, kinds)
-        hint = f"did you mean {guess}?" if guess else f"known are {listed(kinds, 'and')}"
-        yield Fault(options_path, f"{dotted(path)}: there is no report {shown(kind)}; {hint}")
+        meant = hint(kind, kinds, f"known are {listed(kinds, 'and')}")
+        yield Fault(options_path, f"{dotted(path)}: there is no report {shown(kind)}; {meant}")
     elif isinstance(given, dict):
         for fault in schema_check(kinds[kind].options, document.part(*options_path)).faults:
             text = f"{dotted(options_path)}.{fault.text}"

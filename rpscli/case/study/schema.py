@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from rpscli.case.schema.case_file import FORMAT_VERSION, Time
+from rpscli.case.schema.case_file import FORMAT_VERSION, PositiveRatio, Time
 from rpscli.case.schema.fields import Text, Whole
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.section import Section
@@ -19,7 +19,6 @@ from rpscli.case.study.fields import (
     MeasuredValues,
     Number,
     Numbers,
-    Positive,
     Seed,
     Share,
     ValueRange,
@@ -63,7 +62,7 @@ class RangeSection(Section):
         "uniform", description="its kind; all but bounds need mean and cov"
     )
     mean: Number | None = Field(None, description="mean value")
-    cov: Positive | None = Field(None, description="standard deviation over mean")
+    cov: PositiveRatio | None = Field(None, description="standard deviation over mean")
 
 
 class SampleSection(Section):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import click
 
-from rpscli.errors import nearest
+from rpscli.errors import hint
 
 
 class Member(NamedTuple):
@@ -43,9 +43,9 @@ class LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The member that is called; an unknown one gets the nearest name in its message."""
         if args and args[0] not in self.members and not args[0].startswith("-"):
-            close = nearest(args[0], self.members, 0.6)
-            hint = f"did you mean {close}?" if close else f"there are {', '.join(self.members)}"
-            ctx.fail(f"no such command: {args[0]}; {hint}")
+            there_are = f"there are {', '.join(self.members)}"
+            meant = hint(args[0], self.members, there_are, 0.6)
+            ctx.fail(f"no such command: {args[0]}; {meant}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -16,7 +16,7 @@ import click
 from rpscli.commands.shell.completions import FILE, case_keys
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import UsageError, nearest
+from rpscli.errors import UsageError, hint
 from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
 from rpscli.report.figures.look import FORMATS, Look, read_style
 
@@ -126,9 +126,8 @@ def _formats(text: str) -> tuple[str, ...]:
         return ()
     for word in words:
         if word not in FORMATS:
-            close = nearest(word, (*FORMATS, "none"), 0.6)
-            hint = f"did you mean {close}?" if close else "write png, svg, pdf, svg,pdf or none"
-            raise UsageError(f"--figures {text}: {word or 'nothing'} is no format; {hint}")
+            meant = hint(word, (*FORMATS, "none"), "write png, svg, pdf, svg,pdf or none", 0.6)
+            raise UsageError(f"--figures {text}: {word or 'nothing'} is no format; {meant}")
     return tuple(dict.fromkeys(words))
 
 

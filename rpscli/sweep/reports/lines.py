@@ -17,7 +17,7 @@ from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, Path, dotted, listed
-from rpscli.errors import nearest
+from rpscli.errors import hint
 from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
 from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import fractiles
@@ -233,7 +233,6 @@ def unknown_results(
     for option, name in named:
         if quantity(analysis, name) is None:
             path: Path = (*request.path, request.kind, option)
-            guess = nearest(name, KNOWN[analysis])
-            hint = f"did you mean {guess}?" if guess else f"known are {listed(KNOWN[analysis])}"
+            meant = hint(name, KNOWN[analysis], f"known are {listed(KNOWN[analysis])}")
             text = f"{dotted(path)} = {name} is no result of {analysis}"
-            yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {hint}")
+            yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {meant}")
