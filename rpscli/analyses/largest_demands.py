@@ -177,9 +177,8 @@ class Demand(Shown):
     def drift_ratio(self) -> float | None:
         """Largest drift over storey height; None where no heights are given."""
         building = self.structure.superstructure
-        if building is None or building.storey_heights is None:
-            return None
-        return float(np.max(self.max_drifts / building.storey_heights))
+        ratios = None if building is None else building.drift_ratios(self.max_drifts)
+        return None if ratios is None else float(np.max(ratios))
 
     @property
     def friction_demand(self) -> float:

@@ -39,6 +39,8 @@ class ResultQuantity(NamedTuple):
         What a ratio is made of, for the schemas of limits.
     from_below
         Whether small values are bad, so that a limit is the least that is admissible.
+    column
+        Its head in a table of storeys, where that is not the name.
     """
 
     name: str
@@ -51,6 +53,7 @@ class ResultQuantity(NamedTuple):
     needs: str = ""
     meaning: str = ""
     from_below: bool = False
+    column: str = ""
 
     @property
     def axis_label(self) -> str:
@@ -59,8 +62,16 @@ class ResultQuantity(NamedTuple):
         >>> ResultQuantity("duration", "s", "duration").axis_label
         'duration [s]'
         """
-        words = self.symbol or self.label
-        return f"{words} [{self.unit.replace('/s2', '/s²')}]" if self.unit else words
+        return self.in_unit(self.unit, self.symbol)
+
+    def in_unit(self, unit: str, symbol: str = "") -> str:
+        """The label of an axis in another unit, in words if there is no symbol.
+
+        >>> STOREY_SHEARS.in_unit("kN")
+        'storey shear [kN]'
+        """
+        words = symbol or self.label
+        return f"{words} [{unit.replace('/s2', '/s²')}]" if unit else words
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:
@@ -180,7 +191,26 @@ IMPACTS = (
 INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s", "PGV"))
 """Peaks of the scaled motion of a history, in the table of a study."""
 
-STOREY_SHEARS = ResultQuantity("storey_shears", "N", "storey shear", "$V_i$")
+STOREY_SHEARS = ResultQuantity("storey_shears", "N", "storey shear", "$V_i$", column="max_shear")
+STOREY_DRIFTS = ResultQuantity("storey_drifts", "m", "storey drift", column="max_drift")
+STOREY_DRIFT_RATIOS = ResultQuantity(
+    "storey_drift_ratios", "-", "storey drift ratio", column="drift_ratio"
+)
+FLOOR_ACCELERATIONS = ResultQuantity(
+    "floor_accelerations", "m/s2", "floor acceleration", column="floor_acceleration"
+)
+FLOOR_VELOCITIES = ResultQuantity(
+    "floor_velocities", "m/s", "floor velocity", column="floor_velocity"
+)
+
+STOREYS = (
+    STOREY_DRIFTS,
+    STOREY_DRIFT_RATIOS,
+    STOREY_SHEARS,
+    FLOOR_ACCELERATIONS,
+    FLOOR_VELOCITIES,
+)
+"""Largest values in each storey from the bottom, on bearings and on a fixed base."""
 
 LIMITED = tuple(quantity for quantity in (*HISTORY, *SAMPLED) if quantity.limit)
 """What limits, `--fail-on` and fragilities may name."""

@@ -91,8 +91,8 @@ def outcome_table(result: TimeHistoryResult) -> Table:
         rows += [_row(result, "fixed_base_ratio"), _row(result, "max_roof_displacement")]
         rows.append(_row(result, "max_floor_velocity"))
     demands = fixed_base_demands(result)
-    if demands is not None and demands.drift_ratio is not None:
-        rows.append(_row(result, "drift_ratio", fixed=float(max(demands.drift_ratio))))
+    if demands is not None and demands.storey_drift_ratios is not None:
+        rows.append(_row(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios))))
     rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
     friction = result.friction_ratio
     of_friction = "" if friction is None else f"{shown(friction)} of mu"
@@ -142,10 +142,13 @@ def _energy(result: TimeHistoryResult) -> list[Row]:
 def storeys_table(result: TimeHistoryResult) -> Table:
     """Largest demands of each storey, the roof on top."""
     pair = [isolated_demands(result), fixed_base_demands(result) or isolated_demands(result)]
-    ratio = pair[0].drift_ratio is not None
-    columns = [demands.shear * 1e-3 for demands in pair]
-    columns += [d.drift * 1e3 if d.drift_ratio is None else d.drift_ratio for d in pair]
-    columns += [demands.floor_acceleration for demands in pair]
+    ratio = pair[0].storey_drift_ratios is not None
+    columns = [demands.storey_shears * 1e-3 for demands in pair]
+    columns += [
+        d.storey_drifts * 1e3 if d.storey_drift_ratios is None else d.storey_drift_ratios
+        for d in pair
+    ]
+    columns += [demands.floor_accelerations for demands in pair]
     rows = [
         [str(storey + 1), *(shown(float(column[storey])) for column in columns)]
         for storey in reversed(range(result.structure.storeys))

@@ -156,6 +156,10 @@ class Superstructure(Shown):
         """M_tot [kg]."""
         return float(self.masses.sum())
 
+    def drift_ratios(self, drifts: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """Storey drifts (n,) [m] over the storey heights; None where no heights are given."""
+        return None if self.storey_heights is None else drifts / self.storey_heights
+
     @cached_property
     def mass_matrix(self) -> NDArray[np.float64]:
         """M, (n, n) [kg]."""

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rpscli.analyses.result_quantities import SAMPLED, values_of
+from rpscli.analyses.result_quantities import SAMPLED, STOREYS, values_of
 from rpscli.report.files.json_text import SCHEMA_VERSION
 from rpscli.report.files.versions import program_version
 
 if TYPE_CHECKING:
     from rpscli.analyses.pushover import PushoverResult
     from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.report.tables.storeys import StoreyDemands
 
 Document = dict[str, Any]
 
@@ -62,19 +61,9 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         **result.scalars(),
         **values_of(result, SAMPLED),
         "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},
-        **_storeys(isolated),
-        "fixed_base": None if fixed is None else _storeys(fixed),
+        **values_of(isolated, STOREYS),
+        "fixed_base": None if fixed is None else values_of(fixed, STOREYS),
         "energy": asdict(result.energy),
         "devices": [asdict(demand) for demand in result.devices],
         "warnings": result.warnings,
-    }
-
-
-def _storeys(demands: StoreyDemands) -> Document:
-    return {
-        "storey_shears": demands.shear,
-        "storey_drifts": demands.drift,
-        "storey_drift_ratios": demands.drift_ratio,
-        "floor_accelerations": demands.floor_acceleration,
-        "floor_velocities": demands.floor_velocity,
     }

@@ -8,6 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.result_quantities import (
+    FLOOR_ACCELERATIONS,
+    STOREY_DRIFT_RATIOS,
+    STOREY_DRIFTS,
+    STOREY_SHEARS,
+)
 from rpscli.report.figures import style
 from rpscli.report.tables.storeys import StoreyDemands, fixed_base_demands, isolated_demands
 
@@ -44,8 +50,8 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
 def draw_shears(axes: Axes, result: TimeHistoryResult) -> None:
     """Largest storey shears, over V_st on top."""
     for demands, look in _series(result):
-        _stairs(axes, demands.shear * 1e-3, look)
-    axes.set_xlabel("storey shear [kN]")
+        _stairs(axes, demands.storey_shears * 1e-3, look)
+    axes.set_xlabel(STOREY_SHEARS.in_unit("kN"))
     static = result.structure.static_base_shear * 1e-3
     ratio = axes.secondary_xaxis("top", functions=style.over(static))
     ratio.set_xlabel("$V_i/V_{st}$ [-]")
@@ -65,9 +71,9 @@ def draw_accelerations(axes: Axes, result: TimeHistoryResult) -> None:
     """Largest absolute floor accelerations, and the ground's."""
     floors = np.arange(1, result.structure.storeys + 1)
     for demands, look in _series(result):
-        axes.plot(demands.floor_acceleration, floors, marker="o", ms=3.5, **look)
+        axes.plot(demands.floor_accelerations, floors, marker="o", ms=3.5, **look)
     axes.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label="PGA")
-    axes.set_xlabel("floor acceleration [m/s²]")
+    axes.set_xlabel(FLOOR_ACCELERATIONS.axis_label)
     _levels(axes, result.structure.storeys)
 
 
@@ -83,9 +89,9 @@ def _stairs(axes: Axes, values: Array, look: dict[str, Any]) -> None:
 
 
 def _drift(demands: StoreyDemands) -> tuple[Array, str]:
-    if demands.drift_ratio is None:
-        return demands.drift * 1e3, "storey drift [mm]"
-    return demands.drift_ratio * 100.0, "storey drift ratio [%]"
+    if demands.storey_drift_ratios is None:
+        return demands.storey_drifts * 1e3, STOREY_DRIFTS.in_unit("mm")
+    return demands.storey_drift_ratios * 100.0, STOREY_DRIFT_RATIOS.in_unit("%")
 
 
 def _levels(axes: Axes, storeys: int) -> None:

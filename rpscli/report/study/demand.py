@@ -20,6 +20,7 @@ from rpscli.report.study.panels import (
     remarks,
 )
 from rpscli.report.study.report import Report
+from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.reports.demand import DemandOptions, DemandPanel, DemandReport, demand_report
 
 if TYPE_CHECKING:
@@ -92,8 +93,8 @@ def demand_figure(report: DemandReport, title: str) -> bytes:
         report.panels,
         draw,
         title=title,
-        x_label=r"$|\theta_{max}|/\theta_{cr}$ [-]",
-        y_label="$V_b/V_{st}$ [-]",
+        x_label=SCALARS["timehistory"]["rotation_ratio"].axis_label,
+        y_label=SCALARS["timehistory"]["base_shear_ratio"].axis_label,
         limits=limits,
         note=remarks(
             over(report.pooled),

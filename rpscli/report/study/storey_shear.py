@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rpscli.analyses.result_quantities import STOREY_SHEARS
 from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
@@ -83,7 +84,7 @@ def storey_shear_figure(report: StoreyShearReport, title: str) -> bytes:
         report.profiles,
         draw,
         title=title,
-        x_label="$V_i$ [kN]" if in_kn else "$V_i/V_{st}$ [-]",
+        x_label=STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol) if in_kn else "$V_i/V_{st}$ [-]",
         y_label="level (0 = cap beam)",
         share="x",
         limits=lambda axes: axes.set_xlim(left=0.0),

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.result_quantities import STOREYS
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.report.files.csv_text import Column
 
@@ -15,16 +17,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class StoreyDemands:
-    """Largest absolute values in each storey from the bottom, all arrays (n,).
+    """Largest absolute values in each storey from the bottom, arrays (n,): `STOREYS` of results.
 
     Drift ratios are None where the case gives no storey heights.
     """
 
-    drift: Array
-    drift_ratio: Array | None
-    shear: Array
-    floor_acceleration: Array
-    floor_velocity: Array
+    storey_drifts: Array
+    storey_drift_ratios: Array | None
+    storey_shears: Array
+    floor_accelerations: Array
+    floor_velocities: Array
 
 
 def isolated_demands(result: TimeHistoryResult) -> StoreyDemands:
@@ -48,24 +50,19 @@ def storey_columns(result: TimeHistoryResult) -> list[Column]:
     columns = [Column("storey", "-", range(1, count + 1))]
     columns += _columns("", isolated_demands(result), count)
     fixed = fixed_base_demands(result)
-    return columns + (_columns("fixed_base_", fixed, count) if fixed else [])
+    return [*columns, *(_columns("fixed_base_", fixed, count) if fixed else ())]
 
 
 def _demands(
-    result: TimeHistoryResult, drift: Array, shear: Array, acceleration: Array, velocity: Array
+    result: TimeHistoryResult, drifts: Array, shears: Array, accelerations: Array, velocities: Array
 ) -> StoreyDemands:
     building = result.structure.superstructure
-    heights = None if building is None else building.storey_heights
-    ratio = None if heights is None else drift / heights
-    return StoreyDemands(drift, ratio, shear, acceleration, velocity)
+    ratios = None if building is None else building.drift_ratios(drifts)
+    return StoreyDemands(drifts, ratios, shears, accelerations, velocities)
 
 
-def _columns(prefix: str, demands: StoreyDemands, count: int) -> list[Column]:
-    ratio = [None] * count if demands.drift_ratio is None else demands.drift_ratio
-    return [
-        Column(f"{prefix}max_drift", "m", demands.drift),
-        Column(f"{prefix}drift_ratio", "-", ratio),
-        Column(f"{prefix}max_shear", "N", demands.shear),
-        Column(f"{prefix}floor_acceleration", "m/s2", demands.floor_acceleration),
-        Column(f"{prefix}floor_velocity", "m/s", demands.floor_velocity),
-    ]
+def _columns(prefix: str, demands: StoreyDemands, count: int) -> Iterator[Column]:
+    for quantity in STOREYS:
+        values = getattr(demands, quantity.name)
+        known = [None] * count if values is None else values
+        yield Column(f"{prefix}{quantity.column}", quantity.unit, known)

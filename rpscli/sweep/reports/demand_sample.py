@@ -93,11 +93,10 @@ def _of_floors(study: StudyResults, numbers: Sequence[int]) -> tuple[Array, Arra
     parts = [requests[f : f + LARGEST_BATCH] for f in range(0, len(requests), LARGEST_BATCH)]
     with ThreadPoolExecutor(study.jobs) as pool:
         found = [demand for part in pool.map(demands, parts) for demand in part]
-    heights = []
-    for request in requests:
-        building = request.structure.superstructure
+    ratios = []
+    for demand in found:
+        building = demand.structure.superstructure
         assert building is not None, "every system has a drift ratio"
-        assert building.storey_heights is not None, "every system has a drift ratio"
-        heights.append(building.storey_heights)
-    drifts = np.array([demand.max_drifts for demand in found])
-    return np.array([demand.floor_accelerations for demand in found]), drifts / np.array(heights)
+        ratios.append(building.drift_ratios(demand.max_drifts))
+    accelerations = [demand.floor_accelerations for demand in found]
+    return np.array(accelerations), np.array(ratios, dtype=float)
