@@ -28,7 +28,8 @@ OPTIONS: dict[str, Any] = {
     "error_model": "numpy",
     # The only liberty that the compiler has: a product and a sum may be rounded once.
     "fastmath": {"contract"},
-    # Nothing is called from C: without these wrappers a tenth less is to be compiled.
+    # Nothing is called from C: without these wrappers a tenth less is to be compiled. The argument
+    # of numba.jit is not in its manual.
     "no_cfunc_wrapper": True,
 }
 

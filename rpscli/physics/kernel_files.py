@@ -1,8 +1,9 @@
 """Files of machine code that a disk has damaged: found before they are run, and thrown away.
 
 numba believes what it finds in its cache. Of each file of machine code (``.nbc``), which never
-changes once it is written, the digest is noted; an index (``.nbi``), to which every process may
-add, must at least be whole.
+changes once it is written, a checksum is noted; an index (``.nbi``), to which every process may
+add, must be pickles from end to end if it was so when it was noted: should numba write it otherwise
+one day, nothing is called damaged for that.
 """
 
 from __future__ import annotations
@@ -15,14 +16,20 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-NOTES = "digests.json"
+NOTES = "checksums.json"
+PICKLED = "pickled"
+"""The note of an index."""
 
 
 def note_files(folder: Path) -> None:
-    """Note the digests of the machine code in a cache folder, after it was written."""
+    """Note what a cache folder holds, after it was written."""
     with suppress(OSError):
-        found = {_name(folder, file): _digest(file) for file in _files(folder, ".nbc")}
-        if found != _noted(folder):
+        noted = _noted(folder)
+        found = {_name(folder, file): _checksum(file) for file in _files(folder, ".nbc")}
+        for file in _files(folder, ".nbi"):
+            if noted.get(name := _name(folder, file)) == PICKLED or _is_pickled(file):
+                found[name] = PICKLED
+        if found != noted:
             new = folder / f"{NOTES}.{os.getpid()}"
             new.write_text(json.dumps(found))
             new.replace(folder / NOTES)
@@ -40,10 +47,15 @@ def discard_damaged(folder: Path) -> bool:
         If damaged files cannot be read or deleted.
     """
     noted = _noted(folder)
-    whole = all(map(_is_index, _files(folder, ".nbi"))) and all(
-        file.stat().st_size and noted.get(_name(folder, file)) in (None, _digest(file))
-        for file in _files(folder, ".nbc")
-    )
+
+    def is_whole(file: Path) -> bool:
+        before = noted.get(_name(folder, file))
+        if file.suffix == ".nbi":
+            return before != PICKLED or _is_pickled(file)
+        return before in (None, _checksum(file))
+
+    files = [*_files(folder, ".nbi"), *_files(folder, ".nbc")]
+    whole = all(file.stat().st_size and is_whole(file) for file in files)
     if not whole:
         for file in [file for file in folder.rglob("*") if file.is_file()]:
             file.unlink(missing_ok=True)
@@ -58,13 +70,13 @@ def _name(folder: Path, file: Path) -> str:
     return file.relative_to(folder).as_posix()
 
 
-def _digest(file: Path) -> str:
-    """A checksum: disks do damage, and nobody else writes here."""
+def _checksum(file: Path) -> str:
+    """No more than a checksum: disks do damage, and nobody else writes here."""
     return f"{zlib.crc32(file.read_bytes()):08x}"
 
 
 def _noted(folder: Path) -> dict[str, str]:
-    """Digests by name; none if the notes are missing, or damaged themselves."""
+    """Notes by name; none if the notes are missing, or damaged themselves."""
     try:
         noted = json.loads((folder / NOTES).read_bytes())
     except (OSError, ValueError):
@@ -72,7 +84,7 @@ def _noted(folder: Path) -> dict[str, str]:
     return noted if isinstance(noted, dict) else {}
 
 
-def _is_index(file: Path) -> bool:
+def _is_pickled(file: Path) -> bool:
     """Whether a file consists of one or more whole pickles, as an index of numba does."""
     count = 0
     try:

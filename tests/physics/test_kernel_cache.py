@@ -204,10 +204,18 @@ def test_an_index_that_is_not_whole_is_damaged(tmp_path: Path, damage: bytes) ->
     index.write_bytes(pickle.dumps("version") + pickle.dumps({"a": code.name}))
     code.write_bytes(b"machine code")
     (tmp_path / "a.compiled").touch()
+    note_files(tmp_path)
     assert not discard_damaged(tmp_path)
     index.write_bytes(damage)
+    note_files(tmp_path)  # by a process that ends later
     assert discard_damaged(tmp_path)
     assert not list(tmp_path.iterdir())
+
+
+def test_an_index_of_another_form_is_not_damaged(tmp_path: Path) -> None:
+    (tmp_path / "a.nbi").write_bytes(b"no pickle")
+    note_files(tmp_path)
+    assert not discard_damaged(tmp_path)
 
 
 def test_notes_that_are_damaged_themselves_are_made_anew(tmp_path: Path) -> None:
