@@ -13,6 +13,7 @@ from rpscli.report.figures import style
 from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.fragility import measure_name
 from rpscli.report.study.labels import key_columns, labels
+from rpscli.report.study.panels import log_ticks
 from rpscli.report.study.report import Report
 from rpscli.sweep.reports.comparison import (
     FITTED,
@@ -235,9 +236,9 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
     line += f"; overturned {counts.computed}, observed {counts.observed}"
     axes.set_title(_heading_of(report, each, line), fontsize=style.small())
     axes.set_xscale("log")
-    axes.xaxis.set_major_formatter("{x:g}")
+    log_ticks(axes.xaxis)
     axes.set_ylim(-0.1, 1.1)
-    axes.set_xlabel(f"{measure_name(report.intensity)} [{report.intensity.unit}]")
+    axes.set_xlabel(style.typeset(f"{measure_name(report.intensity)} [{report.intensity.unit}]"))
     axes.set_ylabel("probability of overturning")
     axes.legend(
         loc="upper left", bbox_to_anchor=(0.0, 0.94), fontsize=0.9 * style.small(), handlelength=1.4
@@ -266,7 +267,7 @@ def _draw_maxima(axes: Axes, report: ComparisonReport, each: Compared, found: Ma
         f" n = {found.counted}"
     )
     if found.overturned:
-        line += f"; {found.overturned} overturned (triangles)"
+        line += f"\n{found.overturned} overturned (triangles)"
     axes.set_title(_heading_of(report, each, line), fontsize=style.small())
     axes.set_xscale("log")
     axes.set_yscale("log")

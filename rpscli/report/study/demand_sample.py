@@ -79,6 +79,7 @@ def demand_sample_figure(report: DemandSampleReport, title: str) -> bytes:
     """Median and 84 % fractile of the accelerations from the ground to the roof."""
 
     def draw(axes: Axes, sample: DemandSample) -> None:
+        axes.locator_params(axis="y", integer=True)
         reached = np.where(sample.overturned[:, None] > 0.0, np.inf, sample.accelerations)
         for share, dashes, name in ((0.5, "-", "median"), (HIGH, "--", "84 % fractile")):
             values = np.quantile(reached, share, axis=0, method="inverted_cdf")

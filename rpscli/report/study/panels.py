@@ -11,6 +11,7 @@ from rpscli.report.study.labels import labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 Place = Literal["lower center", "outside lower center"]
@@ -194,6 +195,15 @@ def _wrapped(names: Sequence[str], columns: int) -> list[str]:
 def break_if_narrow() -> str:
     """What stands between the parts of a text inside a panel: a new line in narrow figures."""
     return "\n" if style.room(style.WIDTH) < style.WIDTH else " "
+
+
+def log_ticks(axis: Axis) -> None:
+    """Ticks at 1, 2 and 5 times the powers of ten, as plain numbers."""
+    from matplotlib.ticker import LogLocator
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter("")
 
 
 def over(pooled: Sequence[str]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.fragility import limit_name, measure_name, side_by_side
 from rpscli.report.study.labels import key_columns, labels
-from rpscli.report.study.panels import Layout, colour, over, panel_figure, remarks
+from rpscli.report.study.panels import Layout, colour, log_ticks, over, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.sweep.reports.fragility import LimitState, limit_states
 from rpscli.sweep.reports.risk import (
@@ -82,8 +82,6 @@ def _systems(report: RiskReport, risks: list[Risk] | tuple[Risk, ...]) -> list[C
 
 def risk_figure(report: RiskReport, title: str) -> bytes:
     """One panel a limit state: what share of its rate comes from which intensities."""
-    from matplotlib.ticker import LogLocator
-
     found = report.fragilities
     limits = [limit for limit in found.limits if found.fitted(limit)]
     values = list(dict.fromkeys(risk.fragility.values for risk in report.known))
@@ -102,9 +100,7 @@ def risk_figure(report: RiskReport, title: str) -> bytes:
 
     def limit_axes(axes: Axes) -> None:
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.xaxis.set_minor_formatter("")
+        log_ticks(axes.xaxis)
         axes.set_xlim(*_shown(report))
         axes.set_ylim(bottom=0.0)
 

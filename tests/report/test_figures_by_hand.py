@@ -1,0 +1,447 @@
+"""Figures of reports, selections and designs, from numbers made by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
+from matplotlib.patches import StepPatch
+from numpy.typing import NDArray
+from scipy.stats import beta
+
+from report.small_results import curve, legend
+from report.test_figures_of_studies import ALPHA, RHO, labelled, panels, same
+from rpscli.analyses.result_quantities import DEMANDS
+from rpscli.case.conditions import Condition
+from rpscli.case.design.schema import Term
+from rpscli.case.study.observed import OVERTURNED
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.selection import Candidate, Selection
+from rpscli.records.targets.target import TargetSpectrum
+from rpscli.report.design.figures import front_figure, region_figure, requirements_figure
+from rpscli.report.figures.selection import selection_figure
+from rpscli.report.figures.style import kept_figure
+from rpscli.report.study.registry import REPORTS
+from rpscli.sweep.fits.hazard import Hazard
+from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
+from rpscli.sweep.reports.comparison import Compared, ComparisonReport, Curve, Outcomes
+from rpscli.sweep.reports.demand_sample import DemandSample, DemandSampleReport
+from rpscli.sweep.reports.directions import (
+    DirectionsPanel,
+    DirectionsReport,
+    PairCurve,
+    PairResult,
+    PairSpread,
+)
+from rpscli.sweep.reports.fragility import Fragility, FragilityReport, LimitState, Observed
+from rpscli.sweep.reports.intensities import Intensity
+from rpscli.sweep.reports.risk import Contributions, Risk, RiskReport
+from rpscli.sweep.search.answer import Answer
+from rpscli.sweep.search.judgement import Judged, Requirement
+from rpscli.sweep.statistics.agreement import Agreement, maxima
+from rpscli.sweep.statistics.observations import Pairs
+from rpscli.sweep.table import Table
+
+Array = NDArray[np.float64]
+
+INF, NAN = np.inf, np.nan
+NO_SAMPLES = (np.empty(0), np.empty(0))
+SIZE = "podium.bearing.semi_diagonal"
+
+
+def drawn(draw: Callable[..., bytes], of: object) -> Figure:
+    figure = kept_figure(partial(draw, of, "title"))
+    assert isinstance(figure, Figure)
+    return figure
+
+
+def is_level(axes: Axes, label: str, value: float) -> None:
+    """Require a line across the whole panel at a value of the ordinate."""
+    same(curve(axes, label), ((0.0, 1.0), (value, value)))
+
+
+def has_edges(axes: Axes, place: int, x: object, *edges: object) -> None:
+    """Require that a filled band runs through the points of its edges."""
+    bands = [found for found in axes.collections if isinstance(found, PolyCollection)]
+    (path,) = bands[place].get_paths()
+    corners = np.asarray(path.vertices)
+    for edge in edges:
+        points = np.column_stack([np.asarray(x, float), np.asarray(edge, float)])
+        assert np.abs(corners[:, None] - points).sum(axis=2).min(axis=0).max() < 1e-9
+
+
+def test_results_over_the_direction() -> None:
+    way, shear = (
+        next(quantity for quantity in DEMANDS if quantity.name == name)
+        for name in ("max_cap_beam_displacement", "max_base_shear")
+    )
+    angles = np.array([0.0, 45.0, 90.0, 135.0])
+
+    def pair(values: Sequence[float], worst: float, angle: float) -> PairCurve:
+        results = PairResult(shear, 7.0, 0.0, 7.0), PairResult(way, worst, angle, 0.2)
+        return PairCurve("pair", angles, np.array(values), results, 0, 0)
+
+    def spread(worst: float, rotd50: float) -> tuple[PairSpread, ...]:
+        medians = ((shear, 7.0, 7.0), (way, worst, rotd50))
+        return tuple(PairSpread(q, np.array([w, INF]), np.array([r, INF])) for q, w, r in medians)
+
+    one, two = pair([0.1, 0.4, 0.2, 0.3], 0.4, 45.0), pair([0.5, 0.5, INF, 0.6], INF, 90.0)
+    shown = (
+        DirectionsPanel((0.5,), (one, two), spread(0.4, 0.25)),
+        DirectionsPanel((0,), (two,), spread(INF, 0.55)),
+    )
+    figure = drawn(REPORTS["directions"].figure, DirectionsReport((RHO,), way, shown, ()))
+    labelled(figure, "angle from the first component [deg]", "cap beam displacement [m]")
+    first, second = (panels(figure)[name] for name in ("ρ = 0.5", "flat ends"))
+    wanted = (0.1, 0.4, 0.2, 0.3), (0.5, 0.5, NAN, 0.6)
+    pairs = [line for line in first.lines if line.get_label() == "pairs"]
+    for line, values in zip(pairs, wanted, strict=True):
+        same(line.get_data(), (angles, values))
+    same(curve(second, "pairs"), (angles, wanted[1]))
+    top = 1.08 * 0.6
+    for axes in (first, second):
+        same(curve(axes, "overturned"), ([90.0], [top]))
+        same([*axes.get_xlim(), *axes.get_ylim()], (-4.0, 184.0, 0.0, top))
+    same(curve(first, "worst direction"), ([45.0], [0.4]))
+    levels = ["worst direction, median of pairs", "RotD50, median of pairs"]
+    is_level(first, levels[0], 0.4)
+    is_level(first, levels[1], 0.25)
+    is_level(second, levels[1], 0.55)
+    assert not {"worst direction", levels[0]} & {line.get_label() for line in second.lines}
+    assert set(legend(figure)) == {"pairs", "overturned", "worst direction", *levels}
+    assert "medians are not drawn where so many overturned" in figure.get_suptitle()
+
+
+def fit_of(probabilities: Array) -> Lognormal:
+    """A fit with a curve, and a band 0.1 to either side of it."""
+    band = probabilities - 0.1, probabilities + 0.1
+    return Lognormal(
+        "maximum likelihood", None, 1.0, 0.4, NOTHING, NOTHING, probabilities, band, NO_SAMPLES
+    )
+
+
+def test_what_a_rate_comes_from() -> None:
+    drift, fall = LimitState("max_lift", 0.02), LimitState("overturning", None)
+    edges, nothing = np.array([1.0, 2.0, 4.0, 8.0, INF]), np.empty(0)
+
+    def risk(
+        values: tuple[object, ...], limit: LimitState, rates: list[float], half: float
+    ) -> Risk:
+        observed = Observed(nothing, nothing, np.empty(0, dtype=np.int64))
+        fragility = Fragility(values, limit, fit_of(nothing), nothing, observed, 9, 3, 0, 0)
+        parts = Contributions(edges, np.array(rates))
+        return Risk(fragility, sum(rates), NOTHING, parts, half, ())
+
+    risks = (
+        risk((0.5,), drift, [0.001, 0.003, 0.004, 0.002], 3.0),
+        risk((0,), drift, [0.0, 0.004, 0.012, 0.004], 5.0),
+        risk((0,), fall, [0.0, 0.0, 0.008, 0.002], 7.0),
+    )
+    found = FragilityReport(
+        intensity=Intensity("PGA", "m/s2", None, nothing),
+        confidence=0.9,
+        series_keys=(RHO,),
+        limits=(drift, fall),
+        curves=tuple(each.fragility for each in risks),
+        pooled=("3 records",),
+        pooling=(),
+    )
+    report = RiskReport(found, Hazard(nothing, nothing), 50.0, risks)
+    figure = drawn(REPORTS["risk"].figure, report)
+    labelled(figure, "PGA [m/s²]", "share of the annual rate [%]")
+    # 1 - exp(-50 x 0.01) and 1 - exp(-50 x 0.02)
+    first = panels(figure)["lift of the building > 0.02 m\nP = 0.39 to 0.63"]
+    second = panels(figure)["overturning\nP = 0.39"]
+    for axes, shares, halves in (
+        (first, {"ρ = 0.5": (10, 30, 40), "flat ends": (0, 20, 60)}, (3.0, 5.0)),
+        (second, {"flat ends": (0, 0, 80)}, (7.0,)),
+    ):
+        steps = {str(patch.get_label()): patch for patch in axes.patches}
+        assert list(steps) == list(shares)
+        for label, patch in steps.items():
+            assert isinstance(patch, StepPatch)
+            assert patch.orientation == "vertical"
+            values, at, _ = patch.get_data()
+            same(values, shares[label])
+            same(at, edges[:-1])
+        for line, half in zip(axes.lines, halves, strict=True):
+            same(line.get_data(), ((half, half), (0.0, 1.0)))
+        assert axes.get_xscale() == "log"
+        same(axes.get_xlim(), (0.9, 1.1 * 8.0))
+        assert axes.get_ylim()[0] == 0.0
+    assert legend(figure) == ["ρ = 0.5", "flat ends"]
+    for words in ("P: probability in 50 years", "dashed: half of the rate", "over 3 records"):
+        assert words in figure.get_suptitle()
+
+
+def test_accelerations_over_the_height() -> None:
+    values = np.array([[1.0, 2.0, 3.0], [2.0, 3.0, 5.0], [3.0, 1.0, 4.0], [4.0, 8.0, 9.0]])
+
+    def sample(rho: object, factor: float, fallen: int, failed: int) -> DemandSample:
+        one, overturned = np.zeros(4), np.array([0, 0, 0, fallen], dtype=float)
+        points = np.arange(4)
+        return DemandSample(
+            (rho,), points, factor * values, values[:, 1:], one, one, overturned, failed
+        )
+
+    samples = sample(0.5, 1.0, 0, 0), sample(0, 10.0, 1, 2)
+    figure = drawn(REPORTS["demand_sample"].figure, DemandSampleReport((RHO,), samples))
+    labelled(figure, "largest acceleration [m/s²]", "level (0 = ground)")
+    first, second = (panels(figure)[name] for name in ("ρ = 0.5", "flat ends"))
+    # The second of four, and the last.
+    same(curve(first, "median"), ((2.0, 2.0, 4.0), range(3)))
+    same(curve(first, "84 % fractile"), ((4.0, 8.0, 9.0), range(3)))
+    same(curve(second, "median"), ((20.0, 20.0, 40.0), range(3)))
+    same(curve(second, "84 % fractile"), ((NAN, NAN, NAN), range(3)))
+    assert first.get_xlim()[0] == 0.0
+    assert all(height.is_integer() for height in first.get_yticks())
+    assert legend(figure) == ["median", "84 % fractile"]
+    left_out = "fractiles that overturned are not drawn; 2 failed points left out"
+    assert left_out in figure.get_suptitle()
+
+
+@pytest.fixture
+def compared() -> dict[str, Axes]:
+    """A fragility and maxima beside what was observed, by the first line of their titles."""
+    grid = np.array([1.0, 2.0, 4.0])
+    binned = [
+        Observed(np.array(levels), np.array(shares), np.ones(2, dtype=np.int64))
+        for levels, shares in (((2.0, 5.0), (0.0, 1.0)), ((3.0, 8.0), (0.25, 0.75)))
+    ]
+    curves = [
+        Curve(fit_of(np.array(probabilities)), each, grid)
+        for probabilities, each in zip(((0.2, 0.4, 0.8), (0.3, 0.5, 0.6)), binned, strict=True)
+    ]
+    outcomes = Outcomes(Agreement(1, 2, 1, 0), (), *curves)
+    observed = np.array([[1.0, 1.0, 0.0, 0.0, NAN], [0.01, 0.02, 0.04, NAN, 0.03]])
+    computed = np.array([[1.0, 0.0, 1.0, 1.0, NAN], [0.02, 0.01, INF, NAN, 0.03]])
+    pairs = np.array([0, 1, 2, 3]), np.array([0, 1, 2, 4])
+    rotations = maxima(computed[1, pairs[1]], observed[1, pairs[1]])
+    places = np.arange(5)
+    report = ComparisonReport(
+        table=cast("Table", None),
+        intensity=Intensity("PGA", "m/s2", None, np.array([1.0, 2.0, 3.0, 5.0, 8.0])),
+        confidence=0.9,
+        system_keys=(ALPHA,),
+        fit_keys=(RHO,),
+        quantities=(OVERTURNED, "max_rotation"),
+        pairs=Pairs(places[::-1], places, observed, ()),
+        computed=computed,
+        compared=(
+            Compared((0.1,), (0.5,), "fitted", OVERTURNED, outcomes, pairs[0], 0),
+            Compared((0.1,), (0.5,), "held out", OVERTURNED, outcomes, pairs[0], 0),
+            Compared((0.2,), (0,), "held out", "max_rotation", rotations, pairs[1], 0),
+        ),
+        candidates=(),
+        pooling=(),
+    )
+    figure = drawn(REPORTS["comparison"].figure, report)
+    assert "records: held out   |   bands: 90 %" in figure.get_suptitle()
+    return panels(figure)
+
+
+def test_overturning_beside_what_was_observed(compared: dict[str, Axes]) -> None:
+    title = "tan α = 0.1, ρ = 0.5\n25.0 % of 4 agree; overturned 3, observed 2"
+    axes = compared[title]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGA [m/s²]", "probability of overturning")
+    grid = (1.0, 2.0, 4.0)
+    for place, (label, wanted) in enumerate(
+        {"observed": np.array([0.2, 0.4, 0.8]), "computed": np.array([0.3, 0.5, 0.6])}.items()
+    ):
+        same(curve(axes, label), (grid, wanted))
+        has_edges(axes, place, grid, wanted - 0.1, wanted + 0.1)
+    same(axes.lines[1].get_data(), ((2.0, 5.0), (0.0, 1.0)))
+    same(axes.lines[3].get_data(), ((3.0, 8.0), (0.25, 0.75)))
+    # The pairs are those of the last points first.
+    same(curve(axes, "above: computed only (2)"), ((3.0, 2.0), (1.05, 1.05)))
+    same(curve(axes, "below: observed only (1)"), ([5.0], [-0.05]))
+    assert legend(axes) == [
+        "observed", "computed", "above: computed only (2)", "below: observed only (1)"
+    ]  # fmt: skip
+    assert axes.get_xscale() == "log"
+    assert {1.0, 2.0, 5.0} <= set(axes.get_xticks())
+    assert axes.get_ylim() == (-0.1, 1.1)
+
+
+def test_maxima_beside_observed_ones(compared: dict[str, Axes]) -> None:
+    spread = np.std(np.log([2.0, 0.5, 1.0]), ddof=1)
+    title = f"ratio 1.00 in the median, dispersion {spread:.2f}, n = 3\n1 overturned (triangles)"
+    axes = compared[f"tan α = 0.2, flat ends\n{title}"]
+    rotation = r"$|\theta_{max}|$ [rad]"
+    assert axes.get_xlabel() == f"observed {rotation}"
+    assert axes.get_ylabel() == f"computed {rotation}"
+    points, equal, fallen = axes.lines
+    same(points.get_data(), ((0.01, 0.02, 0.03), (0.02, 0.01, 0.03)))
+    same(equal.get_data(), ((0.01, 0.03), (0.01, 0.03)))
+    same(fallen.get_data(), ([0.04], [1.3 * 0.03]))
+    assert axes.get_xscale() == axes.get_yscale() == "log"
+
+
+def test_a_selection_beside_its_target() -> None:
+    periods, wanted = np.array([0.1, 0.5, 2.0]), np.array([3.0, 6.0, 1.5])
+    target = TargetSpectrum("EN 1998", "", 0.05, (0.1, 2.0), lambda _: wanted, 0.5, 0.2)
+    motion = cast("GroundMotion", None)
+    chosen = (
+        Candidate(motion, "one", 0.2, 0.03, np.array([1.0, 2.0, 0.5]), 2.0, 0.0),
+        Candidate(motion, "two", 1.2, 0.5, np.array([8.0, 16.0, 4.0]), 0.5, 0.0),
+    )
+    scaled = [(2.0, 4.0, 1.0), (4.0, 8.0, 2.0)]
+    mean = np.array([3.0, 6.0, 1.5]) * 1.01
+    selection = Selection(target, periods, wanted, chosen, mean, 0.01, 9, 1)
+    figure = drawn(selection_figure, selection)
+    assert "2 of 9 motions, misfit of the mean 0.010" in figure.get_suptitle()
+    left, right = figure.axes
+    for line, values in zip(left.lines[:2], scaled, strict=True):
+        same(line.get_data(), (periods, values))
+    same(curve(left, "mean"), (periods, mean))
+    same(curve(left, "EN 1998"), (periods, wanted))
+    assert legend(left) == ["motions", "mean", "EN 1998"]
+    assert left.get_xscale() == left.get_yscale() == "log"
+    same(left.get_xlim(), (0.1, 2.0))
+    assert left.get_xlabel() == "period [s]"
+    assert left.get_ylabel() == "pseudo-acceleration, 5 % damping [m/s²]"
+    same(curve(right, "motions"), ((0.4, 0.6), (0.06, 0.25)))
+    same(curve(right, "mean"), ([0.5], [0.155]))
+    same(curve(right, "target"), ((0.5, 0.5), (0.0, 1.0)))
+    same(right.lines[-1].get_data(), ((0.0, 1.0), (0.2, 0.2)))
+    same([*right.get_xlim(), *right.get_ylim()], (0.0, 1.15 * 0.6, 0.0, 1.15 * 0.25))
+    assert (right.get_xlabel(), right.get_ylabel()) == ("PGV [m/s]", "PGD [m]")
+    assert legend(right) == ["motions", "mean", "target"]
+
+
+def answer_of(
+    keys: Sequence[str],
+    values: object,
+    passes: object,
+    aims: object,
+    *,
+    requirements: Sequence[Requirement] = (),
+    demands: object = (),
+    valid: object = True,
+    least: Sequence[dict[str, Term]] = ({ALPHA: Term()},),
+) -> Answer:
+    """An answer of a search.
+
+    Parameters
+    ----------
+    values, passes
+        (designs, keys), and (weightings, designs): under the records as they are and resampled.
+    aims, demands
+        (aims, designs) of all weightings, and (requirements, weightings, designs).
+    """
+    at, met = np.array(values), np.array(passes, dtype=bool)
+    low, high = at.min(axis=0), at.max(axis=0)
+    task: Any = SimpleNamespace(
+        keys=keys,
+        unknowns=keys,
+        study=SimpleNamespace(sources=["a", "b", "c", "d"]),
+        file=SimpleNamespace(least=least),
+    )
+    judged = Judged(
+        requirements=tuple(requirements),
+        values=np.array(demands, dtype=float),
+        excess=np.zeros((1, len(at))),
+        met=met[None],
+        aims=np.repeat(np.array(aims, dtype=float)[:, None], len(met), axis=1),
+    )
+    places = (at - low) / (high - low)
+    is_valid = np.broadcast_to(np.array(valid, dtype=bool), len(at))
+    return Answer(task, places, at, is_valid, judged, len(met) - 1)
+
+
+def test_requirements_along_one_unknown() -> None:
+    uplift = Requirement(Condition("uplift", 0.0, "limits", share=0.5), 0)
+    shear = Requirement(Condition("max_base_shear", 2e6, "limits"), 0, "PGA", 3.0)
+    demands = [
+        [[0.25, 1.0, 0.5], [0.0, 1.0, 0.5], [0.25, 1.0, 0.75]],
+        [[1.5e6, INF, 1.8e6], [1.2e6, INF, 1.7e6], [1.6e6, 1e6, 1.9e6]],
+    ]
+    answer = answer_of(
+        [ALPHA], [[0.3], [0.1], [0.2]], [[1, 0, 1], [1, 0, 0], [1, 0, 1]], [[0.3, 0.1, 0.2]],
+        requirements=[uplift, shear], demands=demands,
+    )  # fmt: skip
+    figure = drawn(requirements_figure, answer)
+    assert "2 of 3 designs pass" in figure.get_suptitle()
+    order = (0.1, 0.2, 0.3)
+    above, below = figure.axes
+    same(curve(above, "designs"), (order, (1.0, 0.5, 0.25)))
+    same(curve(below, "designs"), (order, (NAN, 1.8e6, 1.5e6)))
+    same(curve(above, "best"), ([0.2], [0.5]))
+    same(curve(below, "best"), ([0.2], [1.8e6]))
+    is_level(above, "admissible", 0.5)
+    is_level(below, "admissible", 2e6)
+    # Clopper and Pearson's intervals of 4, 2 and 1 of 4 records; the first has one end only.
+    low = beta.ppf((0.05, 0.025, 0.025), (4, 2, 1), (1, 3, 4))
+    high = np.append(1.0, beta.ppf(0.975, (3, 2), (2, 3)))
+    has_edges(above, 0, order, low, high)
+    has_edges(below, 0, order, (1e6, 1.7e6, 1.2e6), (1e9, 1.9e6, 1.6e6))
+    for axes in (above, below):
+        (span,) = axes.patches
+        shaded = axes.transData.inverted().transform_bbox(span.get_window_extent())
+        same(shaded.intervalx, (0.2, 0.3))
+    same(above.get_ylim(), (0.0, 1.05))
+    same(below.get_ylim(), (0.0, 1.05 * 4e6))
+    assert (above.get_title(), below.get_title()) == ("uplift", "base shear at PGA = 3 m/s²")
+    assert (above.get_ylabel(), below.get_ylabel()) == ("share of records", "$V_b$ [N]")
+    assert (above.get_xlabel(), below.get_xlabel()) == ("", "tan α [-]")
+    names = {"95 % interval", "designs", "admissible", "best", "best in 95 % of the resamples"}
+    assert set(legend(above)) == names
+
+
+def test_the_front_of_two_aims() -> None:
+    shear = [2e6, 1e6, 3e6, 2.5e6, 0.5e6, INF]
+    way = [0.2, 0.4, 0.1, 0.3, 0.05, 0.6]
+    answer = answer_of(
+        [ALPHA], np.arange(6.0)[:, None], [[1, 1, 1, 1, 0, 0]] * 2, [shear, way],
+        least=[{"max_base_shear": Term()}, {"max_cap_beam_displacement": Term(fractile=0.84)}],
+    )  # fmt: skip
+    figure = drawn(front_figure, answer)
+    assert "3 designs on the front" in figure.get_suptitle()
+    (axes,) = figure.axes
+    same(curve(axes, "passes"), ((2.0, 1.0, 3.0, 2.5), way[:4]))
+    same(curve(axes, "fails"), ((0.5, INF), way[4:]))
+    same(curve(axes, "front"), ((1.0, 2.0, 3.0), (0.4, 0.2, 0.1)))
+    (line,) = [line for line in axes.lines if line.get_label() == "front"]
+    assert line.get_drawstyle() == "steps-post"
+    for label in ("best", "best in 90 % of the resamples"):
+        same(curve(axes, label), ([1.0], [0.4]))
+    assert axes.get_xlabel() == "base shear, median [MN]"
+    assert axes.get_ylabel() == "cap beam displacement, 84 % fractile [m]"
+    names = {"fails", "passes", "front", "best", "best in 90 % of the resamples"}
+    assert set(legend(axes)) == names
+
+
+def test_the_region_that_passes() -> None:
+    corners = [[0.1, 0.8], [0.1, 2.0], [0.3, 0.8], [0.3, 2.0], [0.2, 1.2]]
+    passes = [[0, 0, 1, 1, 0], [0, 0, 1, 1, 0], [0, 0, 1, 0, 0]]
+    answer = answer_of(
+        [ALPHA, SIZE], corners, passes, [[1, 1, 3, 2, 1]], valid=[True, False, True, True, True]
+    )
+    figure = drawn(region_figure, answer)
+    assert "2 of 5 designs pass" in figure.get_suptitle()
+    axes, scale = figure.axes
+    same(curve(axes, "passes"), ((0.3, 0.3), (0.8, 2.0)))
+    same(curve(axes, "fails"), ((0.1, 0.2), (0.8, 1.2)))
+    same(curve(axes, "no valid case"), ([0.1], [2.0]))
+    same(curve(axes, "best"), ([0.3], [2.0]))
+    same(curve(axes, "best in 90 % of the resamples"), ([0.3], [0.8]))
+    (filled,) = [found for found in axes.collections if isinstance(found, ContourSet)]
+    same(filled.levels, (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0))
+    # Beside the corners, where the shares are about 0, 0, 1 and 1/2
+    points = [(0.101, 0.803), (0.101, 1.99), (0.2995, 0.802), (0.2999, 1.9985)]
+    shown = [[path.contains_point(point) for path in filled.get_paths()] for point in points]
+    bands = [inside.index(True) for inside in shown]
+    assert bands[:3] == [0, 0, 5]
+    assert bands[3] in {2, 3}
+    assert scale.get_ylabel() == "share of resamples of the records that pass"
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("tan α [-]", "R [m]")
+    marks = ["best", "best in 90 % of the resamples"]
+    assert legend(figure) == ["no valid case", "fails", "passes", *marks]
