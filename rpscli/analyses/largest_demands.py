@@ -209,7 +209,7 @@ class Demand(Shown):
     @property
     def energy_impact(self) -> float:
         """Net energy lost at impacts and re-contacts [J]."""
-        return float(self.history.energies[2])
+        return self.history.energy_lost
 
     @property
     def energy_created(self) -> float:

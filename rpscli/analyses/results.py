@@ -101,11 +101,19 @@ class TimeHistoryResult(Demand):
     @property
     def energy(self) -> Energy:
         """The energy audit."""
-        given, damped, lost, stored = (float(e) for e in self.history.energies)
-        started = float(self.trace.energy_stored[0])
-        devices = self.energy_devices
-        residual = given + started - damped - devices - lost - stored
-        return Energy(given, damped, lost, stored, residual, self.energy_created, devices)
+        history, devices = self.history, self.energy_devices
+        available = history.energy_input + float(self.trace.energy_stored[0])
+        residual = available - history.energy_damped - devices - history.energy_lost
+        residual -= history.energy_stored
+        return Energy(
+            input=history.energy_input,
+            damped=history.energy_damped,
+            impact=history.energy_lost,
+            stored=history.energy_stored,
+            residual=residual,
+            created=self.energy_created,
+            devices=devices,
+        )
 
     def restoring_moment(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
         """Static moment 2 R W s B(x) at rotations theta [N m], of the shape of `rotation`.

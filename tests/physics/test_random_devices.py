@@ -123,5 +123,5 @@ def test_lanes_give_the_bits_of_one_alone() -> None:
         assert repr(one.results()) == repr(other.results())
         assert one.history.device_force.tolist() == other.history.device_force.tolist()
         assert one.history.device_energy.tolist() == other.history.device_energy.tolist()
-        assert one.history.energies[3] == other.history.energies[3]
+        assert one.history.energy_stored == other.history.energy_stored
         assert one.history.steps == other.history.steps

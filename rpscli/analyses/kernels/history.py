@@ -51,9 +51,10 @@ class History:
     friction, least_normal
         (2,) largest |F|/N, and least normal force over the weight on it, at the upper and at the
         lower end of the columns.
-    energies
-        (4,) input, damped, lost at impacts, stored at the end [J]; energy created at impacts counts
-        negatively in what was lost. Input and damped are known of sampled histories only.
+    energy_input, energy_damped
+        By the ground, in the building [J]; known of sampled histories only.
+    energy_lost, energy_stored
+        At impacts, where energy created counts negatively, and stored at the end [J].
     energy_created, creating_impacts
         Energy created at impacts [J], and how many did.
     counts
@@ -78,7 +79,10 @@ class History:
     floor_accelerations: NDArray[np.float64]
     friction: NDArray[np.float64]
     least_normal: NDArray[np.float64]
-    energies: NDArray[np.float64]
+    energy_input: float
+    energy_damped: float
+    energy_lost: float
+    energy_stored: float
     energy_created: float
     creating_impacts: int
     counts: NDArray[np.int64]
@@ -119,14 +123,10 @@ def _history_of(result: Any, storeys: int) -> History:
         floor_accelerations=result["floor_acceleration"][:storeys].copy(),
         friction=np.array([result["friction_top"], result["friction_bottom"]]),
         least_normal=np.array([result["normal_top"], result["normal_bottom"]]),
-        energies=np.array(
-            [
-                result["energy_input"],
-                result["energy_damped"],
-                result["energy_lost"],
-                result["energy_stored"] + result["device_stored"].sum(),
-            ]
-        ),
+        energy_input=float(result["energy_input"]),
+        energy_damped=float(result["energy_damped"]),
+        energy_lost=float(result["energy_lost"]),
+        energy_stored=float(result["energy_stored"] + result["device_stored"].sum()),
         energy_created=float(result["energy_created"]),
         creating_impacts=int(result["creating_impacts"]),
         counts=result["events"].copy(),
