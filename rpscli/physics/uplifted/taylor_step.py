@@ -11,7 +11,7 @@ from rpscli.physics.equation_of_motion import (
     extend_modes,
     extend_rotation,
 )
-from rpscli.physics.state import LANES, Record
+from rpscli.physics.state import LANES, ORDER, Record
 
 
 @compiled
@@ -31,6 +31,9 @@ def take_steps(s: Record) -> None:
     if s.equipped > 0:
         set_devices_at_ends(s)
     accelerate(s)
+
+
+assert ORDER == 7, "orders are written out below"
 
 
 @specialised
