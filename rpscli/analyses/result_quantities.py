@@ -65,8 +65,17 @@ class ResultQuantity(NamedTuple):
         return self.in_unit(self.unit, self.symbol)
 
     def in_unit(self, unit: str, symbol: str = "") -> str:
-        """The label of an axis in another unit, in words if there is no symbol.
+        """The label of an axis in another unit.
 
+        Parameters
+        ----------
+        unit
+            That the numbers have; none for words.
+        symbol
+            In place of the words.
+
+        Examples
+        --------
         >>> STOREY_SHEARS.in_unit("kN")
         'storey shear [kN]'
         """

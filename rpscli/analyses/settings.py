@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
+
+RULES = ("limit", "relative")
+"""What floors keep at re-contact."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,11 @@ class TimeHistorySettings:
         A history with more events ends as `failed`.
     initial_rotation
         theta at the start [rad], released from rest (snap-back); 0 is full contact.
+
+    Raises
+    ------
+    ValueError
+        For a value that no history can be run with.
     """
 
     free_vibration: float | None = None
@@ -40,6 +49,22 @@ class TimeHistorySettings:
     accuracy: float = 1.0
     max_events: int = 100_000
     initial_rotation: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what would never end, or end in nonsense."""
+        free = self.free_vibration
+        rules = {
+            "free_vibration": (free is None or 0.0 <= free < math.inf, "None or finite and >= 0"),
+            "recontact_tolerance": (0.0 <= self.recontact_tolerance < 1.0, "from 0 to below 1"),
+            "recontact_rule": (self.recontact_rule in RULES, f"one of {', '.join(RULES)}"),
+            "overturning_limit": (0.0 < self.overturning_limit < math.inf, "finite and > 0"),
+            "accuracy": (0.0 < self.accuracy < math.inf, "finite and > 0"),
+            "max_events": (self.max_events >= 1, "at least 1"),
+            "initial_rotation": (math.isfinite(self.initial_rotation), "finite"),
+        }
+        for name, (holds, rule) in rules.items():
+            if not holds:
+                raise ValueError(f"{name} = {getattr(self, name)!r} must be {rule}")
 
 
 LONGEST_FREE_VIBRATION = 120.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from paper_structures import (
@@ -93,3 +95,24 @@ def test_a_frame_has_no_yardstick() -> None:
     assert time_history(podium(1), record, with_fixed_base=False).fixed_base is None
     with pytest.raises(ValueError, match="without superstructure"):
         fixed_base_response(podium(0), record, 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("free_vibration", -1.0),
+        ("free_vibration", math.inf),
+        ("recontact_tolerance", -1e-9),
+        ("recontact_tolerance", math.nan),
+        ("recontact_rule", "both"),
+        ("overturning_limit", math.nan),
+        ("accuracy", 0.0),
+        ("accuracy", math.nan),
+        ("accuracy", math.inf),
+        ("max_events", 0),
+        ("initial_rotation", math.nan),
+    ],
+)
+def test_settings_that_no_history_ends_with_are_refused(name: str, value: object) -> None:
+    with pytest.raises(ValueError, match=rf"{name} = .* must be"):
+        TimeHistorySettings(**{name: value})  # type: ignore[arg-type]
