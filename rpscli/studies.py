@@ -45,9 +45,9 @@ from rpscli.report.study.report import add_notes
 from rpscli.report.study.requirements import requirement_faults
 from rpscli.report.study.statistics import summary_columns, verdict_columns
 from rpscli.shown import Shown
-from rpscli.sweep.design.layout import Design, lay_out
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.point_columns import Columns, array, point_columns
+from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.points_csv import points_csv, units_of_columns
 from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.run.cluster import Cluster
@@ -88,9 +88,9 @@ def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] 
             read_text(source), name=str(source), kinds=REPORTS, folder=Path(source).parent,
             overrides=overrides,
         )  # fmt: skip
-    design = lay_out(study)
-    study.document.refuse(requirement_faults(design))
-    return Study(design, StudyContext(design.plan), tuple(overrides))
+    layout = lay_out(study)
+    study.document.refuse(requirement_faults(layout))
+    return Study(layout, StudyContext(layout.plan), tuple(overrides))
 
 
 def _as_in_a_file(value: object) -> object:
@@ -123,7 +123,7 @@ class Study(Shown):
 
     Parameters
     ----------
-    design
+    layout
         Its points, each made when it is asked for.
     context
         Its systems and motions.
@@ -131,38 +131,38 @@ class Study(Shown):
         What was put over the file.
     """
 
-    design: Design
+    layout: StudyPoints
     context: StudyContext
     overrides: tuple[str, ...] = ()
 
     def __len__(self) -> int:
-        return len(self.design)
+        return len(self.layout)
 
     @property
     def title(self) -> str:
         """Heading of reports."""
-        return self.design.study.title
+        return self.layout.study.title
 
     @property
     def reports(self) -> dict[str, ReportRequest]:
         """The reports that it asks for, by the names of their files."""
-        return {request.stem: request for request in self.design.study.reports}
+        return {request.stem: request for request in self.layout.study.reports}
 
     @property
     def warnings(self) -> list[str]:
         """What is unusual about its systems, each kind once."""
-        return doubts_of_many([properties.doubts for properties in self.design.properties])
+        return doubts_of_many([properties.doubts for properties in self.layout.properties])
 
     def facts(self) -> dict[str, Any]:
         """How many of what."""
-        design = self.design
+        layout = self.layout
         return {
             "title": self.title,
-            "points": len(design),
-            "systems": len(design.combinations),
-            "records": len(design.records),
-            "scales": len(design.scales),
-            "analysis": design.plan.analysis,
+            "points": len(layout),
+            "systems": len(layout.combinations),
+            "records": len(layout.records),
+            "scales": len(layout.scales),
+            "analysis": layout.plan.analysis,
             "reports": list(self.reports),
         }
 
@@ -205,20 +205,20 @@ class Study(Shown):
             raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
         keeper = _Temporary() if folder is None else None
         place = keeper.place if keeper else Path(folder or "")
-        study_folder(self.design, place, self.overrides)
+        study_folder(self.layout, place, self.overrides)
         with Store(place, fresh=fresh) as store:
-            keys = all_keys(self.design, self.context)
-            start = resume(self.design, keys, store, retry_failed=retry_failed)
-            remember(self.design, store)
+            keys = all_keys(self.layout, self.context)
+            start = resume(self.layout, keys, store, retry_failed=retry_failed)
+            remember(self.layout, store)
             threads = jobs or available_cores()
             engine = (
-                Cluster(scheduler, self.design.plan)
+                Cluster(scheduler, self.layout.plan)
                 if scheduler
                 else Threads(self.context, threads)
             )
-            if start.pending and run(self.design, start, store, engine, progress).interrupted:
+            if start.pending and run(self.layout, start, store, engine, progress).interrupted:
                 raise KeyboardInterrupt
-            table = tabulate(self.design, store.stored(keys))
+            table = tabulate(self.layout, store.stored(keys))
         return StudyResult(self, table, keys, place, threads, keeper)
 
 
@@ -263,7 +263,7 @@ class StudyResult(Shown):
     @property
     def units(self) -> dict[str, str]:
         """SI units of the columns; ``-`` for those without one."""
-        return dict(units_of_columns(self.study.design))
+        return dict(units_of_columns(self.study.layout))
 
     @property
     def failures(self) -> dict[int, str]:
@@ -311,7 +311,7 @@ class StudyResult(Shown):
     def notes(self) -> list[str]:
         """What must be read before statistics and reports are used: what was pooled or left out."""
         notes = [*scale_notes(self.table)]
-        if self.study.design.plan.analysis == "timehistory":
+        if self.study.layout.plan.analysis == "timehistory":
             notes += self._summary.notes
         for name, request in self.study.reports.items():
             add_notes(notes, name, REPORTS[request.kind].notes(self.report(name)))
@@ -368,9 +368,9 @@ class StudyResult(Shown):
             raise UsageError("name a folder: that of the store ends with the result")
         look = Look(tuple(figures), columns, read_style(Path(style)) if style else {})
         study = self.study
-        made = study_folder(study.design, Path(folder or self.folder), study.overrides, force=force)
+        made = study_folder(study.layout, Path(folder or self.folder), study.overrides, force=force)
         made.add("points.csv", "".join(points_csv(self.table)))
-        if study.design.plan.analysis == "timehistory":
+        if study.layout.plan.analysis == "timehistory":
             made.add("statistics.csv", csv_text(summary_columns(self._summary)))
             if self._verdicts:
                 verdicts = verdict_columns(self._summary.keys, self._verdicts)
@@ -398,14 +398,14 @@ class StudyResult(Shown):
 
     @cached_property
     def _summary(self) -> Summary:
-        if self.study.design.plan.analysis != "timehistory":
+        if self.study.layout.plan.analysis != "timehistory":
             raise UsageError("statistics and limits need analysis: timehistory")
         with self._opened() as results:
             return summary(self.table, results.fixed_base)
 
     @cached_property
     def _verdicts(self) -> list[StudyVerdict]:
-        if self.study.design.plan.analysis != "timehistory":
+        if self.study.layout.plan.analysis != "timehistory":
             return []
         return judged(self.table, self._summary, ())
 

@@ -36,4 +36,4 @@ def test_the_notebook_runs(
     assert [len(part.axes) for part in drawn[2].subfigs] == [1, 1]
     written = {file.name for file in Path("results/notebook").iterdir()}
     assert written >= {"points.csv", "statistics.csv", "overturning.svg", "lines.svg", "run.json"}
-    assert left["study"].design.study.title in Path("results/notebook/run.json").read_text("utf-8")
+    assert left["study"].layout.study.title in Path("results/notebook/run.json").read_text("utf-8")

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.schema.units import in_si
-from rpscli.sweep.design.described import described
+from rpscli.sweep.points.described import described
 from rpscli.sweep.points_csv import scale_of, units_of_columns
 from rpscli.sweep.table import Table
 
@@ -20,12 +20,12 @@ def point_columns(table: Table) -> Columns:
 
     Results that do not exist are NaN.
     """
-    design = table.design
-    units = dict(units_of_columns(design))
-    rows = [described(design, point) for point in design]
+    layout = table.layout
+    units = dict(units_of_columns(layout))
+    rows = [described(layout, point) for point in layout]
     columns = {name: array([in_si(row[name], units[name]) for row in rows]) for name in rows[0]}
     if "scale" in units:
-        columns["scale"] = np.array([scale_of(table, point) for point in design])
+        columns["scale"] = np.array([scale_of(table, point) for point in layout])
     return {**columns, "outcome": table.outcomes, **table.columns}
 
 

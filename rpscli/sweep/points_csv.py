@@ -9,10 +9,10 @@ import math
 from collections.abc import Iterator
 
 from rpscli.case.schema.units import in_si
-from rpscli.sweep.design.described import described, identifying_columns
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.points.described import described, identifying_columns
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.table import Table
 
@@ -21,19 +21,19 @@ LINES_A_PIECE = 1000
 
 def points_csv(table: Table) -> Iterator[str]:
     """The text, in pieces. Numbers have all their digits; what does not exist is empty."""
-    design = table.design
-    histories = design.plan.analysis == "timehistory"
+    layout = table.layout
+    histories = layout.plan.analysis == "timehistory"
     results = [
         (table.columns[path].tolist(), quantity.whole)
-        for path, quantity in SCALARS[design.plan.analysis].items()
+        for path, quantity in SCALARS[layout.plan.analysis].items()
     ]
-    names = units_of_columns(design)
+    names = units_of_columns(layout)
     units = dict(names)
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(f"{name} [{of}]" for name, of in names)
-    for number, point in enumerate(design):
-        cells = [_cell(value, units[name]) for name, value in described(design, point).items()]
+    for number, point in enumerate(layout):
+        cells = [_cell(value, units[name]) for name, value in described(layout, point).items()]
         if histories:
             cells.append(_number(scale_of(table, point)))
         cells.append(str(table.outcomes[number]))
@@ -46,19 +46,19 @@ def points_csv(table: Table) -> Iterator[str]:
     yield buffer.getvalue()
 
 
-def units_of_columns(design: Design) -> list[tuple[str, str]]:
+def units_of_columns(layout: StudyPoints) -> list[tuple[str, str]]:
     """Names and units of all columns."""
-    columns = [(name, unit_of(name)) for name in identifying_columns(design)]
-    if design.plan.analysis == "timehistory":
+    columns = [(name, unit_of(name)) for name in identifying_columns(layout)]
+    if layout.plan.analysis == "timehistory":
         columns.append(("scale", "-"))
     columns.append(("outcome", "-"))
-    results = SCALARS[design.plan.analysis]
+    results = SCALARS[layout.plan.analysis]
     return columns + [(path, quantity.unit) for path, quantity in results.items()]
 
 
 def scale_of(table: Table, point: Point) -> float:
     """The factor on the record; known beforehand unless a measure decides about it."""
-    if table.design.plan.measure is None:
+    if table.layout.plan.measure is None:
         return point.scale * point.scale_change
     return float(table.scale[point.number])
 

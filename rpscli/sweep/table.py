@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.results import FAILED, SCALARS, value_at
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Stored
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ class Table:
 
     Parameters
     ----------
-    design
+    layout
         The study, laid out.
     outcomes
         (points,) words.
@@ -41,7 +41,7 @@ class Table:
         (points, most storeys) largest storey shears from the bottom [N], NaN above the roof.
     """
 
-    design: Design
+    layout: StudyPoints
     outcomes: NDArray[np.str_]
     scale: Array
     columns: dict[str, Array]
@@ -62,14 +62,14 @@ class Table:
         return np.char.startswith(self.outcomes, "overturned")
 
 
-def tabulate(design: Design, stored: Iterable[Stored | None]) -> Table:
+def tabulate(layout: StudyPoints, stored: Iterable[Stored | None]) -> Table:
     """Columns from the rows of the store, given in the order of the study."""
-    names, count = SCALARS[design.plan.analysis], len(design)
+    names, count = SCALARS[layout.plan.analysis], len(layout)
     values = np.full((count, len(names)), np.nan)
     outcomes = np.full(count, MISSING, dtype="U20")
     scale = np.full(count, np.nan)
     messages: dict[int, str] = {}
-    shears = np.full((count, max(properties.storeys for properties in design.properties)), np.nan)
+    shears = np.full((count, max(properties.storeys for properties in layout.properties)), np.nan)
     for number, row in enumerate(stored):
         if row is None:
             continue
@@ -81,7 +81,7 @@ def tabulate(design: Design, stored: Iterable[Stored | None]) -> Table:
         profile = row.results.get("storey_shears", ())
         shears[number, : len(profile)] = profile
     columns = dict(zip(names, np.ascontiguousarray(values.T), strict=True))
-    return Table(design, outcomes, scale, columns, messages, shears)
+    return Table(layout, outcomes, scale, columns, messages, shears)
 
 
 class Dimension(NamedTuple):
@@ -91,16 +91,16 @@ class Dimension(NamedTuple):
     rows: Sequence[tuple[object, ...]]
 
 
-def dimensions(design: Design) -> tuple[Dimension, ...]:
-    """Axes of the study, then sample, record, scale and member: those of `Design.shape`."""
-    axes = [Dimension(axis.keys, axis.rows) for axis in design.study.axes]
-    sources = [(None if r is None else r.source,) for r in design.records]
+def dimensions(layout: StudyPoints) -> tuple[Dimension, ...]:
+    """Axes of the study, then sample, record, scale and member: those of `StudyPoints.shape`."""
+    axes = [Dimension(axis.keys, axis.rows) for axis in layout.study.axes]
+    sources = [(None if r is None else r.source,) for r in layout.records]
     return (
         *axes,
-        Dimension((), [()] * design.combinations.shape[-1]),
+        Dimension((), [()] * layout.combinations.shape[-1]),
         Dimension(("record",), sources),
-        Dimension(("scale",), [(scale,) for scale in design.scales]),
-        Dimension((), [()] * len(design.members)),
+        Dimension(("scale",), [(scale,) for scale in layout.scales]),
+        Dimension((), [()] * len(layout.members)),
     )
 
 
@@ -111,7 +111,7 @@ class Group(NamedTuple):
     points: Indices
 
 
-def groups(design: Design, keys: Sequence[str], within: Indices | None = None) -> list[Group]:
+def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = None) -> list[Group]:
     """Points grouped by the values of keys, in the order in which the keys are named.
 
     Parameters
@@ -121,8 +121,8 @@ def groups(design: Design, keys: Sequence[str], within: Indices | None = None) -
     within
         Points to be grouped; all of them by default.
     """
-    known, shape = dimensions(design), design.shape
-    numbers = np.arange(len(design)) if within is None else within
+    known, shape = dimensions(layout), layout.shape
+    numbers = np.arange(len(layout)) if within is None else within
     places = np.unravel_index(numbers, shape)
     axes = list(dict.fromkeys(_axis(known, key) for key in keys))
     if not axes:
@@ -141,7 +141,7 @@ def groups(design: Design, keys: Sequence[str], within: Indices | None = None) -
 
 def computed_groups(table: Table, keys: Sequence[str]) -> Iterator[tuple[Group, Indices]]:
     """Groups with points that did not fail, and these points."""
-    for group in groups(table.design, keys):
+    for group in groups(table.layout, keys):
         points = group.points[~table.failed[group.points]]
         if len(points):
             yield group, points
@@ -158,6 +158,6 @@ def _value(
     return row[dimension.keys.index(key)]
 
 
-def leading_keys(design: Design) -> tuple[str, ...]:
+def leading_keys(layout: StudyPoints) -> tuple[str, ...]:
     """The first key of each varied axis: what tells systems apart, sample aside."""
-    return tuple(axis.keys[0] for axis in design.study.axes)
+    return tuple(axis.keys[0] for axis in layout.study.axes)

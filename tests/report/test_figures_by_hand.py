@@ -30,6 +30,8 @@ from rpscli.report.design.figures import front_figure, region_figure, requiremen
 from rpscli.report.figures.selection import selection_figure
 from rpscli.report.figures.style import kept_figure
 from rpscli.report.study.registry import REPORTS
+from rpscli.sweep.design.answer import Answer
+from rpscli.sweep.design.judgement import Judged, Requirement
 from rpscli.sweep.fits.hazard import Hazard
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
 from rpscli.sweep.reports.comparison import Compared, ComparisonReport, Curve, Outcomes
@@ -44,8 +46,6 @@ from rpscli.sweep.reports.directions import (
 from rpscli.sweep.reports.fragility import Fragility, FragilityReport, LimitState, Observed
 from rpscli.sweep.reports.intensities import Intensity
 from rpscli.sweep.reports.risk import Contributions, Risk, RiskReport
-from rpscli.sweep.search.answer import Answer
-from rpscli.sweep.search.judgement import Judged, Requirement
 from rpscli.sweep.statistics.agreement import Agreement, maxima
 from rpscli.sweep.statistics.observations import Pairs
 from rpscli.sweep.table import Table

@@ -51,7 +51,7 @@ def result() -> rpscli.StudyResult:
 
 def points(study: rpscli.Study) -> list[object]:
     return [
-        (point.values, point.record and point.record.source, point.scale) for point in study.design
+        (point.values, point.record and point.record.source, point.scale) for point in study.layout
     ]
 
 
@@ -66,7 +66,7 @@ def test_a_mapping_and_a_file_say_the_same(tmp_path: Path) -> None:
     assert points(rpscli.load_study(arrays)) == points(one)
     fewer = rpscli.load_study(SMALL, ["scale=[1]", "podium.bearing.slenderness=0.2"])
     assert len(fewer) == 12
-    assert fewer.design.plan.base["podium"]["bearing"]["slenderness"] == 0.2
+    assert fewer.layout.plan.base["podium"]["bearing"]["slenderness"] == 0.2
 
 
 @pytest.mark.parametrize(
@@ -95,9 +95,9 @@ def test_columns_are_those_of_the_points(result: rpscli.StudyResult) -> None:
     assert result.units["superstructure.storey_mass"] == "kg"
     assert set(result.units) == set(columns)
     number = 23
-    point = result.study.design[number]
+    point = result.study.layout[number]
     one = rpscli.demand(
-        result.study.design.system(point.system).structure,
+        result.study.layout.system(point.system).structure,
         rpscli.load_record(result["record"][number]).scaled(1.0),
     )
     assert result["max_rotation"][number] == one.max_rotation

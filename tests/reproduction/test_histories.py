@@ -36,7 +36,7 @@ FLAT = 3
 def test_the_studies_are_those_of_the_paper(
     name: str, points: int, fema_record: RecordLoader
 ) -> None:
-    assert len(study_file(CASES / f"{name}.yaml").design) == points
+    assert len(study_file(CASES / f"{name}.yaml").layout) == points
 
 
 def column(rows: list[Row], name: str) -> Array:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from rpscli.sweep.design.layout import Design, lay_out
 from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.store import Stored
 from rpscli.sweep.table import Table, tabulate
 from sweep.small_studies import STUDY, Make
@@ -24,12 +24,12 @@ def stored(outcome: str = "survived", **results: object) -> Stored:
 
 def table_of(make: Make, answer: Answer, *changes: tuple[str, str]) -> Table:
     """The study of 2 slendernesses x 3 curvatures x 3 records x 2 scales with made-up results."""
-    design = lay_out(make(STUDY, *changes))
-    return tabulate(design, (answer(number) for number in range(len(design))))
+    layout = lay_out(make(STUDY, *changes))
+    return tabulate(layout, (answer(number) for number in range(len(layout))))
 
 
-def place(design: Design, number: int) -> dict[str, object]:
-    point = design[number]
+def place(layout: StudyPoints, number: int) -> dict[str, object]:
+    point = layout[number]
     assert point.record is not None
-    named = dict(zip(design.plan.keys, point.values, strict=True))
+    named = dict(zip(layout.plan.keys, point.values, strict=True))
     return {**named, "record": int(point.record.source[-1]), "scale": point.scale}

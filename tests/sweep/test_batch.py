@@ -11,11 +11,11 @@ from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.analyses.timehistory import time_history
 from rpscli.records.source import load_record
-from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.results import SCALARS, value_at
 from rpscli.sweep.evaluation.systems import resolved
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.run.keys import point_key
 from sweep.small_studies import STUDY, Make
 
@@ -23,21 +23,21 @@ PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
 
 
 def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
-    design = lay_out(study_of())
-    together = run_batch(StudyContext(design.plan), list(design))
-    backwards = run_batch(StudyContext(design.plan), list(design)[::-1])
-    alone = [run_batch(StudyContext(design.plan), [design[number]])[0] for number in (0, 17, 35)]
+    layout = lay_out(study_of())
+    together = run_batch(StudyContext(layout.plan), list(layout))
+    backwards = run_batch(StudyContext(layout.plan), list(layout)[::-1])
+    alone = [run_batch(StudyContext(layout.plan), [layout[number]])[0] for number in (0, 17, 35)]
     assert backwards[::-1] == together
     assert alone == [together[number] for number in (0, 17, 35)]
 
 
 def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
-    design = lay_out(study_of(STUDY, PERTURB))
-    context = StudyContext(design.plan)
+    layout = lay_out(study_of(STUDY, PERTURB))
+    context = StudyContext(layout.plan)
     for number in (3, 40, 76):
-        point = design[number]
+        point = layout[number]
         assert point.record is not None
-        case = resolved(design.plan, point.values)
+        case = resolved(layout.plan, point.values)
         structure = context.systems[point].perturbed(point.restitution_change)
         changed = case.structure.restitution * point.restitution_change
         assert structure.restitution == pytest.approx(changed, rel=1e-12)
@@ -72,31 +72,31 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
 
 def test_whole_histories_tell_when_columns_slide(study_of: Make) -> None:
     changes = ("base: base.yaml", "base: base.yaml\nwhole_histories: true")
-    design = lay_out(study_of(STUDY, changes, overrides=("podium.friction=0.12",)))
-    point = design[20]  # tan(alpha) = 0.15 and more than that is asked of the friction
-    (row,) = run_batch(StudyContext(design.plan), [point])
+    layout = lay_out(study_of(STUDY, changes, overrides=("podium.friction=0.12",)))
+    point = layout[20]  # tan(alpha) = 0.15 and more than that is asked of the friction
+    (row,) = run_batch(StudyContext(layout.plan), [point])
     assert row.results["friction_ratio"] > 1.0
     assert 0.0 < row.results["sliding_time"] < row.results["max_rotation_time"]
 
 
 def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: Make) -> None:
-    design = lay_out(study_of())
-    points = list(design)[:4]
+    layout = lay_out(study_of())
+    points = list(layout)[:4]
     assert points[0].record is not None
     bad = points[1]._replace(record=points[0].record._replace(source="gone.at2"))
-    rows = run_batch(StudyContext(design.plan), [points[0], bad, points[2]])
+    rows = run_batch(StudyContext(layout.plan), [points[0], bad, points[2]])
     assert [row.outcome for row in rows][1] == "failed"
     assert "gone.at2" in str(rows[1].message)
     assert rows[1].results == {}
-    whole = run_batch(StudyContext(design.plan), points)
+    whole = run_batch(StudyContext(layout.plan), points)
     assert [rows[0], rows[2]] == [whole[0], whole[2]]
 
 
 def test_an_exception_of_the_kernel_is_told_for_its_point_only(
     study_of: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    design = lay_out(study_of())
-    points = list(design)[:3]
+    layout = lay_out(study_of())
+    points = list(layout)[:3]
 
     def fragile(requests: list[Request]) -> list[Demand]:
         if any(request.scale == 1.0 for request in requests):
@@ -104,19 +104,19 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
         return demands(requests)
 
     monkeypatch.setattr("rpscli.sweep.evaluation.batch.demands", fragile)
-    rows = run_batch(StudyContext(design.plan), points)
+    rows = run_batch(StudyContext(layout.plan), points)
     assert [row.outcome == "failed" for row in rows] == [False, True, False]
     assert rows[1].message == "FloatingPointError: boom"
 
 
 def test_modal_points_have_the_modes(study_of: Make) -> None:
     begin = STUDY.index("records:")
-    design = lay_out(study_of(STUDY[:begin] + "analysis: modal\n"))
-    context = StudyContext(design.plan)
-    rows = run_batch(context, list(design))
+    layout = lay_out(study_of(STUDY[:begin] + "analysis: modal\n"))
+    context = StudyContext(layout.plan)
+    rows = run_batch(context, list(layout))
     flat, curved = rows[2].results, rows[0].results
     assert flat["rolling"] is None
-    modes = modal(context.systems[design[0]].structure)
+    modes = modal(context.systems[layout[0]].structure)
     assert modes.rolling is not None
     found = value_at(curved, "rolling.frequency_ratio.0")
     assert found == modes.rolling.frequency_ratio[0]
@@ -126,10 +126,10 @@ def test_modal_points_have_the_modes(study_of: Make) -> None:
 
 def test_pushover_points_have_the_curve(study_of: Make) -> None:
     begin = STUDY.index("records:")
-    design = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
-    context = StudyContext(design.plan)
-    row = run_batch(context, [design[0]])[0]
-    expected = pushover(context.systems[design[0]].structure)
+    layout = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
+    context = StudyContext(layout.plan)
+    row = run_batch(context, [layout[0]])[0]
+    expected = pushover(context.systems[layout[0]].structure)
     assert row.outcome == "done"
     assert row.results["uplift_force"] == expected.uplift_force
     assert row.results["curve"]["force"] == expected.curve.force.tolist()

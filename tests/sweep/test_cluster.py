@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from rpscli.errors import RpsError, UsageError
-from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Plan, Point
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.points_csv import points_csv
 from rpscli.sweep.run.cluster import Cluster, compute
 from rpscli.sweep.run.engine import Engine
@@ -44,10 +44,10 @@ def scheduler() -> Iterator[str]:
 
 @pytest.mark.posix
 def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, scheduler: str) -> None:
-    design = lay_out(study_of(STUDY, RECORDS))
-    context = StudyContext(design.plan)
-    keys = all_keys(design, context)
-    engine = Cluster(scheduler, design.plan)
+    layout = lay_out(study_of(STUDY, RECORDS))
+    context = StudyContext(layout.plan)
+    keys = all_keys(layout, context)
+    engine = Cluster(scheduler, layout.plan)
     workers = list(engine._client.run(os.getpid).values())
     killed: list[int] = []
 
@@ -60,10 +60,10 @@ def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, schedu
     engines: list[tuple[str, Engine]] = [("cluster", engine), ("threads", Threads(context, 1))]
     for name, made in engines:
         with Store(workplace / name) as store:
-            begin = resume(design, keys, store, retry_failed=False)
-            finish = run(design, begin, store, made, kill_one)
-            assert (finish.computed, finish.failed) == (len(design), 0)
-            texts.append("".join(points_csv(tabulate(design, store.stored(keys)))))
+            begin = resume(layout, keys, store, retry_failed=False)
+            finish = run(layout, begin, store, made, kill_one)
+            assert (finish.computed, finish.failed) == (len(layout), 0)
+            texts.append("".join(points_csv(tabulate(layout, store.stored(keys)))))
     assert killed
     assert texts[0] == texts[1]
 
@@ -77,8 +77,8 @@ def test_a_worker_of_another_version_is_refused(study_of: Make) -> None:
 
 @pytest.mark.posix
 def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make, scheduler: str) -> None:
-    design = lay_out(study_of())
-    engine = Cluster(scheduler, design.plan)
+    layout = lay_out(study_of())
+    engine = Cluster(scheduler, layout.plan)
 
     class Deadly:
         """What Dask hands back for a task that took its workers with it."""
@@ -87,13 +87,13 @@ def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make, sched
 
     error = distributed.KilledWorker("task", None, 3)
     deadly = Deadly()
-    given: dict[Any, list[Point]] = {deadly: [design[0], design[1]]}
+    given: dict[Any, list[Point]] = {deadly: [layout[0], layout[1]]}
     finished = distributed.as_completed(loop=engine._client.loop, with_results=True)
     assert engine._rows(deadly, error, given, finished) == []
     # Each is tried alone, and these can be computed after all.
     alone = [engine._rows(future, rows, given, finished) for future, rows in finished]
     assert sorted(row.number for (row,) in alone) == [0, 1]
-    given[deadly] = [design[0]]
+    given[deadly] = [layout[0]]
     (row,) = engine._rows(deadly, error, given, finished)
     assert (row.number, row.outcome) == (0, "failed")
     assert "died" in str(row.message)

@@ -17,8 +17,8 @@ from click.testing import Result
 from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import CaseError
 from rpscli.report.study.comparison import REPORT, findings
-from rpscli.sweep.design.layout import Design, lay_out
 from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.reports.comparison import (
     ComparisonOptions,
     ComparisonReport,
@@ -54,16 +54,16 @@ def seen(*rows: str, head: str = "record,title,overturned") -> None:
 
 
 def report(
-    design: Design, options: ComparisonOptions, answer: Callable[[dict[str, object]], Any]
+    layout: StudyPoints, options: ComparisonOptions, answer: Callable[[dict[str, object]], Any]
 ) -> ComparisonReport:
-    table = tabulate(design, (answer(place(design, n)) for n in range(len(design))))
-    context = StudyContext(design.plan)
+    table = tabulate(layout, (answer(place(layout, n)) for n in range(len(layout))))
+    context = StudyContext(layout.plan)
 
     def measured(asked: MeasureOptions) -> Any:
         return intensity(table, context, asked)
 
     results = SimpleNamespace(table=table, intensity=measured)
-    assert not list(uncomparable(design, options))
+    assert not list(uncomparable(layout, options))
     return comparison_report(cast("StudyResults", results), options)
 
 
@@ -119,8 +119,8 @@ def test_what_is_held_out_has_no_say_in_the_fit(study_of: Make) -> None:
     """Turning every held-out outcome around changes neither the choice nor any threshold."""
     seen(*half("left", 4))
     options = ComparisonOptions.model_validate({"resamples": 0, "fit": {}})
-    design = lay_out(study_of(STUDY))
-    found = report(design, options, overturns)
+    layout = lay_out(study_of(STUDY))
+    found = report(layout, options, overturns)
     held = next(each for each in found.compared if each.part == "held out")
     turned = set(found.pairs.records[held.pairs].tolist())
     seen(*(
@@ -220,8 +220,8 @@ def test_what_cannot_be_compared_is_told_before(
     study_of: Make, change: tuple[str, str], rows: list[str], told: str
 ) -> None:
     seen(*rows)
-    design = lay_out(study_of(STUDY, change))
-    assert told in " ".join(uncomparable(design, ComparisonOptions()))
+    layout = lay_out(study_of(STUDY, change))
+    assert told in " ".join(uncomparable(layout, ComparisonOptions()))
 
 
 def test_keys_that_tell_observations_apart_are_not_chosen(study_of: Make) -> None:

@@ -14,10 +14,10 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.records.measures.intensity import intensity_measures
 from rpscli.records.measures.spectrum import spectral_acceleration
 from rpscli.records.source import load_record
-from rpscli.sweep.design.layout import lay_out
-from rpscli.sweep.design.perturbation import changes
-from rpscli.sweep.design.sampling import balance_note, sample
 from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points.perturbation import changes
+from rpscli.sweep.points.sampling import balance_note, sample
 from rpscli.sweep.run.keys import all_keys
 from rpscli.sweep.run.schedule import LARGEST_BATCH, batches
 from sweep.small_studies import STUDY, Make

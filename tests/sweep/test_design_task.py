@@ -19,14 +19,14 @@ from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program
 from rpscli.errors import CaseError
-from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.design.answer import interval_of
+from rpscli.sweep.design.judgement import weights_of
+from rpscli.sweep.design.search import Search
+from rpscli.sweep.design.space import Array, first_places, neighbours, next_places
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.run.schedule import LARGEST_BATCH
-from rpscli.sweep.search.answer import interval_of
-from rpscli.sweep.search.judgement import weights_of
-from rpscli.sweep.search.search import Search
-from rpscli.sweep.search.space import Array, first_places, neighbours, next_places
 from sweep.small_studies import BASE, ROOT
 from sweep.test_interruption import ended
 
@@ -81,11 +81,11 @@ least: [max_base_shear, max_cap_beam_displacement: {{fractile: 0.84}}]
 search: {{first: 8, most: 20, resamples: 50}}
 """
 
-Design = Callable[..., Result]
+StudyPoints = Callable[..., Result]
 
 
 @pytest.fixture
-def design(workplace: Path, no_figures: None) -> Design:
+def design(workplace: Path, no_figures: None) -> StudyPoints:
     """Run `rps design` on a text in this process."""
 
     def invoke(text: str, *arguments: str) -> Result:
@@ -96,7 +96,7 @@ def design(workplace: Path, no_figures: None) -> Design:
 
 
 @pytest.fixture
-def design_json(design: Design) -> Callable[..., dict[str, Any]]:
+def design_json(design: StudyPoints) -> Callable[..., dict[str, Any]]:
     """The JSON document of `rps design`."""
 
     def invoke(text: str, *arguments: str, exit_code: int = 0) -> dict[str, Any]:
@@ -168,7 +168,7 @@ def test_a_number_of_columns_stays_whole(design_json: DesignJson, workplace: Pat
     assert {row["podium.columns [-]"] for row in rows} <= {str(n) for n in range(4, 10)}
 
 
-def test_nothing_passes(design: Design, design_json: DesignJson) -> None:
+def test_nothing_passes(design: StudyPoints, design_json: DesignJson) -> None:
     found = design_json(FRAME.replace("0.35]", "0.2]"), exit_code=10)
     assert found["best"] is None
     assert found["passed"] is False
@@ -210,7 +210,7 @@ def test_verdicts_are_those_of_a_study(design_json: DesignJson, workplace: Path)
 
 
 @needs_compiled_kernels
-def test_one_thread_or_two_give_the_same_bytes(design: Design, workplace: Path) -> None:
+def test_one_thread_or_two_give_the_same_bytes(design: StudyPoints, workplace: Path) -> None:
     for jobs in ("1", "2"):
         assert design(BUILDING, "--jobs", jobs, "-o", jobs).exit_code == 0
     for name in ("designs.csv", "points.csv", "front.csv"):
@@ -302,7 +302,7 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         (f"{WEDGE}: {{", f"{SLENDERNESS}: {{", "14:", "varies"),
     ],
 )
-def test_refusals(design: Design, old: str, new: str, place: str, said: str) -> None:
+def test_refusals(design: StudyPoints, old: str, new: str, place: str, said: str) -> None:
     assert old in FRAME
     result = design(FRAME.replace(old, new, 1), "--dry-run")
     assert result.exit_code == 3, result.stderr
@@ -310,7 +310,7 @@ def test_refusals(design: Design, old: str, new: str, place: str, said: str) -> 
     assert said in result.stderr
 
 
-def test_cases_studies_and_designs_are_told_apart(design: Design, workplace: Path) -> None:
+def test_cases_studies_and_designs_are_told_apart(design: StudyPoints, workplace: Path) -> None:
     assert "is a case without `find`" in design(BASE).stderr
     (workplace / "task.yaml").write_text(FRAME, encoding="utf-8")
     for command, said in (("sweep", "is a design"), ("timehistory", "`rps design task.yaml`")):

@@ -13,7 +13,7 @@ from paper_structures import needs_compiled_kernels
 
 from rpscli.report.study.directions import directions_figure, pair_columns, spread_columns
 from rpscli.report.study.registry import REPORTS
-from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.reports.directions import (
     NO_BOUND,
     DirectionsOptions,
@@ -67,8 +67,8 @@ def answer(source: str) -> Stored:
 
 @pytest.mark.usefixtures("records")
 def test_worst_direction_and_median(study_of: Make) -> None:
-    design = lay_out(study_of(STUDY))
-    table = tabulate(design, (answer(point.record.source) for point in design if point.record))
+    layout = lay_out(study_of(STUDY))
+    table = tabulate(layout, (answer(point.record.source) for point in layout if point.record))
     report = directions_report(table, DirectionsOptions())
     assert [panel.values for panel in report.panels] == [(0.5,), (0,)]
     one, two = report.panels[0].curves
@@ -96,8 +96,8 @@ def test_worst_direction_and_median(study_of: Make) -> None:
 
 @pytest.mark.usefixtures("records")
 def test_directions_that_are_not_even_are_named(study_of: Make) -> None:
-    design = lay_out(study_of(STUDY, (str(list(ANGLES)), "[0, 90, 180]")))
-    report = directions_report(tabulate(design, [None] * len(design)), DirectionsOptions())
+    layout = lay_out(study_of(STUDY, (str(list(ANGLES)), "[0, 90, 180]")))
+    report = directions_report(tabulate(layout, [None] * len(layout)), DirectionsOptions())
     assert "one_x.txt" in report.notes[1]
     assert "not spread evenly over 180 deg" in report.notes[1]
     assert not report.panels[0].spreads
@@ -113,8 +113,8 @@ def test_directions_that_are_not_even_are_named(study_of: Make) -> None:
     ],
 )
 def test_studies_without_directions(study_of: Make, old: str, new: str, message: str) -> None:
-    design = lay_out(study_of(STUDY, (old, new)))
-    (text,) = without_directions(design, DirectionsOptions())
+    layout = lay_out(study_of(STUDY, (old, new)))
+    (text,) = without_directions(layout, DirectionsOptions())
     assert message in text
     assert REPORTS["directions"].requires is without_directions
 

@@ -15,9 +15,9 @@ from click.testing import CliRunner
 from rpscli.cli import program
 from rpscli.records.formats.at2_writer import at2_text
 from rpscli.records.source import load_record
-from rpscli.sweep.design.described import reproduction
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.described import reproduction
 from sweep.small_studies import BASE, STUDY, study_file
 
 Document = Callable[..., dict[str, Any]]
@@ -70,11 +70,11 @@ def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json:
 
 
 def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path, sweep_json: Document) -> None:
-    design = study_file("study.yaml", "perturb={members: 3}", "podium.cap_beam_mass_ratio=8").design
-    context = StudyContext(design.plan)
-    point = design[2]
+    layout = study_file("study.yaml", "perturb={members: 3}", "podium.cap_beam_mass_ratio=8").layout
+    context = StudyContext(layout.plan)
+    point = layout[2]
     row = run_batch(context, [point])[0]
-    words = shlex.split(reproduction(design, context, point, Path("base.yaml")))
+    words = shlex.split(reproduction(layout, context, point, Path("base.yaml")))
     single = CliRunner().invoke(program, [*words[1:], "--json"])
     found = json.loads(single.stdout)
     assert found["max_rotation"] == pytest.approx(row.results["max_rotation"], rel=1e-6)

@@ -19,7 +19,7 @@ from rpscli.analyses.floor_spectra import (
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.source import load_record
-from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.reports.floor_spectra import FloorSpectraOptions, without_floors
 from sweep.small_studies import STUDY, Make
 
@@ -68,5 +68,5 @@ def test_fractiles_of_three_histories(workplace: Path, sweep: Callable[..., Resu
 
 @pytest.mark.usefixtures("workplace")
 def test_a_frame_has_no_floors(study_of: Make) -> None:
-    design = lay_out(study_of(STUDY))
-    assert not list(without_floors(design, FloorSpectraOptions()))
+    layout = lay_out(study_of(STUDY))
+    assert not list(without_floors(layout, FloorSpectraOptions()))

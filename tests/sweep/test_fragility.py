@@ -10,10 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 from rpscli.errors import CaseError
-from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.fits.probit import probit_fit, separated
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.reports.fragility import FragilityOptions, LimitStates, fragility_report
 from rpscli.sweep.reports.intensities import intensity
 from rpscli.sweep.reports.overturning_spectrum import (
@@ -187,10 +187,10 @@ def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
 
 def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Make) -> None:
     measured = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}")
-    design = lay_out(study_of(STUDY, measured))
+    layout = lay_out(study_of(STUDY, measured))
 
     def answer(number: int) -> Stored:
-        point = design[number]
+        point = layout[number]
         if number == 0:
             return Stored("failed", "why", {})
         falls = point.scale == 0.8
@@ -198,11 +198,11 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
         name = "overturned_rocking" if falls else "survived"
         return Stored(name, None, {"scale": 1.0, "rotation_ratio": ratio, "drift_ratio": 0.0})
 
-    table = tabulate(design, map(answer, range(len(design))))
+    table = tabulate(layout, map(answer, range(len(layout))))
     options = FragilityOptions(
         limits=LimitStates(rotation_ratio=(0.5,), drift_ratio=(0.01,)), series=(), resamples=0
     )
-    report = fragility_report(table, intensity(table, StudyContext(design.plan), options), options)
+    report = fragility_report(table, intensity(table, StudyContext(layout.plan), options), options)
     assert [curve.limit.label for curve in report.curves] == [
         "rotation_ratio > 0.5",
         "drift_ratio > 0.01",
@@ -222,10 +222,10 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
 
 
 def test_intensities_follow_records_and_scales(study_of: Make) -> None:
-    design = lay_out(study_of())
-    context = StudyContext(design.plan)
-    rows = [Stored("survived", None, {"scale": point.scale}) for point in design]
-    table = tabulate(design, rows)
+    layout = lay_out(study_of())
+    context = StudyContext(layout.plan)
+    rows = [Stored("survived", None, {"scale": point.scale}) for point in layout]
+    table = tabulate(layout, rows)
     pga = intensity(table, context, FragilityOptions(measure="PGA"))
     assert pga.values[1] == pytest.approx(0.5 * 9.80665, rel=1e-9)
     assert pga.values[0] == pytest.approx(0.25 * 9.80665, rel=1e-9)
@@ -240,13 +240,13 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
         STUDY[:begin]
         + 'records: [{source: "pulse:sine?amplitude=1g", period: [0.5, 1.0]}]\nscale: [0.2, 0.4]\n'
     )
-    design = lay_out(study_of(text))
+    layout = lay_out(study_of(text))
     rows = [
         Stored("overturned_rocking" if p.scale > 0.3 else "survived", None, {"scale": p.scale})
-        for p in design
+        for p in layout
     ]
-    report = spectrum_report(tabulate(design, rows), StudyContext(design.plan), SpectrumOptions())
-    (panel,), properties = report.panels[0].series, design.properties[0]
+    report = spectrum_report(tabulate(layout, rows), StudyContext(layout.plan), SpectrumOptions())
+    (panel,), properties = report.panels[0].series, layout.properties[0]
     p = properties.frequency_parameter
     assert panel.frequency_ratio[:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
     # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
@@ -268,23 +268,23 @@ scale: [0.2, 0.4]
 def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of: Make) -> None:
     lines = [f"{0.01 * i} {math.sin(math.pi * i / 40.0)}" for i in range(81)]
     Path("mine.txt").write_text("# Time (s) Acceleration (m/s2)\n" + "\n".join(lines) + "\n")
-    design = lay_out(study_of(STUDY[: STUDY.index("records:")] + PULSES))
-    missing = list(records_without_period(design, SpectrumOptions()))
+    layout = lay_out(study_of(STUDY[: STUDY.index("records:")] + PULSES))
+    missing = list(records_without_period(layout, SpectrumOptions()))
     assert len(missing) == 1
     assert "mine.txt is no pulse with a period" in missing[0]
     pulse = PulseSection(period=0.8, amplitude=1.0)
     rho = "podium.bearing.curvature_ratio"
     options = SpectrumOptions(pulses={"mine.txt": pulse}, series=(rho,))
-    assert not list(records_without_period(design, options))
+    assert not list(records_without_period(layout, options))
     # Rounding decides at the border of uplift: 1e-9 of the critical rotation is none in a figure.
     results = {"scale": 0.4, "rotation_ratio": 1e-9}
-    table = tabulate(design, [Stored("survived", None, results) for _ in design])
-    report = spectrum_report(table, StudyContext(design.plan), options)
+    table = tabulate(layout, [Stored("survived", None, results) for _ in layout])
+    report = spectrum_report(table, StudyContext(layout.plan), options)
     assert report.series_keys == (rho,)
     assert [[s.values for s in panel.series] for panel in report.panels] == [
         [("critical",), (0.5,), (0,)]
     ] * 2
-    series, properties = report.panels[0].series[0], design.properties[0]
+    series, properties = report.panels[0].series[0], layout.properties[0]
     assert series.frequency_ratio[-1] == pytest.approx(
         2.0 * math.pi / 0.8 / properties.frequency_parameter, rel=1e-12
     )

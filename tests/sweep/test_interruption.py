@@ -15,10 +15,10 @@ from pathlib import Path
 import pytest
 from click.testing import Result
 
-from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.evaluation.batch import Row, run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.run.keys import all_keys
 from rpscli.sweep.run.resume import resume
 from rpscli.sweep.run.runner import Progress, run
@@ -98,9 +98,9 @@ def test_one_thread_or_two_give_the_same_bytes(
 def test_the_second_ctrl_c_stops_at_once(
     study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    design = lay_out(study_of())
-    context = StudyContext(design.plan)
-    keys = all_keys(design, context)
+    layout = lay_out(study_of())
+    context = StudyContext(layout.plan)
+    keys = all_keys(layout, context)
     told: list[str] = []
     over = threading.Event()
 
@@ -117,9 +117,9 @@ def test_the_second_ctrl_c_stops_at_once(
     monkeypatch.setattr("rpscli.sweep.run.threads.run_batch", one_batch)
     before = signal.getsignal(signal.SIGINT)
     with Store(workplace) as store:
-        begin = resume(design, keys, store, retry_failed=False)
+        begin = resume(layout, keys, store, retry_failed=False)
         with pytest.raises(KeyboardInterrupt):
-            run(design, begin, store, Threads(context, 1), interrupt)
+            run(layout, begin, store, Threads(context, 1), interrupt)
         assert told == ["first"]
         assert len(store.outcomes()) == 9  # the second batch is still under way
     over.set()
@@ -130,8 +130,8 @@ def test_the_second_ctrl_c_stops_at_once(
 def test_a_ctrl_c_given_to_another_thread_is_heard(
     study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    design = lay_out(study_of())
-    context = StudyContext(design.plan)
+    layout = lay_out(study_of())
+    context = StudyContext(layout.plan)
     heard = threading.Event()
 
     def one_batch(context: StudyContext, points: Sequence[Point]) -> list[Row]:
@@ -142,24 +142,24 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
         return run_batch(context, points)
 
     monkeypatch.setattr("rpscli.sweep.run.threads.run_batch", one_batch)
-    keys = all_keys(design, context)
+    keys = all_keys(layout, context)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         with Store(workplace) as store:
-            begin = resume(design, keys, store, retry_failed=False)
-            finish = run(design, begin, store, Threads(context, 1), announce=heard.set)
+            begin = resume(layout, keys, store, retry_failed=False)
+            finish = run(layout, begin, store, Threads(context, 1), announce=heard.set)
     finally:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     assert (finish.computed, finish.interrupted) == (9, True)
 
 
 def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:
-    design = lay_out(study_of())
-    context = StudyContext(design.plan)
+    layout = lay_out(study_of())
+    context = StudyContext(layout.plan)
     seen: list[Progress] = []
     with Store(workplace) as store:
-        begin = resume(design, all_keys(design, context), store, retry_failed=False)
-        finish = run(design, begin, store, Threads(context, 2), seen.append)
+        begin = resume(layout, all_keys(layout, context), store, retry_failed=False)
+        finish = run(layout, begin, store, Threads(context, 2), seen.append)
     assert (finish.computed, finish.interrupted) == (36, False)
     assert [p.done for p in seen] == sorted(p.done for p in seen)
     assert seen[-1].done == seen[-1].total == 36
@@ -167,12 +167,12 @@ def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:
 
 
 def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None:
-    design = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0, 1.0]")))
-    context = StudyContext(design.plan)
+    layout = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0, 1.0]")))
+    context = StudyContext(layout.plan)
     with Store(workplace) as store:
-        begin = resume(design, all_keys(design, context), store, retry_failed=False)
+        begin = resume(layout, all_keys(layout, context), store, retry_failed=False)
         assert len(begin.pending) == 18
-        run(design, begin, store, Threads(context, 1))
+        run(layout, begin, store, Threads(context, 1))
         rows = list(store.stored(begin.keys))
     assert len(rows) == 36
     assert rows[0] == rows[1]
@@ -180,11 +180,11 @@ def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None
 
 
 def test_an_error_of_the_engine_is_not_swallowed(study_of: Make, workplace: Path) -> None:
-    design = lay_out(study_of())
+    layout = lay_out(study_of())
 
     def broken() -> Iterator[list[object]]:
         yield [object()]
 
-    engine = Threads(StudyContext(design.plan), 2)
+    engine = Threads(StudyContext(layout.plan), 2)
     with pytest.raises(AttributeError):
         list(engine.outcomes(broken()))  # type: ignore[arg-type]

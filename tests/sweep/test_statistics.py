@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from rpscli.report.study.labels import label
-from rpscli.sweep.design.layout import lay_out
 from rpscli.sweep.fits.bilinear import bilinear_fit
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.reports.contrast import ContrastOptions, contrast_report
 from rpscli.sweep.reports.demand import DemandOptions, demand_report
 from rpscli.sweep.reports.ida import IdaOptions, ida_report
@@ -71,17 +71,17 @@ def test_too_few_points_have_no_bilinear_fit() -> None:
 
 
 def test_groups_cover_the_study_once_in_its_order(study_of: Make) -> None:
-    design = lay_out(study_of())
-    by_scale = groups(design, ["scale", RHO])
+    layout = lay_out(study_of())
+    by_scale = groups(layout, ["scale", RHO])
     assert [group.values for group in by_scale] == [
         (scale, rho) for scale in (0.5, 1.0) for rho in ("critical", 0.5, 0)
     ]
     joined = np.sort(np.concatenate([group.points for group in by_scale]))
     assert joined.tolist() == list(range(36))
     assert all(
-        place(design, n)["scale"] == group.values[0] for group in by_scale for n in group.points
+        place(layout, n)["scale"] == group.values[0] for group in by_scale for n in group.points
     )
-    pair = groups(design, [ALPHA, "podium.bearing.wedge_slenderness"])
+    pair = groups(layout, [ALPHA, "podium.bearing.wedge_slenderness"])
     assert [group.values for group in pair] == [(0.10, 0.20), (0.15, 0.30)]
 
 
@@ -101,10 +101,10 @@ def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
 
 
 def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -> None:
-    design = lay_out(study_of())
+    layout = lay_out(study_of())
 
     def answer(number: int) -> Stored:
-        at = place(design, number)
+        at = place(layout, number)
         if at["record"] == 3 and at["scale"] == 1.0:
             return Stored("failed", "why", {})
         return stored("overturned_rolling" if at[RHO] == 0 and at["scale"] == 1.0 else "survived")
@@ -148,10 +148,10 @@ def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
 
 def test_contrasts_are_medians_over_the_motions(study_of: Make) -> None:
     """Cells of the flat ends over rho = 0.5: what stood on both sides, the rest as shares."""
-    design = lay_out(study_of())
+    layout = lay_out(study_of())
 
     def answer(number: int) -> Stored:
-        at = place(design, number)
+        at = place(layout, number)
         flat = at[RHO] == 0
         if flat and at["record"] == 3 and at["scale"] == 1.0:
             return stored("overturned_rocking", max_rotation=9.0)
@@ -194,10 +194,10 @@ def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
 
 
 def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
-    design = lay_out(study_of())
+    layout = lay_out(study_of())
 
     def answer(number: int) -> Stored:
-        falls = place(design, number)["record"] == 3
+        falls = place(layout, number)["record"] == 3
         shears = [900.0] * 3 if falls else [1.0 * number, 2.0, 1.0]
         return stored("overturned_rocking" if falls else "survived", storey_shears=shears)
 
@@ -205,7 +205,7 @@ def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
     fixed = {
         (system, request): np.array([10.0, 6.0, 3.0])
         for system in range(6)
-        for request in design.records
+        for request in layout.records
         if request
     }
     report = storey_shear_report(table, fixed, StoreyShearOptions(panels=(ALPHA, RHO)))
@@ -228,20 +228,20 @@ def test_buildings_of_different_height_have_no_common_profile(study_of: Make) ->
         "  - podium.bearing.curv",
         "  - superstructure.storeys: [2, 3]\n  - podium.bearing.curv",
     )
-    design = lay_out(study_of(STUDY, storeys))
-    faults = list(unlike_buildings(design, StoreyShearOptions(panels=(RHO,))))
+    layout = lay_out(study_of(STUDY, storeys))
+    faults = list(unlike_buildings(layout, StoreyShearOptions(panels=(RHO,))))
     assert len(faults) == 3
     assert "holds buildings of [2, 3] storeys" in faults[0]
-    assert not list(unlike_buildings(design, StoreyShearOptions()))
+    assert not list(unlike_buildings(layout, StoreyShearOptions()))
     in_kn = StoreyShearOptions(panels=(RHO, "superstructure.storeys"), unit="kN")
-    assert "different V_st" in next(unlike_buildings(design, in_kn))
+    assert "different V_st" in next(unlike_buildings(layout, in_kn))
 
 
 def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> None:
-    design = lay_out(study_of())
+    layout = lay_out(study_of())
 
     def answer(number: int) -> Stored:
-        at = place(design, number)
+        at = place(layout, number)
         record = int(str(at["record"]))
         falls = at["scale"] == 1.0 and record > 1
         return stored("overturned_rolling" if falls else "survived", rotation_ratio=0.1 * record)
@@ -255,10 +255,10 @@ def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> No
 
 
 def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
-    design = lay_out(study_of())
+    layout = lay_out(study_of())
 
     def answer(number: int) -> Stored:
-        at = place(design, number)
+        at = place(layout, number)
         falls = at["record"] == 2
         return stored(
             "overturned_rolling" if falls else "survived",
@@ -285,12 +285,12 @@ def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) 
 
 def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: Make) -> None:
     begin = STUDY.index("records:")
-    design = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
+    layout = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
     rows = [
         Stored("done", None, {"curve": {"force": [2.0, 1.0 * n], "displacement": [0.0, 1.0]}})
         for n in range(6)
     ]
-    table = tabulate(design, rows)
+    table = tabulate(layout, rows)
     options = LinesOptions(x="curve.displacement", y=("curve.force",), panels=(ALPHA,))
     first, _ = lines_report(table, rows, options).panels
     assert [line.y for line in first.lines] == [(2.0, 0.0), (2.0, 1.0), (2.0, 2.0)]
@@ -298,8 +298,8 @@ def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: M
 
 
 def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> None:
-    design = lay_out(study_of())
-    table = tabulate(design, [stored() if n else None for n in range(36)])
+    layout = lay_out(study_of())
+    table = tabulate(layout, [stored() if n else None for n in range(36)])
     shares: NDArray[np.bool_] = table.failed
     assert shares.tolist() == [True] + [False] * 35
 
@@ -317,10 +317,10 @@ def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> Non
 def test_lines_say_what_stands_for_the_records(
     study_of: Make, statistic: str | float, values: list[float]
 ) -> None:
-    design = lay_out(study_of())
+    layout = lay_out(study_of())
 
     def answer(number: int) -> Stored:
-        at = place(design, number)
+        at = place(layout, number)
         record = int(str(at["record"]))
         falls = record == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
         return stored("overturned_rolling" if falls else "survived", max_rotation=float(record))

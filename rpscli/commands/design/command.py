@@ -34,8 +34,8 @@ from rpscli.report.files.output_folder import OutputFolder
 if TYPE_CHECKING:
     from rpscli.commands.design.rounds import Confirmation
     from rpscli.commands.sweep.input import StudyInput
+    from rpscli.sweep.design.answer import Answer
     from rpscli.sweep.reports.study_results import StudyResults
-    from rpscli.sweep.search.answer import Answer
 
 
 @click.command("design")
@@ -63,7 +63,7 @@ def command(
     is 10 if no design passes.
     """
     from rpscli.case.design.task import read_design
-    from rpscli.sweep.search.search import Search
+    from rpscli.sweep.design.search import Search
     from rpscli.sweep.store import Store
 
     chosen = SweepChoices(**choices)

@@ -16,9 +16,9 @@ from rpscli.report.figures.look import Look
 
 if TYPE_CHECKING:
     from rpscli.case.study.study import Study
+    from rpscli.sweep.design.answer import Answer
+    from rpscli.sweep.design.search import Search
     from rpscli.sweep.reports.study_results import StudyResults
-    from rpscli.sweep.search.answer import Answer
-    from rpscli.sweep.search.search import Search
     from rpscli.sweep.statistics.verdicts import StudyVerdict
     from rpscli.sweep.store import Store
     from rpscli.sweep.table import Table
@@ -57,7 +57,7 @@ class Rounds:
         valid = search.valid_cases(values)
         # If none is, the first one tells why, at its place in the file.
         given = self._laid_out(search.task.study_of(values[valid] if valid.any() else values[:1]))
-        search.require(given.design)
+        search.require(given.layout)
         require_results(given, ())
         return given
 
@@ -79,7 +79,7 @@ class Rounds:
 
     def confirm(self, answer: Answer, store: Store) -> Iterator[Confirmation]:
         """Judge the best and the robust design under other motions, if there are any."""
-        from rpscli.sweep.search.answer import NONE
+        from rpscli.sweep.design.answer import NONE
         from rpscli.sweep.statistics.summary import summary
         from rpscli.sweep.statistics.verdicts import judged
 
@@ -107,7 +107,7 @@ class Rounds:
 
     def notes(self, answer: Answer, confirmations: list[Confirmation]) -> Iterator[str]:
         """What the user should know about the answer."""
-        from rpscli.sweep.search.answer import NONE
+        from rpscli.sweep.design.answer import NONE
 
         if invalid := int((~answer.valid).sum()):
             reason = next(iter(self.search.faults))
@@ -123,8 +123,8 @@ class Rounds:
 
     def _laid_out(self, study: Study, earlier: StudyInput | None = None) -> StudyInput:
         """A study with its points; records are shared with an earlier one."""
-        from rpscli.sweep.design.layout import lay_out
         from rpscli.sweep.evaluation.context import StudyContext
+        from rpscli.sweep.points.layout import lay_out
 
         design = lay_out(study)
         context = StudyContext(design.plan)
@@ -140,15 +140,15 @@ class Rounds:
         from rpscli.sweep.run.threads import available_cores
         from rpscli.sweep.table import tabulate
 
-        keys = all_keys(given.design, given.context)
-        start = resume(given.design, keys, store, retry_failed=self.choices.retry_failed)
-        remember(given.design, store)
+        keys = all_keys(given.layout, given.context)
+        start = resume(given.layout, keys, store, retry_failed=self.choices.retry_failed)
+        remember(given.layout, store)
         try:
             finish = compute(given, start, store, self.choices, self.terminal)
         except KeyboardInterrupt:
             finish = None
         if finish is None or finish.interrupted:
             stop("design", given, store, start, self.terminal)
-        table = tabulate(given.design, store.stored(keys))
+        table = tabulate(given.layout, store.stored(keys))
         jobs = self.choices.jobs or available_cores()
         return StudyResults(table, keys, store, given.context, jobs), table

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rpscli.commands.design.rounds import Confirmation
-    from rpscli.sweep.search.answer import Answer
+    from rpscli.sweep.design.answer import Answer
 
 DIGITS = 4
 RECORDS_SHOWN = 3
@@ -121,8 +121,8 @@ def _requirements(document: dict[str, Any], answer: Answer) -> RenderableType:
 def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """How sharp the answer is, and how it hangs on the choice of records."""
     from rpscli.report.study.labels import label
+    from rpscli.sweep.design.answer import ROBUST
     from rpscli.sweep.reports.intensities import unit_of
-    from rpscli.sweep.search.answer import ROBUST
 
     records = document["records"]
     for end, word in zip(document["bracket"] or (), ("smaller", "larger"), strict=False):
@@ -158,7 +158,7 @@ def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def nothing_passes(answer: Answer) -> str:
     """Which requirement stands in the way least, if no design passes; else nothing."""
     from rpscli.report.design.answer import requirement_label
-    from rpscli.sweep.search.answer import NONE
+    from rpscli.sweep.design.answer import NONE
 
     if answer.best != NONE:
         return ""

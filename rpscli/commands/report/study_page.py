@@ -85,7 +85,7 @@ def study_page(
         if finish.interrupted:
             terminal.note(f"points are stored in {store.path}; the same command goes on from there")
             raise KeyboardInterrupt
-        table = tabulate(given.design, store.stored(start.keys))
+        table = tabulate(given.layout, store.stored(start.keys))
         results = StudyResults(table, start.keys, store, given.context, available_cores())
         found = collect(given, results, list(conditions), folder)
         error = first_error(found, len(table))
@@ -115,7 +115,7 @@ def _sections(
     statistics = [] if found.summary is None else list(blocks_of(summary_tables(found.summary)))
     motions, unreadable = _motions(given)
     ground = Section("Ground motions", [])
-    if given.design.plan.analysis == "timehistory":
+    if given.layout.plan.analysis == "timehistory":
         ground = motions_section(motions, unreadable, given.study.title, look)
     return [
         Section("In short", list(_in_short(given, results, found))),
@@ -131,16 +131,16 @@ def _sections(
 
 
 def _first_system(given: StudyInput) -> Case:
-    return resolved(given.design.plan, given.design[0].values)
+    return resolved(given.layout.plan, given.layout[0].values)
 
 
 def _of_first(section: Section, given: StudyInput) -> Section:
     """A section about one system says which."""
-    systems = len(given.design.combinations)
+    systems = len(given.layout.combinations)
     if systems == 1:
         return section
-    design = given.design
-    values = zip(design.plan.keys, design[0].values, strict=True)
+    layout = given.layout
+    values = zip(layout.plan.keys, layout[0].values, strict=True)
     which = ", ".join(label(key, value) for key, value in values)
     text = f"The first of {systems} systems: {which}."
     return replace(section, blocks=[text, *section.blocks])
@@ -158,7 +158,7 @@ def _in_short(given: StudyInput, results: StudyResults, found: Collected) -> Ite
         verdicts = f"{len(found.verdicts)} limits of a system at an intensity"
         yield f"{exceeded} of {verdicts} exceeded." if exceeded else f"All {verdicts} are met."
         yield from blocks_of([verdict_table(found.summary, found.verdicts)])
-    elif given.design.plan.analysis == "timehistory":
+    elif given.layout.plan.analysis == "timehistory":
         yield "No limits were set."
     texts = [*found.notes, *(str(error) for error in found.broken)]
     texts += [f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]]
@@ -169,11 +169,11 @@ def _in_short(given: StudyInput, results: StudyResults, found: Collected) -> Ite
 
 def _motions(given: StudyInput) -> tuple[list[GroundMotion], list[str]]:
     """The records before they are scaled, and why some cannot be read."""
-    design, motions, reasons = given.design, [], []
-    own = [properties.record for properties in design.properties]
-    requests = [record for record in (*design.records, *own) if record is not None]
-    if None not in design.records:
-        requests = [record for record in design.records if record is not None]
+    layout, motions, reasons = given.layout, [], []
+    own = [properties.record for properties in layout.properties]
+    requests = [record for record in (*layout.records, *own) if record is not None]
+    if None not in layout.records:
+        requests = [record for record in layout.records if record is not None]
     for request in dict.fromkeys(requests):
         try:
             motions.append(given.context.records.motion(request).horizontal)
@@ -198,12 +198,12 @@ def _input(given: StudyInput, first: Case) -> Iterator[Block]:
         ("SHA-256 of its text", study.digest),
         ("case at its base", str(study.base_file) if study.base_file else "in the study"),
         ("values put over it", ", ".join(given.request.overrides)),
-        ("solver", given.design.plan.solver),
+        ("solver", given.layout.plan.solver),
         ("made by", programs()),
     )
     yield "The study as it is written:"
     yield shared.input_table(study.document.content)
-    systems = len(given.design.combinations)
+    systems = len(given.layout.combinations)
     which = "The case" if systems == 1 else "Its first system"
     yield f"{which} in SI units, with all defaults:"
     yield shared.input_table(first.document)

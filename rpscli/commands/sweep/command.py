@@ -143,7 +143,7 @@ def _conclude(
     from rpscli.sweep.run.threads import available_cores
     from rpscli.sweep.table import tabulate
 
-    table = tabulate(given.design, store.stored(start.keys))
+    table = tabulate(given.layout, store.stored(start.keys))
     results = StudyResults(table, start.keys, store, given.context, available_cores())
     found = collect(given, results, conditions, folder)
     failures, notes = found.failures, found.notes

@@ -14,7 +14,7 @@ from rpscli.report.documents import heading
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rpscli.sweep.design.layout import Design
+    from rpscli.sweep.points.layout import StudyPoints
 
 POINTS_SHOWN = 3
 """At each end of the study."""
@@ -27,24 +27,24 @@ def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -
     """Count, first and last points, and an estimate of the time."""
     from rpscli.sweep.run.threads import available_cores
 
-    design = given.design
+    layout = given.layout
     jobs = choices.jobs or available_cores()
-    count = len(design)
+    count = len(layout)
     first = range(min(POINTS_SHOWN, count))
     last = range(max(0, count - POINTS_SHOWN), count)
-    points = {n: {"point": n + 1, **_described(design, n)} for n in {*first, *last}}
+    points = {n: {"point": n + 1, **_described(layout, n)} for n in {*first, *last}}
     seconds, source = _estimate(given, jobs)
     document: dict[str, Any] = {
         **heading(),
         "command": "sweep",
         "study": study_heading(given),
         "dry_run": True,
-        "analysis": design.plan.analysis,
+        "analysis": layout.plan.analysis,
         "points": count,
-        "systems": len(design.combinations),
-        "records": len(design.records),
-        "scales": len(design.scales),
-        "members": len(design.members),
+        "systems": len(layout.combinations),
+        "records": len(layout.records),
+        "scales": len(layout.scales),
+        "members": len(layout.members),
         "first_points": [points[n] for n in first],
         "last_points": [points[n] for n in last],
         "estimate": {"seconds": seconds, "jobs": jobs, "source": source},
@@ -55,14 +55,14 @@ def show_dry_run(given: StudyInput, choices: SweepChoices, terminal: Terminal) -
     terminal.result(document, _tables(document, shown))
 
 
-def _described(design: Design, number: int) -> dict[str, Any]:
+def _described(layout: StudyPoints, number: int) -> dict[str, Any]:
     """A point with its factor on the record, where no measure decides about it."""
-    from rpscli.sweep.design.described import described
+    from rpscli.sweep.points.described import described
 
-    point = design[number]
+    point = layout[number]
     factor = point.scale * point.scale_change
-    known = design.plan.measure is None and design.plan.analysis == "timehistory"
-    return described(design, point) | ({"scale": factor} if known else {})
+    known = layout.plan.measure is None and layout.plan.analysis == "timehistory"
+    return described(layout, point) | ({"scale": factor} if known else {})
 
 
 def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
@@ -70,10 +70,10 @@ def _estimate(given: StudyInput, jobs: int) -> tuple[float, str]:
     from rpscli.analyses.kernels.compilation import is_ready
     from rpscli.sweep.run.estimate import estimated_seconds
 
-    if given.design.plan.analysis == "timehistory" and not is_ready():
-        seconds = GUESSED_POINT_SECONDS * len(given.design) / jobs
+    if given.layout.plan.analysis == "timehistory" and not is_ready():
+        seconds = GUESSED_POINT_SECONDS * len(given.layout) / jobs
         return seconds, "a guess, since the kernel is not compiled yet"
-    return estimated_seconds(given.design, given.context, jobs), "trying some of the points"
+    return estimated_seconds(given.layout, given.context, jobs), "trying some of the points"
 
 
 def _tables(document: dict[str, Any], points: list[dict[str, Any]]) -> Iterator[RenderableType]:

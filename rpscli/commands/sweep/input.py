@@ -17,8 +17,8 @@ from rpscli.report.figures.look import USUAL, Look
 if TYPE_CHECKING:
     from rpscli.case.study.study import Study
     from rpscli.report.files.output_folder import OutputFolder
-    from rpscli.sweep.design.layout import Design
     from rpscli.sweep.evaluation.context import StudyContext
+    from rpscli.sweep.points.layout import StudyPoints
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class SweepChoices:
 class StudyInput:
     """A study, laid out."""
 
-    design: Design
+    layout: StudyPoints
     context: StudyContext
     request: CaseRequest
     look: Look = USUAL
@@ -54,14 +54,14 @@ class StudyInput:
     @property
     def study(self) -> Study:
         """The study."""
-        return self.design.study
+        return self.layout.study
 
     @property
     def doubts(self) -> list[str]:
         """What is unusual about its systems, each kind once."""
         from rpscli.case.rules.plausibility import doubts_of_many
 
-        return doubts_of_many([properties.doubts for properties in self.design.properties])
+        return doubts_of_many([properties.doubts for properties in self.layout.properties])
 
     @property
     def file(self) -> Path | None:
@@ -74,9 +74,9 @@ def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> 
     from rpscli.case.study.study import parse_study
     from rpscli.case.text.files import read_text
     from rpscli.report.study.registry import REPORTS
-    from rpscli.sweep.design.layout import lay_out
-    from rpscli.sweep.design.sampling import balance_note
     from rpscli.sweep.evaluation.context import StudyContext
+    from rpscli.sweep.points.layout import lay_out
+    from rpscli.sweep.points.sampling import balance_note
 
     piped = request.source == "-"
     study = parse_study(
@@ -88,8 +88,8 @@ def read_study(request: CaseRequest, terminal: Terminal, look: Look = USUAL) -> 
     )
     if (section := study.file.sample) and (note := balance_note(section)):
         terminal.warn([note])
-    design = lay_out(study, partial(watched, "systems examined", terminal))
-    return StudyInput(design, StudyContext(design.plan), request, look)
+    layout = lay_out(study, partial(watched, "systems examined", terminal))
+    return StudyInput(layout, StudyContext(layout.plan), request, look)
 
 
 def study_folder(given: StudyInput, output: OutputRequest, command: str = "sweep") -> OutputFolder:
@@ -98,7 +98,7 @@ def study_folder(given: StudyInput, output: OutputRequest, command: str = "sweep
 
     place = output.place or RESULTS / given.study.name / command
     overrides = given.request.overrides
-    return folder.study_folder(given.design, place, overrides, command, force=output.force)
+    return folder.study_folder(given.layout, place, overrides, command, force=output.force)
 
 
 def study_heading(given: StudyInput) -> dict[str, str]:

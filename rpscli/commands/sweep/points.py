@@ -28,8 +28,8 @@ def begin(given: StudyInput, store: Store, choices: SweepChoices, terminal: Term
     from rpscli.sweep.run.keys import all_keys
     from rpscli.sweep.run.resume import remember, resume
 
-    keys = all_keys(given.design, given.context)
-    start = resume(given.design, keys, store, retry_failed=choices.retry_failed)
+    keys = all_keys(given.layout, given.context)
+    start = resume(given.layout, keys, store, retry_failed=choices.retry_failed)
     for note in start.notes:
         terminal.note(note)
     if choices.report_only and start.pending:
@@ -37,7 +37,7 @@ def begin(given: StudyInput, store: Store, choices: SweepChoices, terminal: Term
             f"{store.path} lacks {len(start.pending)} of {len(keys)} points; run the study without"
             " --report-only first"
         )
-    remember(given.design, store)
+    remember(given.layout, store)
     return start
 
 
@@ -58,7 +58,7 @@ def compute(
 
     total = start.kept + len(start.pending)
     with progress_report(terminal, start.kept, total) as report:
-        finish = run(given.design, start, store, engine, report, announce)
+        finish = run(given.layout, start, store, engine, report, announce)
     rate = finish.computed / finish.seconds if finish.seconds else 0.0
     terminal.note(
         f"computed {finish.computed} points in {duration(finish.seconds)}, {rate:.3g} points/s"
@@ -70,9 +70,9 @@ def _engine(given: StudyInput, choices: SweepChoices, terminal: Terminal) -> Eng
     if choices.scheduler:
         from rpscli.sweep.run.cluster import Cluster  # an optional extra
 
-        return Cluster(choices.scheduler, given.design.plan)
+        return Cluster(choices.scheduler, given.layout.plan)
     from rpscli.sweep.run.threads import Threads, available_cores
 
-    if given.design.plan.analysis == "timehistory":
+    if given.layout.plan.analysis == "timehistory":
         announce_compilation(terminal)
     return Threads(given.context, choices.jobs or available_cores())

@@ -26,12 +26,12 @@ def require_results(given: StudyInput, conditions: Iterable[Condition]) -> None:
         lacking,
         requirement_faults,
     )
-    from rpscli.sweep.design.check import needs_of
+    from rpscli.sweep.points.check import needs_of
 
-    design = given.design
-    design.study.document.refuse(requirement_faults(design))
+    layout = given.layout
+    layout.study.document.refuse(requirement_faults(layout))
     for condition in conditions:
-        if design.plan.analysis != "timehistory":
+        if layout.plan.analysis != "timehistory":
             raise UsageError(f"--fail-on {condition.name} needs analysis: timehistory")
-        if lacking(design, condition.name):
+        if lacking(layout, condition.name):
             raise UsageError(f"--fail-on: {needs_of(condition.name)}")

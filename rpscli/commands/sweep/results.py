@@ -63,7 +63,7 @@ def collect(
     if failures:
         folder.add("failed.csv", csv_text(_failure_columns(failures)))
     found = Collected(failures, None, [], given.doubts, {}, [])
-    if given.design.plan.analysis == "timehistory":
+    if given.layout.plan.analysis == "timehistory":
         found = _with_statistics(found, results, conditions, folder)
     for request in given.study.reports:
         try:
@@ -115,15 +115,15 @@ def _report(
 
 
 def _failures(given: StudyInput, table: Table, folder: OutputFolder) -> Iterator[Failure]:
-    from rpscli.sweep.design.described import reproduction
+    from rpscli.sweep.points.described import reproduction
 
     base = given.study.base_file
     if base is None and table.messages:
         # JSON is YAML too.
-        folder.add(BASE, json.dumps(given.design.plan.base, indent=2) + "\n")
+        folder.add(BASE, json.dumps(given.layout.plan.base, indent=2) + "\n")
         base = folder.folder / BASE
     for number, message in table.messages.items():
-        line = reproduction(given.design, given.context, given.design[number], base or Path())
+        line = reproduction(given.layout, given.context, given.layout[number], base or Path())
         yield Failure(number + 1, message, line)
 
 

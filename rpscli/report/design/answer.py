@@ -11,9 +11,9 @@ from rpscli.case.design.schema import Aim
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.statistics import reached
+from rpscli.sweep.design.answer import NONE, Answer, Interval
+from rpscli.sweep.design.judgement import Requirement
 from rpscli.sweep.reports.intensities import unit_of
-from rpscli.sweep.search.answer import NONE, Answer, Interval
-from rpscli.sweep.search.judgement import Requirement
 from rpscli.sweep.table import Array, Indices
 
 

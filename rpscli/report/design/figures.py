@@ -17,9 +17,9 @@ from rpscli.report.figures.drawing import Draw
 from rpscli.report.figures.look import in_force
 from rpscli.report.study.labels import symbol
 from rpscli.report.study.panels import MOST_TICKS
+from rpscli.sweep.design.answer import NONE, ROBUST, Answer
+from rpscli.sweep.design.judgement import Requirement
 from rpscli.sweep.reports.intensities import unit_of
-from rpscli.sweep.search.answer import NONE, ROBUST, Answer
-from rpscli.sweep.search.judgement import Requirement
 from rpscli.sweep.statistics.share import share
 from rpscli.sweep.table import Array
 

@@ -138,7 +138,7 @@ def pair_columns(report: ComparisonReport) -> list[Column]:
     points = [int(report.pairs.points[place]) for _, _, place in rows]
     computed = [float(report.computed[quantity, place]) for _, quantity, place in rows]
     observed = [float(report.pairs.values[quantity, place]) for _, quantity, place in rows]
-    requests = [report.table.design[point].record for point in points]
+    requests = [report.table.layout[point].record for point in points]
     return [
         *_named(report, [row[0] for row in rows]),
         Column("record", "-", [quoted(request.source) for request in requests if request]),

@@ -113,5 +113,5 @@ REPORT = Report(
     drawable=lambda report: bool(report.samples),
     notes=lambda report: [HOW] * bool(report.samples),
     results=lambda _: ["drift_ratio"],
-    requires=lambda design, _: without_floors(design, FloorSpectraOptions()),
+    requires=lambda layout, _: without_floors(layout, FloorSpectraOptions()),
 )

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from rpscli.report.files.output_folder import OutputFolder, Run
 from rpscli.report.files.whole_files import require_writable
-from rpscli.sweep.design.layout import Design
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import FILE
 
 
 def study_folder(
-    design: Design,
+    layout: StudyPoints,
     place: Path,
     overrides: Sequence[str],
     command: str = "sweep",
@@ -25,12 +25,12 @@ def study_folder(
     there may be files there that no `run.json` speaks of.
     """
     require_writable(place)
-    study, plan = design.study, design.plan
+    study, plan = layout.study, layout.plan
     inputs = {
         "study": study.document.content,
         "base": plan.base,
         "overrides": list(overrides),
-        "points": len(design),
+        "points": len(layout),
         "solver": plan.solver,
     }
     file = None if study.source.startswith("<") else Path(study.source)

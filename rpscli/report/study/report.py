@@ -13,7 +13,7 @@ from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.figures.style import Target, kept_figure
 from rpscli.report.files.csv_text import Column, csv_text
-from rpscli.sweep.design.layout import Design
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.reports.study_results import StudyResults
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Report(Generic[Options, Numbers]):
     findings: Callable[[Numbers], Iterable[tuple[str, str]]] = lambda _: ()
     check: Check = lambda *_: ()
     results: Callable[[Options], Iterable[str]] = lambda _: ()
-    requires: Callable[[Design, Options], Iterable[str]] = lambda *_: ()
+    requires: Callable[[StudyPoints, Options], Iterable[str]] = lambda *_: ()
     analyses: tuple[Analysis, ...] = ("timehistory",)
 
     def drawn(self, numbers: Numbers, title: str, target: Target | Axes | None = None) -> Target:

@@ -10,7 +10,7 @@ from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns, label
 from rpscli.report.study.panels import by_values, colour, left_out, marker, panel_figure
 from rpscli.report.study.report import Report
-from rpscli.sweep.design.described import described
+from rpscli.sweep.points.described import described
 from rpscli.sweep.reports.rotation import (
     RotationOptions,
     RotationPanel,
@@ -29,7 +29,7 @@ def rotation_columns(report: RotationReport) -> list[Column]:
     points = np.concatenate([pair.points for pair in pairs])
     references = np.concatenate([pair.reference_points for pair in pairs])
     table = report.table
-    rows = [described(table.design, table.design[number]) for number in points.tolist()]
+    rows = [described(table.layout, table.layout[number]) for number in points.tolist()]
     names = list(rows[0]) if rows else []
     varied = key_columns(names, [tuple(row.values()) for row in rows])
     return [

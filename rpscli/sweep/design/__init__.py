@@ -1,1 +1,1 @@
-"""Which points a study has."""
+"""The search for a design: where it looks, how designs are judged, and what it answers."""

@@ -19,8 +19,8 @@ from rpscli.case.study.reports import ReportRequest
 from rpscli.case.text.document import Document
 from rpscli.case.text.faults import Fault, dotted, listed
 from rpscli.records.measures.measure import Measure
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.fits.lognormal import Lognormal
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.reports.fragility import BandOptions, binned, fragility_fit, intensity_grid
 from rpscli.sweep.reports.fragility import Observed as Binned
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, measure_without_period
@@ -159,12 +159,12 @@ class ComparisonReport:
 
 def comparison_report(study: StudyResults, options: ComparisonOptions) -> ComparisonReport:
     """Compare every system, or the best one of each group, with its observations."""
-    table, design = study.table, study.table.design
-    observed = design.study.observed
+    table, layout = study.table, study.table.layout
+    observed = layout.study.observed
     assert observed is not None, "`unpaired` was asked before"
-    pairs = observed_pairs(design, observed)
-    fit_keys = _fit_keys(_leading(design), observed, options.fit)
-    system_keys = tuple(key for key in _leading(design) if not _same_axis(design, key, fit_keys))
+    pairs = observed_pairs(layout, observed)
+    fit_keys = _fit_keys(_leading(layout), observed, options.fit)
+    system_keys = tuple(key for key in _leading(layout) if not _same_axis(layout, key, fit_keys))
     measured = study.intensity(options)
     baselines = [study.intensity(MeasureOptions(measure=measure)) for measure in BASELINES]
     if measured.measure not in BASELINES:
@@ -172,29 +172,29 @@ def comparison_report(study: StudyResults, options: ComparisonOptions) -> Compar
     work = _Work(table, options, measured, baselines, observed.quantities, pairs)
     compared: list[Compared] = []
     candidates: list[Candidate] = []
-    for system in groups(design, system_keys):
+    for system in groups(layout, system_keys):
         best = Group((), system.points)
         if options.fit is not None:
             rows = [
                 Candidate(system.values, group.values, work.worth(group.points), taken=False)
-                for group in groups(design, fit_keys, system.points)
+                for group in groups(layout, fit_keys, system.points)
             ]
             place = best_place([row.worth for row in rows])
             candidates += [row._replace(taken=n == place) for n, row in enumerate(rows)]
-            best = groups(design, fit_keys, system.points)[place]
+            best = groups(layout, fit_keys, system.points)[place]
         compared += work.compared(system.values, best)
     return ComparisonReport(
         table=table,
         intensity=measured,
         confidence=options.confidence,
-        system_keys=shown_keys(design, system_keys),
-        fit_keys=shown_keys(design, fit_keys),
+        system_keys=shown_keys(layout, system_keys),
+        fit_keys=shown_keys(layout, fit_keys),
         quantities=observed.quantities,
         pairs=pairs,
         computed=work.computed,
         compared=tuple(compared),
         candidates=tuple(candidates),
-        pooling=tuple(pooling_note(design, (*system_keys, *fit_keys, "scale"))),
+        pooling=tuple(pooling_note(layout, (*system_keys, *fit_keys, "scale"))),
     )
 
 
@@ -214,19 +214,19 @@ def fit_faults(_: Document, axes: Sequence[Axis], request: ReportRequest) -> Ite
             yield Fault(path, text)
 
 
-def uncomparable(design: Design, options: ComparisonOptions) -> Iterator[str]:
+def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[str]:
     """What keeps a study from this report."""
-    yield from unpaired(design)
-    yield from measure_without_period(design, options)
-    observed = design.study.observed
+    yield from unpaired(layout)
+    yield from measure_without_period(layout, options)
+    observed = layout.study.observed
     if options.fit is None or observed is None:
         return
-    keys = _fit_keys(_leading(design), observed, options.fit)
-    named = [key for key in observed.keys if _same_axis(design, key, keys)]
+    keys = _fit_keys(_leading(layout), observed, options.fit)
+    named = [key for key in observed.keys if _same_axis(layout, key, keys)]
     if not keys or named:
         which = f"{listed(named, 'and')} tells what was observed" if named else "no key is left"
         yield f"fit: {which}, and cannot be chosen; vary another key, and name it in fit.keys"
-    elif len(observed_records(observed_pairs(design, observed))) < 2:
+    elif len(observed_records(observed_pairs(layout, observed))) < 2:
         yield "fit: less than two records have an observation, and one part must be held out"
 
 
@@ -235,9 +235,9 @@ def observed_records(pairs: Pairs) -> Indices:
     return np.unique(pairs.records)
 
 
-def _leading(design: Design) -> tuple[str, ...]:
+def _leading(layout: StudyPoints) -> tuple[str, ...]:
     """What tells systems apart: the first key of every axis, and the scale."""
-    return (*leading_keys(design), "scale") if len(design.scales) > 1 else leading_keys(design)
+    return (*leading_keys(layout), "scale") if len(layout.scales) > 1 else leading_keys(layout)
 
 
 def _fit_keys(
@@ -250,9 +250,9 @@ def _fit_keys(
     return tuple(key for key in leading if key not in (*observed.keys, "scale"))
 
 
-def _same_axis(design: Design, key: str, keys: Iterable[str]) -> bool:
+def _same_axis(layout: StudyPoints, key: str, keys: Iterable[str]) -> bool:
     """Whether a key belongs to the axis of one of others."""
-    axes = [set(axis.keys) for axis in design.study.axes] + [{"scale"}]
+    axes = [set(axis.keys) for axis in layout.study.axes] + [{"scale"}]
     return any(key in axis and axis & set(keys) for axis in axes)
 
 

@@ -62,13 +62,13 @@ class ContrastReport:
 
 def contrast_report(table: Table, options: ContrastOptions) -> ContrastReport:
     """Pair the points of the two values of the key, and gather them in cells."""
-    key = options.key or leading_keys(table.design)[-1]
-    systems = {group.values[0]: group.points for group in groups(table.design, [key])}
+    key = options.key or leading_keys(table.layout)[-1]
+    systems = {group.values[0]: group.points for group in groups(table.layout, [key])}
     reference = next(iter(systems)) if options.reference is None else options.reference
     value = options.value
     if value is None:
         value = next(known for known in systems if known != reference)
-    everywhere = np.arange(len(table.design))
+    everywhere = np.arange(len(table.layout))
     mine, theirs = paired(everywhere, systems[value], systems[reference])
     bad = table.failed[mine] | table.failed[theirs]
     panel_keys = options.panels or ()
@@ -78,7 +78,7 @@ def contrast_report(table: Table, options: ContrastOptions) -> ContrastReport:
         _cell(
             table, options, group.values, np.array([other[i] for i in group.points]), group.points
         )
-        for group in groups(table.design, keys, theirs[~bad])
+        for group in groups(table.layout, keys, theirs[~bad])
     )
     return ContrastReport(options, key, value, reference, panel_keys, cells, int(bad.sum()))
 

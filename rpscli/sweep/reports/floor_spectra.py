@@ -17,7 +17,7 @@ from rpscli.analyses.floor_spectra import (
 )
 from rpscli.case.study.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions
-from rpscli.sweep.design.layout import Design
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, computed_groups, leading_keys
@@ -67,8 +67,8 @@ class FloorSpectraReport:
 
 def floor_spectra_report(study: StudyResults, options: FloorSpectraOptions) -> FloorSpectraReport:
     """Run the histories once more for their samples, which are not stored."""
-    table, design = study.table, study.table.design
-    keys = apart(design, leading_keys(design))
+    table, layout = study.table, study.table.layout
+    keys = apart(layout, leading_keys(layout))
     panels = []
     for group, points in computed_groups(table, keys):
         spectra = np.array([_spectra(study, int(p), options.damping) for p in points])
@@ -86,11 +86,11 @@ def floor_spectra_report(study: StudyResults, options: FloorSpectraOptions) -> F
             )
         )
     return FloorSpectraReport(
-        keys=shown_keys(design, keys),
+        keys=shown_keys(layout, keys),
         periods=PERIODS,
         panels=tuple(panels),
-        pooled=pooled(design, keys),
-        notes=tuple(pooling_note(design, keys)),
+        pooled=pooled(layout, keys),
+        notes=tuple(pooling_note(layout, keys)),
     )
 
 
@@ -98,7 +98,7 @@ def _spectra(study: StudyResults, number: int, damping: float) -> NDArray[np.flo
     """(2, 2, n, p) isolated and fixed base; pseudo-acceleration and displacement."""
     from rpscli.analyses.timehistory import time_history
 
-    given = study.context.history(study.table.design[number])
+    given = study.context.history(study.table.layout[number])
     up = given.vertical and given.vertical.scaled(given.scale)
     result = time_history(
         given.structure, given.record.scaled(given.scale), given.settings, vertical=up
@@ -109,10 +109,10 @@ def _spectra(study: StudyResults, number: int, damping: float) -> NDArray[np.flo
     return np.array([(spectra.pseudo_acceleration, spectra.displacement) for spectra in both])
 
 
-def without_floors(design: Design, _options: FloorSpectraOptions) -> Iterator[str]:
+def without_floors(layout: StudyPoints, _options: FloorSpectraOptions) -> Iterator[str]:
     """Systems without a building, or with different ones in a sample."""
-    storeys = np.array([properties.storeys for properties in design.properties])
-    by_sample = storeys.reshape(design.combinations.shape)
+    storeys = np.array([properties.storeys for properties in layout.properties])
+    by_sample = storeys.reshape(layout.combinations.shape)
     if not storeys.all():
         yield "a system has no superstructure, and so no floors; leave out storeys: 0"
     elif (np.ptp(by_sample, axis=-1) > 0).any():

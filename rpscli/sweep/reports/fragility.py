@@ -159,9 +159,9 @@ def fragility_report(
     table: Table, measured: Intensity, options: FragilityOptions
 ) -> FragilityReport:
     """Fit every limit state of every group of systems; samples and records are pooled."""
-    keys = options.series if options.series is not None else leading_keys(table.design)
+    keys = options.series if options.series is not None else leading_keys(table.layout)
     limits = tuple(limit_states(options))
-    systems = groups(table.design, keys)
+    systems = groups(table.layout, keys)
     curves = (
         _fragility(table, measured, options, group.values, group.points, limit)
         for limit in limits
@@ -171,11 +171,11 @@ def fragility_report(
     return FragilityReport(
         intensity=measured,
         confidence=options.confidence,
-        series_keys=shown_keys(table.design, keys),
+        series_keys=shown_keys(table.layout, keys),
         limits=limits,
         curves=tuple(curves),
-        pooled=pooled(table.design, apart_by),
-        pooling=tuple(pooling_note(table.design, apart_by)),
+        pooled=pooled(table.layout, apart_by),
+        pooling=tuple(pooling_note(table.layout, apart_by)),
     )
 
 
@@ -241,15 +241,15 @@ def fragility_fit(
 
 def _cluster(table: Table, points: Indices) -> Indices:
     """What hangs together: points of one record; each point alone if there is one record only."""
-    if len(table.design.records) == 1:
+    if len(table.layout.records) == 1:
         return points
-    return record_of(table.design, points)
+    return record_of(table.layout, points)
 
 
 def _weight(table: Table, points: Indices) -> float:
     """Motions over points: samples and members of an ensemble share a motion."""
-    design = table.design
-    shaken = points % design.points_of_system // len(design.members)
+    layout = table.layout
+    shaken = points % layout.points_of_system // len(layout.members)
     return len(np.unique(shaken)) / max(len(points), 1)
 
 

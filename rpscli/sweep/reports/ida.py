@@ -73,24 +73,24 @@ class IdaReport:
 
 def ida_report(table: Table, options: IdaOptions) -> IdaReport:
     """Curves and fractiles of each system."""
-    keys = options.panels if options.panels is not None else leading_keys(table.design)
-    measure = table.design.plan.measure
+    keys = options.panels if options.panels is not None else leading_keys(table.layout)
+    measure = table.layout.plan.measure
     return IdaReport(
         demand=options.demand,
         measure=measure.measure if measure else None,
         panel_keys=keys,
         panels=tuple(
             _panel(table, options.demand, group.values, group.points)
-            for group in groups(table.design, keys)
+            for group in groups(table.layout, keys)
         ),
-        pooled=pooled(table.design, (*keys, INTENSITY)),
-        notes=tuple(pooling_note(table.design, (*keys, INTENSITY))),
+        pooled=pooled(table.layout, (*keys, INTENSITY)),
+        notes=tuple(pooling_note(table.layout, (*keys, INTENSITY))),
     )
 
 
 def _panel(table: Table, name: str, values: tuple[object, ...], points: Indices) -> IdaPanel:
     demands = demand(table, table.columns[name])
-    by_level = sorted(groups(table.design, ["scale"], points), key=_level)
+    by_level = sorted(groups(table.layout, ["scale"], points), key=_level)
     curves = np.column_stack([demands[group.points] for group in by_level])
     return IdaPanel(
         values=values,

@@ -14,8 +14,8 @@ from rpscli.case.study.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import RecordError
 from rpscli.records.measures.measure import MEASURE_UNITS, Measure
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.table import Array, Table
 
 
@@ -40,10 +40,10 @@ class MeasureOptions(ReportOptions):
     damping: DampingRatio = Field(0.05, description="of Sa")
 
 
-def measure_without_period(design: Design, options: MeasureOptions) -> Iterator[str]:
+def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
     """What keeps a report from having the measure that it asks for."""
     at_first_period = options.measure == "Sa" and options.period is None
-    if at_first_period and any(system.period is None for system in design.properties):
+    if at_first_period and any(system.period is None for system in layout.properties):
         yield "Sa at T1 needs storeys; give the report a `period`"
 
 
@@ -62,7 +62,7 @@ class Intensity(NamedTuple):
 
 def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> Intensity:
     """The measure that a report asks for; by default the one that the study scales to, else PGV."""
-    scaled = table.design.plan.measure
+    scaled = table.layout.plan.measure
     measure, period, damping = options.measure, options.period, options.damping
     if measure is None and scaled is not None:
         measure, period, damping = scaled.measure, scaled.period, scaled.damping
@@ -73,7 +73,7 @@ def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> I
         scaled.damping,
     )
     values = np.full(len(table), np.nan)
-    for point in table.design:
+    for point in table.layout:
         assert point.record is not None, "points of histories have a record"
         if target:
             # Not by way of the factor, whose rounding would blur equal intensities.
@@ -81,7 +81,7 @@ def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> I
             continue
         at = None
         if measure == "Sa":
-            at = period or table.design.properties[point.system].period
+            at = period or table.layout.properties[point.system].period
             assert at is not None, "`measure_without_period` was asked before"
         try:
             unscaled = context.records.intensity(point.record, measure, at, damping)

@@ -133,35 +133,35 @@ def lines_report(
     Where several points share an abscissa (the records of a study) the line is the statistic that
     the options name; failed points are left out.
     """
-    design = table.design
+    layout = table.layout
     panels, series = options.panels or (), options.series
     if series is None:
         taken = {*panels, *_together(table, options.x)}
-        series = tuple(key for key in leading_keys(design) if key not in taken)
+        series = tuple(key for key in leading_keys(layout) if key not in taken)
         if INTENSITY not in taken:
-            series = apart(design, series)
+            series = apart(layout, series)
     names = (*options.y, *options.dashed)
     varied = bool(_together(table, options.x))
     values = _collected(stored, names if varied else (*names, options.x))
     found = []
-    for panel in groups(design, panels):
+    for panel in groups(layout, panels):
         lines = [
             line
             for name in names
-            for group in groups(design, series, panel.points)
+            for group in groups(layout, series, panel.points)
             for line in _lines(table, values, options, group.values, group.points, name)
         ]
         found.append(LinesPanel(panel.values, tuple(lines)))
     keys = (options.x, *series, *panels)
     return LinesReport(
         options=options,
-        series_keys=shown_keys(design, series),
-        panel_keys=shown_keys(design, panels),
+        series_keys=shown_keys(layout, series),
+        panel_keys=shown_keys(layout, panels),
         panels=tuple(found),
         failed=int(table.failed.sum()),
-        x_name=shown_keys(design, (options.x,))[0],
-        pooled=pooled(design, keys) if varied else (),
-        pooling=tuple(pooling_note(design, keys)) if varied else (),
+        x_name=shown_keys(layout, (options.x,))[0],
+        pooled=pooled(layout, keys) if varied else (),
+        pooling=tuple(pooling_note(layout, keys)) if varied else (),
     )
 
 
@@ -169,7 +169,7 @@ def _together(table: Table, key: str) -> tuple[str, ...]:
     """The keys of the axis in which a key varies; none if it is a result."""
     if key in {"record", "scale"}:
         return (key,)
-    axes = (axis.keys for axis in table.design.study.axes)
+    axes = (axis.keys for axis in table.layout.study.axes)
     return next((keys for keys in axes if key in keys), ())
 
 
@@ -202,7 +202,7 @@ def _lines(
         x, y = ([pair[side] for pair in pairs] for side in (0, 1))
         return [Line(of_series, name, dashed, tuple(x), tuple(y))] if pairs else []
     at = []
-    for group in groups(table.design, [options.x], points):
+    for group in groups(table.layout, [options.x], points):
         stood = group.points[~table.overturned[group.points]].tolist()
         known = [values[name][n] for n in stood if isinstance(values[name][n], int | float)]
         fallen = int(table.overturned[group.points].sum())

@@ -51,7 +51,7 @@ class OverturningTable:
 
 def overturning_table(table: Table, options: OverturningOptions) -> OverturningTable:
     """Count the overturned points of each system, at each intensity unless the study says else."""
-    leading = leading_keys(table.design)
+    leading = leading_keys(table.layout)
     columns = options.columns
     if columns is None:
         columns = tuple(key for key in leading[-1:] if key not in (options.rows or ()))
@@ -59,29 +59,29 @@ def overturning_table(table: Table, options: OverturningOptions) -> OverturningT
     if rows is None:
         rows = tuple(key for key in leading if not _together(table, key, columns))
         if INTENSITY not in columns:
-            rows = apart(table.design, rows)
-    across = groups(table.design, columns)
+            rows = apart(table.layout, rows)
+    across = groups(table.layout, columns)
     lines = []
-    for row in groups(table.design, rows):
+    for row in groups(table.layout, rows):
         # by their text: a value may be a list, of devices or of masses
         cells = {
-            repr(group.values): group.points for group in groups(table.design, columns, row.points)
+            repr(group.values): group.points for group in groups(table.layout, columns, row.points)
         }
         lines.append(tuple(_cell(table, cells.get(repr(group.values))) for group in across))
     return OverturningTable(
-        row_keys=shown_keys(table.design, rows),
-        column_keys=shown_keys(table.design, columns),
-        rows=tuple(group.values for group in groups(table.design, rows)),
+        row_keys=shown_keys(table.layout, rows),
+        column_keys=shown_keys(table.layout, columns),
+        rows=tuple(group.values for group in groups(table.layout, rows)),
         columns=tuple(group.values for group in across),
         cells=tuple(lines),
-        pooled=pooled(table.design, (*rows, *columns)),
-        notes=tuple(pooling_note(table.design, (*rows, *columns))),
+        pooled=pooled(table.layout, (*rows, *columns)),
+        notes=tuple(pooling_note(table.layout, (*rows, *columns))),
     )
 
 
 def _together(table: Table, key: str, keys: tuple[str, ...]) -> bool:
     """Whether a key varies in the same axis as one of others."""
-    axes = (axis.keys for axis in table.design.study.axes)
+    axes = (axis.keys for axis in table.layout.study.axes)
     return any(key in axis and set(axis) & set(keys) for axis in axes)
 
 

@@ -18,9 +18,9 @@ from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import CaseError, RecordError
 from rpscli.records.query import Query, parse_query
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import RecordRequest
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.pooling import shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
@@ -115,16 +115,16 @@ def spectrum_report(
     table: Table, context: StudyContext, options: SpectrumOptions
 ) -> SpectrumReport:
     """Amplitude and frequency of every point, made dimensionless by its own system."""
-    design = table.design
+    layout = table.layout
     series = options.series or ()
     panels = options.panels
     if panels is None:
-        panels = tuple(key for key in leading_keys(design) if key not in series)
+        panels = tuple(key for key in leading_keys(layout) if key not in series)
     pulses: dict[RecordRequest, Pulse] = {}
     frequency, amplitude = np.full((2, len(table)), np.nan)
-    for point in table.design:
+    for point in table.layout:
         assert point.record is not None, "points of histories have a record"
-        properties = table.design.properties[point.system]
+        properties = table.layout.properties[point.system]
         if point.record not in pulses:
             pulses[point.record] = pulse_of(point.record.source, options)
         pulse = pulses[point.record]
@@ -135,11 +135,11 @@ def spectrum_report(
             size = peak * abs(table.scale[point.number])
             amplitude[point.number] = size / properties.uplift_acceleration
     found = []
-    for panel in groups(design, panels):
-        inside = groups(design, series, panel.points)
+    for panel in groups(layout, panels):
+        inside = groups(layout, series, panel.points)
         one = [_series(table, g.values, g.points, frequency, amplitude) for g in inside]
         found.append(SpectrumPanel(panel.values, tuple(one)))
-    return SpectrumReport(shown_keys(design, panels), shown_keys(design, series), tuple(found))
+    return SpectrumReport(shown_keys(layout, panels), shown_keys(layout, series), tuple(found))
 
 
 class Pulse(NamedTuple):
@@ -175,10 +175,10 @@ def pulse_of(source: str, options: SpectrumOptions) -> Pulse:
     return Pulse(query.quantity("period", "time"), None)
 
 
-def records_without_period(design: Design, options: SpectrumOptions) -> Iterator[str]:
+def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Iterator[str]:
     """Records of a study that have no place in a spectrum."""
-    requests = {properties.record for properties in design.properties}
-    wanted = [request or other for request in design.records for other in requests]
+    requests = {properties.record for properties in layout.properties}
+    wanted = [request or other for request in layout.records for other in requests]
     for request in dict.fromkeys(wanted):
         try:
             if request is not None:

@@ -14,9 +14,9 @@ from rpscli.case.schema.fields import Quantity, Text
 from rpscli.case.schema.section import Section
 from rpscli.errors import CaseError
 from rpscli.records.measures.measure import Measure
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard
 from rpscli.sweep.fits.lognormal import NOTHING, Band, percentiles
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.reports.fragility import (
     Fragility,
     FragilityOptions,
@@ -104,7 +104,7 @@ def probability(rate: float, years: float) -> float:
     return -math.expm1(-rate * years)
 
 
-def risk_faults(design: Design, options: RiskOptions) -> Iterator[str]:
+def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
     """What keeps a study from having a risk: its hazard curve, above all."""
     measure = options.hazard.measure
     if options.measure not in (None, measure):
@@ -112,19 +112,19 @@ def risk_faults(design: Design, options: RiskOptions) -> Iterator[str]:
     if measure == "Sa" and options.period is None:
         yield "a hazard curve of Sa is for one period; give the report a `period`"
     try:
-        hazard_of(design, options)
+        hazard_of(layout, options)
     except CaseError as error:
         yield str(error)
 
 
-def hazard_of(design: Design, options: RiskOptions) -> Hazard:
+def hazard_of(layout: StudyPoints, options: RiskOptions) -> Hazard:
     """The hazard curve that a report names."""
-    return read_hazard(design.study.folder / options.hazard.file, options.hazard.measure)
+    return read_hazard(layout.study.folder / options.hazard.file, options.hazard.measure)
 
 
 def risk_report(study: StudyResults, options: RiskOptions) -> RiskReport:
     """Fit the fragilities and integrate them over the hazard."""
-    hazard = hazard_of(study.table.design, options)
+    hazard = hazard_of(study.table.layout, options)
     options = options.model_copy(update={"measure": options.hazard.measure})
     fragilities = fragility_report(study.table, study.intensity(options), options)
     risks = tuple(risk_of(curve, hazard, options.confidence) for curve in fragilities.curves)

@@ -61,8 +61,8 @@ class RotationReport:
 
 def rotation_report(table: Table, options: RotationOptions) -> RotationReport:
     """Pair the points of each system with those of the reference."""
-    key = options.key or leading_keys(table.design)[-1]
-    systems = groups(table.design, [key])
+    key = options.key or leading_keys(table.layout)[-1]
+    systems = groups(table.layout, [key])
     wanted = [group for group in systems if group.values[0] == options.reference]
     reference = wanted[0] if wanted else systems[-1]
     others = tuple(group for group in systems if group is not reference)
@@ -70,7 +70,7 @@ def rotation_report(table: Table, options: RotationOptions) -> RotationReport:
     panel_keys = options.panels or ()
     panels = []
     failed = 0
-    for panel in groups(table.design, panel_keys):
+    for panel in groups(table.layout, panel_keys):
         found = []
         for other in others:
             pairs = paired(panel.points, other.points, reference.points)
@@ -84,9 +84,9 @@ def rotation_report(table: Table, options: RotationOptions) -> RotationReport:
 
 def rotation_over_alpha(table: Table) -> Array:
     """(points,) max|theta|/alpha; infinite where the structure overturned."""
-    design = table.design
-    alpha = np.array([properties.alpha for properties in design.properties])
-    system = np.arange(len(design)) // design.points_of_system
+    layout = table.layout
+    alpha = np.array([properties.alpha for properties in layout.properties])
+    system = np.arange(len(layout)) // layout.points_of_system
     ratio = table.columns["max_rotation"] / alpha[system]
     return np.where(table.overturned, np.inf, ratio)
 

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
-from rpscli.sweep.design.layout import Design
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
 from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
@@ -78,30 +78,30 @@ def storey_shear_report(
     table: Table, fixed: FixedBaseReferences, options: StoreyShearOptions
 ) -> StoreyShearReport:
     """Profiles of each system at each intensity, or of the groups that the study names."""
-    design = table.design
-    keys = panel_keys(design, options)
+    layout = table.layout
+    keys = panel_keys(layout, options)
     profiles = (
-        _profile(table, fixed, group.values, group.points) for group in groups(design, keys)
+        _profile(table, fixed, group.values, group.points) for group in groups(layout, keys)
     )
     return StoreyShearReport(
-        panel_keys=shown_keys(design, keys),
+        panel_keys=shown_keys(layout, keys),
         profiles=tuple(profile for profile in profiles if profile),
         unit=options.unit,
-        pooled=pooled(design, keys),
-        pooling=tuple(pooling_note(design, keys)),
+        pooled=pooled(layout, keys),
+        pooling=tuple(pooling_note(layout, keys)),
     )
 
 
-def panel_keys(design: Design, options: StoreyShearOptions) -> tuple[str, ...]:
+def panel_keys(layout: StudyPoints, options: StoreyShearOptions) -> tuple[str, ...]:
     """What tells panels apart."""
-    return apart(design, leading_keys(design)) if options.panels is None else options.panels
+    return apart(layout, leading_keys(layout)) if options.panels is None else options.panels
 
 
-def unlike_buildings(design: Design, options: StoreyShearOptions) -> Iterator[str]:
+def unlike_buildings(layout: StudyPoints, options: StoreyShearOptions) -> Iterator[str]:
     """Panels whose systems differ in what their common profile would need."""
-    keys = panel_keys(design, options)
-    for group in groups(design, keys):
-        systems = [design.properties[i] for i in np.unique(group.points // design.points_of_system)]
+    keys = panel_keys(layout, options)
+    for group in groups(layout, keys):
+        systems = [layout.properties[i] for i in np.unique(group.points // layout.points_of_system)]
         named = ", ".join(f"{key} = {value}" for key, value in zip(keys, group.values, strict=True))
         of = f"the panel of {named}" if named else "its one panel"
         storeys = sorted({system.storeys for system in systems})
@@ -117,14 +117,14 @@ def unlike_buildings(design: Design, options: StoreyShearOptions) -> Iterator[st
 def _profile(
     table: Table, fixed: FixedBaseReferences, values: tuple[object, ...], points: Indices
 ) -> StoreyProfile | None:
-    design = table.design
-    systems = np.unique(points // design.points_of_system)
-    n = design.properties[systems[0]].storeys
+    layout = table.layout
+    systems = np.unique(points // layout.points_of_system)
+    n = layout.properties[systems[0]].storeys
     if n == 0:
         return None
-    statics = np.array([properties.static_base_shear for properties in design.properties])
+    statics = np.array([properties.static_base_shear for properties in layout.properties])
     kept = points[~table.failed[points] & ~table.overturned[points]]
-    static = statics[kept // design.points_of_system, None]
+    static = statics[kept // layout.points_of_system, None]
     shears = table.storey_shears[kept, :n] / static
     reference = _fixed(table, fixed, kept, n) / static
     unique = np.unique(statics[systems])
@@ -145,7 +145,7 @@ def _fixed(table: Table, fixed: FixedBaseReferences, points: Indices, n: int) ->
     """Shears on a fixed base of the same points."""
     rows = np.empty((len(points), n))
     for row, number in enumerate(points.tolist()):
-        point = table.design[number]
+        point = table.layout[number]
         assert point.record is not None, "points of histories have a record"
         rows[row] = abs(table.scale[number]) * fixed[point.system, point.record]
     return rows

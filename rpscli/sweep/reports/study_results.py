@@ -30,7 +30,7 @@ class StudyResults:
     @cached_property
     def fixed_base(self) -> FixedBaseReferences:
         """Storey shears on a fixed base; computed if they are not stored."""
-        return fixed_base_references(self.table.design, self.context, self.store, self.jobs)
+        return fixed_base_references(self.table.layout, self.context, self.store, self.jobs)
 
     def intensity(self, options: MeasureOptions) -> Intensity:
         """The intensity of the ground motion at every point."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.run.schedule import batches
 
 PROBES = 96
@@ -16,12 +16,12 @@ LONGEST_PROBING = 3.0
 """Time after which no further points are tried [s]."""
 
 
-def estimated_seconds(design: Design, context: StudyContext, jobs: int) -> float:
+def estimated_seconds(layout: StudyPoints, context: StudyContext, jobs: int) -> float:
     """Compute points spread over the study, in batches, and take the rest to be like them."""
-    count = len(design)
+    count = len(layout)
     tried = min(PROBES, count)
     numbers = sorted({count * (2 * i + 1) // (2 * tried) for i in range(tried)})
-    probes = list(batches(design, numbers, jobs=1))
+    probes = list(batches(layout, numbers, jobs=1))
     began = time.perf_counter()
     for batch in probes:
         _seconds(context, batch[:1])  # reads records, loads kernels

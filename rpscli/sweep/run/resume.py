@@ -9,7 +9,7 @@ from typing import Any
 
 from rpscli.case.text.faults import shown
 from rpscli.errors import Refused
-from rpscli.sweep.design.layout import Design
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Store
 
 
@@ -40,7 +40,7 @@ class Resume:
     notes: tuple[str, ...]
 
 
-def resume(design: Design, keys: list[bytes], store: Store, *, retry_failed: bool) -> Resume:
+def resume(layout: StudyPoints, keys: list[bytes], store: Store, *, retry_failed: bool) -> Resume:
     """Compare a study with its store.
 
     Raises
@@ -62,25 +62,25 @@ def resume(design: Design, keys: list[bytes], store: Store, *, retry_failed: boo
     unused = len(known.keys() - wanted)
     before = store.meta("study")
     if before is not None and known and not wanted & known.keys():
-        _refuse_other_study(design, store)
-    notes = tuple(_notes(design, store, before, kept, unused, len(keys) - kept))
+        _refuse_other_study(layout, store)
+    notes = tuple(_notes(layout, store, before, kept, unused, len(keys) - kept))
     return Resume(keys, pending, kept, failed, unused, notes)
 
 
-def remember(design: Design, store: Store) -> None:
+def remember(layout: StudyPoints, store: Store) -> None:
     """Write into the store which study its results belong to."""
-    store.note(study=written(design), name=design.study.name, solver=design.plan.solver)
+    store.note(study=written(layout), name=layout.study.name, solver=layout.plan.solver)
 
 
-def written(design: Design) -> str:
+def written(layout: StudyPoints) -> str:
     """The study and its case as they are written, with overrides."""
-    content = {**design.study.document.content, "base": design.plan.base}
+    content = {**layout.study.document.content, "base": layout.plan.base}
     return json.dumps(content, sort_keys=True)
 
 
-def _refuse_other_study(design: Design, store: Store) -> None:
+def _refuse_other_study(layout: StudyPoints, store: Store) -> None:
     name = store.meta("name")
-    if name != design.study.name:
+    if name != layout.study.name:
         raise Refused(
             f"{store.path} holds the results of another study ({name}); name another folder with"
             " -o, or throw them away with --fresh"
@@ -88,13 +88,13 @@ def _refuse_other_study(design: Design, store: Store) -> None:
 
 
 def _notes(
-    design: Design, store: Store, before: str | None, kept: int, unused: int, added: int
+    layout: StudyPoints, store: Store, before: str | None, kept: int, unused: int, added: int
 ) -> Iterator[str]:
     if before is None:
         return
-    if (solver := store.meta("solver")) != design.plan.solver:
-        yield f"the solver changed from {solver} to {design.plan.solver}: nothing of it applies"
-    old, new = json.loads(before), json.loads(written(design))
+    if (solver := store.meta("solver")) != layout.plan.solver:
+        yield f"the solver changed from {solver} to {layout.plan.solver}: nothing of it applies"
+    old, new = json.loads(before), json.loads(written(layout))
     changed = list(_differences(old, new, ""))
     if changed:
         yield "the study changed: " + "; ".join(changed[:6]) + ("; ..." if changed[6:] else "")

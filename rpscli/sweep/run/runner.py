@@ -10,10 +10,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
 
-from rpscli.sweep.design.described import described
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import FAILED
+from rpscli.sweep.points.described import described
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.run.engine import Engine
 from rpscli.sweep.run.resume import Resume
 from rpscli.sweep.run.schedule import batches
@@ -71,7 +71,7 @@ class Finish:
 
 
 def run(
-    design: Design,
+    layout: StudyPoints,
     start: Resume,
     store: Store,
     engine: Engine,
@@ -87,12 +87,12 @@ def run(
     computed = failed = 0
     first: tuple[int, float] | None = None
     with first_interrupt(announce) as interrupted:
-        work = batches(design, start.pending, engine.jobs)
+        work = batches(layout, start.pending, engine.jobs)
         for rows in engine.outcomes(_until(interrupted, work)):
             store.add(
                 Entry(
                     start.keys[row.number],
-                    described(design, design[row.number]),
+                    described(layout, layout[row.number]),
                     row.outcome,
                     row.message,
                     row.results,

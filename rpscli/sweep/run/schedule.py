@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.systems import SYSTEMS_KEPT
+from rpscli.sweep.points.layout import StudyPoints
 
 LARGEST_BATCH = 480
 """Points; a batch takes about a second at most with common buildings, and keeps all lanes of the
@@ -26,33 +26,33 @@ LARGEST_BLOCK = 100_000
 """Points that are put in order at a time."""
 
 
-def batches(design: Design, pending: Sequence[int], jobs: int) -> Iterator[list[Point]]:
+def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[list[Point]]:
     """Batches of the pending points, which are given in the order of the study."""
     # Small enough that all threads have something to do until the end.
     size = min(LARGEST_BATCH, max(SMALLEST_BATCH, len(pending) // (4 * jobs)))
-    for block in _blocks(design, pending):
-        for _, alike in groupby(block, key=lambda number: _storeys(design, number)):
+    for block in _blocks(layout, pending):
+        for _, alike in groupby(block, key=lambda number: _storeys(layout, number)):
             numbers = list(alike)
             for first in range(0, len(numbers), size):
-                yield [design[number] for number in numbers[first : first + size]]
+                yield [layout[number] for number in numbers[first : first + size]]
 
 
-def _blocks(design: Design, pending: Sequence[int]) -> Iterator[list[int]]:
+def _blocks(layout: StudyPoints, pending: Sequence[int]) -> Iterator[list[int]]:
     """Pending points of some systems each, sorted by number of storeys and record."""
-    of_system = design.points_of_system
+    of_system = layout.points_of_system
     systems = max(1, min(SYSTEMS_KEPT // 2, LARGEST_BLOCK // of_system))
 
     def order(number: int) -> tuple[int, int, int]:
-        return -_storeys(design, number), _record(design, number), number
+        return -_storeys(layout, number), _record(layout, number), number
 
     for _, block in groupby(pending, key=lambda number: number // (of_system * systems)):
         yield sorted(block, key=order)
 
 
-def _storeys(design: Design, number: int) -> int:
-    return design.properties[number // design.points_of_system].storeys
+def _storeys(layout: StudyPoints, number: int) -> int:
+    return layout.properties[number // layout.points_of_system].storeys
 
 
-def _record(design: Design, number: int) -> int:
-    of_system = design.points_of_system
-    return number % of_system // (of_system // len(design.records))
+def _record(layout: StudyPoints, number: int) -> int:
+    of_system = layout.points_of_system
+    return number % of_system // (of_system // len(layout.records))

@@ -16,10 +16,10 @@ import numpy as np
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.fixed_base import reference_shears
 from rpscli.sweep.evaluation.points import RecordRequest
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import Array
 
@@ -36,7 +36,7 @@ class Run(NamedTuple):
 
 
 def fixed_base_references(
-    design: Design, context: StudyContext, store: Store, jobs: int
+    layout: StudyPoints, context: StudyContext, store: Store, jobs: int
 ) -> FixedBaseReferences:
     """All of a study; those that are not in the store are computed and stored.
 
@@ -46,17 +46,17 @@ def fixed_base_references(
     keys: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, Run] = {}
     structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
-    for system, properties in enumerate(design.properties):
+    for system, properties in enumerate(layout.properties):
         if not properties.building:
             continue
-        for request in dict.fromkeys(request or properties.record for request in design.records):
+        for request in dict.fromkeys(request or properties.record for request in layout.records):
             assert request is not None, "points of histories have a record"
-            key = _key(design, context, properties.building, request)
+            key = _key(layout, context, properties.building, request)
             try:
                 if key not in known and key not in runs:
                     motion = context.records.motion(request).horizontal
                     if properties.building not in structures:
-                        structures[properties.building] = design.system(system).structure
+                        structures[properties.building] = layout.system(system).structure
                     runs[key] = Run(key, structures[properties.building], motion)
             except RecordError:
                 continue
@@ -67,8 +67,10 @@ def fixed_base_references(
     return {place: known[key] for place, key in keys.items()}
 
 
-def _key(design: Design, context: StudyContext, building: bytes, request: RecordRequest) -> bytes:
-    digest = hashlib.sha256(design.plan.solver.encode())
+def _key(
+    layout: StudyPoints, context: StudyContext, building: bytes, request: RecordRequest
+) -> bytes:
+    digest = hashlib.sha256(layout.plan.solver.encode())
     digest.update(building)
     digest.update(context.records.digest(request))
     return digest.digest()

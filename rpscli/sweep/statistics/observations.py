@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rpscli.case.study.observed import Observed, comparable
-from rpscli.sweep.design.layout import Design
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.pooling import INTENSITY
 from rpscli.sweep.table import Array, Indices, groups
 
@@ -28,76 +28,78 @@ class Pairs(NamedTuple):
     notes: tuple[str, ...]
 
 
-def observed_pairs(design: Design, observed: Observed) -> Pairs:
+def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
     """Pair every point with the observation of its record and system.
 
     Parameters
     ----------
-    design
+    layout
         A study with a list of records.
     observed
         Its observations; a record goes by its source, its file's name, or that without its suffix.
     """
-    records = _record_numbers(design)
+    records = _record_numbers(layout)
     rows = {
         (records[row.record], row.system): place
         for place, row in enumerate(observed.rows)
         if row.record in records
     }
     points, places = [], []
-    for group in groups(design, observed.keys):
+    for group in groups(layout, observed.keys):
         system = tuple(map(comparable, observed.keys, group.values))
-        row_of = np.array([rows.get((n, system), -1) for n in range(len(design.records))])
-        place = row_of[record_of(design, group.points)]
+        row_of = np.array([rows.get((n, system), -1) for n in range(len(layout.records))])
+        place = row_of[record_of(layout, group.points)]
         points.append(group.points[place >= 0])
         places.append(place[place >= 0])
     found, row = np.concatenate(points), np.concatenate(places)
     order = np.argsort(found, kind="stable")
     found, row = found[order], row[order]
     values = np.array([seen.values for seen in observed.rows]).T[:, row]
-    notes = _left_out(design, observed, found, row)
-    return Pairs(found, record_of(design, found), values, tuple(notes))
+    notes = _left_out(layout, observed, found, row)
+    return Pairs(found, record_of(layout, found), values, tuple(notes))
 
 
-def record_of(design: Design, points: Indices) -> Indices:
+def record_of(layout: StudyPoints, points: Indices) -> Indices:
     """(points,) number of the record of each point."""
-    of_system = design.points_of_system
-    return points % of_system // (of_system // len(design.records))
+    of_system = layout.points_of_system
+    return points % of_system // (of_system // len(layout.records))
 
 
-def _record_numbers(design: Design) -> dict[str, int]:
+def _record_numbers(layout: StudyPoints) -> dict[str, int]:
     """Numbers of the records by every name that one of them alone goes by."""
-    sources = [record.source for record in design.records if record is not None]
+    sources = [record.source for record in layout.records if record is not None]
     names = [{s, PurePath(s).name, PurePath(s).stem} for s in sources]
     times = Counter(name for known in names for name in known)
     short = {name: n for n, known in enumerate(names) for name in known if times[name] == 1}
     return short | {source: number for number, source in enumerate(sources)}
 
 
-def _left_out(design: Design, observed: Observed, points: Indices, rows: Indices) -> Iterator[str]:
+def _left_out(
+    layout: StudyPoints, observed: Observed, points: Indices, rows: Indices
+) -> Iterator[str]:
     unused = len(observed.rows) - len(np.unique(rows))
     if unused:
         yield (
             f"{unused} of {len(observed.rows)} observations in {observed.name} have no point in"
             " the study: their record, or their system, is not in it"
         )
-    if len(points) < len(design):
-        yield f"{len(design) - len(points)} of {len(design)} points have no observation"
+    if len(points) < len(layout):
+        yield f"{len(layout) - len(points)} of {len(layout)} points have no observation"
 
 
-def unpaired(design: Design) -> Iterator[str]:
+def unpaired(layout: StudyPoints) -> Iterator[str]:
     """What keeps a study from being compared with its observations."""
-    observed = design.study.observed
+    observed = layout.study.observed
     if observed is None:
         yield "the study names no observations; add `observed: FILE.csv`"
-    elif None in design.records:
+    elif None in layout.records:
         yield "the study has no list `records`, by which observations are found; add it"
-    elif len(design.scales) > 1 and INTENSITY not in observed.keys:
+    elif len(layout.scales) > 1 and INTENSITY not in observed.keys:
         yield (
-            f"the study has {len(design.scales)} scales, and {observed.name} does not say which of"
+            f"the study has {len(layout.scales)} scales, and {observed.name} does not say which of"
             " them was observed; add a column `scale`, or keep one scale"
         )
-    elif not len(observed_pairs(design, observed).points):
+    elif not len(observed_pairs(layout, observed).points):
         yield (
             f"no line of {observed.name} has a record and a system of the study, such as"
             f" {observed.rows[0].record!r}; records go by their sources or the names of files"

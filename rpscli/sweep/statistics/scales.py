@@ -14,8 +14,8 @@ from rpscli.sweep.table import Array, Table
 def factors(table: Table) -> Array:
     """(points,) factors on the records; NaN where there is none or the record is a pulse."""
     found = table.scale.copy()
-    for number, point in enumerate(table.design):
-        if table.design.plan.measure is None:
+    for number, point in enumerate(table.layout):
+        if table.layout.plan.measure is None:
             found[number] = point.scale * point.scale_change
         if point.record is None or point.record.source.startswith(SCHEME):
             found[number] = np.nan
@@ -29,7 +29,7 @@ def scale_notes(table: Table) -> Iterator[str]:
     if unusual.any():
         distance = np.abs(np.log(np.where(unusual, np.maximum(scale, 1e-300), 1.0)))
         farthest = int(np.argmax(distance))
-        record = table.design[farthest].record
+        record = table.layout[farthest].record
         assert record is not None, "points of histories have a record"
         yield (
             f"{np.count_nonzero(unusual)} of {len(table)} points scale their record beyond the"

@@ -51,8 +51,8 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
     fixed
         Storey shears on a fixed base, as a reference.
     """
-    design = table.design
-    keys = apart(design, leading_keys(design))
+    layout = table.layout
+    keys = apart(layout, leading_keys(layout))
     columns = {quantity: table.columns[quantity.name] for quantity in LIMITED}
     columns[REDUCTION] = shear_over_fixed_base(table, fixed)
     known = {
@@ -61,7 +61,7 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
         if not np.isnan(v).all()
     }
     rows = []
-    for group in groups(design, keys):
+    for group in groups(layout, keys):
         points = group.points[~table.failed[group.points]]
         rows.append(
             SummaryRow(
@@ -75,9 +75,9 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
             )
         )
     return Summary(
-        keys=shown_keys(design, keys),
-        pooled=pooled(design, keys),
-        notes=tuple(pooling_note(design, keys)),
+        keys=shown_keys(layout, keys),
+        pooled=pooled(layout, keys),
+        notes=tuple(pooling_note(layout, keys)),
         quantities=tuple(known),
         rows=tuple(rows),
     )
@@ -85,14 +85,14 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
 
 def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
     """(points,) base shear over that of the same building on a fixed base; NaN without one."""
-    design = table.design
-    within = design.points_of_system // len(design.records)
-    reference = np.full(len(design), np.nan)
-    for system, properties in enumerate(design.properties):
-        for place, record in enumerate(design.records):
+    layout = table.layout
+    within = layout.points_of_system // len(layout.records)
+    reference = np.full(len(layout), np.nan)
+    for system, properties in enumerate(layout.properties):
+        for place, record in enumerate(layout.records):
             request = record or properties.record
             if request is not None and (system, request) in fixed:
-                first = system * design.points_of_system + place * within
+                first = system * layout.points_of_system + place * within
                 reference[first : first + within] = fixed[system, request][0]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(table.columns["max_base_shear"] / (np.abs(table.scale) * reference))

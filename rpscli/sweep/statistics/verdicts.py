@@ -60,12 +60,12 @@ def judged(
         Besides the limits of study and cases.
     """
     further = tuple(conditions)
-    design = table.design
+    layout = table.layout
     found = []
     for row in summary.rows:
         if len(row.points):
-            system = int(row.points[0]) // design.points_of_system
-            limits = design.properties[system].limits
+            system = int(row.points[0]) // layout.points_of_system
+            limits = layout.properties[system].limits
             found += [_verdict(table, row, condition) for condition in (*limits, *further)]
     return found
 

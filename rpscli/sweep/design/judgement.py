@@ -69,8 +69,8 @@ def weights_of(records: int, resamples: int, seed: int) -> Weights:
 
 def demands_of(table: Table, names: Sequence[str]) -> dict[str, Array]:
     """Demands of the designs of a study, whose points are designs x records x intensities."""
-    design = table.design
-    shape = len(design.properties), len(design.records), len(design.scales)
+    layout = table.layout
+    shape = len(layout.properties), len(layout.records), len(layout.scales)
     found = {}
     for name in names:
         if name in EVENTS:

@@ -12,7 +12,7 @@ import numpy as np
 from rpscli.case.study.axes import Values
 from rpscli.case.study.study import Study
 from rpscli.case.text.faults import Place
-from rpscli.sweep.design.sampling import Array, sample
+from rpscli.sweep.points.sampling import Array, sample
 
 
 @dataclass(frozen=True, eq=False)

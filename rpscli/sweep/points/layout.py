@@ -9,16 +9,16 @@ from functools import cached_property
 
 from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
-from rpscli.sweep.design.check import SystemProperties, Watched, check_systems
-from rpscli.sweep.design.combinations import Combinations, combinations_of
-from rpscli.sweep.design.perturbation import Change, changes
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest
 from rpscli.sweep.evaluation.solver import solver_version
 from rpscli.sweep.evaluation.systems import System, resolved, system_of
+from rpscli.sweep.points.check import SystemProperties, Watched, check_systems
+from rpscli.sweep.points.combinations import Combinations, combinations_of
+from rpscli.sweep.points.perturbation import Change, changes
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class StudyPoints:
     """Systems, records, scales and perturbations; the last of them runs fastest.
 
     Parameters
@@ -98,7 +98,7 @@ class Design:
         return system_of(resolved(self.plan, self.properties[index].values))
 
 
-def lay_out(study: Study, watched: Watched = iter) -> Design:
+def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
     """The points of a study; all its systems are examined on the way, in the hands of `watched`.
 
     Raises
@@ -121,7 +121,7 @@ def lay_out(study: Study, watched: Watched = iter) -> Design:
     )
     members = changes(file.perturb)
     folder = str(study.folder)
-    return Design(
+    return StudyPoints(
         study=study,
         plan=plan,
         combinations=combinations,

@@ -21,10 +21,10 @@ from rpscli.errors import CaseError
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.sweep.design.combinations import Combinations
-from rpscli.sweep.design.perturbation import Change
 from rpscli.sweep.evaluation.points import Plan, RecordRequest
 from rpscli.sweep.evaluation.systems import digest_of, record_request, resolved
+from rpscli.sweep.points.combinations import Combinations
+from rpscli.sweep.points.perturbation import Change
 
 Watched: TypeAlias = Callable[[range], Iterator[int]]
 """Goes through numbers and may show how far it is."""

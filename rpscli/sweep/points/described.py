@@ -10,33 +10,33 @@ from typing import Any
 
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RpsError
-from rpscli.sweep.design.layout import Design
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point, RecordRequest
 from rpscli.sweep.evaluation.systems import resolved
+from rpscli.sweep.points.layout import StudyPoints
 
 
-def described(design: Design, point: Point) -> dict[str, Any]:
+def described(layout: StudyPoints, point: Point) -> dict[str, Any]:
     """What tells the point from the others: columns of `points.csv` before the results.
 
     `scale` is missing: it is a result where records are scaled to a measure.
     """
-    columns = dict(zip(design.plan.keys, point.values, strict=True))
-    if len(design.members) > 1:
+    columns = dict(zip(layout.plan.keys, point.values, strict=True))
+    if len(layout.members) > 1:
         columns |= {"member": point.member, "restitution_change": point.restitution_change}
-    if design.plan.measure is not None:
-        columns[design.plan.measure.measure] = point.scale
-    if point.record is not None and design.plan.analysis == "timehistory":
+    if layout.plan.measure is not None:
+        columns[layout.plan.measure.measure] = point.scale
+    if point.record is not None and layout.plan.analysis == "timehistory":
         columns["record"] = point.record.source
     return columns
 
 
-def identifying_columns(design: Design) -> tuple[str, ...]:
+def identifying_columns(layout: StudyPoints) -> tuple[str, ...]:
     """Names of these columns."""
-    return tuple(described(design, design[0]))
+    return tuple(described(layout, layout[0]))
 
 
-def reproduction(design: Design, context: StudyContext, point: Point, base_file: Path) -> str:
+def reproduction(layout: StudyPoints, context: StudyContext, point: Point, base_file: Path) -> str:
     """One line for the shell that computes the point alone.
 
     Parameters
@@ -44,10 +44,10 @@ def reproduction(design: Design, context: StudyContext, point: Point, base_file:
     base_file
         The case at the base of the study.
     """
-    words = ["rps", design.plan.analysis, str(base_file)]
-    for text in (*_overrides(design, point), *_restitution(design, point)):
+    words = ["rps", layout.plan.analysis, str(base_file)]
+    for text in (*_overrides(layout, point), *_restitution(layout, point)):
         words += ["--set", text]
-    if point.record is not None and design.plan.analysis == "timehistory":
+    if point.record is not None and layout.plan.analysis == "timehistory":
         words += ["--record", _source(point.record)]
         if point.record.vertical:
             words += ["--vertical", _source(point.record._replace(source=point.record.vertical))]
@@ -55,16 +55,16 @@ def reproduction(design: Design, context: StudyContext, point: Point, base_file:
     return shlex.join(words)
 
 
-def _overrides(design: Design, point: Point) -> Iterator[str]:
-    if design.study.base_file is not None:  # otherwise they are in the file that was written
-        yield from design.study.base_overrides
-    for key, value in zip(design.plan.keys, point.values, strict=True):
+def _overrides(layout: StudyPoints, point: Point) -> Iterator[str]:
+    if layout.study.base_file is not None:  # otherwise they are in the file that was written
+        yield from layout.study.base_overrides
+    for key, value in zip(layout.plan.keys, point.values, strict=True):
         yield f"{key}={yaml_scalar(value)}"
 
 
-def _restitution(design: Design, point: Point) -> Iterator[str]:
+def _restitution(layout: StudyPoints, point: Point) -> Iterator[str]:
     if point.restitution_change != 1.0:
-        law = dict(resolved(design.plan, point.values).document["podium"]["impact"])
+        law = dict(resolved(layout.plan, point.values).document["podium"]["impact"])
         law["factor"] *= point.restitution_change
         yield f"podium.impact={json.dumps(law)}"
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.design.task import DesignTask
-from rpscli.sweep.search.judgement import Judged
+from rpscli.sweep.design.judgement import Judged
 from rpscli.sweep.statistics.share import CONFIDENCE
 from rpscli.sweep.table import Array, Indices
 

@@ -9,11 +9,11 @@ from rpscli.case.conditions import EVENTS
 from rpscli.case.design.task import DesignTask
 from rpscli.case.text.faults import Fault
 from rpscli.errors import CaseError
-from rpscli.sweep.design.check import needs_of
-from rpscli.sweep.design.layout import Design
-from rpscli.sweep.search.answer import Answer
-from rpscli.sweep.search.judgement import Requirement, demands_of, judge, weights_of
-from rpscli.sweep.search.space import Flags, first_places, next_places, usual_count
+from rpscli.sweep.design.answer import Answer
+from rpscli.sweep.design.judgement import Requirement, demands_of, judge, weights_of
+from rpscli.sweep.design.space import Flags, first_places, next_places, usual_count
+from rpscli.sweep.points.check import needs_of
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.pooling import INTENSITY, shown_keys
 from rpscli.sweep.table import Array, Table
 
@@ -82,7 +82,7 @@ class Search:
                 self.faults.setdefault(str(error).splitlines()[0])
         return found
 
-    def require(self, design: Design) -> None:
+    def require(self, layout: StudyPoints) -> None:
         """Take the requirements from the first designs that are laid out.
 
         Raises
@@ -91,17 +91,17 @@ class Search:
             If there are none, or an aim needs a result that the structure cannot have.
         """
         document = self.task.study.document
-        (measure,) = shown_keys(design, (INTENSITY,))
-        several = len(design.scales) > 1
+        (measure,) = shown_keys(layout, (INTENSITY,))
+        several = len(layout.scales) > 1
         self.requirements = tuple(
             Requirement(condition, place, measure, level if several else None)
-            for condition in design.properties[0].limits
-            for place, level in enumerate(design.scales)
+            for condition in layout.properties[0].limits
+            for place, level in enumerate(layout.scales)
         )
         if not self.requirements:
             text = "limits is missing: say what is required, here or in the case at the base"
             document.refuse([Fault((), f"{text}, as in `limits: {{overturning: 0.05}}`")])
-        lacking = frozenset.union(*(properties.lacking for properties in design.properties))
+        lacking = frozenset.union(*(properties.lacking for properties in layout.properties))
         for name in self.names:
             if name in lacking and name not in EVENTS:
                 where = "least" if any(name in aim for aim in self.task.file.least) else "limits"

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.study.schema import SampleSection
-from rpscli.sweep.design.sampling import unit_cube
+from rpscli.sweep.points.sampling import unit_cube
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
