@@ -142,6 +142,13 @@ class Case(Shown):
 def load_case(source: str | Path, overrides: Overrides = ()) -> Case:
     """Read a case from a file, or from the standard input (``-``).
 
+    Parameters
+    ----------
+    source
+        Name of the file.
+    overrides
+        Texts ``key=value`` over the case's own values.
+
     Raises
     ------
     CaseError

@@ -54,6 +54,7 @@ def response_spectrum(
     Parameters
     ----------
     motion : GroundMotion
+        Horizontal ground acceleration.
     periods : sequence of float [s]
         Not negative; zero is the rigid oscillator.
     damping : float
