@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rpscli.commands.shell.numbers import large, shown
 from rpscli.commands.shell.tables import table
+from rpscli.report.numbers import large, shown
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

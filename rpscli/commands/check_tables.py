@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rpscli.case.conditions import Condition, condition_text
-from rpscli.commands.shell.numbers import large, shown
 from rpscli.commands.shell.tables import listing, table, title
+from rpscli.report.numbers import large, shown
 from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 if TYPE_CHECKING:

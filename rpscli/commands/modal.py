@@ -10,7 +10,6 @@ import click
 
 from rpscli.case.text.faults import listed
 from rpscli.commands.case_input import case_folder, case_heading, read_case, write
-from rpscli.commands.shell.numbers import shown
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
@@ -27,6 +26,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
+from rpscli.report.numbers import shown
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -9,7 +9,6 @@ import click
 
 from rpscli.analyses.result_quantities import PUSHOVER
 from rpscli.commands.case_input import case_folder, case_heading, read_case, write
-from rpscli.commands.shell.numbers import measured, shown
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
@@ -24,6 +23,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading, pushover_document
 from rpscli.report.figures.look import Look
+from rpscli.report.numbers import measured, shown
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -17,7 +17,6 @@ from rpscli.case.conditions import (
 )
 from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, write
 from rpscli.commands.shell.failure import concluded, leave
-from rpscli.commands.shell.numbers import large, shown
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.tables import table
 from rpscli.commands.shell.tables import title as heading_line
@@ -36,6 +35,7 @@ from rpscli.report.figures.look import Look
 from rpscli.report.files.csv_text import csv_text
 from rpscli.report.files.json_text import json_text
 from rpscli.report.files.output_folder import OutputFolder
+from rpscli.report.numbers import large, shown
 from rpscli.report.study.record_set import (
     record_columns,
     record_set_document,

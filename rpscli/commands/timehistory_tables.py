@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import EVENTS, Condition
 from rpscli.commands.acceptance import Verdict
-from rpscli.commands.shell.numbers import measured, percent, shown
 from rpscli.commands.shell.tables import table
 from rpscli.commands.shell.tables import title as heading_line
 from rpscli.report.documents import ONE_DIRECTION
+from rpscli.report.numbers import measured, percent, shown
 from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands
 
 if TYPE_CHECKING:

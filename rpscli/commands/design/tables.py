@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from rpscli.case.conditions import condition_text
-from rpscli.commands.shell.numbers import large, measured, shown
 from rpscli.commands.shell.tables import listing, sentence, table, title
 from rpscli.commands.sweep.tables import found as found_text
 from rpscli.report.documents import ONE_DIRECTION
+from rpscli.report.numbers import large, measured, shown
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.commands.record.input import source_options
-from rpscli.commands.shell.numbers import shown
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.tables import listing
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.report.documents import heading
+from rpscli.report.numbers import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from rpscli.commands.case_input import RESULTS, write
-from rpscli.commands.shell.numbers import shown
 from rpscli.commands.shell.options import (
     OutputRequest,
     figure_options,
@@ -22,6 +21,7 @@ from rpscli.errors import UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files.output_folder import OutputFolder, Run
+from rpscli.report.numbers import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

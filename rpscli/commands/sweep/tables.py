@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rpscli.case.conditions import condition_text
-from rpscli.commands.shell.numbers import large, shown
 from rpscli.commands.shell.tables import table
+from rpscli.report.numbers import large, shown
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
