@@ -13,11 +13,11 @@ from rpscli.case.schema.case_file import (
     AnalysisSection,
     BearingSection,
     CaseFile,
+    DeviceSection,
     DimensionsSection,
     PodiumMasses,
     SuperstructureSection,
 )
-from rpscli.case.schema.devices import DeviceSection
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
 from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.devices import DEVICES, Device

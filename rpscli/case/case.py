@@ -12,17 +12,22 @@ from typing import Any
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.build import Podium, podium_of, podium_structure, time_history_settings
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.rules.bearing import bearing_rules, impact_rules
-from rpscli.case.rules.devices import devices_rules
-from rpscli.case.rules.masses import masses_rules
 from rpscli.case.rules.partial_case import PartialCase
 from rpscli.case.rules.plausibility import Doubt, doubts_of_storeys, doubts_of_structure
-from rpscli.case.rules.podium import overturning_rule, release_rule, restitution_rule
-from rpscli.case.rules.record import record_rules
+from rpscli.case.rules.podium import (
+    bearing_rules,
+    devices_rules,
+    impact_rules,
+    overturning_rule,
+    release_rule,
+    restitution_rule,
+)
 from rpscli.case.rules.superstructure import (
     ignored_keys,
     ignored_text,
     limits_rules,
+    masses_rules,
+    record_rules,
     superstructure_rules,
 )
 from rpscli.case.schema.case_file import CaseFile, RecordSection

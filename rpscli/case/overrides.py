@@ -9,9 +9,8 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.known_keys import field_at, section_at, unknown_key
-from rpscli.case.text.document import Document
-from rpscli.case.text.faults import Fault, Path, Place, dotted, shown
+from rpscli.case.schema.keys import field_at, section_at, unknown_key
+from rpscli.case.text.document import Document, Fault, Path, Place, dotted, shown
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import CaseError
 

@@ -21,7 +21,7 @@ from rpscli.report.documents import heading
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rpscli.case.schema.reference import KeyReference
+    from rpscli.case.schema.keys import KeyReference
 
 BEARING = """\
       <- 2B ->
@@ -69,9 +69,9 @@ def command(word: str, terminal: Terminal) -> None:
 
 def _formats() -> Iterator[KeyReference]:
     # pydantic is slow.
-    from rpscli.case.design.schema import DesignFile
+    from rpscli.case.design import DesignFile
     from rpscli.case.schema.case_file import CaseFile
-    from rpscli.case.schema.reference import key_references
+    from rpscli.case.schema.keys import key_references
     from rpscli.case.study.schema import StudyFile
 
     known = set()
@@ -105,7 +105,7 @@ def _reports(word: str) -> list[tuple[str, str]]:
 
 def _report_options(word: str) -> list[KeyReference]:
     """Options of the report of a name."""
-    from rpscli.case.schema.reference import key_references
+    from rpscli.case.schema.keys import key_references
     from rpscli.report.study.registry import REPORTS
 
     return list(key_references(REPORTS[word].options)) if word in REPORTS else []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.case.text.faults import listed
+from rpscli.case.text.document import listed
 from rpscli.commands.case_input import case_folder, case_heading, read_case, write
 from rpscli.commands.shell.options import (
     CaseRequest,

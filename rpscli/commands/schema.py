@@ -32,11 +32,11 @@ def schema_of(*, study: bool, design: bool = False) -> dict[str, Any]:
     """The schema of cases, of studies or of designs."""
     # pydantic is slow.
     if not (study or design):
-        from rpscli.case.schema.json_schema import case_json_schema
+        from rpscli.case.json_schema import case_json_schema
 
         return case_json_schema()
-    from rpscli.case.design.schema import DesignFile
-    from rpscli.case.study.json_schema import study_json_schema
+    from rpscli.case.design import DesignFile
+    from rpscli.case.json_schema import study_json_schema
     from rpscli.report.study.registry import REPORTS
 
     return study_json_schema({}, DesignFile) if design else study_json_schema(REPORTS)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from rpscli.case.case import case_from_mapping
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.known_keys import known_paths
+from rpscli.case.schema.keys import known_paths
 from rpscli.case.text.document import Document
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError

@@ -8,8 +8,8 @@ import pytest
 
 from rpscli.analyses.kernels.systems import DEVICE_KINDS
 from rpscli.case.case import parse_case
-from rpscli.case.schema.devices import DEVICE_KEYS, DeviceSection
-from rpscli.case.schema.key_units import unit
+from rpscli.case.schema.case_file import DEVICE_KEYS, DeviceSection
+from rpscli.case.schema.keys import unit
 from rpscli.errors import CaseError
 from rpscli.model import devices
 from rpscli.model.devices import (

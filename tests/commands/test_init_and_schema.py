@@ -15,7 +15,7 @@ from click.testing import Result
 
 from commands.conftest import ROOT
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.known_keys import known_paths
+from rpscli.case.schema.keys import known_paths
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 

@@ -16,9 +16,8 @@ from hunt.mutation import mutated
 from hunt.test_hostile_files import CASE_KEYS, CASES, VALUES
 from hunt.trials import LONGEST_LINE, hunt, judged, shares
 from rpscli import load_case, load_record, load_study
-from rpscli.case.design.schema import DesignFile
-from rpscli.case.design.task import parse_design
-from rpscli.case.schema.known_keys import known_paths
+from rpscli.case.design import DesignFile, parse_design
+from rpscli.case.schema.keys import known_paths
 from rpscli.cli import program
 from rpscli.errors import CaseError, RpsError, UsageError
 from rpscli.report.figures.look import read_style

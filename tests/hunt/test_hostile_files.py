@@ -13,7 +13,7 @@ from small_records import cosmos, csmip, esm, geonet, knet, smc
 from hunt.mutation import mutated
 from hunt.trials import hunt, judged, shares
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.known_keys import known_paths
+from rpscli.case.schema.keys import known_paths
 from rpscli.case.study.schema import StudyFile
 from rpscli.records.formats.at2_writer import at2_text
 from rpscli.records.source import load_record

@@ -21,7 +21,7 @@ from report.small_results import curve, legend
 from report.test_figures_of_studies import ALPHA, RHO, labelled, panels, same
 from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.conditions import Condition
-from rpscli.case.design.schema import Term
+from rpscli.case.design import Term
 from rpscli.case.study.observed import OVERTURNED
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.selection import Candidate, Selection

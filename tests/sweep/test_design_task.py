@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner, Result
 from paper_structures import needs_compiled_kernels
 
-from rpscli.case.design.task import parse_design
+from rpscli.case.design import parse_design
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rpscli.case.schema.json_schema import json_schema_of
+from rpscli.case.json_schema import json_schema_of
 from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.errors import CaseError
 from rpscli.report.study.registry import REPORTS

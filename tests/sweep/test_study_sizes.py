@@ -10,7 +10,7 @@ from rpscli.analyses.kernels.history import MOST_STEPS
 from rpscli.analyses.kernels.step_lengths import most_steps
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.case.study.sizes import MOST_POINTS, MOST_SYSTEMS
+from rpscli.case.study.rules import MOST_POINTS, MOST_SYSTEMS
 from rpscli.case.study.study import parse_study
 from rpscli.errors import CaseError
 from rpscli.model.damping import RayleighDamping

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rpscli.case.schema.key_units import unit
+from rpscli.case.schema.keys import unit
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.sweep import progress as sweep_progress
 from rpscli.commands.sweep.progress import progress_line, progress_report

@@ -13,14 +13,13 @@ from rpscli.case.build import Shape, shape_of
 from rpscli.case.schema.case_file import (
     BearingSection,
     CaseFile,
+    DeviceSection,
     PodiumMasses,
     SuperstructureSection,
 )
 from rpscli.case.schema.check import SchemaCheck
-from rpscli.case.schema.devices import DeviceSection
-from rpscli.case.schema.section import Section
-from rpscli.case.text.document import MISSING, Document
-from rpscli.case.text.faults import Path
+from rpscli.case.schema.fields import Section
+from rpscli.case.text.document import MISSING, Document, Path
 
 SectionT = TypeVar("SectionT", bound=Section)
 

@@ -9,9 +9,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from rpscli.case.schema.known_keys import field_at, section_at, unknown_key
-from rpscli.case.text.document import MOST_FAULTS, Document
-from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
+from rpscli.case.schema.keys import field_at, section_at, unknown_key
+from rpscli.case.text.document import MOST_FAULTS, Document, Fault, Path, dotted, listed, shown
 from rpscli.errors import nearest
 
 Model = TypeVar("Model", bound=BaseModel)

@@ -1,4 +1,4 @@
-"""Kinds of field: what a value of the case file may be, and its JSON schema.
+"""Kinds of field: what a value of a file may be, and its JSON schema.
 
 Each is a mark inside `typing.Annotated` from which pydantic takes the check and the schema, so
 that bounds, unit and meaning stand once, beside the field.
@@ -11,12 +11,19 @@ from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Annotated, Any, NoReturn, TypeGuard
 
-from pydantic import PlainValidator, ValidationError, WithJsonSchema
+from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, WithJsonSchema
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rpscli.case.schema.units import KINDS, si_value
-from rpscli.case.text.faults import listed
+from rpscli.case.text.document import listed
 from rpscli.errors import nearest
+
+
+class Section(BaseModel):
+    """A mapping of the file: unknown keys are refused, and nothing changes later."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
 
 SMALLEST, LARGEST = 1e-15, 1e15
 """Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""

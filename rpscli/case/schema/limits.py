@@ -13,8 +13,7 @@ from typing import Annotated, Any, Self
 from pydantic import Discriminator, Field, Tag, create_model, model_validator
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
-from rpscli.case.schema.fields import PLAIN, Quantity, refuse
-from rpscli.case.schema.section import Section
+from rpscli.case.schema.fields import PLAIN, Quantity, Section, refuse
 from rpscli.case.schema.units import KINDS
 
 Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1")]

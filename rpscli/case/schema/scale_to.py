@@ -14,8 +14,7 @@ from pydantic import (
     model_validator,
 )
 
-from rpscli.case.schema.fields import Quantity, refuse
-from rpscli.case.schema.section import Section
+from rpscli.case.schema.fields import Quantity, Section, refuse
 from rpscli.errors import hint
 from rpscli.records.measures.measure import MEASURE_UNITS, Measure
 

@@ -12,7 +12,7 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from rpscli.case.text.faults import listed
+from rpscli.case.text.document import listed
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import hint
 

@@ -1,17 +1,17 @@
-"""Rules that join several keys of a study."""
+"""Rules that join several keys of a study, and how large it may be."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.check import schema_check
-from rpscli.case.schema.known_keys import field_at, unknown_key
+from rpscli.case.schema.keys import field_at, unknown_key
 from rpscli.case.study.axes import Axis, clashes
 from rpscli.case.study.reports import ReportKinds, ReportOptions, ReportRequest
-from rpscli.case.study.schema import MeasureScale, RangeSection
-from rpscli.case.text.document import MISSING, Document
-from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
+from rpscli.case.study.schema import MeasureScale, RangeSection, StudyFile
+from rpscli.case.text.document import MISSING, Document, Fault, Path, dotted, listed, shown
 
 OF_HISTORIES = ("records", "scale", "perturb", "observed")
 """Keys of a study that only time histories have."""
@@ -192,3 +192,46 @@ def _named_keys(options: ReportOptions) -> Iterator[tuple[str, str]]:
         named = getattr(options, option, None)
         for key in (named,) if isinstance(named, str) else named or ():
             yield option, key
+
+
+MOST_SYSTEMS = 200_000
+"""Each is checked as a case before anything runs, which takes a millisecond."""
+
+MOST_POINTS = 5_000_000
+"""Their results, some thirty numbers each, are in memory when reports are drawn."""
+
+
+def size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) -> Iterator[Fault]:
+    """A study that is too large, at its largest part.
+
+    Parameters
+    ----------
+    file
+        The study.
+    axes
+        Its varied keys.
+    sources
+        Its single record sources.
+    """
+    systems: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
+    if file.sample is not None:
+        systems["sample", "size"] = file.sample.size
+    others: dict[Path, int] = {("records",): max(len(sources), 1)}
+    if file.scale is not None:
+        values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
+        others["scale",] = len(values)
+    if file.perturb is not None:
+        others["perturb", "members"] = file.perturb.members
+    for parts, most, name in (
+        (systems, MOST_SYSTEMS, "systems"),
+        (systems | others, MOST_POINTS, "points"),
+    ):
+        if (count := math.prod(parts.values())) > most:
+            product = " x ".join(str(part) for part in parts.values() if part > 1)
+            largest = max(parts, key=lambda path: parts[path])
+            yield Fault(
+                largest,
+                f"the study has {count} {name} ({product}), which must not be more than {most};"
+                " use fewer values, or several studies",
+            )
+            return

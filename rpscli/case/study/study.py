@@ -12,10 +12,9 @@ from pydantic import ValidationError
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.scale_to import ScaleToSection
-from rpscli.case.study.axes import Axis, axes_of
+from rpscli.case.study.axes import Axis, axes_of, sources_of
 from rpscli.case.study.observed import Observed, observed_of
-from rpscli.case.study.reports import ReportKinds, ReportRequest
-from rpscli.case.study.requests import requests_of
+from rpscli.case.study.reports import ReportKinds, ReportRequest, requests_of
 from rpscli.case.study.rules import (
     analysis_rules,
     fixed_faults,
@@ -23,14 +22,12 @@ from rpscli.case.study.rules import (
     record_rules,
     report_rules,
     scale_faults,
+    size_faults,
     twice,
     unknown_keys,
 )
 from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
-from rpscli.case.study.sizes import size_faults
-from rpscli.case.study.sources import sources_of
-from rpscli.case.text.document import Document, is_case, is_design, is_study
-from rpscli.case.text.faults import Fault, shown
+from rpscli.case.text.document import Document, Fault, is_case, is_design, is_study, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError

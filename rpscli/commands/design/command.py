@@ -62,7 +62,7 @@ def command(
     Every point is stored as it ends: after an interruption the same command goes on. The exit code
     is 10 if no design passes.
     """
-    from rpscli.case.design.task import read_design
+    from rpscli.case.design import read_design
     from rpscli.sweep.design.search import Search
     from rpscli.sweep.store import Store
 

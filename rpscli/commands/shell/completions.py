@@ -16,7 +16,7 @@ def case_keys(
     del ctx, option
     # pydantic is slow.
     from rpscli.case.schema.case_file import CaseFile
-    from rpscli.case.schema.known_keys import field_at, known_paths, section_of
+    from rpscli.case.schema.keys import field_at, known_paths, section_of
 
     found: list[CompletionItem | str] = []
     for path in known_paths(CaseFile):

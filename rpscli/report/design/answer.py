@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.case.conditions import EVENTS, LIMITS
-from rpscli.case.design.schema import Aim
+from rpscli.case.design import Aim
 from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.statistics import reached
@@ -34,7 +34,7 @@ def requirement_unit(requirement: Requirement) -> str:
 def aim_label(aim: Aim) -> str:
     """A sum in words.
 
-    >>> from rpscli.case.design.schema import Term
+    >>> from rpscli.case.design import Term
     >>> aim_label({"podium.bearing.semi_diagonal": Term(times=2.0), "max_base_shear": Term()})
     '2 R + base shear, median'
     """

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
-from rpscli.case.schema.key_units import unit
+from rpscli.case.schema.keys import unit
 from rpscli.report.bundles import bearing_files
 from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import Look

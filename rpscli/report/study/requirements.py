@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rpscli.case.conditions import FRICTION
-from rpscli.case.text.faults import Fault
+from rpscli.case.text.document import Fault
 from rpscli.report.study.registry import REPORTS
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.layout import StudyPoints

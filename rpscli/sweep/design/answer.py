@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.case.design.task import DesignTask
+from rpscli.case.design import DesignTask
 from rpscli.sweep.design.judgement import Judged
 from rpscli.sweep.statistics.share import CONFIDENCE
 from rpscli.sweep.table import Array, Indices

@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rpscli.case.conditions import EVENTS, LIMITS, Condition
-from rpscli.case.design.schema import Aim
-from rpscli.case.design.task import DesignTask
+from rpscli.case.design import Aim, DesignTask
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.table import Array, Table
 

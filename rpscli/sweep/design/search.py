@@ -6,8 +6,8 @@ import numpy as np
 
 from rpscli.case.case import case_from_mapping
 from rpscli.case.conditions import EVENTS
-from rpscli.case.design.task import DesignTask
-from rpscli.case.text.faults import Fault
+from rpscli.case.design import DesignTask
+from rpscli.case.text.document import Fault
 from rpscli.errors import CaseError
 from rpscli.sweep.design.answer import Answer
 from rpscli.sweep.design.judgement import Requirement, demands_of, judge, weights_of

@@ -16,7 +16,7 @@ from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Values
 from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
-from rpscli.case.text.faults import Fault, Path, Place
+from rpscli.case.text.document import Fault, Path, Place
 from rpscli.errors import CaseError
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure

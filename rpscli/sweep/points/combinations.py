@@ -11,7 +11,7 @@ import numpy as np
 
 from rpscli.case.study.axes import Values
 from rpscli.case.study.study import Study
-from rpscli.case.text.faults import Place
+from rpscli.case.text.document import Place
 from rpscli.sweep.points.sampling import Array, sample
 
 

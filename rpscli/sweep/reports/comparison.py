@@ -10,14 +10,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from rpscli.case.schema.fields import Quantity
-from rpscli.case.schema.section import Section
+from rpscli.case.schema.fields import Quantity, Section
 from rpscli.case.study.axes import Axis
-from rpscli.case.study.fields import Keys, Seed
 from rpscli.case.study.observed import OVERTURNED, Observed
 from rpscli.case.study.reports import ReportRequest
-from rpscli.case.text.document import Document
-from rpscli.case.text.faults import Fault, dotted, listed
+from rpscli.case.study.schema import Keys, Seed
+from rpscli.case.text.document import Document, Fault, dotted, listed
 from rpscli.records.measures.measure import Measure
 from rpscli.sweep.fits.lognormal import Lognormal
 from rpscli.sweep.points.layout import StudyPoints

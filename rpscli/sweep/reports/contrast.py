@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from rpscli.analyses.result_quantities import DEMANDS
-from rpscli.case.study.fields import Keys
+from rpscli.case.study.schema import Keys
 from rpscli.sweep.reports.rotation import RotationOptions, paired
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from pydantic import Field
 
-from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
+from rpscli.case.study.schema import Keys
 from rpscli.sweep.fits.bilinear import FEWEST, Bilinear, bilinear_fit
 from rpscli.sweep.statistics.pooling import INTENSITY, apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys

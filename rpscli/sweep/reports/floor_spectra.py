@@ -15,8 +15,8 @@ from rpscli.analyses.floor_spectra import (
     fixed_base_floor_spectra,
     isolated_floor_spectra,
 )
-from rpscli.case.study.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions
+from rpscli.case.study.schema import DampingRatio
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys

@@ -12,10 +12,9 @@ from pydantic import Field, StrictBool, create_model
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import LIMITS
-from rpscli.case.schema.fields import Quantity, Whole
+from rpscli.case.schema.fields import Quantity, Section, Whole
 from rpscli.case.schema.limits import described
-from rpscli.case.schema.section import Section
-from rpscli.case.study.fields import Keys, PositiveNumbers, Seed
+from rpscli.case.study.schema import Keys, PositiveNumbers, Seed
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.reports.intensities import Intensity, MeasureOptions
 from rpscli.sweep.statistics.observations import record_of

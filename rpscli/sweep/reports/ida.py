@@ -11,10 +11,9 @@ from pydantic import Field
 
 from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.study.axes import Axis
-from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
-from rpscli.case.text.document import Document
-from rpscli.case.text.faults import Fault
+from rpscli.case.study.schema import Keys
+from rpscli.case.text.document import Document, Fault
 from rpscli.sweep.statistics.fractiles import demand, fractiles
 from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys

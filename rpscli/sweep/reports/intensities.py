@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 
 from rpscli.case.schema.case_file import Time
-from rpscli.case.schema.key_units import unit as key_unit
-from rpscli.case.study.fields import DampingRatio
+from rpscli.case.schema.keys import unit as key_unit
 from rpscli.case.study.reports import ReportOptions
+from rpscli.case.study.schema import DampingRatio
 from rpscli.errors import RecordError
 from rpscli.records.measures.measure import MEASURE_UNITS, Measure
 from rpscli.sweep.evaluation.context import StudyContext

@@ -13,10 +13,9 @@ from pydantic import Field, StrictBool
 from rpscli.case.schema.fields import Quantity, Text
 from rpscli.case.schema.units import in_si
 from rpscli.case.study.axes import Axis
-from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
-from rpscli.case.text.document import Document
-from rpscli.case.text.faults import Fault, Path, dotted, listed
+from rpscli.case.study.schema import Keys
+from rpscli.case.text.document import Document, Fault, Path, dotted, listed
 from rpscli.errors import hint
 from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
 from rpscli.sweep.reports.intensities import unit_of

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from pydantic import Field
 
-from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
+from rpscli.case.study.schema import Keys
 from rpscli.sweep.statistics.pooling import INTENSITY, apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.statistics.share import Share, share
 from rpscli.sweep.table import Indices, Table, groups, leading_keys

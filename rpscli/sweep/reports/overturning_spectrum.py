@@ -12,10 +12,9 @@ import numpy as np
 from pydantic import Field
 
 from rpscli.case.schema.case_file import Time
-from rpscli.case.schema.fields import Quantity
-from rpscli.case.schema.section import Section
-from rpscli.case.study.fields import Keys
+from rpscli.case.schema.fields import Quantity, Section
 from rpscli.case.study.reports import ReportOptions
+from rpscli.case.study.schema import Keys
 from rpscli.errors import CaseError, RecordError
 from rpscli.records.query import Query, parse_query
 from rpscli.sweep.evaluation.context import StudyContext

@@ -10,8 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from rpscli.case.schema.fields import Quantity, Text
-from rpscli.case.schema.section import Section
+from rpscli.case.schema.fields import Quantity, Section, Text
 from rpscli.errors import CaseError
 from rpscli.records.measures.measure import Measure
 from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard

@@ -11,10 +11,9 @@ from pydantic import Field
 
 from rpscli.case.schema.fields import Text
 from rpscli.case.study.axes import Axis
-from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions, ReportRequest
-from rpscli.case.text.document import Document
-from rpscli.case.text.faults import Fault, Path, dotted, listed, shown
+from rpscli.case.study.schema import Keys
+from rpscli.case.text.document import Document, Fault, Path, dotted, listed, shown
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from rpscli.case.study.fields import Keys
 from rpscli.case.study.reports import ReportOptions
+from rpscli.case.study.schema import Keys
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
 from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys

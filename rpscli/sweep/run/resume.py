@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rpscli.case.text.faults import shown
+from rpscli.case.text.document import shown
 from rpscli.errors import Refused
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Store

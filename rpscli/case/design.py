@@ -1,4 +1,4 @@
-"""A design task: what a design file asks for, checked."""
+"""Design files: what may change in a case, what is required of it, and what is to be least."""
 
 from __future__ import annotations
 
@@ -6,18 +6,27 @@ import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple, TypeGuard
+from typing import Annotated, Any, NamedTuple, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
-from rpscli.case.design.schema import PLUS, Aim, DesignFile
 from rpscli.case.overrides import apply_overrides
-from rpscli.case.schema.fields import LARGEST, is_finite
-from rpscli.case.schema.key_units import is_whole, unit
+from rpscli.case.schema.fields import (
+    LARGEST,
+    Quantity,
+    Section,
+    Whole,
+    first_fault,
+    is_finite,
+    refuse,
+)
+from rpscli.case.schema.keys import is_whole, unit
+from rpscli.case.schema.limits import Fractile
 from rpscli.case.schema.units import in_si
-from rpscli.case.study.axes import Axis, clashes
+from rpscli.case.study.axes import Axis, clashes, sources_of
 from rpscli.case.study.rules import (
     fixed_faults,
     record_rules,
@@ -25,14 +34,125 @@ from rpscli.case.study.rules import (
     unknown_keys,
     varied_paths,
 )
-from rpscli.case.study.schema import StudyParts
-from rpscli.case.study.sources import sources_of
+from rpscli.case.study.schema import Seed, StudyParts
 from rpscli.case.study.study import Study, shared_out, single_key_faults, study_of
-from rpscli.case.text.document import Document, is_case, is_design
-from rpscli.case.text.faults import Fault, listed, shown
+from rpscli.case.text.document import Document, Fault, is_case, is_design, listed, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, hint
+
+PLUS = "plus"
+"""What is added to a linear sum."""
+
+
+class Term(Section):
+    """One term of what is to be least."""
+
+    times: Annotated[float, Quantity()] = Field(1.0, description="factor, in SI units")
+    fractile: Fractile = Field(
+        0.5, description="of a result over the records; its median by default"
+    )
+
+
+Aim = dict[str, Term]
+"""A linear sum of results and keys, by their names."""
+
+
+def _aims(value: object) -> tuple[Aim, ...]:
+    """One sum, or two whose front is looked for."""
+    several = value if isinstance(value, list) else [value]
+    if not 1 <= len(several) <= 2:
+        refuse("must be one aim, or a list of two")
+    return tuple(_aim(item) for item in several)
+
+
+def _aim(value: object) -> Aim:
+    """A name alone, or a sum."""
+    if isinstance(value, str) and value.strip():
+        return {value: Term.model_validate({})}
+    if not isinstance(value, dict) or not value:
+        refuse(
+            f"has {shown(value)}, which must be a key or a result, or a sum such as"
+            " {max_base_shear: 1e-6, podium.bearing.dimensions.width: 0.5}"
+        )
+    return {str(name): _term(name, given) for name, given in value.items()}
+
+
+def _term(name: object, given: object) -> Term:
+    written = given if isinstance(given, dict) else {"times": given}
+    if isinstance(given, Term):
+        return given
+    try:
+        return Term.model_validate(written)
+    except ValidationError as error:
+        refuse(f"has {name}: {shown(given)}, whose {first_fault(error)}")
+
+
+_SUM = {"type": "object", "minProperties": 1}
+_ONE_AIM = {
+    "anyOf": [
+        {"type": "string", "minLength": 1},
+        _SUM | {"additionalProperties": {"anyOf": [{"type": "number"}, Term.model_json_schema()]}},
+    ]
+}
+_BOUND = {"type": ["number", "string"]}
+
+Bounds = Annotated[
+    Any, WithJsonSchema({"type": "array", "items": _BOUND, "minItems": 2, "maxItems": 2})
+]
+"""Two values, which the task reads in the unit of their key."""
+Aims = Annotated[
+    tuple[Aim, ...],
+    PlainValidator(_aims),
+    WithJsonSchema(
+        {"anyOf": [*_ONE_AIM["anyOf"], {"type": "array", "items": _ONE_AIM, "maxItems": 2}]}
+    ),
+]
+
+
+class SearchSection(Section):
+    """How many designs are looked at; what is left out follows from the number of unknowns."""
+
+    first: Annotated[int, Whole(4, 65_536)] | None = Field(
+        None, description="designs of the first, even sample"
+    )
+    most: Annotated[int, Whole(4, 65_536)] | None = Field(
+        None, description="designs in all; four times the first ones by default"
+    )
+    resolution: Annotated[float, Quantity(above=0, below=1)] = Field(
+        0.005, description="distance to which designs close in, as a share of each range"
+    )
+    resamples: Annotated[int, Whole(0, 10_000)] = Field(
+        500, description="bootstrap samples of the records; 0 = none"
+    )
+    seed: Seed = Field(1, description="of the sample and the bootstrap")
+
+
+class ConfirmSection(Section):
+    """Motions that the search does not see."""
+
+    records: tuple[Any, ...] | None = Field(None, description="record sources, as in a study")
+    share: Annotated[float, Quantity(above=0, below=1)] | None = Field(
+        None, description="share of the design's own records that is held out, in place of them"
+    )
+    seed: Seed = Field(1, description="of the draw of what is held out")
+
+
+class DesignFile(StudyParts):
+    """A design: the values of some keys of a case that meet the limits and make an aim least."""
+
+    find: dict[str, Bounds] = Field(
+        description="dotted case keys with [least, largest]: what may change"
+    )
+    ties: dict[str, dict[str, float]] = Field(
+        {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
+    )
+    least: Aims = Field(
+        description="what is to be least: a result, a key, or a sum of them; two for their front"
+    )
+    confirm: ConfirmSection | None = Field(None, description="motions to confirm the design with")
+    search: SearchSection = Field(SearchSection(), description="how many designs are looked at")
+
 
 Array = NDArray[np.float64]
 

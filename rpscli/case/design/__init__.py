@@ -1,1 +1,0 @@
-"""Design files: what may change in a case, what is required of it, and what is to be least."""
