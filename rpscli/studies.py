@@ -49,7 +49,6 @@ from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.point_columns import Columns, array, point_columns
 from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.points_csv import points_csv, units_of_columns
-from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.run.cluster import Cluster
 from rpscli.sweep.run.keys import all_keys
 from rpscli.sweep.run.resume import remember, resume
@@ -59,6 +58,7 @@ from rpscli.sweep.statistics.scales import scale_notes
 from rpscli.sweep.statistics.summary import Summary, summary
 from rpscli.sweep.statistics.verdicts import StudyVerdict, judged
 from rpscli.sweep.store import Store
+from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Table, tabulate
 
 if TYPE_CHECKING:

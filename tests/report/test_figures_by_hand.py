@@ -34,6 +34,7 @@ from rpscli.sweep.design.answer import Answer
 from rpscli.sweep.design.judgement import Judged, Requirement
 from rpscli.sweep.fits.hazard import Hazard
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
+from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.reports.comparison import Compared, ComparisonReport, Curve, Outcomes
 from rpscli.sweep.reports.demand_sample import DemandSample, DemandSampleReport
 from rpscli.sweep.reports.directions import (
@@ -44,7 +45,6 @@ from rpscli.sweep.reports.directions import (
     PairSpread,
 )
 from rpscli.sweep.reports.fragility import Fragility, FragilityReport, LimitState, Observed
-from rpscli.sweep.reports.intensities import Intensity
 from rpscli.sweep.reports.risk import Contributions, Risk, RiskReport
 from rpscli.sweep.statistics.agreement import Agreement, maxima
 from rpscli.sweep.statistics.observations import Pairs

@@ -18,6 +18,7 @@ from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import CaseError
 from rpscli.report.study.comparison import REPORT, findings
 from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.intensities import MeasureOptions, intensity
 from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.reports.comparison import (
     ComparisonOptions,
@@ -26,9 +27,8 @@ from rpscli.sweep.reports.comparison import (
     comparison_report,
     uncomparable,
 )
-from rpscli.sweep.reports.intensities import MeasureOptions, intensity
-from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.statistics.agreement import Maxima, agreement, threshold
+from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import tabulate
 from sweep.made_up import ALPHA, place, stored
 from sweep.small_studies import Make

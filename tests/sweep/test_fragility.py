@@ -13,9 +13,9 @@ from rpscli.errors import CaseError
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.fits.probit import probit_fit, separated
+from rpscli.sweep.intensities import intensity
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.reports.fragility import FragilityOptions, LimitStates, fragility_report
-from rpscli.sweep.reports.intensities import intensity
 from rpscli.sweep.reports.overturning_spectrum import (
     PulseSection,
     SpectrumOptions,

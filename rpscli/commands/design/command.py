@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from rpscli.commands.design.rounds import Confirmation
     from rpscli.commands.sweep.input import StudyInput
     from rpscli.sweep.design.answer import Answer
-    from rpscli.sweep.reports.study_results import StudyResults
+    from rpscli.sweep.study_results import StudyResults
 
 
 @click.command("design")

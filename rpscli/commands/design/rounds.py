@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from rpscli.case.study.study import Study
     from rpscli.sweep.design.answer import Answer
     from rpscli.sweep.design.search import Search
-    from rpscli.sweep.reports.study_results import StudyResults
     from rpscli.sweep.statistics.verdicts import StudyVerdict
     from rpscli.sweep.store import Store
+    from rpscli.sweep.study_results import StudyResults
     from rpscli.sweep.table import Table
 
 
@@ -134,10 +134,10 @@ class Rounds:
 
     def _computed(self, given: StudyInput, store: Store) -> tuple[StudyResults, Table]:
         """Compute what is not stored; leave if the user interrupts."""
-        from rpscli.sweep.reports.study_results import StudyResults
         from rpscli.sweep.run.keys import all_keys
         from rpscli.sweep.run.resume import remember, resume
         from rpscli.sweep.run.threads import available_cores
+        from rpscli.sweep.study_results import StudyResults
         from rpscli.sweep.table import tabulate
 
         keys = all_keys(given.layout, given.context)

@@ -54,7 +54,7 @@ def answer_tables(
 
 def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> RenderableType:
     from rpscli.report.study.labels import symbol
-    from rpscli.sweep.reports.intensities import unit_of
+    from rpscli.sweep.intensities import unit_of
 
     intervals = document["records"]["intervals"]
     ends = {item["key"]: item["end"] for item in document["at_bounds"]}
@@ -122,7 +122,7 @@ def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """How sharp the answer is, and how it hangs on the choice of records."""
     from rpscli.report.study.labels import label
     from rpscli.sweep.design.answer import ROBUST
-    from rpscli.sweep.reports.intensities import unit_of
+    from rpscli.sweep.intensities import unit_of
 
     records = document["records"]
     for end, word in zip(document["bracket"] or (), ("smaller", "larger"), strict=False):

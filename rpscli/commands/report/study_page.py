@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from rpscli.case.conditions import Condition
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.report.files.output_folder import OutputFolder
-    from rpscli.sweep.reports.study_results import StudyResults
+    from rpscli.sweep.study_results import StudyResults
 
 CHOICES = SweepChoices(
     jobs=None, scheduler=None, dry_run=False, fresh=False, retry_failed=False, report_only=False
@@ -71,9 +71,9 @@ def study_page(
     KeyboardInterrupt
         If it was stopped between two points.
     """
-    from rpscli.sweep.reports.study_results import StudyResults
     from rpscli.sweep.run.threads import available_cores
     from rpscli.sweep.store import Store
+    from rpscli.sweep.study_results import StudyResults
     from rpscli.sweep.table import tabulate
 
     require_results(given, list(conditions))

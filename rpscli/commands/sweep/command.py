@@ -139,8 +139,8 @@ def _conclude(
     terminal: Terminal,
 ) -> None:
     from rpscli.commands.case_input import write
-    from rpscli.sweep.reports.study_results import StudyResults
     from rpscli.sweep.run.threads import available_cores
+    from rpscli.sweep.study_results import StudyResults
     from rpscli.sweep.table import tabulate
 
     table = tabulate(given.layout, store.stored(start.keys))

@@ -18,9 +18,9 @@ from rpscli.report.files.output_folder import OutputFolder
 if TYPE_CHECKING:
     from rpscli.case.conditions import Condition
     from rpscli.case.study.reports import ReportRequest
-    from rpscli.sweep.reports.study_results import StudyResults
     from rpscli.sweep.statistics.summary import Summary
     from rpscli.sweep.statistics.verdicts import StudyVerdict
+    from rpscli.sweep.study_results import StudyResults
     from rpscli.sweep.table import Table
 
 BASE = "base.yaml"

@@ -67,7 +67,7 @@ def _system_columns(
 ) -> tuple[list[str], list[list[str]]]:
     from rpscli.case.schema.units import in_si
     from rpscli.report.study.labels import plain, symbol
-    from rpscli.sweep.reports.intensities import unit_of
+    from rpscli.sweep.intensities import unit_of
 
     units = [unit_of(key) for key in summary.keys]
     named = zip(map(symbol, summary.keys), units, strict=True)

@@ -13,7 +13,7 @@ from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.statistics import reached
 from rpscli.sweep.design.answer import NONE, Answer, Interval
 from rpscli.sweep.design.judgement import Requirement
-from rpscli.sweep.reports.intensities import unit_of
+from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.table import Array, Indices
 
 

@@ -19,7 +19,7 @@ from rpscli.report.study.labels import symbol
 from rpscli.report.study.panels import MOST_TICKS
 from rpscli.sweep.design.answer import NONE, ROBUST, Answer
 from rpscli.sweep.design.judgement import Requirement
-from rpscli.sweep.reports.intensities import unit_of
+from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.share import share
 from rpscli.sweep.table import Array
 

@@ -13,13 +13,13 @@ from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import Values, key_columns, labels, plain, symbol
 from rpscli.report.study.panels import left_out
 from rpscli.report.study.report import Report
+from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.reports.contrast import (
     Contrast,
     ContrastOptions,
     ContrastReport,
     contrast_report,
 )
-from rpscli.sweep.reports.intensities import unit_of
 from rpscli.sweep.reports.rotation import unknown_reference
 from rpscli.sweep.table import Array
 

@@ -19,6 +19,7 @@ from rpscli.report.study.panels import (
 )
 from rpscli.report.study.report import Report
 from rpscli.report.study.statistics import share_columns
+from rpscli.sweep.intensities import Intensity, measure_without_period
 from rpscli.sweep.reports.fragility import (
     Fragility,
     FragilityOptions,
@@ -27,7 +28,6 @@ from rpscli.sweep.reports.fragility import (
     fragility_report,
     limit_states,
 )
-from rpscli.sweep.reports.intensities import Intensity, measure_without_period
 from rpscli.sweep.statistics.share import share
 
 if TYPE_CHECKING:

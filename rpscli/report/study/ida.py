@@ -12,6 +12,7 @@ from rpscli.report.study.labels import key_columns
 from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.reports.ida import (
     FRACTILES,
     IdaOptions,
@@ -20,7 +21,6 @@ from rpscli.sweep.reports.ida import (
     ida_report,
     single_intensity,
 )
-from rpscli.sweep.reports.intensities import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

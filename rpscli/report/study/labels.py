@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from rpscli.case.schema.units import in_si
 from rpscli.report.files.csv_text import Column, quoted
-from rpscli.sweep.reports.intensities import unit_of
+from rpscli.sweep.intensities import unit_of
 
 SYMBOLS = {
     "superstructure.storeys": "n",

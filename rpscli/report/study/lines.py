@@ -13,7 +13,7 @@ from rpscli.report.study.panels import by_values, colour, left_out, over, panel_
 from rpscli.report.study.report import Report
 from rpscli.report.study.statistics import reached
 from rpscli.sweep.evaluation.results import KNOWN, quantity
-from rpscli.sweep.reports.intensities import unit_of
+from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.reports.lines import (
     Line,
     LinesOptions,

@@ -14,7 +14,7 @@ from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.figures.style import Target, kept_figure
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.reports.study_results import StudyResults
+from rpscli.sweep.study_results import StudyResults
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -18,11 +18,10 @@ from rpscli.case.study.schema import Keys, Seed
 from rpscli.case.text.document import Document, Fault, dotted, listed
 from rpscli.records.measures.measure import Measure
 from rpscli.sweep.fits.lognormal import Lognormal
+from rpscli.sweep.intensities import Intensity, MeasureOptions, measure_without_period
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.reports.fragility import BandOptions, binned, fragility_fit, intensity_grid
 from rpscli.sweep.reports.fragility import Observed as Binned
-from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, measure_without_period
-from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.statistics.agreement import (
     Agreement,
     Flags,
@@ -36,6 +35,7 @@ from rpscli.sweep.statistics.agreement import (
 )
 from rpscli.sweep.statistics.observations import Pairs, observed_pairs, unpaired
 from rpscli.sweep.statistics.pooling import pooling_note, shown_keys
+from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
 
 BASELINES: tuple[Measure, ...] = ("PGA", "PGV")

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rpscli.case.study.reports import ReportOptions
-from rpscli.sweep.reports.study_results import StudyResults
 from rpscli.sweep.run.schedule import LARGEST_BATCH
 from rpscli.sweep.statistics.pooling import apart, shown_keys
+from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Indices, computed_groups, leading_keys
 
 

@@ -16,7 +16,7 @@ from rpscli.case.schema.fields import Quantity, Section, Whole
 from rpscli.case.schema.limits import described
 from rpscli.case.study.schema import Keys, PositiveNumbers, Seed
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
-from rpscli.sweep.reports.intensities import Intensity, MeasureOptions
+from rpscli.sweep.intensities import Intensity, MeasureOptions
 from rpscli.sweep.statistics.observations import record_of
 from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note, shown_keys
 from rpscli.sweep.statistics.verdicts import exceeds

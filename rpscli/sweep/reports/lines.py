@@ -18,7 +18,7 @@ from rpscli.case.study.schema import Keys
 from rpscli.case.text.document import Document, Fault, Path, dotted, listed
 from rpscli.errors import hint
 from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
-from rpscli.sweep.reports.intensities import unit_of
+from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import fractiles
 from rpscli.sweep.statistics.pooling import (
     INTENSITY,

@@ -22,7 +22,7 @@ from rpscli.sweep.reports.fragility import (
     FragilityReport,
     fragility_report,
 )
-from rpscli.sweep.reports.study_results import StudyResults
+from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
 
 BINS = 24

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.reports.intensities import Intensity, MeasureOptions, intensity
+from rpscli.sweep.intensities import Intensity, MeasureOptions, intensity
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences, fixed_base_references
 from rpscli.sweep.store import Store, Stored
 from rpscli.sweep.table import Table
