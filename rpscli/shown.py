@@ -7,13 +7,15 @@ from dataclasses import fields
 from html import escape
 from typing import Any
 
+from rpscli.frozen import Frozen
+
 IN_A_LINE = 6
 """Facts that stand in a line; a notebook has them all."""
 LONGEST_LIST = 4
 LONGEST_TEXT = 60
 
 
-class Shown:
+class Shown(Frozen):
     """Base of dataclasses that hold too many numbers to be printed whole."""
 
     def facts(self) -> Mapping[str, Any]:

@@ -37,6 +37,7 @@ from rpscli.case.text.document import Document
 from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import CaseError, UsageError, hint
+from rpscli.frozen import frozen
 from rpscli.report.figures.look import Look, read_style
 from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.report.study.folder import study_folder
@@ -258,7 +259,7 @@ class StudyResult(Shown):
     @cached_property
     def columns(self) -> Columns:
         """(points,) arrays of all columns of `points.csv` by name; what does not exist is NaN."""
-        return point_columns(self.table)
+        return frozen(point_columns(self.table))
 
     @property
     def units(self) -> dict[str, str]:
@@ -295,12 +296,12 @@ class StudyResult(Shown):
         Counts, the share that overturned with its 95 % interval, and median, 84 % fractile and
         largest value of all demands, infinite where so many overturned.
         """
-        return _arrays(summary_columns(self._summary))
+        return frozen(_arrays(summary_columns(self._summary)))
 
     @cached_property
     def verdicts(self) -> Columns:
         """Columns of `verdicts.csv`: a row a limit of the study or of its base case and system."""
-        return _arrays(verdict_columns(self._summary.keys, self._verdicts))
+        return frozen(_arrays(verdict_columns(self._summary.keys, self._verdicts)))
 
     @property
     def passed(self) -> bool:

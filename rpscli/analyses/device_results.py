@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.history import History
+from rpscli.frozen import Frozen
 from rpscli.model.devices import Device, RollingResistance, Tendon, name_of
 from rpscli.model.podium import PodiumStructure
 
@@ -103,7 +104,7 @@ def largest_force(
 
 
 @dataclass(frozen=True, eq=False)
-class DeviceTrace:
+class DeviceTrace(Frozen):
     """What each device does at the samples: arrays (samples, devices).
 
     Parameters

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.frozen import frozen
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures.spectrum import response_spectrum
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
 
-PERIODS = np.geomspace(0.05, 4.0, 50)
+PERIODS = frozen(np.geomspace(0.05, 4.0, 50))
 """Periods of equipment [s]."""
 
 DAMPING = 0.05
@@ -105,7 +106,7 @@ def floor_spectra(accelerations: Array, dt: float, periods: Array, damping: floa
         for floor in accelerations.T
     ]
     return FloorSpectra(
-        periods,
+        np.array(periods, dtype=float),
         damping,
         np.array([spectrum.pseudo_acceleration for spectrum in spectra]),
         np.array([spectrum.displacement for spectrum in spectra]),

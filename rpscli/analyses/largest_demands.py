@@ -14,6 +14,7 @@ from rpscli.analyses.failure import failure_text
 from rpscli.analyses.kernels.history import History
 from rpscli.analyses.outcome import Outcome, outcome_of
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS, values_of
+from rpscli.frozen import frozen
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
@@ -171,7 +172,7 @@ class Demand(Shown):
     def max_drifts(self) -> NDArray[np.float64]:
         """(n,) largest storey drifts [m]."""
         building = self.structure.superstructure
-        return self.storey_shears / building.stiffnesses if building else self.storey_shears
+        return frozen(self.storey_shears / building.stiffnesses) if building else self.storey_shears
 
     @property
     def drift_ratio(self) -> float | None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import FIXED_BASE_MODES, UPLIFTED, values_of
+from rpscli.frozen import frozen
 from rpscli.model.linearised_devices import left_out, linear_damping, tendon_stiffness
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
@@ -32,7 +33,7 @@ class FixedBaseModes(Shown):
     @property
     def periods(self) -> Array:
         """(n,) [s]."""
-        return 2.0 * math.pi / self.frequencies
+        return frozen(2.0 * math.pi / self.frequencies)
 
     def profiles(self) -> dict[str, Array]:
         """Shapes, one a row, from the cap beam up (n, n + 1)."""
@@ -85,7 +86,7 @@ class UpliftedModes(Shown):
     @property
     def elastic_shapes(self) -> Array:
         """(n, n + 1): floors relative to the cap beam, u_t - 1 u_b."""
-        return np.asarray(self.shapes[1:] - self.shapes[0])
+        return frozen(np.asarray(self.shapes[1:] - self.shapes[0]))
 
     def profiles(self) -> dict[str, Array]:
         """Shapes and elastic shapes, one a row, from the cap beam up (n + 1, n + 1)."""

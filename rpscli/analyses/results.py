@@ -14,6 +14,7 @@ from rpscli.analyses.fixed_base import FixedBaseResponse, largest_velocities
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Trace
+from rpscli.frozen import frozen
 from rpscli.physics import state
 from rpscli.physics.formulae import geometry
 from rpscli.records.ground_motion import GroundMotion
@@ -128,7 +129,7 @@ class TimeHistoryResult(Demand):
     @property
     def floor_velocities(self) -> NDArray[np.float64]:
         """(n,) largest absolute velocities at the samples [m/s], from the bottom."""
-        return largest_velocities(self.trace.floor_velocities, self.record)
+        return frozen(largest_velocities(self.trace.floor_velocities, self.record))
 
     @property
     def max_floor_velocity(self) -> float | None:

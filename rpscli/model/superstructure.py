@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rpscli.constants import MOST_STOREYS
+from rpscli.frozen import frozen
 from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.shown import Shown
 
@@ -163,23 +164,22 @@ class Superstructure(Shown):
     @cached_property
     def mass_matrix(self) -> NDArray[np.float64]:
         """M, (n, n) [kg]."""
-        return np.diag(self.masses)
+        return frozen(np.diag(self.masses))
 
     @cached_property
     def stiffness_matrix(self) -> NDArray[np.float64]:
         """K, (n, n) [N/m]."""
-        return stiffness_matrix(self.stiffnesses)
+        return frozen(stiffness_matrix(self.stiffnesses))
 
     @cached_property
     def damping_matrix(self) -> NDArray[np.float64]:
         """C, (n, n) [N s/m]."""
-        return self.damping.matrix(
-            self.mass_matrix, self.stiffness_matrix, self.frequencies, self.shapes
-        )
+        M, K = self.mass_matrix, self.stiffness_matrix
+        return frozen(self.damping.matrix(M, K, self.frequencies, self.shapes))
 
     @cached_property
     def _modes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return shear_modes(self.masses, self.stiffnesses)
+        return frozen(shear_modes(self.masses, self.stiffnesses))
 
     @property
     def frequencies(self) -> NDArray[np.float64]:
@@ -194,22 +194,21 @@ class Superstructure(Shown):
     @cached_property
     def damping_ratios(self) -> NDArray[np.float64]:
         """Critical damping ratio of each fixed-base mode, (n,)."""
-        return self.damping.ratios(self.frequencies)
+        return frozen(self.damping.ratios(self.frequencies))
 
     @property
     def periods(self) -> NDArray[np.float64]:
         """Fixed-base periods, (n,), descending [s]."""
-        return 2.0 * math.pi / self.frequencies
+        return frozen(2.0 * math.pi / self.frequencies)
 
     @property
     def participation(self) -> NDArray[np.float64]:
         """Gamma_r = phi_r^T M 1 of the mass-normalised modes, (n,) [kg^1/2]."""
-        return self.shapes.T @ self.masses
+        return frozen(self.shapes.T @ self.masses)
 
 
 def _positive(name: str, values: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
     array = np.array(values, dtype=float)
     if array.ndim != 1 or not np.all(np.isfinite(array) & (array > 0.0)):
         raise ValueError(f"{name} must be a list of finite values > 0, from the bottom")
-    array.flags.writeable = False
-    return array
+    return frozen(array)

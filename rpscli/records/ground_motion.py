@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
+from rpscli.frozen import frozen
 from rpscli.shown import Shown, with_unit
 
 if TYPE_CHECKING:
@@ -45,7 +46,8 @@ class GroundMotion(Shown):
     Raises
     ------
     RecordError
-        If there are fewer than two samples, one of them is not finite, or `dt` is not positive.
+        If there are fewer than two samples, one of them is not finite or masked, or `dt` is not
+        positive.
 
     Examples
     --------
@@ -65,6 +67,11 @@ class GroundMotion(Shown):
     warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if np.ma.is_masked(self.acceleration):
+            first = int(np.flatnonzero(np.ma.getmaskarray(self.acceleration))[0])
+            raise RecordError(
+                f"{self.source}: sample {first + 1} is masked, a gap; fill it, or cut the record"
+            )
         values = np.array(self.acceleration, dtype=np.float64, order="C")
         if values.ndim != 1 or values.size < 2:
             raise RecordError(
@@ -76,8 +83,7 @@ class GroundMotion(Shown):
             raise RecordError(f"{self.source}: sample {first + 1} is {values[first]}, not finite")
         if not (np.isfinite(self.dt) and self.dt > 0.0):
             raise RecordError(f"{self.source}: dt = {self.dt} s must be positive and finite")
-        values.flags.writeable = False
-        object.__setattr__(self, "acceleration", values)
+        object.__setattr__(self, "acceleration", frozen(values))
         object.__setattr__(self, "dt", float(self.dt))
 
     def facts(self) -> dict[str, object]:
@@ -105,7 +111,7 @@ class GroundMotion(Shown):
     @property
     def time(self) -> NDArray[np.float64]:
         """Times of the samples, shape (npts,) [s], from zero."""
-        return np.arange(self.npts, dtype=np.float64) * self.dt
+        return frozen(np.arange(self.npts, dtype=np.float64) * self.dt)
 
     @cached_property
     def pga(self) -> float:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.frozen import Frozen, frozen
 from rpscli.sweep.evaluation.results import FAILED, SCALARS, value_at
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Stored
@@ -22,7 +23,7 @@ MISSING = ""
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class Table(Frozen):
     """Outcomes and scalar results of all points.
 
     Parameters
@@ -54,12 +55,12 @@ class Table:
     @cached_property
     def failed(self) -> NDArray[np.bool_]:
         """(points,) which have no result."""
-        return np.asarray((self.outcomes == FAILED) | (self.outcomes == MISSING))
+        return frozen(np.asarray((self.outcomes == FAILED) | (self.outcomes == MISSING)))
 
     @cached_property
     def overturned(self) -> NDArray[np.bool_]:
         """(points,) which overturned."""
-        return np.char.startswith(self.outcomes, "overturned")
+        return frozen(np.char.startswith(self.outcomes, "overturned"))
 
 
 def tabulate(layout: StudyPoints, stored: Iterable[Stored | None]) -> Table:

@@ -15,6 +15,7 @@ from rpscli.analyses.kernels.step_lengths import most_steps
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
+from rpscli.frozen import Frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.run import Output, Run, empty_block
 from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, Record, records
@@ -31,7 +32,7 @@ FIRST_LOG = 4096
 
 
 @dataclass(frozen=True, eq=False)
-class History:
+class History(Frozen):
     """What one history leaves behind besides samples and log, SI units.
 
     Parameters

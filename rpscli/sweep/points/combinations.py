@@ -12,11 +12,12 @@ import numpy as np
 from rpscli.case.study.axes import Values
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Place
+from rpscli.frozen import Frozen
 from rpscli.sweep.points.sampling import Array, sample
 
 
 @dataclass(frozen=True, eq=False)
-class Combinations:
+class Combinations(Frozen):
     """Values of the varied and sampled keys of each system.
 
     Parameters

@@ -1,0 +1,147 @@
+"""What `import rpscli` offers gives no array that can be written to, in copies either."""
+
+from __future__ import annotations
+
+import copy
+import inspect
+import pickle
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from paper_structures import ground, podium, waves
+
+import rpscli
+from rpscli.errors import RecordError
+from rpscli.model.devices import FrictionDamper, Tendon
+
+STRUCTURE = replace(
+    podium(2, 0.15, 0.5), devices=(FrictionDamper(1e5), Tendon(1e4, 1e6)), columns=2
+)
+RECORD = waves(1.0, 0.02, 4.0, seed=3)
+STUDY = {
+    "rps": 1, "title": "read-only", "base": str(Path("cases/rigid_frame.yaml").resolve()),
+    "vary": [{"podium.bearing.wedge_slenderness": [0.2, 0.3]}],
+    "records": ["pulse:sine?amplitude=0.2g&period=1.0"],
+}  # fmt: skip
+HISTORY = rpscli.time_history(STRUCTURE, RECORD)
+
+
+def study() -> rpscli.StudyResult:
+    return rpscli.load_study(STUDY).run(jobs=1)
+
+
+OBJECTS: dict[str, Callable[[], Any]] = {
+    "Bearing": lambda: STRUCTURE.bearing,
+    "Case": lambda: rpscli.load_case("cases/six_storey.yaml"),
+    "Demand": lambda: rpscli.demand(STRUCTURE, RECORD),
+    "GroundMotion": lambda: RECORD,
+    "ImpactLaw": lambda: STRUCTURE.impact_law,
+    "ModalDamping": lambda: rpscli.ModalDamping(0.05),
+    "ModalResult": lambda: rpscli.modal(STRUCTURE),
+    "PodiumStructure": lambda: STRUCTURE,
+    "PushoverResult": lambda: rpscli.pushover(STRUCTURE),
+    "RayleighDamping": lambda: rpscli.RayleighDamping(0.05),
+    "RpsError": lambda: rpscli.RpsError("text"),
+    "Study": lambda: rpscli.load_study(STUDY),
+    "StudyResult": study,
+    "Superstructure": lambda: STRUCTURE.superstructure,
+    "TimeHistoryResult": lambda: HISTORY,
+    "TimeHistorySettings": lambda: HISTORY.settings,
+    "fixed_base_floor_spectra": lambda: rpscli.fixed_base_floor_spectra(HISTORY),
+    "isolated_floor_spectra": lambda: rpscli.isolated_floor_spectra(HISTORY),
+    "response_spectrum": lambda: rpscli.response_spectrum(RECORD, [0.5, 1.0]),
+}
+"""Every class that is offered, and what functions without a class of theirs give."""
+
+OTHER = {
+    "demand", "figures", "load_case", "load_record", "load_study", "modal", "pushover",
+    "time_history", "profile_stiffnesses", "__version__",
+}  # fmt: skip
+"""They give objects of the classes above, texts, or an array that nobody else knows."""
+
+
+def parts(
+    value: Any, name: str, seen: dict[int, Any]
+) -> Iterator[tuple[str, np.ndarray[Any, Any]]]:
+    """All arrays inside, by the way to them: fields, properties, what is cached."""
+    if isinstance(value, np.ndarray):
+        yield name, value
+        return
+    if id(value) in seen or isinstance(value, str | bytes | Path | type):
+        return
+    seen[id(value)] = value
+    if isinstance(value, dict | list | tuple):
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from parts(part, f"{name}[{key!r}]", seen)
+    if not type(value).__module__.startswith("rpscli.") or "schema" in type(value).__module__:
+        return
+    for attribute, member in inspect.getmembers_static(type(value)):
+        if isinstance(member, property | cached_property) and not attribute.startswith("_"):
+            yield from parts(getattr(value, attribute), f"{name}.{attribute}", seen)
+    for attribute, part in list(getattr(value, "__dict__", {}).items()):
+        if not attribute.startswith("_"):
+            yield from parts(part, f"{name}.{attribute}", seen)
+
+
+def pickled(value: Any) -> Any:
+    return pickle.loads(pickle.dumps(value))  # noqa: S301
+
+
+def writable(value: Any) -> set[str]:
+    return {name for name, array in parts(value, "", {}) if array.flags.writeable}
+
+
+def test_nothing_that_is_offered_is_forgotten() -> None:
+    assert set(rpscli.__all__) == OBJECTS.keys() | OTHER
+
+
+@pytest.mark.parametrize("name", OBJECTS)
+def test_arrays_are_read_only_in_copies_too(name: str) -> None:
+    made = OBJECTS[name]()
+    assert not writable(made)
+    if name not in {"Case", "Study", "StudyResult"}:  # copies of these hold more than results
+        for again in (copy.copy(made), copy.deepcopy(made), pickled(made)):
+            assert not writable(again)
+
+
+def test_the_walk_finds_what_is_writable() -> None:
+    assert writable({"a": (np.zeros(2), frozenset())}) == {"['a'][0]"}
+    loose = ground([0.0, 1.0], 0.1)
+    loose.acceleration.flags.writeable = True
+    assert writable(loose) == {".acceleration"}
+
+
+def test_a_result_cannot_be_changed_in_place() -> None:
+    above = STRUCTURE.superstructure
+    assert above is not None
+    before = rpscli.demand(STRUCTURE, RECORD).max_base_shear
+    with pytest.raises(ValueError, match="read-only"):
+        above.frequencies[:] *= 1.5
+    with pytest.raises(ValueError, match="read-only"):
+        above.shapes[0, 0] = 0.0
+    assert rpscli.demand(STRUCTURE, RECORD).max_base_shear == before
+    digest = RECORD.digest
+    again = pickled(RECORD)
+    with pytest.raises(ValueError, match="read-only"):
+        again.acceleration[:] *= 2.0
+    assert again.digest == digest
+
+
+def test_periods_of_the_user_stay_the_users() -> None:
+    periods = np.array([0.5, 1.0])
+    rpscli.isolated_floor_spectra(HISTORY, periods)
+    periods *= 2.0
+    assert periods.tolist() == [1.0, 2.0]
+
+
+def test_masked_samples_are_refused() -> None:
+    gap = np.ma.array([0.0, 999.0, 1.0], mask=[False, True, False])
+    with pytest.raises(RecordError, match=r"sample 2 is masked, a gap; fill it"):
+        rpscli.GroundMotion(gap, 0.1)
+    whole = np.ma.array([0.0, 2.0], mask=False)
+    assert rpscli.GroundMotion(whole, 0.1).pga == 2.0
