@@ -17,7 +17,7 @@ from rpscli.case.conditions import Condition
 from rpscli.report.study.statistics import summary_columns, summary_document
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.statistics.fractiles import Spread
-from rpscli.sweep.statistics.pooling import apart, pooled
+from rpscli.sweep.statistics.grouping import own_keys, pooled
 from rpscli.sweep.statistics.scales import scale_notes
 from rpscli.sweep.statistics.share import share
 from rpscli.sweep.statistics.summary import Summary, summary
@@ -128,11 +128,13 @@ def test_the_reduction_is_against_the_fixed_base_at_the_same_scale(study_of: Mak
 
 def test_what_is_pooled_is_said(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY + "perturb: {members: 4}\n"))
-    assert apart(layout, (RHO,)) == (RHO, "scale")
+    assert own_keys(layout) == (ALPHA, RHO, "scale")
+    assert own_keys(layout, (RHO, "scale")) == (ALPHA,)
+    assert own_keys(layout, ("podium.bearing.wedge_slenderness",)) == (RHO, "scale")
     assert pooled(layout, (RHO,)) == (f"2 values of {ALPHA}", "2 intensities", "4 members")
     assert pooled(layout, (ALPHA, RHO, "scale")) == ("4 members",)
     single = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0]")))
-    assert apart(single, (RHO,)) == (RHO,)
+    assert own_keys(single) == (ALPHA, RHO)
     assert pooled(single, (ALPHA, RHO)) == ()
 
 

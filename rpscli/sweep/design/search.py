@@ -14,7 +14,7 @@ from rpscli.sweep.design.judgement import Requirement, demands_of, judge, weight
 from rpscli.sweep.design.space import Flags, first_places, next_places, usual_count
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.pooling import INTENSITY, shown_keys
+from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.table import Array, Table
 
 ROUNDS = 4

@@ -33,8 +33,8 @@ from rpscli.sweep.statistics.agreement import (
     outcome_worth,
     threshold,
 )
+from rpscli.sweep.statistics.grouping import pooling_note, shown_keys
 from rpscli.sweep.statistics.observations import Pairs, observed_pairs, unpaired
-from rpscli.sweep.statistics.pooling import pooling_note, shown_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
 

@@ -10,7 +10,7 @@ from pydantic import Field
 from rpscli.case.study.reports import ReportOptions
 from rpscli.case.study.schema import Keys
 from rpscli.sweep.fits.bilinear import FEWEST, Bilinear, bilinear_fit
-from rpscli.sweep.statistics.pooling import INTENSITY, apart, pooled, pooling_note, shown_keys
+from rpscli.sweep.statistics.grouping import INTENSITY, apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 

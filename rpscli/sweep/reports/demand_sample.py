@@ -10,7 +10,7 @@ import numpy as np
 
 from rpscli.case.study.reports import ReportOptions
 from rpscli.sweep.run.schedule import LARGEST_BATCH
-from rpscli.sweep.statistics.pooling import apart, shown_keys
+from rpscli.sweep.statistics.grouping import apart, shown_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Indices, computed_groups, leading_keys
 

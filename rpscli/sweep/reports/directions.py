@@ -14,7 +14,7 @@ from rpscli.case.study.reports import ReportOptions
 from rpscli.records.pair import HALF_TURN, Direction, direction_of
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import demand, fractiles
-from rpscli.sweep.statistics.pooling import INTENSITY, apart, shown_keys
+from rpscli.sweep.statistics.grouping import INTENSITY, apart, shown_keys
 from rpscli.sweep.table import Array, Table, groups, leading_keys
 
 if TYPE_CHECKING:

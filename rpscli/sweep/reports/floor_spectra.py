@@ -18,7 +18,7 @@ from rpscli.analyses.floor_spectra import (
 from rpscli.case.study.reports import ReportOptions
 from rpscli.case.study.schema import DampingRatio
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
+from rpscli.sweep.statistics.grouping import apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, computed_groups, leading_keys
 

@@ -17,8 +17,8 @@ from rpscli.case.schema.limits import described
 from rpscli.case.study.schema import Keys, PositiveNumbers, Seed
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.intensities import Intensity, MeasureOptions
+from rpscli.sweep.statistics.grouping import INTENSITY, pooled, pooling_note, shown_keys
 from rpscli.sweep.statistics.observations import record_of
-from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note, shown_keys
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 

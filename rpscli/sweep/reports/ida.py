@@ -15,7 +15,7 @@ from rpscli.case.study.reports import ReportOptions, ReportRequest
 from rpscli.case.study.schema import Keys
 from rpscli.case.text.document import Document, Fault
 from rpscli.sweep.statistics.fractiles import demand, fractiles
-from rpscli.sweep.statistics.pooling import INTENSITY, pooled, pooling_note
+from rpscli.sweep.statistics.grouping import INTENSITY, pooled, pooling_note
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 FRACTILES = (0.16, 0.50, 0.84)

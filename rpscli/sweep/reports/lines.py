@@ -20,7 +20,7 @@ from rpscli.errors import hint
 from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import fractiles
-from rpscli.sweep.statistics.pooling import (
+from rpscli.sweep.statistics.grouping import (
     INTENSITY,
     apart,
     pooled,

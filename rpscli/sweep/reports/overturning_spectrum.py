@@ -20,7 +20,7 @@ from rpscli.records.query import Query, parse_query
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import RecordRequest
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.pooling import shown_keys
+from rpscli.sweep.statistics.grouping import shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 PULSE_OPTIONS = (

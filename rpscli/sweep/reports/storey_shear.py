@@ -13,7 +13,7 @@ from rpscli.case.study.reports import ReportOptions
 from rpscli.case.study.schema import Keys
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
-from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
+from rpscli.sweep.statistics.grouping import apart, pooled, pooling_note, shown_keys
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rpscli.case.study.observed import Observed, comparable
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.pooling import INTENSITY
+from rpscli.sweep.statistics.grouping import INTENSITY
 from rpscli.sweep.table import Array, Indices, groups
 
 

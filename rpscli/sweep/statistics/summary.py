@@ -9,9 +9,9 @@ import numpy as np
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
 from rpscli.sweep.statistics.fractiles import Spread, demand, spread
-from rpscli.sweep.statistics.pooling import apart, pooled, pooling_note, shown_keys
-from rpscli.sweep.statistics.share import Share, share
-from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
+from rpscli.sweep.statistics.grouping import grouping
+from rpscli.sweep.statistics.share import Share
+from rpscli.sweep.table import Array, Indices, Table
 
 REDUCTION = next(quantity for quantity in LIMITED if quantity.name == "fixed_base_ratio")
 
@@ -51,8 +51,6 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
     fixed
         Storey shears on a fixed base, as a reference.
     """
-    layout = table.layout
-    keys = apart(layout, leading_keys(layout))
     columns = {quantity: table.columns[quantity.name] for quantity in LIMITED}
     columns[REDUCTION] = shear_over_fixed_base(table, fixed)
     known = {
@@ -60,27 +58,20 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
         for q, v in columns.items()
         if not np.isnan(v).all()
     }
-    rows = []
-    for group in groups(layout, keys):
-        points = group.points[~table.failed[group.points]]
-        rows.append(
-            SummaryRow(
-                values=group.values,
-                points=points,
-                failed=len(group.points) - len(points),
-                overturned=share(int(table.overturned[points].sum()), len(points)),
-                spreads=tuple(
-                    spread(column[points], from_below=q.from_below) for q, column in known.items()
-                ),
-            )
+    found = grouping(table)
+    rows = (
+        SummaryRow(
+            values=group.values,
+            points=group.points,
+            failed=group.failed,
+            overturned=group.overturned,
+            spreads=tuple(
+                spread(column[group.points], from_below=q.from_below) for q, column in known.items()
+            ),
         )
-    return Summary(
-        keys=shown_keys(layout, keys),
-        pooled=pooled(layout, keys),
-        notes=tuple(pooling_note(layout, keys)),
-        quantities=tuple(known),
-        rows=tuple(rows),
+        for group in found.groups
     )
+    return Summary(found.keys, found.pooled, found.notes, tuple(known), tuple(rows))
 
 
 def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
