@@ -111,3 +111,13 @@ def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7)
     """
     meant = nearest(word, known, likeness)
     return f"did you mean {meant}?" if meant else otherwise
+
+
+def listed(words: Iterable[str], last: str = "or") -> str:
+    """Words as an enumeration.
+
+    >>> listed(["sine", "uniform", "linear"])
+    'sine, uniform or linear'
+    """
+    *head, tail = words
+    return f"{', '.join(head)} {last} {tail}" if head else tail

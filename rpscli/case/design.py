@@ -25,7 +25,6 @@ from rpscli.case.schema.fields import (
 )
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
-from rpscli.case.schema.units import in_si
 from rpscli.case.study.axes import Axis, clashes, sources_of
 from rpscli.case.study.rules import (
     fixed_faults,
@@ -36,10 +35,11 @@ from rpscli.case.study.rules import (
 )
 from rpscli.case.study.schema import Seed, StudyParts
 from rpscli.case.study.study import Study, shared_out, single_key_faults, study_of
-from rpscli.case.text.document import Document, Fault, is_case, is_design, listed, shown
+from rpscli.case.text.document import Document, Fault, is_case, is_design, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, hint
+from rpscli.errors import CaseError, hint, listed
+from rpscli.units import in_si
 
 PLUS = "plus"
 """What is added to a linear sum."""

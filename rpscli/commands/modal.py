@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.case.text.document import listed
 from rpscli.commands.case_input import case_folder, case_heading, read_case, write
 from rpscli.commands.shell.options import (
     CaseRequest,
@@ -23,6 +22,7 @@ from rpscli.commands.shell.passing_time import counted
 from rpscli.commands.shell.tables import sentence, table
 from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import listed
 from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with

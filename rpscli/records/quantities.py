@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 
-from rpscli.constants import STANDARD_GRAVITY
+from rpscli.units import si_factor
 
 # Digits are matched in one way only: otherwise a long word of them is tried at every division.
 _UNSIGNED = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?"
@@ -22,13 +22,8 @@ NUMBER_PATTERN = rf"[+-]?{_UNSIGNED}"
 """A regular expression for one number."""
 
 _FACTORS = {
-    "g": STANDARD_GRAVITY,
-    "m/s2": 1.0,
-    "cm/s2": 0.01,
-    "mm/s2": 0.001,
-    "gal": 0.01,
-    "in/s2": 0.0254,
-    "ft/s2": 0.3048,
+    name: si_factor(name, "m/s2")
+    for name in ("g", "m/s2", "cm/s2", "mm/s2", "gal", "in/s2", "ft/s2")
 }
 
 KNOWN_UNITS = ", ".join(_FACTORS)

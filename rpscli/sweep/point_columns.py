@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.case.schema.units import in_si
 from rpscli.sweep.points.described import described
 from rpscli.sweep.points_csv import scale_of, units_of_columns
 from rpscli.sweep.table import Table
+from rpscli.units import in_si
 
 Columns = dict[str, NDArray[Any]]
 

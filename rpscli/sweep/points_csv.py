@@ -8,13 +8,13 @@ import json
 import math
 from collections.abc import Iterator
 
-from rpscli.case.schema.units import in_si
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.points.described import described, identifying_columns
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.table import Table
+from rpscli.units import in_si
 
 LINES_A_PIECE = 1000
 

@@ -11,7 +11,7 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.json_schema import case_json_schema
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import field_at, known_paths, section_of
-from rpscli.case.schema.units import KINDS
+from rpscli.units import KINDS
 
 SCHEMA = case_json_schema()
 UNITS = {

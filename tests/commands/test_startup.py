@@ -12,7 +12,7 @@ import pytest
 
 from rpscli.cli import COMMANDS
 
-HEAVY = {"numba", "scipy", "matplotlib", "pydantic", "yaml", "rich", "numpy", "pint"}
+HEAVY = {"numba", "scipy", "matplotlib", "pydantic", "yaml", "rich", "numpy"}
 SCRIPT = """
 import atexit, json, sys
 from rpscli.cli import program
@@ -53,7 +53,7 @@ def test_check_needs_no_kernels_and_no_pictures(workplace: Path) -> None:
 def test_check_with_common_units_needs_no_library_of_units(workplace: Path) -> None:
     units = ["superstructure.storey_mass=200 t", "podium.bearing.semi_diagonal=150 cm"]
     found = imported(workplace, "check", "small.yaml", *(f"--set={unit}" for unit in units))
-    assert not found & {"pint", "numba", "scipy", "matplotlib", "rpscli.records.formats.registry"}
+    assert not found & {"numba", "scipy", "matplotlib", "rpscli.records.formats.registry"}
 
 
 def test_a_document_of_an_error_needs_no_numpy(workplace: Path) -> None:

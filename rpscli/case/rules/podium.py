@@ -15,7 +15,8 @@ from rpscli.case.schema.case_file import (
     DeviceSection,
     ImpactSection,
 )
-from rpscli.case.text.document import Document, Fault, Path, listed
+from rpscli.case.text.document import Document, Fault, Path
+from rpscli.errors import listed
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import MOST_DEVICES
 from rpscli.model.impact import ImpactKind, ImpactLaw

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.rules.partial_case import LIMITS, PODIUM, SUPERSTRUCTURE, PartialCase
 from rpscli.case.schema.case_file import PodiumMasses
-from rpscli.case.text.document import MISSING, Fault, Path, listed, shown
+from rpscli.case.text.document import MISSING, Fault, Path, shown
+from rpscli.errors import listed
 
 STOREYS: Path = (*SUPERSTRUCTURE, "storeys")
 BUILDING_KEYS = ("storey_mass", "storey_height", "period", "profile", "stiffness", "damping")

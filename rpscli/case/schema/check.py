@@ -10,8 +10,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from rpscli.case.schema.keys import field_at, section_at, unknown_key
-from rpscli.case.text.document import MOST_FAULTS, Document, Fault, Path, dotted, listed, shown
-from rpscli.errors import nearest
+from rpscli.case.text.document import MOST_FAULTS, Document, Fault, Path, dotted, shown
+from rpscli.errors import listed, nearest
 
 Model = TypeVar("Model", bound=BaseModel)
 

@@ -14,9 +14,8 @@ from typing import Annotated, Any, NoReturn, TypeGuard
 from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, WithJsonSchema
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from rpscli.case.schema.units import KINDS, si_value
-from rpscli.case.text.document import listed
-from rpscli.errors import nearest
+from rpscli.errors import listed, nearest
+from rpscli.units import KINDS, si_value
 
 
 class Section(BaseModel):

@@ -11,8 +11,8 @@ from pydantic.fields import FieldInfo
 
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.fields import PLAIN, Quantity, Whole
-from rpscli.case.text.document import Fault, Path, dotted, listed
-from rpscli.errors import nearest
+from rpscli.case.text.document import Fault, Path, dotted
+from rpscli.errors import listed, nearest
 
 
 def section_of(annotation: Any) -> type[BaseModel] | None:

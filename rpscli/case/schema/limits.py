@@ -14,7 +14,7 @@ from pydantic import Discriminator, Field, Tag, create_model, model_validator
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.case.schema.fields import PLAIN, Quantity, Section, refuse
-from rpscli.case.schema.units import KINDS
+from rpscli.units import KINDS
 
 Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1")]
 Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]

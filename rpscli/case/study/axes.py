@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from rpscli.case.schema.check import schema_check
 from rpscli.case.study.schema import ValueRange, spaced
-from rpscli.case.text.document import Document, Fault, Path, Place, dotted, listed, shown
-from rpscli.errors import RecordError
+from rpscli.case.text.document import Document, Fault, Path, Place, dotted, shown
+from rpscli.errors import RecordError, listed
 from rpscli.records.source import expand_sources
 
 Values = tuple[Any, ...]

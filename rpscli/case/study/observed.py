@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.schema.keys import unit as key_unit
-from rpscli.case.schema.units import KINDS, in_si, si_value
 from rpscli.case.study.axes import Axis
-from rpscli.case.text.document import Document, Fault, Path, Place, listed, shown
+from rpscli.case.text.document import Document, Fault, Path, Place, shown
 from rpscli.case.text.files import read_text
-from rpscli.errors import CaseError, hint
+from rpscli.errors import CaseError, hint, listed
+from rpscli.units import KINDS, in_si, si_value
 
 RECORD, OVERTURNED = "record", "overturned"
 PATH: Path = ("observed",)

@@ -12,8 +12,8 @@ from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.fields import Section, Text
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.schema import Analysis
-from rpscli.case.text.document import Document, Fault, Path, dotted, listed, shown
-from rpscli.errors import hint
+from rpscli.case.text.document import Document, Fault, Path, dotted, shown
+from rpscli.errors import hint, listed
 
 
 class ReportOptions(Section):

@@ -11,7 +11,8 @@ from rpscli.case.schema.keys import field_at, unknown_key
 from rpscli.case.study.axes import Axis, clashes
 from rpscli.case.study.reports import ReportKinds, ReportOptions, ReportRequest
 from rpscli.case.study.schema import MeasureScale, RangeSection, StudyFile
-from rpscli.case.text.document import MISSING, Document, Fault, Path, dotted, listed, shown
+from rpscli.case.text.document import MISSING, Document, Fault, Path, dotted, shown
+from rpscli.errors import listed
 
 OF_HISTORIES = ("records", "scale", "perturb", "observed")
 """Keys of a study that only time histories have."""

@@ -98,16 +98,6 @@ def shown(value: object, width: int = 60) -> str:
     return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
-def listed(words: Iterable[str], last: str = "or") -> str:
-    """Words as an enumeration.
-
-    >>> listed(["sine", "uniform", "linear"])
-    'sine, uniform or linear'
-    """
-    *head, tail = words
-    return f"{', '.join(head)} {last} {tail}" if head else tail
-
-
 MOST_FAULTS = 100
 """Told at once."""
 

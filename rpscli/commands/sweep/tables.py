@@ -65,9 +65,9 @@ def summary_tables(summary: Summary) -> Iterator[RenderableType]:
 def _system_columns(
     summary: Summary, rows: Sequence[tuple[object, ...]]
 ) -> tuple[list[str], list[list[str]]]:
-    from rpscli.case.schema.units import in_si
     from rpscli.report.study.labels import plain, symbol
     from rpscli.sweep.intensities import unit_of
+    from rpscli.units import in_si
 
     units = [unit_of(key) for key in summary.keys]
     named = zip(map(symbol, summary.keys), units, strict=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from rpscli.case.schema.units import in_si
 from rpscli.report.files.csv_text import Column, quoted
 from rpscli.sweep.intensities import unit_of
+from rpscli.units import in_si
 
 SYMBOLS = {
     "superstructure.storeys": "n",

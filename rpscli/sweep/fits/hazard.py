@@ -25,11 +25,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.case.schema.units import si_value
 from rpscli.case.text.document import shown
 from rpscli.case.text.files import read_text
 from rpscli.errors import CaseError
 from rpscli.records.measures.measure import MEASURE_UNITS, Measure
+from rpscli.units import si_value
 
 Array = NDArray[np.float64]
 

@@ -11,12 +11,11 @@ import numpy as np
 from pydantic import Field, StrictBool
 
 from rpscli.case.schema.fields import Quantity, Text
-from rpscli.case.schema.units import in_si
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest
 from rpscli.case.study.schema import Keys
-from rpscli.case.text.document import Document, Fault, Path, dotted, listed
-from rpscli.errors import hint
+from rpscli.case.text.document import Document, Fault, Path, dotted
+from rpscli.errors import hint, listed
 from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import fractiles
@@ -29,6 +28,7 @@ from rpscli.sweep.statistics.grouping import (
 )
 from rpscli.sweep.store import Stored
 from rpscli.sweep.table import Indices, Table, groups, leading_keys
+from rpscli.units import in_si
 
 Values = dict[str, list[Any]]
 """Some results of all points, by name; None where a point has none."""

@@ -13,7 +13,8 @@ from rpscli.case.schema.fields import Text
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest
 from rpscli.case.study.schema import Keys
-from rpscli.case.text.document import Document, Fault, Path, dotted, listed, shown
+from rpscli.case.text.document import Document, Fault, Path, dotted, shown
+from rpscli.errors import listed
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 

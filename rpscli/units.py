@@ -1,0 +1,246 @@
+"""Numbers written with a unit, turned into SI: the one table of units, of cases and of records."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import NamedTuple
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import hint, listed
+
+WITH_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d_,'].*?)?\s*$")
+_POWER = r"([A-Za-zµ]{1,20})(?:(?:\^|\*\*)?(-?[1-9]))?"
+_FACTOR = re.compile(rf"\s*([*/·]|\s|^)\s*{_POWER}")
+UNIT_TEXT = re.compile(rf"{_POWER}(?:(?:\s*[*/·]\s*|\s){_POWER}){{0,5}}\Z")
+"""Products and quotients of units with powers."""
+
+KINDS = {
+    "m": ("a length", ("m", "cm", "mm", "in", "ft")),
+    "kg": ("a mass", ("kg", "t", "lb")),
+    "s": ("a time", ("s", "ms")),
+    "N/m": ("a stiffness", ("N/m", "kN/m", "kN/mm", "MN/m", "kip/in")),
+    "N s/m": ("a damping coefficient", ("N s/m", "kN s/m", "MN s/m", "kN s/mm")),
+    "m/s2": ("an acceleration", ("m/s2", "cm/s2", "g")),
+    "m/s": ("a velocity", ("m/s", "cm/s", "ft/s")),
+    "N": ("a force", ("N", "kN", "MN", "kip")),
+    "rad": ("an angle", ("rad", "mrad", "deg")),
+}
+"""What each SI unit of the formats measures, and units it is usually written in."""
+
+OTHER_KINDS = {"Pa": "a pressure", "Hz": "a frequency"}
+
+FOOT, INCH = 0.3048, 0.0254
+"""In metres, by definition."""
+POUND = 0.45359237
+"""In kilogrammes, by definition."""
+POUND_FORCE = 4.4482216152605
+"""In newtons: a pound under standard gravity."""
+DEGREE = math.pi / 180.0
+PSI = POUND_FORCE / INCH**2
+
+LENGTH, MASS, TIME, ANGLE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
+VELOCITY, ACCELERATION, FREQUENCY = (1, 0, -1), (1, 0, -2), (0, 0, -1)
+FORCE, PRESSURE, ENERGY, POWER = (1, 1, -2), (-1, 1, -2), (2, 1, -2), (2, 1, -3)
+
+
+class Unit(NamedTuple):
+    """A factor to SI, mantissa times a power of ten, and powers of length, mass and time."""
+
+    mantissa: float
+    tens: int
+    dimension: tuple[int, ...]
+
+    @property
+    def factor(self) -> float:
+        """To SI; powers of ten are exact, so that mm are 1e-3 m to the last digit."""
+        tens = 10.0 ** abs(self.tens)
+        return self.mantissa * tens if self.tens >= 0 else self.mantissa / tens
+
+
+METRIC = {
+    "m meter metre": Unit(1.0, 0, LENGTH),
+    "g gram": Unit(1.0, -3, MASS),
+    "t tonne": Unit(1.0, 3, MASS),
+    "s sec second": Unit(1.0, 0, TIME),
+    "N newton": Unit(1.0, 0, FORCE),
+    "lbf": Unit(POUND_FORCE, 0, FORCE),
+    "pond": Unit(STANDARD_GRAVITY, -3, FORCE),
+    "Pa pascal": Unit(1.0, 0, PRESSURE),
+    "bar": Unit(1.0, 5, PRESSURE),
+    "J joule": Unit(1.0, 0, ENERGY),
+    "W watt": Unit(1.0, 0, POWER),
+    "rad radian": Unit(1.0, 0, ANGLE),
+    "Hz hertz": Unit(1.0, 0, FREQUENCY),
+    "Gal gal": Unit(1.0, -2, ACCELERATION),
+}
+"""Units that take a prefix."""
+
+OTHERS = {
+    "ft foot feet": Unit(FOOT, 0, LENGTH),
+    "in inch inches": Unit(INCH, 0, LENGTH),
+    "yd yard": Unit(3.0 * FOOT, 0, LENGTH),
+    "mi mile": Unit(5280.0 * FOOT, 0, LENGTH),
+    "lb pound": Unit(POUND, 0, MASS),
+    "oz ounce": Unit(POUND / 16.0, 0, MASS),
+    "slug": Unit(POUND_FORCE / FOOT, 0, MASS),
+    "min minute": Unit(60.0, 0, TIME),
+    "h hr hour": Unit(3600.0, 0, TIME),
+    "d day": Unit(86400.0, 0, TIME),
+    "kip": Unit(1e3 * POUND_FORCE, 0, FORCE),
+    "kgf": Unit(STANDARD_GRAVITY, 0, FORCE),
+    "tf": Unit(STANDARD_GRAVITY, 3, FORCE),
+    "dyn dyne": Unit(1.0, -5, FORCE),
+    "psi": Unit(PSI, 0, PRESSURE),
+    "ksi": Unit(PSI, 3, PRESSURE),
+    "atm": Unit(101325.0, 0, PRESSURE),
+    "deg degree": Unit(DEGREE, 0, ANGLE),
+    "arcmin": Unit(DEGREE / 60.0, 0, ANGLE),
+    "gon grad": Unit(math.pi / 200.0, 0, ANGLE),
+    "turn": Unit(2.0 * math.pi, 0, ANGLE),
+    "rpm": Unit(math.pi / 30.0, 0, FREQUENCY),
+    "kph": Unit(1.0 / 3.6, 0, VELOCITY),
+    "mph": Unit(5280.0 * FOOT / 3600.0, 0, VELOCITY),
+    "kt knot": Unit(1852.0 / 3600.0, 0, VELOCITY),
+}
+
+PREFIXES = {
+    "n nano": -9,
+    "u µ micro": -6,
+    "m milli": -3,
+    "c centi": -2,
+    "d deci": -1,
+    "da deca": 1,
+    "h hecto": 2,
+    "k kilo": 3,
+    "M mega": 6,
+    "G giga": 9,
+    "T tera": 12,
+}
+"""Powers of ten."""
+
+_WORDS = {
+    prefix + word + plural: unit._replace(tens=unit.tens + tens)
+    for prefixes, tens in {"": 0, **PREFIXES}.items()
+    for prefix in prefixes.split() or [""]
+    for words, unit in METRIC.items()
+    for word in words.split()
+    for plural in ("", "s" * (len(word) > 2))  # newtons, but neither kNs nor mms
+}
+_WORDS |= {
+    word + plural: unit
+    for words, unit in OTHERS.items()
+    for word in words.split()
+    for plural in ("", "s" * (len(word) > 1))
+}
+
+
+@cache
+def unit_of_text(written: str) -> Unit | None:
+    """The unit that a text such as ``kN s/m`` names, or None.
+
+    >>> unit_of_text("kN/mm"), unit_of_text("inches").factor, unit_of_text("zork")
+    (Unit(mantissa=1.0, tens=6, dimension=(0, 1, -2)), 0.0254, None)
+    """
+    if not UNIT_TEXT.match(written):
+        return None
+    mantissa, tens = 1.0, 0
+    dimension: tuple[int, ...] = ANGLE
+    for sign, word, exponent in _FACTOR.findall(written):
+        if (unit := _WORDS.get(word)) is None:
+            return None
+        power = int(exponent or 1) * (-1 if sign == "/" else 1)
+        factor = unit.mantissa ** abs(power)
+        mantissa = mantissa * factor if power > 0 else mantissa / factor
+        tens += power * unit.tens
+        dimension = tuple(a + power * b for a, b in zip(dimension, unit.dimension, strict=True))
+    return Unit(mantissa, tens, dimension)
+
+
+def si_value(text: str, unit: str) -> float:
+    """Value in the SI unit `unit` of a text such as ``200 t`` or ``30 kN/mm``.
+
+    A ValueError's message continues a sentence that names the field and the text.
+
+    >>> si_value("200 t", "kg"), si_value("0.5 g", "m/s2")
+    (200000.0, 4.903325)
+    """
+    kind, units = KINDS[unit]
+    match = WITH_UNIT.match(text)
+    if match is None:
+        raise ValueError(
+            f"must be {kind}: a number in {unit}, or a number with its unit in quotes, such as"
+            f" '1.5 {units[1]}'{_grouped(text)}"
+        )
+    number, written = match.groups()
+    if written is None:
+        raise ValueError(f"is text without a unit; write {number} ({unit}) without quotes")
+    return float(number) * si_factor(written, unit)
+
+
+def si_factor(written: str, unit: str) -> float:
+    """What a value in the unit `written` is multiplied by to be in the SI unit `unit`.
+
+    >>> si_factor("cm/s^2", "m/s2"), si_factor("kip", "N")
+    (0.01, 4448.2216152605)
+    """
+    if written == "g" and unit == "m/s2":  # elsewhere a gram
+        return STANDARD_GRAVITY
+    kind, units = KINDS[unit]
+    if written.lower() in {"ton", "tons"}:
+        raise ValueError(
+            f"has the unit {written!r}, which is 1000 kg to some and 907 kg or 1016 kg to others;"
+            " write t for 1000 kg, or use lb"
+        )
+    found, wanted = unit_of_text(written), unit_of_text(unit)
+    if found is None or wanted is None:
+        meant = hint(written, units, f"use {listed(units)}")
+        raise ValueError(f"has the unknown unit {written!r}; it must be {kind}: {meant}")
+    if found.dimension != wanted.dimension:
+        weight = "; the mass of a weight W is W/g" if found.dimension == FORCE else ""
+        raise ValueError(
+            f"is {_kind(found.dimension)}, but must be {kind}: {listed(units)}{weight}"
+        )
+    return found.factor
+
+
+def in_si(value: object, unit: str) -> object:
+    """A value that a file gives at a key of this unit: texts with a unit as SI numbers.
+
+    What is no such text stays as it is, elements of lists too.
+
+    >>> in_si("50 t", "kg"), in_si(["1 m", 2.0], "m"), in_si("critical", "-"), in_si("auto", "s")
+    (50000.0, [1.0, 2.0], 'critical', 'auto')
+    """
+    if isinstance(value, list | tuple):
+        return [in_si(item, unit) for item in value]
+    if not isinstance(value, str) or unit not in KINDS:
+        return value
+    try:
+        # Twelve digits, so that 500 mm are 0.5 m.
+        return float(f"{si_value(value, unit):.12g}")
+    except ValueError:
+        return value
+
+
+def _kind(dimension: tuple[int, ...]) -> str:
+    """What a unit measures, in words."""
+    for unit, kind in ({unit: kind for unit, (kind, _) in KINDS.items()} | OTHER_KINDS).items():
+        if (known := unit_of_text(unit)) and known.dimension == dimension:
+            return kind
+    named = list(zip(("[length]", "[mass]", "[time]"), dimension, strict=True))
+    powers = {
+        sign: [f"{name} ** {abs(p)}" if abs(p) > 1 else name for name, p in named if p * sign > 0]
+        for sign in (1, -1)
+    }
+    return "of dimension " + " / ".join([" * ".join(powers[1]) or "1", *powers[-1]])
+
+
+def _grouped(text: str) -> str:
+    # 1,500 is more than a thousand; 0,3 and 12,5 and 0,300 are no groups.
+    comma = text.count(",") == 1 and re.match(r"\d+,\d", text)
+    if comma and not re.match(r"[1-9]\d{0,2},\d{3}\b", text):
+        return f"; a decimal comma: write {text.replace(',', '.')}"
+    digits = re.sub(r"(?<=\d)[_, '](?=\d)", "", text)
+    return f"; digits are not grouped, write {digits}" if digits != text else ""
