@@ -14,7 +14,7 @@ from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.state import LANES
+from rpscli.physics.core.records import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 Item = TypeVar("Item")
@@ -105,7 +105,7 @@ def demand(
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
-    from rpscli.physics.driver import integrate
+    from rpscli.physics.planar.driver import integrate
 
     systems = _Distinct[tuple[PodiumStructure, TimeHistorySettings]]()
     motions = _Distinct[GroundMotion]()

@@ -142,7 +142,7 @@ def device_trace(samples: Array) -> DeviceTrace:
     Parameters
     ----------
     samples
-        (samples, 4, devices), see `physics.run.Output`.
+        (samples, 4, devices), see `physics.planar.run.Output`.
     """
     force, displacement, energy, stored = np.moveaxis(samples, 1, 0)
     return DeviceTrace(force, displacement, energy, stored)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from rpscli.physics import state
+from rpscli.physics.core.records import Record
+from rpscli.physics.planar import state
 
 EventKind = Literal[
     "uplift",
@@ -68,7 +69,7 @@ class Event:
     energy_lost: float
 
 
-def event_list(log: state.Record) -> tuple[Event, ...]:
+def event_list(log: Record) -> tuple[Event, ...]:
     """Events from the rows of the kernel's log."""
     return tuple(
         Event(time, EVENT_NAMES[kind], theta, before, after, lost)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rpscli.physics import state
+from rpscli.physics.planar import state
 
 if TYPE_CHECKING:
     from rpscli.analyses.kernels.history import History

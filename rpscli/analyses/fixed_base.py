@@ -93,8 +93,8 @@ def _follow(
     building: Superstructure, record: GroundMotion, intervals: int, floors: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Largest shears and accelerations (2, n); displacements and velocities go to `floors`."""
-    from rpscli.physics.full_contact.fixed_base import integrate_fixed_base
-    from rpscli.physics.run import empty_block
+    from rpscli.physics.planar.full_contact.modal_block import integrate_fixed_base
+    from rpscli.physics.planar.run import empty_block
 
     largest = np.zeros((2, building.storeys))
     integrate_fixed_base(

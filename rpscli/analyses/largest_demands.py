@@ -17,7 +17,7 @@ from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS, v
 from rpscli.frozen import frozen
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import state
+from rpscli.physics.planar import state
 from rpscli.shown import Shown, with_unit
 
 

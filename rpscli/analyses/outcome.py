@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from rpscli.analyses.kernels.history import History
-from rpscli.physics import state
+from rpscli.physics.planar import state
 
 Outcome = Literal["at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"]
 

@@ -15,8 +15,7 @@ from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Trace
 from rpscli.frozen import frozen
-from rpscli.physics import state
-from rpscli.physics.formulae import geometry
+from rpscli.physics.planar import geometry, state
 from rpscli.records.ground_motion import GroundMotion
 
 NEAR_CRITICAL = 0.8

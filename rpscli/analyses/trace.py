@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rpscli.analyses.device_results import DeviceTrace, Rows, cap_beam_forces, device_trace
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import state
-from rpscli.physics.formulae import geometry
+from rpscli.physics.core.records import Record
+from rpscli.physics.planar import geometry, state
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
@@ -190,7 +190,7 @@ def _contact_forces(
 ) -> tuple[Array, Array, Array, Array]:
     """Those of the kernels, for many samples at once."""
     # Imported here: numba is slow, and the command line imports this module's classes.
-    from rpscli.physics.equation_of_motion import contact_forces
+    from rpscli.physics.planar.equation_of_motion import contact_forces
 
     forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
     return forces_of(
@@ -221,7 +221,7 @@ def prolonged(acceleration: Array, samples: int) -> Array:
 
 
 def base_accelerations(
-    structure: PodiumStructure, samples: state.Record, B: Array, C: Array
+    structure: PodiumStructure, samples: Record, B: Array, C: Array
 ) -> tuple[Array, Array]:
     """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8), 0 in full contact.
 
@@ -234,7 +234,7 @@ def base_accelerations(
     B, C
         Contact arm and contact height over R (samples,).
     """
-    from rpscli.physics.equation_of_motion import cap_beam_acceleration
+    from rpscli.physics.planar.equation_of_motion import cap_beam_acceleration
 
     b = structure.bearing
     side = np.sign(samples.theta) + (samples.theta == 0.0) * np.sign(samples.theta_ddot)
@@ -261,7 +261,7 @@ def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
     B, C
         (samples,) contact arm and contact height over R.
     """
-    from rpscli.physics.equation_of_motion import inertia
+    from rpscli.physics.planar.equation_of_motion import inertia
 
     io_1, beam = structure.bearing.inertia_ratio - 1.0, 4.0 * structure.gamma
     A = inertia(io_1, 1.0 + beam, beam * structure.eta, B**2 + C**2, B)

@@ -15,7 +15,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.devices import MOST_DEVICES, Device, name_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.formulae import geometry
+from rpscli.physics.planar import geometry
 from rpscli.shown import Shown, with_unit
 
 

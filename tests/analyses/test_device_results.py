@@ -21,7 +21,7 @@ from rpscli.model.devices import (
     Tendon,
     ViscousDamper,
 )
-from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
+from rpscli.physics.planar.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.documents import timehistory_document
 from rpscli.report.tables.timehistory import history_columns
 

@@ -25,7 +25,7 @@ from rpscli.errors import CaseError
 from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.state import LANES
+from rpscli.physics.core.records import LANES
 from rpscli.records.ground_motion import GroundMotion
 
 ALONE = 10**9

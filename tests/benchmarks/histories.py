@@ -26,7 +26,8 @@ from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.state import IMPACT, LANES
+from rpscli.physics.core.records import LANES
+from rpscli.physics.planar.state import IMPACT
 from rpscli.records.ground_motion import GroundMotion
 
 RECORDS = 64

@@ -21,7 +21,7 @@ from rpscli.model.devices import (
     ViscousDamper,
     name_of,
 )
-from rpscli.physics import state
+from rpscli.physics.planar import state
 
 from .conftest import Faults
 

@@ -15,7 +15,7 @@ from rpscli.analyses.verification.comparison import Known, printed
 from rpscli.analyses.verification.geometry import EXPECTED, Geometry
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.formulae import geometry
+from rpscli.physics.planar import geometry
 
 
 def close(known: Known) -> object:

@@ -21,9 +21,9 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.physics.driver import integrate
-from rpscli.physics.run import Run
-from rpscli.physics.state import LANES
+from rpscli.physics.core.records import LANES
+from rpscli.physics.planar.driver import integrate
+from rpscli.physics.planar.run import Run
 
 STOREYS = 2
 DT = 0.02

@@ -9,23 +9,24 @@ from rpscli.analyses.kernels.history import Request, run_of
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.compile import kernel
-from rpscli.physics.driver import begin_history
-from rpscli.physics.energy import powers_within, uplifted_energy
-from rpscli.physics.equation_of_motion import (
+from rpscli.physics.core.compile import kernel
+from rpscli.physics.core.records import Record
+from rpscli.physics.core.series import integral, slope, value
+from rpscli.physics.planar.demands import observe_ends
+from rpscli.physics.planar.driver import begin_history
+from rpscli.physics.planar.energy import powers_within, uplifted_energy
+from rpscli.physics.planar.equation_of_motion import (
     cap_beam_acceleration,
     cap_beam_displacement,
     contact_height,
+    modal_terms,
     phase_constants,
     renew_accelerations,
+    rotation_terms,
 )
-from rpscli.physics.formulae.taylor import integral, modal_terms, rotation_terms, slope, value
-from rpscli.physics.run import empty_state
-from rpscli.physics.state import Record
-from rpscli.physics.transitions.impact import change_edge, lock
-from rpscli.physics.transitions.phases import enter_phase
-from rpscli.physics.uplifted.demands import observe_ends
-from rpscli.physics.uplifted.taylor_step import take_steps
+from rpscli.physics.planar.run import empty_state
+from rpscli.physics.planar.steps import take_steps
+from rpscli.physics.planar.transitions import change_edge, enter_phase, lock
 
 LEAST_DT = 0.01
 

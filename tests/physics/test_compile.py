@@ -9,10 +9,10 @@ import numba
 import numpy as np
 from paper_structures import Array, needs_compiled_kernels
 
-from rpscli.physics.compile import OPTIONS, compiled, kernel, specialised
-from rpscli.physics.equation_of_motion import extend_rotation
-from rpscli.physics.run import empty_state
-from rpscli.physics.state import LANES, Record
+from rpscli.physics.core.compile import OPTIONS, compiled, kernel, specialised
+from rpscli.physics.core.records import LANES, Record
+from rpscli.physics.planar.equation_of_motion import extend_rotation
+from rpscli.physics.planar.run import empty_state
 
 
 @compiled

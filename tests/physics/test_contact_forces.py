@@ -10,8 +10,8 @@ from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.formulae.geometry import path_along
-from rpscli.physics.state import FULL_CONTACT, IMPACT
+from rpscli.physics.planar.geometry import path_along
+from rpscli.physics.planar.state import FULL_CONTACT, IMPACT
 
 DT = 0.005
 RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)

@@ -17,9 +17,9 @@ from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.equation_of_motion import inertia, inertia_slope
-from rpscli.physics.formulae.geometry import contact_arm, contact_height
-from rpscli.physics.state import ROCKING, ROLLING
+from rpscli.physics.planar.equation_of_motion import inertia, inertia_slope
+from rpscli.physics.planar.geometry import contact_arm, contact_height
+from rpscli.physics.planar.state import ROCKING, ROLLING
 
 from .one_lane import OneLane
 

@@ -11,8 +11,8 @@ from paper_structures import FLAT, Array, building, needs_compiled_kernels, podi
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import ModalDamping, RayleighDamping
-from rpscli.physics.state import ROLLING
-from rpscli.physics.uplifted.demands import raise_floors
+from rpscli.physics.planar.demands import raise_floors
+from rpscli.physics.planar.state import ROLLING
 
 from .one_lane import OneLane
 

@@ -13,9 +13,10 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.full_contact.energy_of_block import fill_work
-from rpscli.physics.run import empty_block
-from rpscli.physics.state import SYSTEM, WHOLE_STEP, records
+from rpscli.physics.core.records import records
+from rpscli.physics.planar.full_contact.modal_block import fill_work
+from rpscli.physics.planar.run import empty_block
+from rpscli.physics.planar.state import SYSTEM, WHOLE_STEP
 
 BUILDINGS = [
     building(1),

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from rpscli.model.bearing import Bearing
-from rpscli.physics.formulae import geometry
-from rpscli.physics.formulae.geometry import Phase
+from rpscli.physics.planar import geometry
+from rpscli.physics.planar.geometry import Phase
 
 ROUNDING = 2e-14
 """A few dozen roundings of numbers of the size 1 + 4 rho, which every tolerance is scaled by."""

@@ -15,9 +15,9 @@ from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.impact import ImpactKind, ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.energy import building_energy
-from rpscli.physics.state import ROCKING, ROLLING
-from rpscli.physics.transitions.impact import is_negligible
+from rpscli.physics.planar.energy import building_energy
+from rpscli.physics.planar.state import ROCKING, ROLLING
+from rpscli.physics.planar.transitions import is_negligible
 
 from .one_lane import OneLane
 

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 from paper_structures import needs_compiled_kernels
 
-from rpscli.physics import compile as compilation
-from rpscli.physics.compile import (
+from rpscli.physics.core import compile as compilation
+from rpscli.physics.core.compile import (
     CONSTANTS,
     cache_folder,
     is_compiled,
@@ -26,7 +26,7 @@ from rpscli.physics.compile import (
     sound_cache,
     sources_digest,
 )
-from rpscli.physics.kernel_files import NOTES, discard_damaged, note_files
+from rpscli.physics.core.kernel_files import NOTES, discard_damaged, note_files
 from rpscli.user_cache import user_cache
 
 
@@ -92,7 +92,7 @@ def test_a_shared_temporary_folder_is_used_only_if_nobody_else_can_write_there(
     assert user_cache() is None
 
 
-@pytest.mark.parametrize("source", ["energy.py", "uplifted/steps.py", "formulae/geometry.py"])
+@pytest.mark.parametrize("source", ["core/lanes.py", "planar/steps.py", "planar/devices/rest.py"])
 def test_the_folder_is_named_after_the_sources(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path, source: str
 ) -> None:
@@ -104,7 +104,7 @@ def test_the_folder_is_named_after_the_sources(
     before, digest = cache_folder(), sources_digest(sources, CONSTANTS)
     assert before is not None
     assert before.name == f"kernels-{digest}"
-    here = Path(compilation.__file__).parent
+    here = Path(compilation.__file__).parents[1]
     assert digest == sources_digest(here, CONSTANTS)  # wherever they are
     with (sources / source).open("a") as file:
         file.write("\n")
@@ -160,7 +160,7 @@ def test_what_was_compiled_is_remembered(fresh_folder: pytest.MonkeyPatch, tmp_p
 
 
 PROGRAM = """
-from rpscli.physics import compile as compilation
+from rpscli.physics.core import compile as compilation
 @compilation.kernel
 def four(x: float) -> float:
     return 4.0 * x

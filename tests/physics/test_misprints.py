@@ -13,9 +13,9 @@ from paper_structures import FLAT, podium
 from rpscli.analyses.modal import linearised_matrices
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import equation_of_motion
-from rpscli.physics.formulae.geometry import contact_arm, contact_height
-from rpscli.physics.state import ROCKING, ROLLING
+from rpscli.physics.planar import equation_of_motion
+from rpscli.physics.planar.geometry import contact_arm, contact_height
+from rpscli.physics.planar.state import ROCKING, ROLLING
 
 from .one_lane import OneLane
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from paper_structures import Array
 from scipy.linalg import expm
 
-from rpscli.physics.formulae.oscillator import decay, transition
+from rpscli.physics.core.oscillator import decay, transition
 
 
 def exact_decay(omega: float, xi: float, h: float) -> tuple[float, float]:

@@ -8,9 +8,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rpscli.analyses.kernels.step_lengths import highest_frequency
-from rpscli.physics.formulae.quintic import NO_PASSAGE
-from rpscli.physics.formulae.taylor import end_step_at, fraction_at
-from rpscli.physics.state import ORDER
+from rpscli.physics.core.quintic import NO_PASSAGE
+from rpscli.physics.core.records import ORDER
+from rpscli.physics.planar.steps import end_step_at, fraction_at
 
 from .one_lane import OneLane
 from .test_equation_of_motion import State, states

@@ -10,27 +10,29 @@ import numpy as np
 import pytest
 
 from rpscli.constants import MOST_STOREYS
-from rpscli.physics import state
-from rpscli.physics.run import empty_block, empty_state
-from rpscli.physics.state import (
-    BLOCK,
-    EVENT,
-    EVENT_KINDS,
+from rpscli.physics.core.records import (
     INSTANTS,
     LANES,
     ORDER,
     PAGE,
-    REQUEST,
-    RESULT,
-    SAMPLE,
-    STATE,
-    SYSTEM,
     TERMS,
     WHOLE,
     Field,
     describe,
     record_type,
     records,
+)
+from rpscli.physics.planar import state
+from rpscli.physics.planar.run import empty_block, empty_state
+from rpscli.physics.planar.state import (
+    BLOCK,
+    EVENT,
+    EVENT_KINDS,
+    REQUEST,
+    RESULT,
+    SAMPLE,
+    STATE,
+    SYSTEM,
 )
 
 TABLES = {
@@ -148,9 +150,9 @@ def test_kinds_and_outcomes_are_distinct() -> None:
 def writers(variable: str) -> dict[str, set[str]]:
     """Modules and folders of physics that assign a field of the record of this name."""
     found: dict[str, set[str]] = defaultdict(set)
-    folder = Path(state.__file__).parent
-    for source in folder.rglob("*.py"):
-        place = source.relative_to(folder).with_suffix("").parts[0]
+    folder = Path(state.__file__).parents[1]
+    for source in folder.glob("*/**/*.py"):
+        place = source.relative_to(folder).with_suffix("").parts[1]
         for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
             assigned = node.targets if isinstance(node, ast.Assign) else []
             assigned = [node.target] if isinstance(node, ast.AugAssign) else assigned
@@ -165,7 +167,7 @@ def writers(variable: str) -> dict[str, set[str]]:
 
 
 @pytest.mark.parametrize(("fields", "variable"), [(STATE, "s"), (BLOCK, "block")])
-def test_fields_name_who_writes_them(fields: tuple[state.Field, ...], variable: str) -> None:
+def test_fields_name_who_writes_them(fields: tuple[Field, ...], variable: str) -> None:
     """What is written through an argument is not found here, and is named all the same."""
     known = writers(variable)
     for field in fields:

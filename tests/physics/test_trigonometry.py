@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from paper_structures import COMPILED
 
-from rpscli.physics.formulae.trigonometry import sine_cosine
+from rpscli.physics.core.series import sine_cosine
 
 ROUNDING = 3.4e-16
 """Three units of the last place below 1."""

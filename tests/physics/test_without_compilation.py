@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from paper_structures import needs_compiled_kernels
 
-from rpscli.physics.state import (
+from rpscli.physics.core.records import LANES
+from rpscli.physics.planar.state import (
     IMPACT,
-    LANES,
     RECONTACT,
     SLIDING,
     STICKING,

@@ -23,7 +23,7 @@ def announce_to(listener: Listener) -> None:
 
 def is_ready() -> bool:
     """Whether the kernel was compiled before, so that calling it starts at once."""
-    from rpscli.physics.compile import is_compiled
+    from rpscli.physics.core.compile import is_compiled
 
     return is_compiled(KERNEL)
 
@@ -31,8 +31,8 @@ def is_ready() -> bool:
 @contextmanager
 def compiled() -> Iterator[None]:
     """Around a call of the kernel: announce the compilation if there is one, and remember it."""
-    from rpscli.physics.compile import remember_compiled
-    from rpscli.physics.prepare import compile_kernel
+    from rpscli.physics.core.compile import remember_compiled
+    from rpscli.physics.planar.prepare import compile_kernel
 
     if is_ready():
         yield

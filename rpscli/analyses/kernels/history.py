@@ -17,8 +17,9 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.frozen import Frozen
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.run import Output, Run, empty_block
-from rpscli.physics.state import EVENT, NO_RECORD, REQUEST, RESULT, SAMPLE, Record, records
+from rpscli.physics.core.records import NO_RECORD, Record, records
+from rpscli.physics.planar.run import Output, Run, empty_block
+from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 MOST_NUMBERS = 1e9
@@ -38,7 +39,7 @@ class History(Frozen):
     Parameters
     ----------
     outcome, phase
-        At the end, coded in `physics.state`.
+        At the end, coded in `physics.planar.state`.
     rotation, time
         theta [rad] and time [s] at the end.
     intervals
@@ -59,7 +60,7 @@ class History(Frozen):
     energy_created, creating_impacts
         Energy created at impacts [J], and how many did.
     counts
-        Of events, by the codes of `physics.state`.
+        Of events, by the codes of `physics.planar.state`.
     steps
         Taylor steps.
     device_force, device_velocity, device_energy
@@ -206,7 +207,7 @@ def run_of(
 
 @dataclass(frozen=True, eq=False)
 class SampledHistory:
-    """A history with its samples and events, records of `physics.state`.
+    """A history with its samples and events, records of `physics.planar.state`.
 
     Parameters
     ----------
@@ -221,7 +222,7 @@ class SampledHistory:
     log
         (events,).
     devices
-        (intervals + 1, 4, devices), see `physics.run.Output`.
+        (intervals + 1, 4, devices), see `physics.planar.run.Output`.
     """
 
     history: History
@@ -324,7 +325,7 @@ def sampled_history(
         If the time steps differ.
     """
     # Imported here: compiling or loading kernels costs time that other commands need not pay.
-    from rpscli.physics.driver import integrate
+    from rpscli.physics.planar.driver import integrate
 
     along, upwards = MotionComponents(record, vertical).of_one_length
     motions = [along] if upwards is None else [along, upwards]

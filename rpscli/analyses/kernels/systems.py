@@ -1,4 +1,4 @@
-"""Structures and settings as the kernels read them: records of `rpscli.physics.state.SYSTEM`."""
+"""Structures and settings as the kernels read them: records of `physics.planar.state.SYSTEM`."""
 
 from __future__ import annotations
 
@@ -13,12 +13,8 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.model.devices import DEVICES, RollingResistance
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.state import (
-    ORDER,
-    SYSTEM,
-    Record,
-    records,
-)
+from rpscli.physics.core.records import ORDER, Record, records
+from rpscli.physics.planar.state import SYSTEM
 
 DEVICE_KINDS = {kind: code for code, kind in enumerate(DEVICES.values())}
 """Their codes in the kernels, whose constants are the devices' fields in their order."""
@@ -152,7 +148,7 @@ def bounces_left_out(structure: PodiumStructure) -> float:
 def fill_building(record: Record, building: Superstructure) -> None:
     """The modes of the fixed base, mass-normalised, with the storey shears of each.
 
-    The weights of `physics.uplifted.demands` are best where what a mode adds to a demand is in
+    The weights of `physics.planar.demands` are best where what a mode adds to a demand is in
     proportion to its weighted square; modal forces are as large as Gamma_r, if all modes shake
     alike.
 

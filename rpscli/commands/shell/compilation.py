@@ -26,7 +26,7 @@ def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
 
     @contextmanager
     def told() -> Iterator[None]:
-        from rpscli.physics.compile import cache_folder
+        from rpscli.physics.core.compile import cache_folder
 
         often = "once for this version" if cache_folder() else f"each time: {NOWHERE}"
         terminal.note(f"compiling the kernel, {often}: half a minute")

@@ -1,0 +1,1 @@
+"""What kernels of any equation of motion share: records, lanes, series, compilation."""

@@ -1,1 +1,0 @@
-"""Mathematics that knows no lane: contact geometry, oscillator, polynomials."""

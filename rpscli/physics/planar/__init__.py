@@ -1,0 +1,1 @@
+"""The podium in a vertical plane: its equation of motion, steps, events, and results."""

@@ -1,0 +1,293 @@
+"""Histories in lanes: step - check - observe - accept - switch.
+
+Each lane follows one history at a time; when it is over the lane takes the next one. All lanes
+make their Taylor steps together, each from its own time with its own length, so that the processor
+works on them at once; whatever is particular to one - full contact, the location of an event, a
+switch of phase - is done for that lane alone. No number passes from one lane to another: a history
+does not depend on its neighbours.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.core.compile import compiled, kernel
+from rpscli.physics.core.lanes import set_ground
+from rpscli.physics.core.records import LANES, NO_HISTORY, Record
+from rpscli.physics.planar.demands import observe_ends, raise_contacts, raise_floors
+from rpscli.physics.planar.devices.events import check_devices
+from rpscli.physics.planar.devices.flows import book_devices, leave_devices, observe_devices
+from rpscli.physics.planar.devices.rest import load_devices, release_devices
+from rpscli.physics.planar.energy import book_energy, building_energy, uplifted_energy
+from rpscli.physics.planar.equation_of_motion import load_factors
+from rpscli.physics.planar.events import go_on_renewed, next_interval, raise_peak, resolve_step
+from rpscli.physics.planar.full_contact.stand import stand
+from rpscli.physics.planar.run import Output, Run, empty_state
+from rpscli.physics.planar.samples import store_sample
+from rpscli.physics.planar.state import (
+    AFTER_RELEASE,
+    AT_REST,
+    EVENT_KINDS,
+    FULL_CONTACT,
+    GOES_ON,
+    IS_OVER,
+    NOT_ACCEPTED,
+    NOTHING_NEW,
+    ROCKING,
+    ROLLING,
+    RUNNING,
+    STANDS,
+    SURVIVED,
+    UPLIFT,
+)
+from rpscli.physics.planar.steps import accept_steps, check_steps, plan_steps, take_steps
+from rpscli.physics.planar.transitions import enter_phase
+
+
+def integrate(run: Run, lanes: int = LANES) -> None:
+    """Follow every history of `run.requests` from rest; writes `run.results`.
+
+    Parameters
+    ----------
+    run
+        What to run; its systems all have the same number of storeys.
+    lanes
+        Histories side by side: 1 or `LANES`. The results are the same.
+    """
+    integrate_lanes(empty_state(int(run.systems.n[0]), lanes), run)
+
+
+@kernel
+def integrate_lanes(state: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- see below
+    """The same, in lanes that are made already: an array of one `state.STATE`.
+
+    What many samples need is handed on by itself: of each array in a tuple references are counted.
+    What becomes of a lane is decided here: in a function of its own it would cost a tenth of the
+    speed, and all that it calls would be compiled once more.
+    """
+    s = state[0]
+    systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block
+    s.audited, s.equipped = 1 if output.samples.shape[0] > 0 else 0, has_devices(systems)
+    s.waiting, active = 0, s.lanes
+    begun = False
+    while active > 0:
+        if begun:
+            advance_lanes(state, systems, block, output.log)
+        for l in range(s.lanes):
+            fate = IS_OVER
+            if not begun:  # each takes its first history
+                s.history[l], s.accepted[l], s.renew[l] = NO_HISTORY, 0.0, NOTHING_NEW
+            elif s.waits[l] == 0.0 or s.history[l] == NO_HISTORY:
+                continue
+            elif s.accepted[l] == 0.0:
+                fate = NOT_ACCEPTED
+            elif s.steps_left[l] > 0.0:
+                plan_steps(s, l)
+                fate = GOES_ON
+            else:
+                fate = next_interval(s, l, acceleration)
+                if s.audited > 0:
+                    keep_sample(s, l, systems, output)
+            while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
+                system = systems[s.system[l]]
+                if fate == NOT_ACCEPTED:
+                    fate = resolve_step(s, l, system, block[0], output.log)
+                elif fate == STANDS:
+                    fate = stand(s, l, system, block[0], acceleration, output)
+                elif fate == GOES_ON:
+                    fate = go_on_renewed(s, l, system, output)
+                else:
+                    fate = next_history(s, l, run)
+            active -= s.history[l] == NO_HISTORY
+        begun = True
+
+
+@kernel
+def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -> None:
+    """A step of all lanes together, as far as it holds no event."""
+    s = state[0]
+    take_steps(s)
+    check_steps(s)
+    if s.equipped > 0:
+        check_devices(s)
+    observe_ends(s)
+    observe_lanes(s, systems, blocks[0], log)
+    accept_steps(s)
+
+
+@compiled
+def keep_sample(s: Record, l: int, systems: Record, output: Output) -> None:
+    """Store the sample at which a lane has arrived."""
+    store_sample(s, l, systems[s.system[l]], output)
+
+
+@kernel
+def next_history(s: Record, l: int, run: Run) -> int:
+    """A lane's history is over: STANDS or GOES_ON with the next, if there is one.
+
+    Parameters
+    ----------
+    run
+        Its requests wait, its results are written.
+    """
+    if s.history[l] != NO_HISTORY:
+        finish_history(s, l, run.systems[s.system[l]], run.results)
+    if s.waiting < run.requests.shape[0]:
+        s.waiting += 1
+        fate = begin_history(s, l, run, s.waiting - 1)
+        if fate == GOES_ON:
+            plan_steps(s, l)
+        return fate
+    idle(s, l)
+    return GOES_ON
+
+
+@compiled
+def has_devices(systems: Record) -> int:
+    """1 if any structure has devices."""
+    for i in range(systems.shape[0]):
+        if systems[i].devices > 0:
+            return 1
+    return 0
+
+
+@compiled
+def observe_lanes(s: Record, systems: Record, block: Record, log: Record) -> None:
+    """What few steps ask for, lane by lane."""
+    for l in range(s.lanes):
+        if s.audited > 0 and s.accepted[l] > 0.0:
+            book_energy(s, l, 1.0)
+        if s.devices[l] > 0 and s.accepted[l] > 0.0:
+            book_devices(s, l, 1.0)
+            observe_devices(s, l)
+        if s.peak_inside[l] > 0.0:
+            raise_peak(s, l, block, log)
+        if s.demands_rise[l] > 0.0:
+            raise_floors(s, l, systems[s.system[l]])
+
+
+@compiled
+def idle(s: Record, l: int) -> None:
+    """Leave a lane without a history: it makes empty steps."""
+    s.history[l], s.devices[l], s.kinked[l] = NO_HISTORY, 0, 0.0
+    s.renew[l], s.step[l] = NOTHING_NEW, 0.0
+
+
+@compiled
+def begin_history(s: Record, l: int, run: Run, history: int) -> int:
+    """Load a history into a lane, at rest at the start of its record: STANDS, or GOES_ON tilted.
+
+    Parameters
+    ----------
+    history
+        Its number among the requests.
+    """
+    request = run.requests[history]
+    system = run.systems[request.system]
+    load_system(s, l, system)
+    s.history[l], s.system[l] = history, request.system
+    s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
+    s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
+    load_devices(s, l, system)
+    s.outcome[l], s.renew[l] = RUNNING, NOTHING_NEW
+    s.interval[l] = 0
+    s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
+    steps = max(math.ceil(request.dt * system.uplifted_rate), 1)
+    s.uplifted_step[l], s.uplifted_steps[l] = request.dt / steps, steps
+    steps = max(math.ceil(request.dt * system.contact_rate), 1)
+    s.contact_step[l], s.contact_steps[l] = request.dt / steps, steps
+    s.side[l], s.theta[l], s.theta_dot[l], s.theta_ddot[l] = 1.0, 0.0, 0.0, 0.0
+    s.no_event[l], s.stalled[l] = 0.0, 0
+    enter_phase(s, l, system, ROLLING if system.beta > 0.0 else ROCKING)
+    s.phase[l] = FULL_CONTACT
+    clear_results(s, l)
+    set_ground(s, l, run.acceleration)
+    if system.initial_rotation != 0.0:
+        release(s, l, system)
+        return GOES_ON
+    store_sample(s, l, system, run.output)
+    s.next_a_g[l], s.next_g_up[l] = s.a_g[l], s.g_up[l]
+    raise_contacts(s, l, 1.0, 0.0, 0.0, 0.0)
+    return STANDS
+
+
+@compiled
+def load_system(s: Record, l: int, system: Record) -> None:
+    """Constants of the structure, folded as the equation of motion wants them."""
+    ground_factor, building = load_factors(system.gamma, system.eta)
+    s.diameter[l], s.io_1[l] = 2.0 * system.R, system.Io - 1.0
+    s.one_4gamma[l], s.four_gamma_eta[l] = 1.0 + 4.0 * system.gamma, 2.0 * building
+    s.weight_over_R[l] = (ground_factor + building) / system.R
+    s.ground_over_R[l] = ground_factor / system.R
+    s.shear_factor[l] = 2.0 / (system.columns_mass * system.R)
+    s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
+    s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
+    s.theta_cr[l], s.last_term[l] = system.theta_cr, system.last_term
+    s.half_width[l], s.arc_end[l] = system.R * math.sin(system.alpha), system.beta
+    s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
+    for r in range(s.n):
+        s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[r], system.two_xi_omega[r]
+        s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[r], system.shear_weight[r]
+        s.acceleration_weight[r, l] = system.acceleration_weight[r]
+        s.q[r, l], s.dq[0, r, l] = 0.0, 0.0
+
+
+@compiled
+def clear_results(s: Record, l: int) -> None:
+    """Nothing has happened yet."""
+    s.max_theta[l], s.max_theta_time[l], s.critical_time[l] = 0.0, 0.0, -1.0
+    s.friction_top[l], s.friction_bottom[l] = 0.0, 0.0
+    s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
+    s.shear_harmless[l], s.acceleration_harmless[l] = 0.0, 0.0
+    for i in range(s.n):
+        s.storey_shear[l, i], s.floor_acceleration[l, i] = 0.0, 0.0
+    s.energy_input[l], s.energy_damped[l] = 0.0, 0.0
+    s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
+    s.steps[l], s.creating_impacts[l] = 0.0, 0
+    for i in range(EVENT_KINDS):
+        s.events[l, i] = 0
+
+
+@compiled
+def release(s: Record, l: int, system: Record) -> None:
+    """Start from rest at a rotation, the building unstrained."""
+    theta = abs(system.initial_rotation)
+    s.side[l] = math.copysign(1.0, system.initial_rotation)
+    s.theta[l], s.max_theta[l], s.renew[l] = theta, theta, AFTER_RELEASE
+    enter_phase(s, l, system, ROLLING if theta < system.beta else ROCKING)
+    release_devices(s, l)
+
+
+@compiled
+def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
+    """Write what the history leaves behind.
+
+    Parameters
+    ----------
+    results
+        (P,) `state.RESULT`: written.
+    """
+    result = results[s.history[l]]
+    if s.phase[l] == FULL_CONTACT:
+        result.energy_stored = building_energy(s, l, 0.0)
+    else:
+        result.energy_stored = uplifted_energy(s, l)
+    if s.outcome[l] == RUNNING:
+        moved = system.initial_rotation != 0.0 or s.events[l, UPLIFT] > 0
+        s.outcome[l] = SURVIVED if moved else AT_REST
+    result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
+    result.steps, result.creating_impacts = int(s.steps[l]), s.creating_impacts[l]
+    result.time = s.interval_start[l] + s.time[l]
+    result.rotation = s.side[l] * s.theta[l]
+    result.max_theta, result.max_theta_time = s.max_theta[l], s.max_theta_time[l]
+    result.critical_time = s.critical_time[l]
+    result.friction_top, result.friction_bottom = s.friction_top[l], s.friction_bottom[l]
+    result.normal_top, result.normal_bottom = s.normal_top[l], s.normal_bottom[l]
+    result.energy_input, result.energy_damped = s.energy_input[l], s.energy_damped[l]
+    result.energy_lost, result.energy_created = s.energy_lost[l], s.energy_created[l]
+    for i in range(s.n):
+        result.storey_shear[i] = s.storey_shear[l, i]
+        result.floor_acceleration[i] = s.floor_acceleration[l, i]
+    for i in range(EVENT_KINDS):
+        result.events[i] = s.events[l, i]
+    leave_devices(s, l, result)

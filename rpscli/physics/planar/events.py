@@ -1,0 +1,307 @@
+"""What a lane does after each uplifted step: go on, switch at an event, or end.
+
+A step is taken as if its phase of motion went on for ever. If the tilt then leaves the range of
+the phase, the step ends where it does: a root of its own polynomial, found from that of the
+interpolating quintic by Newton's method. No step is taken again.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.core.compile import compiled, kernel
+from rpscli.physics.core.lanes import enter_interval, log_event, time_of
+from rpscli.physics.core.quintic import (
+    NEAR,
+    NO_PASSAGE,
+    SETTLED,
+    Quintic,
+    first_descent,
+    offset,
+    slope,
+    upper_hull,
+    value,
+)
+from rpscli.physics.core.records import NO_HISTORY, Floats, Record
+from rpscli.physics.planar.devices.events import change_law, has_friction, locate_change
+from rpscli.physics.planar.devices.flows import book_devices, observe_devices
+from rpscli.physics.planar.devices.forces import set_devices
+from rpscli.physics.planar.devices.rest import begin_excursion, turn
+from rpscli.physics.planar.energy import book_energy
+from rpscli.physics.planar.equation_of_motion import (
+    renew_accelerations,
+)
+from rpscli.physics.planar.run import Output
+from rpscli.physics.planar.samples import store_sample
+from rpscli.physics.planar.state import (
+    AFTER_IMPACT,
+    AFTER_PHASE_CHANGE,
+    AFTER_RELEASE,
+    AFTER_TURNING,
+    AFTER_UPLIFT,
+    CRITICAL_PASSAGE,
+    EVENT_KINDS,
+    FAILED_NOT_FINITE,
+    FAILED_STEP_TOO_SMALL,
+    FAILED_TOO_MANY_EVENTS,
+    GOES_ON,
+    IMPACT,
+    IS_OVER,
+    NO_EVENT,
+    NOTHING_NEW,
+    OVERTURNED_ROCKING,
+    OVERTURNED_ROLLING,
+    OVERTURNING,
+    ROCKING,
+    ROLLING,
+    ROLLING_TO_ROCKING,
+    STANDS,
+)
+from rpscli.physics.planar.steps import (
+    end_step_at,
+    fraction_at,
+    path_of,
+    plan_steps,
+    shorten_step,
+    tilt_at,
+)
+from rpscli.physics.planar.transitions import (
+    apply_impact,
+    comes_to_rest,
+    enter_phase,
+    event_above,
+    event_below,
+)
+
+CHANGE_OF_DEVICE = EVENT_KINDS
+"""Kind of an event that `devices.events` knows more of."""
+
+STALL = 100
+"""So many events in a row without time passing: the step cannot be made small enough."""
+
+
+@compiled
+def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[float, float, int, int]:
+    """Fraction of the step just taken at which its first event happens, and which.
+
+    Returns
+    -------
+    Fraction, level of the tilt, kind of the event, or NO_EVENT: then the alarm was false; and, of
+    a CHANGE_OF_DEVICE, the function that it was watched by.
+    """
+    path, piece = path_of(s, l), block.piece
+    first, level, kind = NO_PASSAGE, 0.0, NO_EVENT
+    t = first_descent(offset(path, 1.0, s.theta_low[l]), NEAR, piece)
+    if t < first:
+        first, level, kind = t, s.theta_low[l], event_below(s, l, system)
+    t = first_descent(offset(path, -1.0, s.theta_high[l]), NEAR, piece)
+    if t < first:
+        first, level, kind = t, s.theta_high[l], event_above(s, l, system)
+    if kind != NO_EVENT:
+        first = fraction_at(s, l, level, first)
+    which = -1
+    if s.devices[l] > 0:
+        t, found = locate_change(s, l, block)
+        if t < first:
+            first, level, kind, which = t, tilt_at(s, l, t), CHANGE_OF_DEVICE, found
+    return first, level, kind, which
+
+
+@compiled
+def end_on_event(
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    log: Record,
+    fraction: float,
+    level: float,
+    kind: int,
+    which: int,
+) -> None:
+    """End the step on an event, and switch.
+
+    Parameters
+    ----------
+    fraction
+        Fraction of the step at which the event happens.
+    level
+        The tilt there [rad].
+    kind, which
+        Kind of event, see `state`, and the watched function of a device.
+    """
+    if s.audited > 0:
+        book_energy(s, l, fraction)
+    if s.devices[l] > 0:
+        book_devices(s, l, fraction)
+    end_step_at(s, l, fraction, level)
+    turned = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
+    if s.next_theta[l] > s.max_theta[l] or turned:
+        raise_peak(s, l, block, log)
+    if s.devices[l] > 0:
+        observe_devices(s, l)
+    s.theta[l], s.theta_dot[l] = s.next_theta[l], s.next_theta_dot[l]
+    for r in range(s.n):
+        s.q[r, l], s.dq[0, r, l] = s.next_q[r, l], s.next_dq[r, l]
+    before = s.time[l]
+    s.time[l] += s.step[l]
+    s.stalled[l] = s.stalled[l] + 1 if s.time[l] == before else 0
+    if kind == IMPACT:
+        apply_impact(s, l, system, log)
+        begin_excursion(s, l)
+        return
+    if kind == CHANGE_OF_DEVICE:
+        change_law(s, l, log, which)
+        return
+    rotation, rate = s.side[l] * s.theta[l], s.side[l] * s.theta_dot[l]
+    log_event(s, l, log, time_of(s, l), kind, rotation, rate, rate, 0.0)
+    if kind == OVERTURNING:
+        rolls = s.theta_cr[l] < system.beta
+        s.outcome[l] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
+        return
+    enter_phase(s, l, system, ROCKING if kind == ROLLING_TO_ROCKING else ROLLING)
+    s.renew[l] = AFTER_PHASE_CHANGE
+
+
+@compiled
+def too_many_events(s: Record, l: int, system: Record) -> bool:
+    """Whether events pile up; sets the outcome."""
+    events = 0
+    for i in range(EVENT_KINDS):
+        events += s.events[l, i]
+    if events > system.max_events:
+        s.outcome[l] = FAILED_TOO_MANY_EVENTS
+        return True
+    if s.stalled[l] > STALL:
+        s.outcome[l] = FAILED_STEP_TOO_SMALL
+        return True
+    return False
+
+
+@compiled
+def next_interval(s: Record, l: int, acceleration: Floats) -> int:
+    """Enter the record's next interval: GOES_ON, or IS_OVER at the history's end."""
+    if enter_interval(s, l, acceleration, s.interval[l] + 1):
+        return IS_OVER
+    if s.interval[l] + 1 == s.npts[l]:
+        s.renew[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
+    s.step[l], s.steps_left[l] = s.uplifted_step[l], s.uplifted_steps[l]
+    if s.kinked[l] > 0.0:
+        shorten_step(s, l)
+    return GOES_ON
+
+
+@kernel
+def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) -> int:
+    """Deal with a step that was not accepted: GOES_ON or IS_OVER.
+
+    After a false alarm the same step is taken once more, and passes. A step that is too long for
+    its series is taken again at half the length, as are those after it up to the next sample.
+    """
+    if s.history[l] == NO_HISTORY:
+        return IS_OVER
+    if s.too_long[l] > 0.0:
+        s.step[l], s.steps_left[l] = 0.5 * s.step[l], 2.0 * s.steps_left[l]
+        if s.kinked[l] > 0.0:
+            s.steps_left[l] = 2.0
+        return GOES_ON
+    if not math.isfinite(s.next_theta[l] + s.next_theta_dot[l] + s.next_theta_ddot[l]):
+        s.outcome[l] = FAILED_NOT_FINITE
+        return IS_OVER
+    fraction, level, kind, which = locate_event(s, l, system, block)
+    if kind == NO_EVENT:
+        s.no_event[l] = 1.0
+        return GOES_ON
+    end_on_event(s, l, system, block, log, fraction, level, kind, which)
+    plan_steps(s, l)
+    return IS_OVER if s.outcome[l] >= 0 or too_many_events(s, l, system) else GOES_ON
+
+
+@compiled
+def go_on_turned(s: Record, l: int, system: Record, output: Output, after: int) -> int:
+    """At a standstill of the tilt: GOES_ON, or STANDS if friction holds it.
+
+    Parameters
+    ----------
+    after
+        AFTER_RELEASE or AFTER_TURNING.
+    """
+    stuck = turn(s, l, output.log)
+    if after == AFTER_RELEASE:
+        store_sample(s, l, system, output)
+    return STANDS if stuck else GOES_ON
+
+
+@kernel
+def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
+    """Compute accelerations anew: GOES_ON, or STANDS after the last impact or held by friction."""
+    if s.history[l] == NO_HISTORY:
+        return IS_OVER
+    if s.devices[l] > 0:
+        set_devices(s, l, s.theta[l], s.theta_dot[l])
+    renew_accelerations(s, l)
+    after = s.renew[l]
+    s.renew[l] = NOTHING_NEW
+    if after == AFTER_PHASE_CHANGE and s.theta_dot[l] == 0.0 and has_friction(s, l):
+        # It has just begun to slide: the same holds as at uplift, in either direction.
+        s.theta_ddot[l] = s.direction[l] * max(s.direction[l] * s.theta_ddot[l], 0.0)
+    elif after == AFTER_UPLIFT:
+        # At the threshold theta'' is zero but for rounding, and about to grow.
+        s.theta_ddot[l] = max(s.theta_ddot[l], 0.0)
+    elif after in (AFTER_RELEASE, AFTER_TURNING):
+        return go_on_turned(s, l, system, output, after)
+    elif after == AFTER_IMPACT and comes_to_rest(s, l, system, output.log):
+        return STANDS
+    if s.kinked[l] > 0.0:
+        plan_steps(s, l)
+    return GOES_ON
+
+
+# The largest tilt, turning points between samples included, and the passage of theta_cr.
+
+
+@compiled
+def crest(path: Quintic) -> tuple[float, float]:
+    """Fraction of the step and height of the tilt's maximum, where x' falls through zero.
+
+    Bisection of the slope: it never leaves the step, and is rarely needed.
+    """
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        t = 0.5 * (low + high)
+        if slope(path, t) > 0.0:
+            low = t
+        else:
+            high = t
+    return low, value(path, low)
+
+
+@compiled
+def raise_peak(s: Record, l: int, block: Record, log: Record) -> None:
+    """Raise the largest tilt by that of the step just taken, turning points included."""
+    height, fraction = s.next_theta[l], 1.0
+    path = path_of(s, l)
+    turns = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
+    if turns and upper_hull(path) > s.max_theta[l]:
+        fraction, height = crest(path)
+    if height > s.max_theta[l]:
+        s.max_theta[l] = height
+        s.max_theta_time[l] = s.interval_start[l] + (s.time[l] + fraction * s.step[l])
+        if height > s.theta_cr[l] and s.critical_time[l] < 0.0:
+            log_critical_passage(s, l, block, log, path)
+
+
+@compiled
+def log_critical_passage(s: Record, l: int, block: Record, log: Record, path: Quintic) -> None:
+    """Note when theta_cr was passed for the first time, within the step just taken.
+
+    Parameters
+    ----------
+    path
+        The tilt over the step [rad].
+    """
+    level, h, side = s.theta_cr[l], s.step[l], s.side[l]
+    t = min(first_descent(offset(path, -1.0, level), SETTLED, block.piece), 1.0)
+    rate = side * slope(path, t) / h if h > 0.0 else 0.0
+    s.critical_time[l] = time_of(s, l) + t * h
+    log_event(s, l, log, s.critical_time[l], CRITICAL_PASSAGE, side * level, rate, rate, 0.0)

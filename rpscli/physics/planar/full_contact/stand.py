@@ -1,0 +1,341 @@
+"""A lane in full contact: over the record's intervals until it uplifts or the history ends."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.core.compile import compiled, kernel
+from rpscli.physics.core.lanes import enter_interval, set_ground_of_block
+from rpscli.physics.core.records import INSTANTS, NO_HISTORY, Floats, Record
+from rpscli.physics.planar.demands import set_harmless
+from rpscli.physics.planar.devices.rest import begin_excursion, hold_block, resting_pull, slide
+from rpscli.physics.planar.full_contact.demands import (
+    clear_contacts,
+    hand_over_contacts,
+    mark_samples,
+    may_raise,
+    observe_contacts,
+    raise_floors_of_block,
+)
+from rpscli.physics.planar.full_contact.modal_block import (
+    book_energy_of_block,
+    fill_map,
+    fill_work,
+    follow_modes,
+    keep_state,
+)
+from rpscli.physics.planar.full_contact.uplift_search import (
+    Margin,
+    first_uplift,
+    locate_uplift,
+    margin_of,
+    raise_alarms,
+)
+from rpscli.physics.planar.run import Output
+from rpscli.physics.planar.samples import store_sample
+from rpscli.physics.planar.state import (
+    FAILED_NOT_FINITE,
+    GOES_ON,
+    IS_OVER,
+    SHORT_STEP,
+    STUCK,
+    WHOLE_STEP,
+)
+from rpscli.physics.planar.steps import plan_steps
+from rpscli.physics.planar.transitions import uplift
+
+
+@compiled
+def modes_to_block(s: Record, l: int, block: Record) -> None:
+    """Begin full contact with the modes as they are."""
+    for r in range(s.n):
+        block.q[r], block.dq[r] = s.q[r, l], s.dq[0, r, l]
+
+
+@compiled
+def modes_from_block(s: Record, l: int, block: Record) -> None:
+    """Take the modes over from full contact; the tilt rests."""
+    for r in range(s.n):
+        s.q[r, l], s.dq[0, r, l] = block.q[r], block.dq[r]
+
+
+class Plan(NamedTuple):
+    """Steps to take at once.
+
+    Parameters
+    ----------
+    steps
+        How many.
+    h
+        Length of each [s].
+    each
+        How many lead to a sample.
+    which
+        Where their map stands, WHOLE_STEP or SHORT_STEP; that of the lane's whole steps is known.
+    """
+
+    steps: int
+    h: float
+    each: int
+    which: int
+
+
+FINE = 4
+"""A step in which the margin comes near zero is taken again in so many: their interpolating quintic
+is 4^6 times as good."""
+
+NEAR = 1e-3
+"""What is near, over the limit: some forty times the largest error of the quintic of a step."""
+
+
+@compiled
+def plan_block(s: Record, l: int, system: Record, block: Record, finer: int) -> Plan:
+    """The next steps of a lane: even parts of the intervals, or of what is left of one.
+
+    A finer look, with steps divided by `finer`, goes no farther than the next sample.
+
+    They end where the ground acceleration may jump, the history ends, or is looked at to see
+    whether anything can still happen.
+
+    Parameters
+    ----------
+    finer
+        Parts of a usual step.
+    """
+    time, step, i = s.time[l], s.contact_step[l], s.interval[l]
+    if finer > 1 or time > 0.0:
+        left = max(s.dt[l] - time, 0.0)
+        each = int(max(math.ceil(finer * left / step - 1e-9), 1))
+        fill_map(block, system, SHORT_STEP, left / each)
+        return Plan(min(each, INSTANTS - 1), left / each, each, SHORT_STEP)
+    each = int(s.contact_steps[l])
+    free = i + 1 - s.npts[l]
+    ahead = min(s.intervals[l] - i, REST_EVERY - free % REST_EVERY) if free >= 0 else -free
+    most = max((INSTANTS - 1) // each, 1)
+    return Plan(min(each * min(ahead, most), INSTANTS - 1), step, each, WHOLE_STEP)
+
+
+@compiled
+def accept_block(
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    acceleration: Floats,
+    output: Output,
+    plan: Plan,
+    taken: int,
+    margin: Margin,
+) -> bool:
+    """Make the state after some steps of the block that of the lane; True if its history ends.
+
+    Parameters
+    ----------
+    block, plan
+        The steps in full contact, and how they were planned.
+    taken
+        Steps that are accepted.
+    margin
+        See `uplift_search.margin_of`.
+    """
+    first, time = s.interval[l], s.time[l]
+    passed = taken // plan.each
+    if output.samples.shape[0] > 0:
+        if plan.which == SHORT_STEP:
+            fill_work(block, system, SHORT_STEP, plan.h)
+        book_energy_of_block(block, system, plan.which)
+        for k in range(1, taken + 1):
+            s.energy_input[l] += block.input[k - 1]
+            s.energy_damped[l] += block.damped[k - 1]
+            if k % plan.each == 0:
+                keep_state(block, k)
+                modes_from_block(s, l, block)
+                s.interval[l] = first + k // plan.each
+                s.next_V[l] = block.V[k]
+                s.next_a_g[l], s.next_g_up[l] = block.a_g[k], block.g_up[k]
+                store_sample(s, l, system, output)
+    keep_state(block, taken)
+    if passed == 0:
+        s.time[l] = time + taken * plan.h
+        return False
+    over = enter_interval(s, l, acceleration, first + passed) or is_over(
+        s, l, system, block, margin
+    )
+    s.time[l] = (taken - passed * plan.each) * plan.h
+    return over
+
+
+@compiled
+def leave_contact(
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    output: Output,
+    at: int,
+    h: float,
+    side: float,
+) -> None:
+    """Leave full contact a time h into the step after `at` others of the block.
+
+    Parameters
+    ----------
+    at
+        Accepted steps of the block.
+    h
+        Time after them [s].
+    side
+        1 to the right, -1 to the left.
+    """
+    block.a_g[0], block.a_g_slope[0] = block.a_g[at], block.a_g_slope[at]
+    fill_map(block, system, SHORT_STEP, h)
+    follow_modes(block, system, SHORT_STEP)
+    if output.samples.shape[0] > 0:
+        fill_work(block, system, SHORT_STEP, h)
+        book_energy_of_block(block, system, SHORT_STEP)
+        s.energy_input[l] += block.input[0]
+        s.energy_damped[l] += block.damped[0]
+    keep_state(block, 1)
+    s.time[l] += h
+    modes_from_block(s, l, block)
+    if s.phase[l] == STUCK:
+        slide(s, l, output.log, side)
+    else:
+        uplift(s, l, system, output.log, side)
+        begin_excursion(s, l)
+
+
+@compiled
+def search_block(
+    block: Record, margin: Margin, plan: Plan, least: float
+) -> tuple[int, float, float, bool]:
+    """How many steps end before uplift, the fraction of the next, the side, and whether it comes.
+
+    Parameters
+    ----------
+    block, plan
+        The steps in full contact, and how they were planned.
+    margin
+        See `uplift_search.margin_of`.
+    least
+        Zero to locate uplift; else the steps end before the first with less of the limit left than
+        this share, and the side is zero.
+    """
+    if not raise_alarms(block, margin, plan.h, least):
+        return plan.steps, 0.0, 0.0, False
+    for taken in range(plan.steps):
+        if block.alarm[taken] > 0.0:
+            if least > 0.0:
+                return taken, 0.0, 0.0, True
+            fraction, side = first_uplift(block, margin, plan.h, taken)
+            if side != 0.0:
+                return taken, fraction, side, True
+    return plan.steps, 0.0, 0.0, False
+
+
+@kernel
+def stand(
+    s: Record, l: int, system: Record, block: Record, acceleration: Floats, output: Output
+) -> int:
+    """Follow a lane in full contact, or stuck: GOES_ON when it begins to move, or IS_OVER."""
+    if s.history[l] == NO_HISTORY:
+        return IS_OVER
+    margin = margin_of(s, l, system)
+    pull = resting_pull(s, l)
+    modes_to_block(s, l, block)
+    fill_map(block, system, WHOLE_STEP, s.contact_step[l])
+    if output.samples.shape[0] > 0:
+        fill_work(block, system, WHOLE_STEP, s.contact_step[l])
+    clear_contacts(block)
+    side, over, fine = 0.0, False, False
+    while side == 0.0 and not over:
+        plan = plan_block(s, l, system, block, FINE if fine else 1)
+        set_ground_of_block(s, l, block, acceleration, plan.h, plan.each, plan.steps)
+        follow_modes(block, system, plan.which)
+        taken, fraction, side, alarm = search_block(block, margin, plan, 0.0 if fine else NEAR)
+        mark_samples(block, plan.each, taken, plan.each)
+        if may_raise(block, s.shear_harmless[l], s.acceleration_harmless[l]):
+            raise_floors_of_block(block, system, s.storey_shear[l], s.floor_acceleration[l])
+            set_harmless(s, l, system)
+        hold_block(s, l, block)
+        observe_contacts(block, system, pull)
+        if not math.isfinite(block.ddV[taken]):
+            s.outcome[l] = FAILED_NOT_FINITE
+            over = True
+            break
+        fine = alarm
+        over = accept_block(s, l, system, block, acceleration, output, plan, taken, margin)
+        if side != 0.0:
+            h = locate_uplift(block, system, margin, plan.h, taken, fraction * plan.h, side)
+            leave_contact(s, l, system, block, output, taken, h, side)
+    if over:
+        modes_from_block(s, l, block)
+    hand_over_contacts(s, l, block)
+    plan_steps(s, l)
+    return IS_OVER if over else GOES_ON
+
+
+# When the free vibration after the record can be left off.
+
+REST_EVERY = 8
+"""After the record, so many samples pass between looks at whether anything can still happen."""
+
+
+@compiled
+def is_over(s: Record, l: int, system: Record, block: Record, margin: Margin) -> bool:
+    """Whether no later moment of the free vibration in full contact can bring a new maximum.
+
+    Each mode decays from its present energy, which bounds every demand and the push that could
+    uplift the storey again. While uplifted a history is never over: impacts excite the building
+    until the storey is down.
+
+    Parameters
+    ----------
+    margin
+        See `uplift_search.margin_of`.
+    """
+    free = s.interval[l] + 1 - s.npts[l]
+    if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
+        return False
+    return stays_down(system, block, margin) and demands_stand(s, l, system, block)
+
+
+@compiled
+def modal_speed(system: Record, block: Record, r: int) -> float:
+    """sqrt(2 E_r): mode r never moves faster than this, nor farther than this over w."""
+    return math.sqrt(block.dq[r] ** 2 + (system.omega[r] * block.q[r]) ** 2)
+
+
+@compiled
+def stays_down(system: Record, block: Record, margin: Margin) -> bool:
+    """Whether the freely vibrating building can never again push hard enough to uplift.
+
+    Parameters
+    ----------
+    margin
+        See `uplift_search.margin_of`.
+    """
+    largest = 0.0
+    for r in range(system.n):
+        force = system.omega[r] + system.two_xi_omega[r]
+        largest += abs(system.Gamma[r]) * force * modal_speed(system, block, r)
+    limit = min(
+        system.gravity * margin.right + margin.held_right,
+        system.gravity * margin.left + margin.held_left,
+    )
+    return system.n == 0 or bool(margin.shear_share * largest < limit)
+
+
+@compiled
+def demands_stand(s: Record, l: int, system: Record, block: Record) -> bool:
+    """Whether free vibration in full contact can raise no storey shear and no acceleration."""
+    for i in range(system.n):
+        shear, acceleration = 0.0, 0.0
+        for r in range(system.n):
+            speed, omega = modal_speed(system, block, r), system.omega[r]
+            shear += abs(system.storey_shear_of[r, i]) * speed / omega
+            acceleration += abs(system.phi[r, i]) * (omega + system.two_xi_omega[r]) * speed
+        if shear > s.storey_shear[l, i] or acceleration > s.floor_acceleration[l, i]:
+            return False
+    return True

@@ -1,0 +1,287 @@
+"""The instant at which a building in full contact uplifts.
+
+The storey uplifts to the side s when the margin
+
+    f(t) = (g + a_v) tan(alpha) (1 + 2 gamma + 2 gamma eta) - s q(t),
+    q(t) = -a_g (1 + 2 gamma) + 2 gamma eta V/M_tot
+
+leaves zero downwards (Theory, section 3): exactly where s theta'' of the uplifted equation would
+become positive. Devices at rest add to the limit; a storey that friction holds tilted has another
+limit on either side (section 11). Steps that surely keep it positive are told by the quintic
+through the push q and its derivatives, for a whole block at once; the instant itself is found on
+the exact margin.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.quintic import (
+    NO_PASSAGE,
+    SETTLED,
+    Quintic,
+    first_descent,
+    lower_hull,
+    quintic,
+)
+from rpscli.physics.core.records import INSTANTS, Record
+from rpscli.physics.planar.devices.rest import arms, holding
+from rpscli.physics.planar.equation_of_motion import load_factors, uplift_push
+from rpscli.physics.planar.full_contact.modal_block import fill_map, map_of, mapped
+from rpscli.physics.planar.state import SHORT_STEP, STUCK
+
+ROUNDING = 1e-13
+"""Share of the limit within which the margin is zero. Were it the last bit that decides, a motion
+whose peak is the limit itself would uplift and land again and again, without time passing."""
+
+
+class Margin(NamedTuple):
+    """What the margin against uplift is made of.
+
+    Parameters
+    ----------
+    ground_factor
+        1 + 2 gamma.
+    shear_share
+        2 gamma eta/M_tot [1/kg].
+    right, left
+        What multiplies g + a_v in the limit to either side: in full contact tan(alpha) (1 + 2 gamma
+        + 2 gamma eta).
+    held_right, held_left
+        What devices add to the limit [m/s2].
+    ground_damping
+        sum Gamma^2 2 xi w [kg/s]: what the slope of the ground's acceleration adds to V''.
+    """
+
+    ground_factor: float
+    shear_share: float
+    right: float
+    left: float
+    held_right: float
+    held_left: float
+    ground_damping: float
+
+
+@compiled
+def margin_of(s: Record, l: int, system: Record) -> Margin:
+    """What the margin of a structure at rest is made of, in full contact or stuck."""
+    ground_factor, building = load_factors(system.gamma, system.eta)
+    damping = 0.0
+    for r in range(system.n):
+        damping += system.Gamma[r] * system.Gamma[r] * system.two_xi_omega[r]
+    share = building / system.floors_mass if system.n > 0 else 0.0
+    limit = math.tan(system.alpha) * (ground_factor + building)
+    right, left, held_right, held_left = limit, limit, 0.0, 0.0
+    if s.devices[l] > 0:
+        elastic, friction = holding(s, l)
+        elastic, friction = elastic * 2.0 / s.columns_mass[l], friction * 2.0 / s.columns_mass[l]
+        held_right, held_left = elastic + friction, elastic + friction
+        if s.phase[l] == STUCK:
+            B, C = arms(s, l)
+            right = s.side[l] * B / C * (ground_factor + building)
+            left, elastic = -right, s.side[l] * elastic
+            held_right, held_left = friction + elastic, friction - elastic
+    return Margin(ground_factor, share, right, left, held_right, held_left, damping)
+
+
+@compiled
+def limit_to(margin: Margin, side: float) -> tuple[float, float]:
+    """What multiplies g + a_v in the limit to a side, and what devices hold [m/s2].
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    side
+        1 to the right, -1 to the left.
+    """
+    if side > 0.0:
+        return margin.right, margin.held_right
+    return margin.left, margin.held_left
+
+
+@compiled
+def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
+    """What pushes the storey over, q(t) of this module, during the step after k others.
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    k
+        Steps before the one looked at.
+    """
+    factor, share, slope = margin.ground_factor, margin.shear_share, block.a_g_slope[k]
+    start = block.a_g[k]
+    curvature = -share * margin.ground_damping * slope
+    return quintic(
+        h,
+        uplift_push(factor, share, start, block.V[k]),
+        uplift_push(factor, share, slope, block.dV[k]),
+        share * block.ddV[k] + curvature,
+        uplift_push(factor, share, start + slope * h, block.V[k + 1]),
+        uplift_push(factor, share, slope, block.dV[k + 1]),
+        share * block.ddV[k + 1] + curvature,
+    )
+
+
+@compiled
+def margin_path(path: Quintic, limit: float, rise: float, side: float, held: float) -> Quintic:
+    """The margin against uplift to a side: the limit is linear, its coefficients rise evenly.
+
+    Parameters
+    ----------
+    path
+        Of q, see `push_path` [m/s2].
+    limit, rise
+        What q must exceed at the start of the step, and its change over it [m/s2].
+    side
+        1 to the right, -1 to the left.
+    held
+        What devices add to the limit [m/s2].
+    """
+    return (
+        limit - (side * path[0] - held),
+        limit + 0.2 * rise - (side * path[1] - held),
+        limit + 0.4 * rise - (side * path[2] - held),
+        limit + 0.6 * rise - (side * path[3] - held),
+        limit + 0.8 * rise - (side * path[4] - held),
+        limit + rise - (side * path[5] - held),
+    )
+
+
+@compiled
+def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
+    """Write `alarm`: 0 for steps in which the margin surely stays positive to both sides.
+
+    Returns whether any is not 0.
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    least
+        Share of the limit that has to be left.
+    """
+    alarms = 0
+    for k in range(INSTANTS):
+        path = push_path(block, margin, h, k)
+        g_up, change = block.g_up[k], block.g_up_slope[k] * h
+        to_right, to_left = margin.right * g_up, margin.left * g_up
+        right = margin_path(path, to_right, margin.right * change, 1.0, margin.held_right)
+        left = margin_path(path, to_left, margin.left * change, -1.0, margin.held_left)
+        lowest = min(lower_hull(right), right[0], lower_hull(left), left[0])
+        held = 0.5 * (margin.held_right + margin.held_left)
+        safe = lowest >= least * (0.5 * (to_right + to_left) + held)
+        block.alarm[k] = 0.0 if safe else 1.0
+        alarms |= 0 if safe else 1
+    return alarms > 0
+
+
+@compiled
+def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float, float]:
+    """Fraction of the step after k others at which the storey uplifts, and the side (0: none).
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    k
+        Steps before the one looked at.
+    """
+    path = push_path(block, margin, h, k)
+    # Where gravity is lost both margins are negative at once: then the push decides.
+    lean = 0.0
+    for b in path:
+        lean = lean if lean != 0.0 else b
+    likelier = -1.0 if lean < 0.0 else 1.0
+    first, side = NO_PASSAGE, 0.0
+    for sign in (likelier, -likelier):
+        factor, held = limit_to(margin, sign)
+        limit = factor * block.g_up[k]
+        rise = factor * (block.g_up_slope[k] * h)
+        beyond = limit + ROUNDING * (abs(limit) + held)
+        t = first_descent(margin_path(path, beyond, rise, sign, held), SETTLED, block.piece)
+        if t < first:
+            first, side = t, sign
+    return first, side
+
+
+@compiled
+def margin_after(
+    block: Record, system: Record, margin: Margin, h: float, k: int, side: float
+) -> tuple[float, float]:
+    """Margin f against uplift to `side` and its slope, a time h into the step after k, exactly.
+
+    The state at the start of that step is the present one of the block.
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    h
+        Time into the step [s].
+    k
+        Steps before it.
+    side
+        1 to the right, -1 to the left.
+    """
+    fill_map(block, system, SHORT_STEP, h)
+    start, slope, step = block.a_g[k], block.a_g_slope[k], block.step_maps[SHORT_STEP]
+    a_g = start + slope * h
+    V, dV = 0.0, 0.0
+    for r in range(block.n):
+        still = step[r, 2] * start + step[r, 3] * slope
+        moving = step[r, 6] * start + step[r, 7] * slope
+        q, dq = mapped(map_of(step, r), block.q[r], block.dq[r], still, moving)
+        force = system.omega2[r] * q + system.two_xi_omega[r] * dq
+        ddq = -system.Gamma[r] * a_g - force
+        V += system.Gamma[r] * force
+        dV += system.Gamma[r] * (system.omega2[r] * dq + system.two_xi_omega[r] * ddq)
+    push = uplift_push(margin.ground_factor, margin.shear_share, a_g, V)
+    push_slope = uplift_push(margin.ground_factor, margin.shear_share, slope, dV)
+    factor, held = limit_to(margin, side)
+    limit = factor * (block.g_up[k] + block.g_up_slope[k] * h)
+    return limit - (side * push - held), factor * block.g_up_slope[k] - side * push_slope
+
+
+@compiled
+def locate_uplift(
+    block: Record, system: Record, margin: Margin, h: float, k: int, guess: float, side: float
+) -> float:
+    """Time into the step after k others, near guess in [0, h], where the margin is zero [s].
+
+    Newton's method on the exact margin. A margin that only grazes zero has no steep root; the
+    interpolant's own root then stands.
+
+    Parameters
+    ----------
+    margin
+        See `margin_of`.
+    h
+        Length of a step [s].
+    k
+        Steps before the one looked at.
+    guess
+        Time into the step from which the search starts [s].
+    side
+        1 to the right, -1 to the left.
+    """
+    t = guess
+    for _ in range(6):
+        f, slope = margin_after(block, system, margin, t, k, side)
+        if slope >= 0.0:
+            break
+        change = -f / slope
+        if not 0.0 <= t + change <= h or abs(change) < 1e-15 * h:
+            break
+        t += change
+    return t

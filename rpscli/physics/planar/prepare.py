@@ -1,0 +1,93 @@
+"""The first compilation of the kernels, by two processes side by side.
+
+numba takes one core for most of a minute. What the kernel calls is compiled into numba's cache, one
+part here and one by a second process, each by calls that have nothing to do; the kernel then finds
+it there. The parts are chosen so that what they have in common, which is compiled twice, is little.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, cast
+
+import numba
+import numpy as np
+
+from rpscli.physics.core.compile import cache_folder
+from rpscli.physics.core.records import NO_HISTORY, Record
+from rpscli.physics.planar.driver import advance_lanes, integrate, next_history
+from rpscli.physics.planar.events import go_on_renewed, resolve_step
+from rpscli.physics.planar.full_contact.modal_block import integrate_fixed_base
+from rpscli.physics.planar.full_contact.stand import stand
+from rpscli.physics.planar.run import empty_run, empty_state
+
+
+def compile_kernel() -> None:
+    """Compile the kernel; what fails in a part is left to the first call.
+
+    Without a cache, or without machine code at all, there is nothing to prepare.
+    """
+    if cast("Any", numba.config).DISABLE_JIT or cache_folder() is None or not sys.executable:
+        return
+    command = [sys.executable, "-m", __name__]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    silent = subprocess.DEVNULL
+    with (
+        garbage_kept(),
+        subprocess.Popen(  # noqa: S603 -- this very program
+            command, env=environment, stdin=silent, stdout=silent, stderr=silent
+        ) as other,
+    ):
+        try:
+            compile_phases()
+            other.wait()
+            integrate(empty_run(1), 1)
+        except BaseException:
+            other.kill()
+            raise
+
+
+def compile_phases() -> None:
+    """Full contact, what begins a phase or a history, and the building on a fixed base."""
+    run, s = empty_run(1), no_histories()[0]
+    stand(s, 0, run.systems[0], run.block[0], run.acceleration, run.output)
+    next_history(s, 0, run)
+    go_on_renewed(s, 0, run.systems[0], run.output)
+    floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
+    integrate_fixed_base(run.acceleration, 1.0, 0, run.systems, run.block, floors, largest)
+
+
+def compile_steps() -> None:
+    """Uplifted steps of all lanes, and those of one that end on an event."""
+    run, state = empty_run(1), no_histories()
+    advance_lanes(state, run.systems, run.block, run.output.log)
+    resolve_step(state[0], 0, run.systems[0], run.block[0], run.output.log)
+
+
+def no_histories() -> Record:
+    """Lanes for which there is nothing to do."""
+    state = empty_state(1)
+    state.history[:] = NO_HISTORY
+    return state
+
+
+@contextmanager
+def garbage_kept() -> Iterator[None]:
+    """Without looking for garbage, which costs the compiler a tenth of its time."""
+    collected = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collected:
+            gc.enable()
+
+
+if __name__ == "__main__":
+    with garbage_kept():
+        compile_steps()

@@ -1,0 +1,101 @@
+"""What histories need while they run, and where their results go."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.physics.core.records import LANES, Floats, Record, records
+from rpscli.physics.planar.state import BLOCK, EVENT, REQUEST, RESULT, SAMPLE, STATE, SYSTEM
+
+
+class Output(NamedTuple):
+    """Samples and events of a history that is run by itself; of many, give no rows to keep none.
+
+    Without room for samples no energy is audited; events beyond the log's rows are only counted.
+
+    Parameters
+    ----------
+    samples
+        (rows,) `state.SAMPLE`.
+    floors
+        (rows, 2, n) displacements and velocities of the floors [m, m/s], relative to the ground.
+    log
+        (rows,) `state.EVENT`.
+    devices
+        (rows, 4, devices) force [N], displacement [m], dissipated and stored energy [J] of all
+        devices.
+    """
+
+    samples: Record
+    floors: NDArray[np.float64]
+    log: Record
+    devices: NDArray[np.float64]
+
+
+class Run(NamedTuple):
+    """Histories to run, and what they leave behind; all arrays of records but the floats.
+
+    Parameters
+    ----------
+    systems
+        (S,) `state.SYSTEM`, all of the same number of storeys n.
+    requests
+        (P,) `state.REQUEST`: the histories.
+    acceleration
+        Records of the ground end to end [m/s2], linear between their samples.
+    results
+        (P,) `state.RESULT`: written.
+    output
+        Samples and events, where there is one history: written.
+    block
+        (1,) `state.BLOCK`: scratch of full contact.
+    """
+
+    systems: Record
+    requests: Record
+    acceleration: Floats
+    results: Record
+    output: Output
+    block: Record
+
+
+def empty_state(storeys: int, lanes: int = LANES) -> Record:
+    """Lanes with nothing to do, an array of one record; all of them are used, or one.
+
+    Parameters
+    ----------
+    storeys
+        n, for all lanes.
+    """
+    state = records(STATE)
+    state.n, state.lanes = storeys, lanes
+    return state
+
+
+def empty_block(storeys: int) -> Record:
+    """Room for a block of steps in full contact, an array of one record."""
+    block = records(BLOCK)
+    block.n = storeys
+    return block
+
+
+def empty_run(storeys: int) -> Run:
+    """No history at all, of one structure of zeros."""
+    systems = records(SYSTEM)
+    systems.n = storeys
+    return Run(
+        systems=systems,
+        requests=records(REQUEST, count=0),
+        acceleration=np.empty(0),
+        results=records(RESULT, count=0),
+        output=Output(
+            samples=records(SAMPLE, count=0),
+            floors=np.empty((0, 2, storeys)),
+            log=records(EVENT, count=0),
+            devices=np.empty((0, 4, 0)),
+        ),
+        block=empty_block(storeys),
+    )

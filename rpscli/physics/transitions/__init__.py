@@ -1,1 +1,0 @@
-"""From one phase of motion to the next: uplift, roll, rock, impact, re-contact."""

@@ -1,1 +1,0 @@
-"""The uplifted storey: Taylor steps of all lanes together, and what is decided lane by lane."""
