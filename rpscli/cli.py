@@ -18,11 +18,9 @@ COMMANDS = {
     "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
     "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
     "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
-    "sweep": Member(
-        "rpscli.commands.sweep.command", "all points of a study, stored as they end; reports"
-    ),
+    "sweep": Member("rpscli.commands.sweep", "all points of a study, stored as they end; reports"),
     "design": Member(
-        "rpscli.commands.design.command",
+        "rpscli.commands.design",
         "the values of a case that meet limits and make an aim least",
     ),
     "report": Member(

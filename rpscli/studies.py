@@ -16,9 +16,7 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -28,6 +26,7 @@ from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
+from rpscli.case.conditions import Condition
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.rules.plausibility import doubts_of_many
 from rpscli.case.study.schema import StudyFile
@@ -39,32 +38,27 @@ from rpscli.constants import MOST_JOBS
 from rpscli.errors import CaseError, UsageError, hint
 from rpscli.frozen import frozen
 from rpscli.report.figures.look import Look, read_style
-from rpscli.report.files.csv_text import Column, csv_text
+from rpscli.report.files.csv_text import Column
 from rpscli.report.study.folder import study_folder
 from rpscli.report.study.registry import REPORTS
-from rpscli.report.study.report import add_notes
-from rpscli.report.study.requirements import requirement_faults
 from rpscli.report.study.statistics import summary_columns, verdict_columns
 from rpscli.shown import Shown
+from rpscli.study_run import StudyRun, require_results
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.point_columns import Columns, array, point_columns
+from rpscli.sweep.points.check import Watched
 from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.points_csv import points_csv, units_of_columns
-from rpscli.sweep.run.cluster import Cluster
-from rpscli.sweep.run.keys import all_keys
-from rpscli.sweep.run.resume import remember, resume
-from rpscli.sweep.run.runner import Progress, run
-from rpscli.sweep.run.threads import Threads, available_cores
-from rpscli.sweep.statistics.scales import scale_notes
-from rpscli.sweep.statistics.summary import Summary, summary
-from rpscli.sweep.statistics.verdicts import StudyVerdict, judged
+from rpscli.sweep.points_csv import units_of_columns
+from rpscli.sweep.run.runner import Progress
+from rpscli.sweep.statistics.summary import Summary
+from rpscli.sweep.statistics.verdicts import StudyVerdict
 from rpscli.sweep.store import Store
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Table, tabulate
+from rpscli.sweep.table import Table
 
 if TYPE_CHECKING:
     from rpscli.case.study.reports import ReportRequest
     from rpscli.report.figures.style import Target
+    from rpscli.report.files.output_folder import OutputFolder
 
 
 def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] = ()) -> Study:
@@ -82,15 +76,29 @@ def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] 
     CaseError
         If the study, one of its systems or what a report needs is not valid.
     """
+    return read_study(source, overrides)
+
+
+def read_study(
+    source: Path | str | Mapping[str, Any],
+    overrides: Sequence[str] = (),
+    conditions: Iterable[Condition] = (),
+    watched: Watched = iter,
+) -> Study:
+    """A study from a file, the standard input (``-``) or a mapping, whose systems are `watched`."""
     if isinstance(source, Mapping):
         study = _study_of(source, overrides)
     else:
+        piped = str(source) == "-"
         study = parse_study(
-            read_text(source), name=str(source), kinds=REPORTS, folder=Path(source).parent,
+            read_text(source),
+            name="<stdin>" if piped else str(source),
+            kinds=REPORTS,
+            folder=None if piped else Path(source).parent,
             overrides=overrides,
-        )  # fmt: skip
-    layout = lay_out(study)
-    study.document.refuse(requirement_faults(layout))
+        )
+    layout = lay_out(study, watched)
+    require_results(layout, conditions)
     return Study(layout, StudyContext(layout.plan), tuple(overrides))
 
 
@@ -206,21 +214,19 @@ class Study(Shown):
             raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
         keeper = _Temporary() if folder is None else None
         place = keeper.place if keeper else Path(folder or "")
-        study_folder(self.layout, place, self.overrides)
+        self.folder(place)
         with Store(place, fresh=fresh) as store:
-            keys = all_keys(self.layout, self.context)
-            start = resume(self.layout, keys, store, retry_failed=retry_failed)
-            remember(self.layout, store)
-            threads = jobs or available_cores()
-            engine = (
-                Cluster(scheduler, self.layout.plan)
-                if scheduler
-                else Threads(self.context, threads)
-            )
-            if start.pending and run(self.layout, start, store, engine, progress).interrupted:
-                raise KeyboardInterrupt
-            table = tabulate(self.layout, store.stored(keys))
-        return StudyResult(self, table, keys, place, threads, keeper)
+            run = self.opened(store, jobs=jobs, scheduler=scheduler, retry_failed=retry_failed)
+            run.compute(progress)
+        return StudyResult(self, place, run, keeper)
+
+    def opened(self, store: Store, **choices: Any) -> StudyRun:
+        """Its run in a store that is open."""
+        return StudyRun(self.layout, self.context, store, **choices)
+
+    def folder(self, place: Path, command: str = "sweep", *, force: bool = False) -> OutputFolder:
+        """The folder of its results, claimed for a command."""
+        return study_folder(self.layout, place, self.overrides, command, force=force)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -231,20 +237,21 @@ class StudyResult(Shown):
 
     Parameters
     ----------
-    study, table, keys
-        What was run, its results in the study's order, and their keys in the store.
+    study
+        What was run.
     folder
         Of the store.
-    jobs
-        Threads for what reports compute besides.
     """
 
     study: Study
-    table: Table
-    keys: list[bytes]
     folder: Path
-    jobs: int
+    _run: StudyRun
     _keeper: _Temporary | None = None
+
+    @property
+    def table(self) -> Table:
+        """Results in the study's order."""
+        return self._run.table
 
     def __len__(self) -> int:
         return len(self.table)
@@ -279,12 +286,11 @@ class StudyResult(Shown):
 
     def facts(self) -> dict[str, Any]:
         """Outcomes, and where they are stored."""
-        outcomes = Counter(self.table.outcomes.tolist()).most_common()
         stored = "in a temporary folder" if self._keeper else str(self.folder)
         return {
             "title": self.study.title,
             "points": len(self),
-            **dict(outcomes),
+            **self._run.outcomes,
             "reports": list(self.study.reports),
             "stored": stored,
         }
@@ -311,17 +317,13 @@ class StudyResult(Shown):
     @property
     def notes(self) -> list[str]:
         """What must be read before statistics and reports are used: what was pooled or left out."""
-        notes = [*scale_notes(self.table)]
-        if self.study.layout.plan.analysis == "timehistory":
-            notes += self._summary.notes
-        for name, request in self.study.reports.items():
-            add_notes(notes, name, REPORTS[request.kind].notes(self.report(name)))
-        return notes
+        with self._run.reopened():
+            return self._run.collect(self.folder, Look(())).notes
 
     def report(self, name: str) -> Any:
         """The numbers of a report that the study asks for, by the name of its files."""
         request = self._request(name)
-        with self._opened() as results:
+        with self._run.reopened() as results:
             return REPORTS[request.kind].numbers(results, request.options)
 
     def draw(self, name: str, target: Any = None) -> Target:
@@ -364,31 +366,23 @@ class StudyResult(Shown):
             A file with matplotlib's settings.
         force
             Overwrite what is in the way.
+
+        Raises
+        ------
+        RpsError
+            If a report cannot be made; all others are written.
         """
         if folder is None and self._keeper:
             raise UsageError("name a folder: that of the store ends with the result")
         look = Look(tuple(figures), columns, read_style(Path(style)) if style else {})
-        study = self.study
-        made = study_folder(study.layout, Path(folder or self.folder), study.overrides, force=force)
-        made.add("points.csv", "".join(points_csv(self.table)))
-        if study.layout.plan.analysis == "timehistory":
-            made.add("statistics.csv", csv_text(summary_columns(self._summary)))
-            if self._verdicts:
-                verdicts = verdict_columns(self._summary.keys, self._verdicts)
-                made.add("verdicts.csv", csv_text(verdicts))
-        for name, request in study.reports.items():
-            title = request.options.title or study.title
-            numbers, report = self.report(name), REPORTS[request.kind]
-            for file, content in report.files(numbers, name, title, look):
-                made.add(file, content)
+        made = self.study.folder(Path(folder or self.folder), force=force)
+        with self._run.reopened():
+            found = self._run.collect(made.folder, look)
+        made.add_all(found.files.items())
         made.write()
+        if found.broken:
+            raise found.broken[0]
         return made.files
-
-    @contextmanager
-    def _opened(self) -> Iterator[StudyResults]:
-        """The store is open no longer than it is read: others may go on in it."""
-        with Store(self.folder) as store:
-            yield StudyResults(self.table, self.keys, store, self.study.context, self.jobs)
 
     def _request(self, name: str) -> ReportRequest:
         known = self.study.reports
@@ -399,16 +393,16 @@ class StudyResult(Shown):
 
     @cached_property
     def _summary(self) -> Summary:
-        if self.study.layout.plan.analysis != "timehistory":
+        with self._run.reopened():
+            found = self._run.summary
+        if found is None:
             raise UsageError("statistics and limits need analysis: timehistory")
-        with self._opened() as results:
-            return summary(self.table, results.fixed_base)
+        return found
 
     @cached_property
     def _verdicts(self) -> list[StudyVerdict]:
-        if self.study.layout.plan.analysis != "timehistory":
-            return []
-        return judged(self.table, self._summary, ())
+        with self._run.reopened():
+            return self._run.verdicts
 
 
 class _Temporary:

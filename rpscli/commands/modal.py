@@ -18,10 +18,10 @@ from rpscli.commands.shell.options import (
     output_options,
     terminal_options,
 )
-from rpscli.commands.shell.passing_time import counted
 from rpscli.commands.shell.tables import sentence, table
 from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import counted
 from rpscli.errors import listed
 from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest

@@ -14,7 +14,6 @@ from rpscli.case.conditions import Condition
 from rpscli.commands.acceptance import parse_condition
 from rpscli.commands.case_input import read_cases, write
 from rpscli.commands.motion import FACTOR, MotionRequest, single_motions
-from rpscli.commands.shell.compilation import announce_compilation
 from rpscli.commands.shell.completions import FILE, condition_names
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
@@ -27,8 +26,8 @@ from rpscli.commands.shell.options import (
     several_cases_options,
     terminal_options,
 )
-from rpscli.commands.shell.passing_time import counted
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import announce_compilation, counted
 from rpscli.commands.timehistory_run import (
     HistoryRequest,
     add_summary,

@@ -17,8 +17,8 @@ from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, case_hea
 from rpscli.commands.motion import MotionRequest, load_motion, motion_inputs, motion_source
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import OutputRequest
-from rpscli.commands.shell.patience import patience
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import patience
 from rpscli.errors import AnalysisError, RecordError, RpsError
 from rpscli.report.documents import ONE_DIRECTION, heading, timehistory_document
 from rpscli.report.figures.drawing import Artists

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.shell.compilation import announce_compilation
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.tables import table, title
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import VerificationMismatch
 from rpscli.report.documents import heading
 from rpscli.report.numbers import shown

@@ -6,8 +6,8 @@ import io
 
 import pytest
 
-from rpscli.commands.shell.passing_time import MANY, counted, watched
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import MANY, counted, watched
 
 
 class Screen(io.StringIO):

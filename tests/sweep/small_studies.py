@@ -6,9 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rpscli.case.study.study import Study
-from rpscli.commands.shell.options import CaseRequest
-from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.sweep.input import StudyInput, read_study
+from rpscli.studies import Study as LaidOut
+from rpscli.studies import load_study
 
 ROOT = Path(__file__).parents[2]
 
@@ -47,6 +46,6 @@ scale: [0.5, 1.0]
 Make = Callable[..., Study]
 
 
-def study_file(path: Path | str, *overrides: str) -> StudyInput:
+def study_file(path: Path | str, *overrides: str) -> LaidOut:
     """A study as `rps sweep` reads it."""
-    return read_study(CaseRequest(str(path), overrides), Terminal(quiet=True))
+    return load_study(path, overrides)

@@ -83,7 +83,9 @@ def test_parametric_studies_run_with_their_figures(
     assert result.exit_code == 0, result.stderr
     folder = tmp_path / "results" / name / "sweep"
     drawn = sorted(file.name for file in folder.glob("*.png"))
-    assert drawn == sorted(f"{request.stem}.png" for request in study_file(path).study.reports)
+    assert drawn == sorted(
+        f"{request.stem}.png" for request in study_file(path).layout.study.reports
+    )
     assert all((folder / f).read_bytes().startswith(b"\x89PNG") for f in drawn)
     with (folder / "points.csv").open(newline="") as file:
         header = next(csv.reader(file))

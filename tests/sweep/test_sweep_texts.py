@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from rpscli.case.schema.key_units import unit
 
-from rpscli.case.schema.keys import unit
+from rpscli.commands.shell import waiting as sweep_progress
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.sweep import progress as sweep_progress
-from rpscli.commands.sweep.progress import progress_line, progress_report
+from rpscli.commands.shell.waiting import progress_line, progress_report
 from rpscli.report.files.csv_text import quoted
 from rpscli.report.study.labels import labels
 from rpscli.sweep.run.runner import Progress

@@ -13,10 +13,10 @@ from rpscli.commands.motion import MotionRequest
 from rpscli.commands.report.blocks import blocks_of
 from rpscli.commands.report.comparison import compared
 from rpscli.commands.report.subject import SUMMARY, Earlier
-from rpscli.commands.shell.compilation import announce_compilation
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.commands.timehistory_run import HistoryRequest, HistoryResult, compute, history_requests
 from rpscli.report.documents import heading
 from rpscli.report.figures.drawing import artists

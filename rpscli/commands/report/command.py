@@ -39,7 +39,7 @@ from rpscli.report.files.whole_files import require_writable, write_whole
     metavar="FILE.html",
     help="The page; results/<name>/report.html by default.",
 )
-@overrides_option("Put a value over the case's or the study's own")
+@overrides_option("Override a value of the case or study")
 @click.option("--record", metavar="SRC", help="Ground motion in place of the case's own.")
 @click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
 @click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
@@ -84,9 +84,10 @@ def command(
     if study:
         from rpscli.commands.report.study_page import read_subject, study_page
 
-        made = read_subject(request, earlier, look, terminal)
+        made = read_subject(request, earlier, conditions, terminal)
         folder = None if earlier is None else earlier.folder
-        name, make = made.study.name, partial(study_page, made, folder, conditions, terminal)
+        name = made.layout.study.name
+        make = partial(study_page, made, folder, conditions, look, terminal)
     else:
         if earlier is not None:
             given, asked = earlier_case(earlier)

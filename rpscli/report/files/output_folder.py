@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -98,6 +98,11 @@ class OutputFolder:
     def add(self, name: str, content: str | Content) -> None:
         """Collect a file of the folder."""
         self.add_at(self.folder / name, content)
+
+    def add_all(self, files: Iterable[tuple[str, str | Content]]) -> None:
+        """Collect files of the folder by their names."""
+        for name, content in files:
+            self.add(name, content)
 
     def add_at(self, path: Path, content: str | Content) -> None:
         """Collect a file that stands elsewhere; it is guarded like those of the folder."""

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from rpscli.case.conditions import LIMITS, Condition
+from rpscli.case.conditions import LIMITS, Condition, condition_text
 from rpscli.report.files.csv_text import Column, quoted
-from rpscli.report.study.labels import key_columns
+from rpscli.report.numbers import shown
+from rpscli.report.study.labels import key_columns, labels
 from rpscli.sweep.statistics.share import Share
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import StudyVerdict
@@ -120,3 +121,24 @@ def verdict_document(keys: Sequence[str], verdict: StudyVerdict) -> dict[str, An
         "value_at_fractile": verdict.fractile,
         "exceeded": verdict.exceeded,
     }
+
+
+def verdict_text(verdict: StudyVerdict) -> str:
+    """What a verdict rests on, in words."""
+    if verdict.fractile is not None:
+        demand = "overturned" if math.isinf(verdict.fractile) else shown(verdict.fractile)
+        return f"{demand} there, n = {verdict.beyond.of}"
+    fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
+    return f"{verdict.beyond}{fallen}"
+
+
+def verdict_lines(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[str]:
+    """Each exceeded limit in a line."""
+    lines = []
+    for verdict in verdicts:
+        if verdict.exceeded:
+            system = labels(keys, verdict.values)
+            asked = f"{verdict.condition.name}: {condition_text(verdict.condition)}"
+            where = f" ({system})" if system else ""
+            lines.append(f"{asked}; {verdict_text(verdict)}{where}, {verdict.condition.source}")
+    return lines

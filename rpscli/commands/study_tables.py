@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -87,6 +86,8 @@ def _spread(spread: Spread, quantity: ResultQuantity) -> str:
 
 def verdict_table(summary: Summary, verdicts: Sequence[StudyVerdict]) -> Table:
     """Every limit of each system and intensity; those that are exceeded first."""
+    from rpscli.report.study.statistics import verdict_text
+
     ordered = sorted(verdicts, key=lambda verdict: not verdict.exceeded)[:MOST_ROWS]
     heads, cells = _system_columns(summary, [verdict.values for verdict in ordered])
     rows = [
@@ -95,31 +96,8 @@ def verdict_table(summary: Summary, verdicts: Sequence[StudyVerdict]) -> Table:
             verdict.condition.name,
             "EXCEEDED" if verdict.exceeded else "met",
             condition_text(verdict.condition),
-            found(verdict),
+            verdict_text(verdict),
         ]
         for system, verdict in zip(cells, ordered, strict=True)
     ]
     return table([*heads, "limit", "", "asked for", "found"], rows, words=len(heads) + 3)
-
-
-def found(verdict: StudyVerdict) -> str:
-    """What a verdict rests on."""
-    if verdict.fractile is not None:
-        demand = "overturned" if math.isinf(verdict.fractile) else shown(verdict.fractile)
-        return f"{demand} there, n = {verdict.beyond.of}"
-    fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
-    return f"{verdict.beyond}{fallen}"
-
-
-def verdict_lines(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[str]:
-    """Each exceeded limit in a line."""
-    from rpscli.report.study.labels import labels
-
-    lines = []
-    for verdict in verdicts:
-        if verdict.exceeded:
-            system = labels(keys, verdict.values)
-            asked = f"{verdict.condition.name}: {condition_text(verdict.condition)}"
-            where = f" ({system})" if system else ""
-            lines.append(f"{asked}; {found(verdict)}{where}, {verdict.condition.source}")
-    return lines

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rpscli.case.conditions import condition_text
 from rpscli.commands.shell.tables import listing, sentence, table, title
-from rpscli.commands.sweep.tables import found as found_text
 from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.numbers import large, measured, shown
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rpscli.commands.design.rounds import Confirmation
     from rpscli.sweep.design.answer import Answer
+    from rpscli.sweep.statistics.verdicts import StudyVerdict
 
 DIGITS = 4
 RECORDS_SHOWN = 3
 
 
 def answer_tables(
-    document: dict[str, Any], answer: Answer, confirmations: list[Confirmation]
+    document: dict[str, Any],
+    answer: Answer,
+    confirmation: Mapping[str, Sequence[StudyVerdict]],
 ) -> Iterator[RenderableType]:
-    """Best design, requirements, what the records do to it, and the confirmation."""
+    """Best design, requirements, what the records do to it, and what confirms which design."""
+    from rpscli.report.study.statistics import verdict_text
+
     counts = document["designs"]
     best = document["best"]
     yield title(document["study"]["title"])
@@ -35,18 +38,18 @@ def answer_tables(
         yield listing(list(_records(document)))
     if len(answer.front):
         yield sentence(f"front of both aims: {len(answer.front)} designs, in front.csv")
-    if confirmations:
-        yield title(f"confirmation with {confirmations[0].records} records that were not used")
+    if confirmation:
+        yield title(f"confirmation with {len(answer.task.confirming)} records that were not used")
         rows = [
             (
-                each.design,
+                design,
                 verdict.condition.name,
                 "EXCEEDED" if verdict.exceeded else "met",
                 condition_text(verdict.condition),
-                found_text(verdict),
+                verdict_text(verdict),
             )
-            for each in confirmations
-            for verdict in each.verdicts
+            for design, verdicts in confirmation.items()
+            for verdict in verdicts
         ]
         yield table(("design", "limit", "", "asked for", "found"), rows, words=5)
     yield sentence(ONE_DIRECTION)

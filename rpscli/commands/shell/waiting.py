@@ -1,0 +1,172 @@
+"""Signs of life on the standard error: what takes long, how far it is, and how long it may take."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import TYPE_CHECKING, Any
+
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.user_cache import VARIABLE
+
+if TYPE_CHECKING:
+    from rpscli.case.case import Case
+    from rpscli.sweep.run.runner import Progress
+
+MANY = 5000
+"""Of what takes a millisecond each."""
+LONG = 10.0
+"""What is worth a word [s]."""
+FIRST_LINE, GROWTH = 2.0, 1.6
+"""Seconds until the first plain line; the next ones come after ever longer times."""
+
+_shown: list[str] = []
+
+
+def _looked_at(terminal: Terminal) -> bool:
+    return not terminal.quiet and sys.stderr is not None and sys.stderr.isatty()
+
+
+def _bar(*columns: Any) -> Any:
+    """A line on the terminal that is gone when the work is done."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    return Progress(*columns, console=Console(stderr=True), transient=True)
+
+
+@contextmanager
+def passing_time(what: str, terminal: Terminal) -> Iterator[None]:
+    """The time that has passed, where somebody looks and no other such line stands already."""
+    if _shown or not _looked_at(terminal):
+        yield
+        return
+    from rich.progress import SpinnerColumn, TimeElapsedColumn
+
+    _shown.append(what)
+    try:
+        with _bar(SpinnerColumn(), what, TimeElapsedColumn()) as progress:
+            progress.add_task("", total=None)
+            yield
+    finally:
+        _shown.remove(what)
+
+
+@contextmanager
+def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None]]:
+    """A function that shows how many of how many are done: a bar on a terminal, else one line."""
+    if not _looked_at(terminal):
+        terminal.note(what)
+        yield lambda *_: None
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, TimeRemainingColumn
+
+    with _bar(what, BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()) as bar:
+        task = bar.add_task("", total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def watched(what: str, terminal: Terminal, numbers: range) -> Iterator[int]:
+    """The numbers; how many are done is shown where they are many."""
+    if len(numbers) < MANY:
+        yield from numbers
+        return
+    with counted(f"{len(numbers)} {what}", terminal) as tell:
+        for number in numbers:
+            tell(number, len(numbers))
+            yield number
+
+
+def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContextManager[None]:
+    """Around a history under a record of a duration [s]: what a long one costs is said before."""
+    from rpscli.analyses.kernels.step_lengths import most_seconds, most_steps
+
+    seconds = most_seconds(case.structure, case.analysis, duration)
+    if seconds < LONG:
+        return nullcontext()
+    steps = most_steps(case.structure, case.analysis, duration)
+    terminal.note(
+        f"a long history: up to {steps:.2g} steps of {case.structure.storeys} modes, {seconds:.0f}"
+        " s if it does not come to rest before; analysis.free_vibration shortens it"
+    )
+    return passing_time("computing", terminal)
+
+
+def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
+    """Say so if the kernel has to be compiled; `moving` where no bar shows that work goes on."""
+    from rpscli.analyses.kernels.compilation import announce_to
+
+    @contextmanager
+    def told() -> Iterator[None]:
+        from rpscli.physics.core.compile import cache_folder
+
+        nowhere = f"each time: no folder for it can be written; name one in {VARIABLE}"
+        often = "once for this version" if cache_folder() else nowhere
+        terminal.note(f"compiling the kernel, {often}: half a minute")
+        with passing_time("compiling", terminal) if moving else nullcontext():
+            yield
+
+    announce_to(told)
+
+
+@contextmanager
+def progress_report(
+    terminal: Terminal, kept: int, total: int
+) -> Iterator[Callable[[Progress], None]]:
+    """A function that shows how far a study is: a bar on a terminal, else a line now and then."""
+    if terminal.quiet or kept == total:
+        yield lambda _: None
+        return
+    if not _looked_at(terminal):
+        yield _lines(terminal)
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+
+    with _bar(BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}")) as bar:
+        task = bar.add_task("", total=total, completed=kept)
+
+        def report(progress: Progress) -> None:
+            left = progress.seconds_left
+            rate = f"{progress.rate:.3g}/s" * bool(progress.rate)
+            text = rate + ("" if left is None else f", {duration(left)} left")
+            text += f", {progress.failed} failed" if progress.failed else ""
+            bar.update(task, completed=progress.done, description=text)
+
+        yield report
+
+
+def _lines(terminal: Terminal) -> Callable[[Progress], None]:
+    """Fewer lines as time goes on: logs stay short."""
+    due = FIRST_LINE
+
+    def report(progress: Progress) -> None:
+        nonlocal due
+        if progress.seconds >= due and progress.done < progress.total:
+            due = progress.seconds * GROWTH
+            terminal.note(progress_line(progress))
+
+    return report
+
+
+def progress_line(progress: Progress) -> str:
+    """Points done, rate and time left in one line."""
+    failed = f", {progress.failed} failed" if progress.failed else ""
+    left = progress.seconds_left
+    ahead = "" if left is None else f", {duration(left)} left"
+    rate = f", {progress.rate:.3g} points/s" if progress.rate else ""
+    return f"{progress.done} of {progress.total} points{failed}{rate}{ahead}"
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it.
+
+    >>> duration(7.4), duration(83.0), duration(7260.0)
+    ('7 s', '1 min 23 s', '2 h 1 min')
+    """
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"

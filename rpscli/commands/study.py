@@ -1,0 +1,192 @@
+"""What `rps sweep`, `rps design` and `rps report` share: a study is read, tried and computed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.case.conditions import Condition
+from rpscli.commands.shell.failure import INTERRUPTED
+from rpscli.commands.shell.options import CaseRequest
+from rpscli.commands.shell.tables import listing, title
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import announce_compilation, duration, progress_report, watched
+from rpscli.errors import Refused, UsageError
+from rpscli.report.documents import failure_document, heading
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.studies import Study
+    from rpscli.study_run import StudyRun
+    from rpscli.sweep.points.layout import StudyPoints
+    from rpscli.sweep.run.runner import Finish
+
+WARNINGS_SHOWN = 5
+POINTS_SHOWN = 3
+"""At each end of a study."""
+GUESSED_POINT_SECONDS = 0.01
+"""Where trying would mean compiling first: some 40 s of motion of a few storeys."""
+
+
+@dataclass(frozen=True)
+class SweepChoices:
+    """How a study is run."""
+
+    jobs: int | None = None
+    scheduler: str | None = None
+    dry_run: bool = False
+    fresh: bool = False
+    retry_failed: bool = False
+    report_only: bool = False
+
+    def __post_init__(self) -> None:
+        if self.report_only and (self.fresh or self.retry_failed or self.scheduler):
+            raise UsageError(
+                "--report-only computes no points; take --fresh, --retry-failed and --scheduler out"
+            )
+        if self.scheduler and self.jobs:
+            raise UsageError("--jobs counts threads of this machine; --scheduler has its own")
+
+    @property
+    def of_run(self) -> dict[str, Any]:
+        """What a `StudyRun` takes of them."""
+        names = ("jobs", "scheduler", "retry_failed")
+        return {name: getattr(self, name) for name in names}
+
+
+def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal) -> Study:
+    """Read and check a study and all its systems."""
+    from rpscli.studies import read_study
+    from rpscli.sweep.points.sampling import balance_note
+
+    examined = partial(watched, "systems examined", terminal)
+    study = read_study(request.source, request.overrides, conditions, examined)
+    if (section := study.layout.study.file.sample) and (note := balance_note(section)):
+        terminal.warn([note])
+    return study
+
+
+def begin(run: StudyRun, terminal: Terminal, *, report_only: bool) -> None:
+    """Say what changed since the last run; refuse to go on where points lack and none is wanted."""
+    for note in run.start.notes:
+        terminal.note(note)
+    if report_only and run.start.pending:
+        raise Refused(
+            f"{run.store.path} lacks {len(run.start.pending)} of {len(run.keys)} points; run the"
+            " study without --report-only first"
+        )
+
+
+def compute(command: str, run: StudyRun, terminal: Terminal) -> Finish:
+    """Compute what is not stored yet, and say what is going on; leave if the user interrupts."""
+    from rpscli.study_run import StudyInterrupted
+
+    start, total = run.start, len(run.keys)
+    if start.pending and start.kept:
+        terminal.note(f"going on: {start.kept} of {total} points are stored already")
+    if start.pending and run.layout.plan.analysis == "timehistory" and not run.scheduler:
+        announce_compilation(terminal)
+
+    def announce() -> None:
+        terminal.note("\nstopping after the points under way; Ctrl-C again stops at once")
+
+    try:
+        with progress_report(terminal, start.kept, start.kept + len(start.pending)) as report:
+            finish = run.compute(report, announce)
+    except StudyInterrupted as interruption:
+        text = str(interruption)
+        terminal.note(text)
+        document = {
+            **heading(),
+            "command": command,
+            "study": study_heading(run.layout),
+            "points": interruption.points,
+            **failure_document("Interrupted", text, INTERRUPTED),
+        }
+        terminal.result(document)
+        raise click.exceptions.Exit(INTERRUPTED) from None
+    if start.pending:
+        rate = finish.computed / finish.seconds if finish.seconds else 0.0
+        terminal.note(
+            f"computed {finish.computed} points in {duration(finish.seconds)}, {rate:.3g} points/s"
+        )
+    return finish
+
+
+def study_heading(layout: StudyPoints) -> dict[str, str]:
+    """The study in a JSON document."""
+    study = layout.study
+    return {"name": study.name, "title": study.title, "source": study.source}
+
+
+def warn(notes: list[str], terminal: Terminal) -> None:
+    """Say the first of the warnings, and how many there are besides."""
+    terminal.warn(notes[:WARNINGS_SHOWN])
+    if len(notes) > WARNINGS_SHOWN:
+        terminal.note(f"... and {len(notes) - WARNINGS_SHOWN} more with --json")
+
+
+def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> None:
+    """Count, first and last points, and an estimate of the time."""
+    from rpscli.analyses.kernels.compilation import is_ready
+    from rpscli.sweep.points.described import described
+    from rpscli.sweep.run.estimate import estimated_seconds
+    from rpscli.sweep.run.threads import available_cores
+
+    layout, count = study.layout, len(study)
+    jobs, histories = choices.jobs or available_cores(), layout.plan.analysis == "timehistory"
+    first = range(min(POINTS_SHOWN, count))
+    last = range(max(0, count - POINTS_SHOWN), count)
+    points: dict[int, dict[str, Any]] = {}
+    for number in sorted({*first, *last}):
+        point = layout[number]
+        points[number] = {"point": number + 1, **described(layout, point)}
+        if histories and layout.plan.measure is None:  # no measure decides about the factor
+            points[number]["scale"] = point.scale * point.scale_change
+    if histories and not is_ready():
+        seconds = GUESSED_POINT_SECONDS * count / jobs
+        source = "a guess, since the kernel is not compiled yet"
+    else:
+        seconds = estimated_seconds(layout, study.context, jobs)
+        source = "trying some of the points"
+    document: dict[str, Any] = {
+        **heading(),
+        "command": "sweep",
+        "study": study_heading(layout),
+        "dry_run": True,
+        "analysis": layout.plan.analysis,
+        "points": count,
+        "systems": len(layout.combinations),
+        "records": len(layout.records),
+        "scales": len(layout.scales),
+        "members": len(layout.members),
+        "first_points": [points[n] for n in first],
+        "last_points": [points[n] for n in last],
+        "estimate": {"seconds": seconds, "jobs": jobs, "source": source},
+        "warnings": study.warnings,
+    }
+    terminal.warn(document["warnings"])
+    terminal.result(document, _dry_run_tables(document, points.values()))
+
+
+def _dry_run_tables(
+    document: dict[str, Any], points: Iterable[dict[str, Any]]
+) -> Iterator[RenderableType]:
+    from rpscli.report.study.labels import label
+
+    yield title(document["study"]["title"])
+    names = ("points", "systems", "records", "scales", "members")
+    expected = document["estimate"]
+    text = f"about {duration(expected['seconds'])} on {expected['jobs']} cores"
+    counts = [(name, str(document[name])) for name in names]
+    yield listing([*counts, ("time", f"{text}, by {expected['source']}")])
+    rows = []
+    for point in points:
+        varied = (label(key, value) for key, value in point.items() if key != "point")
+        rows.append((f"point {point['point']}", ", ".join(varied)))
+    yield listing(rows)

@@ -1,0 +1,140 @@
+"""`rps sweep`: all points of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.commands.acceptance import parse_condition
+from rpscli.commands.case_input import RESULTS, write
+from rpscli.commands.shell.completions import FILE, condition_names
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.options import (
+    CaseRequest,
+    OutputRequest,
+    figure_options,
+    output_options,
+    overrides_option,
+    run_options,
+    terminal_options,
+)
+from rpscli.commands.shell.tables import listing, title
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.study import (
+    SweepChoices,
+    begin,
+    compute,
+    read,
+    show_dry_run,
+    study_heading,
+    warn,
+)
+from rpscli.commands.study_tables import summary_tables, verdict_table
+from rpscli.report.documents import ONE_DIRECTION, heading
+from rpscli.report.figures.look import Look
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from rpscli.study_run import Collected, StudyRun
+
+
+@click.command("sweep")
+@click.argument("study", metavar="STUDY", type=FILE)
+@overrides_option(
+    "Override a value of the study (--set 'scale=[1, 2]') or of its base case"
+    " (--set podium.bearing.slenderness=0.2)"
+)
+@run_options
+@click.option(
+    "--fail-on",
+    "fail_on",
+    multiple=True,
+    metavar="WHAT",
+    shell_complete=condition_names,
+    help="End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
+    " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
+    " units); repeatable. The limits of study and case count as well.",
+)
+@click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
+@figure_options
+@output_options
+@terminal_options
+def command(
+    study: str,
+    overrides: tuple[str, ...],
+    output: OutputRequest,
+    terminal: Terminal,
+    fail_on: tuple[str, ...],
+    look: Look,
+    **choices: Any,
+) -> None:
+    """Compute all points of STUDY, and draw its reports.
+
+    Every point is stored as it ends: after an interruption the same command goes on. If points
+    failed the exit code is 5, and failed.csv has the command that computes each of them alone. It
+    is 10 if a limit of the study, of its base case or of --fail-on is exceeded.
+    """
+    chosen = SweepChoices(**choices)
+    conditions = [parse_condition(text) for text in fail_on]
+    given = read(CaseRequest(study, overrides), conditions, terminal)
+    if chosen.dry_run:
+        show_dry_run(given, chosen, terminal)
+        return
+    from rpscli.sweep.store import Store
+
+    place = output.place or RESULTS / given.layout.study.name / "sweep"
+    folder = given.folder(place, force=output.force)
+    with Store(place, fresh=chosen.fresh) as store:
+        run = given.opened(store, conditions=conditions, **chosen.of_run)
+        begin(run, terminal, report_only=chosen.report_only)
+        finish = compute("sweep", run, terminal)
+        found = run.collect(place, look)
+        error = run.error(found)
+        folder.add_all(found.files.items())
+        store.require()
+        write(folder, terminal)
+    notes = [*given.warnings, *found.notes]
+    warn(notes, terminal)
+    document = {
+        **heading(),
+        "command": "sweep",
+        "study": study_heading(run.layout),
+        "note": ONE_DIRECTION if run.summary else None,
+        "points": {
+            "total": len(run.table),
+            "computed": finish.computed,
+            "kept": run.start.kept,
+            "failed": len(found.failures),
+            "unused": run.start.unused,
+        },
+        "outcomes": run.outcomes,
+        **run.documents(),
+        "findings": {
+            stem: [{"of": name, "found": sentence} for name, sentence in lines]
+            for stem, lines in found.findings.items()
+        },
+        "failures": [failure._asdict() for failure in found.failures],
+        "notes": list(run.start.notes),
+        "warnings": notes,
+        "files": [str(store.path), *folder.files],
+    }
+    terminal.result(concluded(document, error), _tables(run, found))
+    leave(error)
+
+
+def _tables(run: StudyRun, found: Collected) -> Iterator[RenderableType]:
+    yield title(run.layout.study.title)
+    counts = {"points": len(run.table), **run.outcomes}
+    yield listing([(name, str(count)) for name, count in counts.items()])
+    if run.summary is not None:
+        yield from summary_tables(run.summary)
+        if run.verdicts:
+            yield verdict_table(run.summary, run.verdicts)
+    for stem, lines in found.findings.items():
+        yield title(stem)
+        yield listing(lines)
+    if run.summary is not None:
+        yield ONE_DIRECTION

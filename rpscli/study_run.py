@@ -1,0 +1,268 @@
+"""A study and its store: what `rps sweep`, `rps design`, `rps report` and Python do with one."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rpscli.case.conditions import Condition
+from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError
+from rpscli.report.figures.look import Look
+from rpscli.report.files.csv_text import columns_of, csv_text, quoted
+from rpscli.report.study.registry import REPORTS
+from rpscli.report.study.report import add_notes
+from rpscli.report.study.requirements import lacking, requirement_faults
+from rpscli.report.study.statistics import (
+    summary_columns,
+    summary_document,
+    verdict_columns,
+    verdict_document,
+    verdict_lines,
+)
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.check import needs_of
+from rpscli.sweep.points.described import reproduction
+from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points_csv import points_csv
+from rpscli.sweep.run.cluster import Cluster
+from rpscli.sweep.run.keys import all_keys
+from rpscli.sweep.run.resume import remember, resume
+from rpscli.sweep.run.runner import Finish, Progress, run
+from rpscli.sweep.run.threads import Threads, available_cores
+from rpscli.sweep.statistics.scales import scale_notes
+from rpscli.sweep.statistics.summary import Summary, summary
+from rpscli.sweep.statistics.verdicts import StudyVerdict, judged
+from rpscli.sweep.store import Store
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Table, tabulate
+
+if TYPE_CHECKING:
+    from rpscli.case.study.reports import ReportRequest
+
+BASE = "base.yaml"
+FAILURES_SHOWN = 10
+
+
+class StudyInterrupted(KeyboardInterrupt):
+    """Somebody stopped a study; what is stored stays."""
+
+    def __init__(self, stored: int, total: int, path: Path) -> None:
+        super().__init__(
+            f"interrupted: {stored} of {total} points are stored in {path}; the same command goes"
+            " on from there"
+        )
+        self.points = {"total": total, "stored": stored}
+
+
+class Failure(NamedTuple):
+    """A point that failed: its line in `points.csv`, why, and how to compute it alone."""
+
+    point: int
+    message: str
+    command: str
+
+
+@dataclass
+class Collected:
+    """The files of a study by name, and what its reports say.
+
+    `notes` warn of the numbers, `findings` are lines for the terminal, `broken` are the reports
+    that could not be made.
+    """
+
+    files: dict[str, str | bytes] = field(default_factory=dict)
+    failures: list[Failure] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    findings: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    broken: list[RpsError] = field(default_factory=list)
+
+
+def require_results(layout: StudyPoints, conditions: Iterable[Condition]) -> None:
+    """Refuse limits on results that systems do not have, and reports that cannot be drawn.
+
+    Raises
+    ------
+    CaseError
+        At the place of the limit or the report.
+    UsageError
+        If `--fail-on` names the result.
+    """
+    layout.study.document.refuse(requirement_faults(layout))
+    for condition in conditions:
+        if layout.plan.analysis != "timehistory":
+            raise UsageError(f"--fail-on {condition.name} needs analysis: timehistory")
+        if lacking(layout, condition.name):
+            raise UsageError(f"--fail-on: {needs_of(condition.name)}")
+
+
+class StudyRun:
+    """A study that is computed into an open store, judged and reported on.
+
+    `start` says what is stored already; `results` are there when `compute` is over. Without `jobs`
+    all cores are used; `conditions` count besides the limits of study and case.
+    """
+
+    results: StudyResults
+
+    def __init__(
+        self,
+        layout: StudyPoints,
+        context: StudyContext,
+        store: Store,
+        *,
+        jobs: int | None = None,
+        scheduler: str | None = None,
+        retry_failed: bool = False,
+        conditions: Iterable[Condition] = (),
+    ) -> None:
+        self.layout, self.context, self.store = layout, context, store
+        self.jobs, self.scheduler = jobs or available_cores(), scheduler
+        self.conditions = tuple(conditions)
+        self.keys = all_keys(layout, context)
+        self.start = resume(layout, self.keys, store, retry_failed=retry_failed)
+
+    def compute(
+        self,
+        report: Callable[[Progress], None] = lambda _: None,
+        announce: Callable[[], None] = lambda: None,
+    ) -> Finish:
+        """Compute what is not stored yet; each point is stored as it ends.
+
+        Raises
+        ------
+        StudyInterrupted
+            After Ctrl-C: the first one is told to `announce` and lets the points under way end.
+        """
+        remember(self.layout, self.store)
+        finish = Finish(0, 0, 0.0, interrupted=False)
+        if self.start.pending:
+            try:
+                finish = run(self.layout, self.start, self.store, self._engine(), report, announce)
+            except KeyboardInterrupt:
+                raise self._interrupted() from None
+            if finish.interrupted:
+                raise self._interrupted()
+        table = tabulate(self.layout, self.store.stored(self.keys))
+        self.results = StudyResults(table, self.keys, self.store, self.context, self.jobs)
+        return finish
+
+    def _engine(self) -> Cluster | Threads:
+        if self.scheduler:
+            return Cluster(self.scheduler, self.layout.plan)
+        return Threads(self.context, self.jobs)
+
+    def _interrupted(self) -> StudyInterrupted:
+        known = self.store.outcomes()
+        stored = sum(key in known for key in self.keys)
+        return StudyInterrupted(stored, len(self.keys), self.store.path)
+
+    @contextmanager
+    def reopened(self) -> Iterator[StudyResults]:
+        """The results with the store open no longer than it is read: others may go on in it."""
+        with Store(self.store.path.parent) as store:
+            self.results = replace(self.results, store=store)
+            yield self.results
+
+    @property
+    def table(self) -> Table:
+        """Results of all points."""
+        return self.results.table
+
+    @property
+    def outcomes(self) -> dict[str, int]:
+        """How many points ended in which way, the commonest first."""
+        return dict(Counter(self.table.outcomes.tolist()).most_common())
+
+    @cached_property
+    def summary(self) -> Summary | None:
+        """Statistics of each system at each intensity; None of analyses without histories."""
+        if self.layout.plan.analysis != "timehistory":
+            return None
+        return summary(self.table, self.results.fixed_base)
+
+    @cached_property
+    def verdicts(self) -> list[StudyVerdict]:
+        """On every limit of each system at each intensity."""
+        return judged(self.table, self.summary, self.conditions) if self.summary else []
+
+    def collect(self, place: Path, look: Look) -> Collected:
+        """All files for a folder. A report that fails does not take the others with it."""
+        found = Collected()
+        found.files["points.csv"] = "".join(points_csv(self.table))
+        found.failures += self._failures(place, found)
+        if found.failures:
+            rows = [tuple(map(quoted, failure)) for failure in found.failures]
+            found.files["failed.csv"] = csv_text(
+                columns_of(dict.fromkeys(Failure._fields, "-"), rows)
+            )
+        if self.summary is not None:
+            found.files["statistics.csv"] = csv_text(summary_columns(self.summary))
+            if self.verdicts:
+                columns = verdict_columns(self.summary.keys, self.verdicts)
+                found.files["verdicts.csv"] = csv_text(columns)
+            notes = (*self.summary.notes, *scale_notes(self.table))
+            found.notes += [f"statistics: {note}" for note in notes]
+        for request in self.layout.study.reports:
+            try:
+                self._report(request, look, found)
+            except RpsError as error:
+                found.broken.append(error)
+            except Exception as error:  # noqa: BLE001 -- the points and the others must not be lost
+                text = f"the report {request.stem}: {type(error).__name__}: {error}"
+                found.broken.append(RpsError(f"{text}; this is a fault of rps: please report it"))
+        return found
+
+    def _report(self, request: ReportRequest, look: Look, found: Collected) -> None:
+        report = REPORTS[request.kind]
+        numbers = report.numbers(self.results, request.options)
+        title = request.options.title or self.layout.study.title
+        found.files |= dict(report.files(numbers, request.stem, title, look))
+        add_notes(found.notes, request.stem, report.notes(numbers))
+        if lines := list(report.findings(numbers)):
+            found.findings[request.stem] = lines
+
+    def _failures(self, place: Path, found: Collected) -> Iterator[Failure]:
+        base = self.layout.study.base_file
+        if base is None and self.table.messages:
+            # JSON is YAML too.
+            found.files[BASE] = json.dumps(self.layout.plan.base, indent=2) + "\n"
+            base = place / BASE
+        for number, message in self.table.messages.items():
+            point = self.layout[number]
+            command = reproduction(self.layout, self.context, point, base or Path())
+            yield Failure(number + 1, message, command)
+
+    def error(self, found: Collected, *, limits: bool = True) -> RpsError | None:
+        """The gravest of what went wrong, whose exit code counts; its text tells of all."""
+        errors: list[RpsError] = [*found.broken]
+        if failures := found.failures:
+            lines = [f"{len(failures)} of {len(self.table)} points failed; they enter no statistic"]
+            for failure in failures[:FAILURES_SHOWN]:
+                lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
+            lines += _and_more(failures, "failed.csv")
+            errors.append(StudyIncomplete("\n".join(lines)))
+        if limits and self.summary and (lines := verdict_lines(self.summary.keys, self.verdicts)):
+            told = [f"limit exceeded: {line}" for line in lines[:FAILURES_SHOWN]]
+            errors.append(LimitExceeded("\n".join([*told, *_and_more(lines, "verdicts.csv")])))
+        return type(errors[0])("\n".join(map(str, errors))) if errors else None
+
+    def documents(self) -> dict[str, Any]:
+        """Statistics and verdicts in JSON; nothing of analyses without histories."""
+        if self.summary is None:
+            return {}
+        return {
+            "pooled": self.summary.pooled,
+            "statistics": summary_document(self.summary),
+            "verdicts": [verdict_document(self.summary.keys, each) for each in self.verdicts],
+        }
+
+
+def _and_more(items: list[Any], file: str) -> list[str]:
+    more = len(items) - FAILURES_SHOWN
+    return [f"... and {more} more, all in {file}"] if more > 0 else []
