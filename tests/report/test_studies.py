@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import rpscli
 import rpscli.sweep
 from report.small_results import curve
 from rpscli.cli import program
+from rpscli.report.study.registry import REPORTS
 from rpscli.sweep.store import Store
 
 ROOT = Path(__file__).parents[2]
@@ -135,6 +137,57 @@ def test_the_files_are_those_of_the_command(
     assert result.verdicts["exceeded"].tolist().count("true") > 0
     # without figures none is drawn
     assert not any(file.endswith("png") for file in result.write("plain", figures=()))
+
+
+def test_failed_points_leave_the_files_of_the_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A record that cannot be read: failed.csv with commands, and the case they work on."""
+    monkeypatch.chdir(tmp_path)
+    Path("bad.at2").write_text("no record at all\n", encoding="utf-8")
+    case = rpscli.load_case(ROOT / "cases" / "six_storey.yaml").document
+    case.pop("record", None)
+    text = json.dumps({"rps": 1, "base": case, "records": ["bad.at2"], "scale": [1.0, 2.0]})
+    Path("study.yaml").write_text(text, encoding="utf-8")
+    swept = CliRunner().invoke(program, ["sweep", "study.yaml", "-o", "out", "-q"])
+    assert swept.exit_code == 5, swept.output
+    files = {name: Path("out", name).read_bytes() for name in ("failed.csv", "base.yaml")}
+    for file in Path("out").iterdir():
+        file.unlink()
+    result = rpscli.load_study("study.yaml").run("out")
+    assert set(result.failures) == {0, 1}
+    result.write()
+    assert {name: Path("out", name).read_bytes() for name in files} == files
+
+
+def test_a_report_that_fails_takes_no_file_with_it(
+    result: rpscli.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> object:
+        raise ZeroDivisionError("no reason")
+
+    monkeypatch.setitem(REPORTS, "overturning", replace(REPORTS["overturning"], numbers=broken))
+    with pytest.raises(rpscli.RpsError, match="the report overturning: ZeroDivisionError"):
+        result.write(tmp_path / "left", figures=())
+    names = {file.name for file in (tmp_path / "left").iterdir()}
+    assert names >= {"points.csv", "statistics.csv", "lines.csv"}
+
+
+def test_references_take_no_more_threads_than_asked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    asked: list[int] = []
+
+    def references(*given: Any) -> dict[Any, Any]:
+        asked.append(given[-1])
+        return {}
+
+    monkeypatch.setattr("rpscli.sweep.study_results.fixed_base_references", references)
+    monkeypatch.chdir(tmp_path)
+    Path("study.yaml").write_text(json.dumps(SMALL | {"scale": [0.1], "vary": []}), "utf-8")
+    swept = CliRunner().invoke(program, ["sweep", "study.yaml", "--jobs", "1", "-q"])
+    assert swept.exit_code in {0, 10}, swept.output
+    assert asked == [1]
 
 
 def test_a_run_goes_on_where_another_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

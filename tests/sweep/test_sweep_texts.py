@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from rpscli.case.schema.key_units import unit
 
+from rpscli.case.schema.keys import unit
 from rpscli.commands.shell import waiting as sweep_progress
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import progress_line, progress_report
