@@ -1,17 +1,36 @@
-"""Devices between ground and cap beam: dampers, friction, stops, tendons (Theory, section 11)."""
+"""Laws of the devices between ground and cap beam, with all that follows (Theory, section 11)."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
 
-MOST_DEVICES = 8
-"""A structure has no more; equal devices are one with the sum of their forces and stiffnesses."""
+import numpy as np
+
+from rpscli.model.bearing import Bearing
+from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, PodiumStructure
+
+
+class _OnCapBeam(Device):
+    """A device that pushes the cap beam horizontally and follows its displacement u_b."""
+
+    in_each_column = False
+
+    def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
+        return structure.path(rotation)[1]
+
+    def beam_forces(
+        self, structure: PodiumStructure, rotation: Array, force: Array
+    ) -> tuple[Array, Array]:
+        return force, np.zeros_like(force)
+
+    def remaining_prestress(self, permanent: float) -> float | None:
+        return None
 
 
 @dataclass(frozen=True)
-class ViscousDamper:
+class ViscousDamper(_OnCapBeam):
     """P = -c |u_b'|^a sgn(u_b') on the cap beam, c the force at 1 m/s.
 
     Parameters
@@ -25,16 +44,39 @@ class ViscousDamper:
     coefficient: float
     exponent: float = 1.0
 
+    kind = "viscous"
+    results = ("max_damper_force",)
+
     def __post_init__(self) -> None:
-        """Refuse what the kernels do not follow."""
-        if not 0.0 < self.coefficient < math.inf:
-            raise ValueError("coefficient must be > 0 and finite")
+        _require_positive(coefficient=self.coefficient)
         if not 0.2 <= self.exponent <= 2.0:
             raise ValueError("exponent must be >= 0.2 and <= 2")
 
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        return self.coefficient, self.exponent
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        return AtRest()
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        return 0.0
+
+    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+        if self.exponent != 1.0:
+            return Linear(left_out="dampers whose exponent is not 1")
+        return Linear(damping=self.coefficient)
+
+    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
+        # Powers of the velocity shorten their steps by themselves.
+        return 0.0, self.coefficient if self.exponent == 1.0 else 0.0
+
+    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        speed = (structure.uplift_force / self.coefficient) ** (1.0 / self.exponent)
+        yield Consequence("velocity_at_uplift_force", "reaches W tan(alpha) at", "m/s", speed)
+
 
 @dataclass(frozen=True)
-class FrictionDamper:
+class FrictionDamper(_OnCapBeam):
     """P = -F_d sgn(u_b'); at rest any |P| <= F_d.
 
     Parameters
@@ -45,14 +87,34 @@ class FrictionDamper:
 
     force: float
 
+    kind = "friction"
+    results = ("max_damper_force",)
+
     def __post_init__(self) -> None:
-        """Refuse what is no friction."""
-        if not 0.0 < self.force < math.inf:
-            raise ValueError("force must be > 0 and finite")
+        _require_positive(force=self.force)
+
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        return (self.force,)
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        return AtRest(held=self.force)
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        return 0.0
+
+    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+        return Linear(left_out="friction")
+
+    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
+        return 0.0, 0.0
+
+    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        share = self.force / structure.uplift_force
+        yield Consequence("uplift_share", "over W tan(alpha)", "-", share)
 
 
 @dataclass(frozen=True)
-class Stop:
+class Stop(_OnCapBeam):
     """s P = -(k_s (|u_b| - d) + c_s |u_b|') beyond the gap, where that pushes back.
 
     Parameters
@@ -69,18 +131,38 @@ class Stop:
     stiffness: float
     damping: float = 0.0
 
+    kind = "stop"
+    results = ("max_stop_force",)
+
     def __post_init__(self) -> None:
-        """Refuse what is no stop."""
-        if not 0.0 <= self.gap < math.inf:
-            raise ValueError("gap must be >= 0 and finite")
-        if not 0.0 < self.stiffness < math.inf:
-            raise ValueError("stiffness must be > 0 and finite")
-        if not 0.0 <= self.damping < math.inf:
-            raise ValueError("damping must be >= 0 and finite")
+        _require_none_below_zero(gap=self.gap, damping=self.damping)
+        _require_positive(stiffness=self.stiffness)
+
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        return self.gap, self.stiffness, self.damping
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        beyond = np.maximum(self.stroke(structure, rotation) - self.gap, 0.0)
+        return AtRest(self.stiffness * beyond)
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        return self.stiffness if self.gap == 0.0 else 0.0
+
+    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+        return Linear(left_out="stops")
+
+    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
+        return self.stiffness, self.damping
+
+    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        x = self.reached_at(structure, self.gap)
+        over = None if x is None else x / structure.critical_rotation
+        yield Consequence("met_rotation", "met at", "rad", x)
+        yield Consequence("met_rotation_ratio", "met at, over theta_cr", "-", over)
 
 
 @dataclass(frozen=True)
-class Tendon:
+class Tendon(Device):
     """An unbonded tendon in the axis of each column, from the ground to the cap beam.
 
     Elastic up to its yield force and perfectly plastic beyond; it never pushes.
@@ -99,18 +181,91 @@ class Tendon:
     stiffness: float
     yield_force: float = math.inf
 
+    kind = "tendon"
+    in_each_column = True
+
     def __post_init__(self) -> None:
-        """Refuse what is no tendon."""
-        if not 0.0 <= self.prestress < math.inf:
-            raise ValueError("prestress must be >= 0 and finite")
-        if not 0.0 < self.stiffness < math.inf:
-            raise ValueError("stiffness must be > 0 and finite")
+        _require_none_below_zero(prestress=self.prestress)
+        _require_positive(stiffness=self.stiffness)
         if not self.yield_force > self.prestress:
             raise ValueError("yield_force must be > prestress")
 
+    @property
+    def results(self) -> tuple[str, ...]:
+        return ("lost_prestress",) if self.prestress > 0.0 else ()
+
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        return self.prestress, self.stiffness, self.yield_force
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        stretch = self.stroke(structure, rotation) - self.permanent(structure, farthest)
+        tension = np.clip(self.prestress + self.stiffness * stretch, 0.0, self.yield_force)
+        lever, arm = structure.bearing.tendon_lever(rotation), structure.lever_arm(rotation)
+        return AtRest(structure.columns * tension * lever / arm)
+
+    def permanent(self, structure: PodiumStructure, farthest: float) -> float:
+        """What it keeps of its elongation after it was drawn to a rotation [m].
+
+        Parameters
+        ----------
+        structure
+            Podium with its bearings.
+        farthest
+            Rotation to which it was drawn [rad].
+        """
+        elastic = (self.yield_force - self.prestress) / self.stiffness
+        drawn = self.stroke(structure, np.array([farthest]))
+        return max(0.0, float(drawn[0]) - elastic)
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        bearing, N = structure.bearing, structure.columns
+        B, r = bearing.half_width, 0.0 if bearing.is_flat else bearing.radius
+        growth = N * (self.stiffness * 4.0 * B**2 + self.prestress * 2.0 * r)
+        return _force_growth(bearing, N * self.prestress * 2.0 * B, growth)
+
+    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+        # To first order e = 2 R (a theta + (kappa + 1) theta^2/2), so N T de/dtheta over 2 R is
+        # N P_0 a + [N k_t a^2 + N P_0 (kappa + 1)/2R] u_bR.
+        geometric = self.prestress * (kappa + 1.0) / (2.0 * structure.bearing.semi_diagonal)
+        elastic = self.stiffness * angle**2
+        return Linear(structure.columns * (elastic + geometric), left_out="yielding of tendons")
+
+    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
+        # N k_t (de/du_b)^2: de/dx is at most 2 (B + r beta), du_b/dx at least 2 R cos(alpha).
+        b = structure.bearing
+        radius = 2.0 * b.curvature_ratio * b.semi_diagonal * math.cos(b.alpha)
+        reach = math.tan(b.alpha) + radius * b.beta / (b.semi_diagonal * math.cos(b.alpha))
+        return structure.columns * self.stiffness * reach**2, 0.0
+
+    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        added = structure.columns * self.prestress * structure.bearing.slenderness
+        share = added / structure.uplift_force
+        yield Consequence("uplift_share", "prestress over weight", "-", share)
+        if not math.isfinite(self.yield_force):
+            return
+        ratio = self.prestress / self.yield_force
+        yield Consequence("prestress_ratio", "prestress over yield force", "-", ratio)
+        x = self.reached_at(structure, (self.yield_force - self.prestress) / self.stiffness)
+        yield Consequence("yield_rotation", "yields at", "rad", x)
+        left = self.remaining_prestress(self.permanent(structure, structure.critical_rotation))
+        yield Consequence("prestress_after_critical", "prestress after theta_cr", "N", left)
+
+    def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
+        return structure.bearing.tendon_elongation(rotation)
+
+    def beam_forces(
+        self, structure: PodiumStructure, rotation: Array, force: Array
+    ) -> tuple[Array, Array]:
+        sin_psi, cos_psi = structure.bearing.tendon_direction(rotation)
+        tension = structure.columns * force
+        return -np.sign(rotation) * tension * sin_psi, tension * cos_psi
+
+    def remaining_prestress(self, permanent: float) -> float:
+        return max(0.0, self.prestress - self.stiffness * permanent)
+
 
 @dataclass(frozen=True)
-class RollingResistance:
+class RollingResistance(_OnCapBeam):
     """The moment f (N_top + N_bot) against the tilt's rate, with the weight for normal forces.
 
     Parameters
@@ -121,28 +276,65 @@ class RollingResistance:
 
     lever: float
 
+    kind = "rolling_resistance"
+    results = ()
+
     def __post_init__(self) -> None:
-        """Refuse what resists nothing."""
-        if not 0.0 < self.lever < math.inf:
-            raise ValueError("lever must be > 0 and finite")
+        _require_positive(lever=self.lever)
+
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        return (2.0 * structure.weight * self.lever,)
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        return AtRest(held=2.0 * structure.weight * self.lever / structure.lever_arm(rotation))
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        return _force_growth(structure.bearing, 2.0 * structure.weight * self.lever, 0.0)
+
+    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+        return Linear(left_out="rolling resistance")
+
+    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
+        return 0.0, 0.0
+
+    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        share = self.lever / structure.bearing.half_width
+        yield Consequence("uplift_share", "over W tan(alpha)", "-", share)
+
+    def beam_forces(
+        self, structure: PodiumStructure, rotation: Array, force: Array
+    ) -> tuple[Array, Array]:
+        # It acts between the columns and what they roll on.
+        return np.zeros_like(force), np.zeros_like(force)
 
 
-Device: TypeAlias = ViscousDamper | FrictionDamper | Stop | Tendon | RollingResistance
+def _require_positive(**values: float) -> None:
+    for name, value in values.items():
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"{name} must be > 0 and finite")
+
+
+def _require_none_below_zero(**values: float) -> None:
+    for name, value in values.items():
+        if not 0.0 <= value < math.inf:
+            raise ValueError(f"{name} must be >= 0 and finite")
+
+
+def _force_growth(bearing: Bearing, moment: float, growth: float) -> float:
+    """What a moment M + M' x adds to dF/du_b at u_b = 0+ [N/m], exact.
+
+    With the arm 2 R C = 2 H + 2 B x it is the force M/2H + (M' - M B/H) x/2H, and du_b = 2 H dx.
+    """
+    return (growth - moment * bearing.half_width / bearing.half_height) / (
+        4.0 * bearing.half_height**2
+    )
+
 
 DEVICES: dict[str, type[Device]] = {
-    "viscous": ViscousDamper,
-    "friction": FrictionDamper,
-    "stop": Stop,
-    "tendon": Tendon,
-    "rolling_resistance": RollingResistance,
+    ViscousDamper.kind: ViscousDamper,
+    FrictionDamper.kind: FrictionDamper,
+    Stop.kind: Stop,
+    Tendon.kind: Tendon,
+    RollingResistance.kind: RollingResistance,
 }
-"""By their names in a case, in the order of the kernels' codes."""
-
-
-def name_of(device: Device) -> str:
-    """The name of a device's kind in a case.
-
-    >>> name_of(FrictionDamper(1e5))
-    'friction'
-    """
-    return next(name for name, kind in DEVICES.items() if isinstance(device, kind))
+"""Laws by their names in a case, in the order of the kernels' codes."""

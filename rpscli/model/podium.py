@@ -1,22 +1,28 @@
-"""The rocking podium structure: columns, cap beam and the building on it."""
+"""The rocking podium structure, and what each device on it must answer."""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
-from rpscli.model.devices import MOST_DEVICES, Device, name_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.planar import geometry
 from rpscli.shown import Shown, with_unit
+
+Array: TypeAlias = NDArray[np.float64]
+
+MOST_DEVICES = 8
+"""A structure has no more; equal devices are one with the sum of their forces and stiffnesses."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -93,7 +99,7 @@ class PodiumStructure(Shown):
             "columns_mass": with_unit(self.columns_mass, "kg"),
             "cap_beam_mass": with_unit(self.cap_beam_mass, "kg"),
             "superstructure_mass": with_unit(self.superstructure_mass, "kg"),
-            "devices": [name_of(device) for device in self.devices],
+            "devices": [device.kind for device in self.devices],
             "bearing": self.bearing,
         }
 
@@ -177,7 +183,7 @@ class PodiumStructure(Shown):
         ratio = (1.0 + 2.0 * carried) / (self.bearing.inertia_ratio + 4.0 * carried)
         return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)
 
-    def path(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    def path(self, rotation: Array) -> tuple[Array, ...]:
         """Restoring force F, cap beam displacement u_b and lift v_b at |theta| [rad].
 
         Returns
@@ -189,8 +195,180 @@ class PodiumStructure(Shown):
         diameter = 2.0 * b.semi_diagonal
         return self.weight * B / C, diameter * u, diameter * v
 
-    def lever_arm(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    def lever_arm(self, rotation: Array) -> Array:
         """2 R C = |du_b/dtheta| at |theta| [rad]: the arm of a force at the cap beam [m]."""
         b = self.bearing
         _, C, _, _ = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
         return 2.0 * b.semi_diagonal * C
+
+
+class AtRest(NamedTuple):
+    """Horizontal forces of a device on the cap beam at rest, at the rotations asked for [N].
+
+    Parameters
+    ----------
+    restoring
+        Needed in addition to hold a rotation > 0.
+    held
+        Friction, which holds as much either way.
+    """
+
+    restoring: Array | float = 0.0
+    held: Array | float = 0.0
+
+
+class Linear(NamedTuple):
+    """What a device adds to small motions u_bR = 2 R theta on one side (Theory, sections 6, 11).
+
+    Parameters
+    ----------
+    stiffness, damping
+        To first order [N/m], [N s/m].
+    left_out
+        In words, what of it is not linear; empty if nothing.
+    """
+
+    stiffness: float = 0.0
+    damping: float = 0.0
+    left_out: str = ""
+
+
+class Consequence(NamedTuple):
+    """A number that follows from one device.
+
+    Parameters
+    ----------
+    name
+        In JSON.
+    label
+        The words of a table.
+    unit
+        SI; ``-`` for plain numbers.
+    value
+        None if it is never reached.
+    """
+
+    name: str
+    label: str
+    unit: str
+    value: float | None
+
+
+class Device(ABC):
+    """The law of a device between ground and cap beam.
+
+    Whatever follows from a device is asked here and answered by every law: a law that leaves a
+    question open cannot be made. How it is drawn is told in `report.figures.devices`.
+    """
+
+    @property
+    @abstractmethod
+    def kind(self) -> str:
+        """Its name in a case."""
+
+    @property
+    @abstractmethod
+    def in_each_column(self) -> bool:
+        """Whether each column has one; its force and stroke are those of one then."""
+
+    @property
+    @abstractmethod
+    def results(self) -> tuple[str, ...]:
+        """Results of a history that exist with it: its largest force by a name, or a share lost."""
+
+    @abstractmethod
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        """Of its law, as the kernels read them."""
+
+    @abstractmethod
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        """Forces at rest.
+
+        Parameters
+        ----------
+        structure
+            On which it acts.
+        rotation
+            Rotations >= 0, of any shape [rad].
+        farthest
+            Rotation to which it was drawn before [rad].
+        """
+
+    @abstractmethod
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        """What it adds to dF/du_b at u_b = 0+, on the way out [N/m], exact."""
+
+    @abstractmethod
+    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+        """What modes hold of it.
+
+        Parameters
+        ----------
+        structure
+            On which it acts.
+        kappa
+            2 rho - 1 rolling, -1 rocking.
+        angle
+            alpha rolling, alpha' rocking [rad].
+        """
+
+    @abstractmethod
+    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
+        """Stiffness [N/m] and damping [N s/m] that it adds at most against u_b, for time steps."""
+
+    @abstractmethod
+    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        """What follows from it before any analysis."""
+
+    @abstractmethod
+    def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
+        """How far it moves.
+
+        Parameters
+        ----------
+        structure
+            On which it acts.
+        rotation
+            |theta| [rad].
+        """
+
+    @abstractmethod
+    def beam_forces(
+        self, structure: PodiumStructure, rotation: Array, force: Array
+    ) -> tuple[Array, Array]:
+        """Forces on the cap beam, to the right and downwards [N].
+
+        Parameters
+        ----------
+        structure
+            On which it acts.
+        rotation
+            theta [rad].
+        force
+            Of the device, as histories have it [N].
+        """
+
+    @abstractmethod
+    def remaining_prestress(self, permanent: float) -> float | None:
+        """Of one, upright, after a permanent elongation [m]; None without [N]."""
+
+    def reached_at(self, structure: PodiumStructure, length: float) -> float | None:
+        """The |theta| at which its stroke reaches a length; None beyond 2 theta_cr [rad].
+
+        Parameters
+        ----------
+        structure
+            On which it acts.
+        length
+            [m].
+        """
+
+        def excess(x: float) -> float:
+            return float(self.stroke(structure, np.array([x]))[0]) - length
+
+        end = 2.0 * structure.critical_rotation
+        if excess(end) < 0.0:
+            return None
+        from scipy.optimize import brentq
+
+        return float(brentq(excess, 0.0, end))

@@ -1,0 +1,151 @@
+"""Static behaviour with devices: what holds a tilt, from where the storey comes back (Theory, 11)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rpscli.model.podium import Array, PodiumStructure
+
+PARTS = (0.25, 0.5, 0.75)
+"""Of the critical rotation, from which it is asked whether the structure comes back."""
+
+POINTS = 400
+"""Rotations that are looked at; the curve has no more than a few bends."""
+
+
+class Return(NamedTuple):
+    """Whether the storey comes back from rest at a rotation, and against how much friction.
+
+    Parameters
+    ----------
+    rotation
+        From which it starts at rest [rad].
+    displacement
+        u_b there [m].
+    largest_friction
+        What friction may hold at most for it to come back, a force at the cap beam [N].
+    friction
+        What friction holds at most on the way [N].
+    recentres
+        Whether it comes back to full contact.
+    """
+
+    rotation: float
+    displacement: float
+    largest_friction: float
+    friction: float
+    recentres: bool
+
+
+def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float = 0.0) -> Array:
+    """Horizontal force at the cap beam that holds rotations > 0 at rest without friction [N].
+
+    F = W B/C with what stops and tendons add.
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    rotation
+        Rotations > 0, of any shape [rad].
+    farthest
+        Rotation up to which tendons were drawn before, perhaps beyond yielding [rad].
+    """
+    x = np.asarray(rotation, dtype=float)
+    force = structure.path(x)[0]
+    for device in structure.devices:
+        force = force + device.at_rest(structure, x, farthest).restoring
+    return force
+
+
+def friction_force(structure: PodiumStructure, rotation: Array) -> Array:
+    """Horizontal force at the cap beam that friction of all kinds can hold at rest [N].
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    rotation
+        Any shape, |theta| [rad].
+    """
+    x = np.asarray(rotation, dtype=float)
+    held = np.zeros_like(x)
+    for device in structure.devices:
+        held = held + device.at_rest(structure, x, 0.0).held
+    return held
+
+
+def uplift_force(structure: PodiumStructure) -> float:
+    """Horizontal force at the cap beam that uplifts it against weight and devices [N]."""
+    upright = np.zeros(1)
+    return float(restoring_force(structure, upright)[0] + friction_force(structure, upright)[0])
+
+
+def uplift_acceleration(structure: PodiumStructure) -> float:
+    """Ground acceleration that uplifts the structure with its devices quasi-statically [m/s2]."""
+    return uplift_force(structure) / structure.restoring_mass
+
+
+def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> float:
+    """The largest friction from which the structure still comes back from a rotation [N].
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices; those with friction are left out.
+    rotation
+        Where it starts from rest [rad]; beyond the critical rotation the answer is negative unless
+        stops or tendons hold it.
+    """
+    x = np.linspace(rotation / POINTS, rotation, POINTS)
+    return float(np.min(restoring_force(structure, x, rotation)))
+
+
+def recentres(structure: PodiumStructure, rotation: float) -> bool:
+    """Whether the structure comes back to full contact from rest, slowly.
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    rotation
+        |theta| from which it starts [rad].
+    """
+    x = np.linspace(rotation / POINTS, rotation, POINTS)
+    return bool(np.all(restoring_force(structure, x, rotation) > friction_force(structure, x)))
+
+
+def returns(structure: PodiumStructure) -> list[Return]:
+    """Whether the storey re-centres from some rotations; empty without friction."""
+    rotations = np.array(PARTS) * structure.critical_rotation
+    _, path, _ = structure.path(rotations)
+    held = [float(np.max(friction_force(structure, np.linspace(0.0, x, 50)))) for x in rotations]
+    return [
+        Return(
+            float(x),
+            float(displacement),
+            largest_recentring_friction(structure, float(x)),
+            friction,
+            recentres(structure, float(x)),
+        )
+        for x, displacement, friction in zip(rotations, path, held, strict=True)
+        if friction > 0.0
+    ]
+
+
+def device_consequences(structure: PodiumStructure) -> dict[str, Any]:
+    """All that follows from the devices before any analysis, under its names."""
+    return {
+        "uplift_force_with_devices": uplift_force(structure),
+        "uplift_acceleration_with_devices": uplift_acceleration(structure),
+        "devices": [
+            {
+                "kind": device.kind,
+                **{found.name: found.value for found in device.consequences(structure)},
+            }
+            for device in structure.devices
+        ],
+        "recentring": [found._asdict() for found in returns(structure)],
+    }
