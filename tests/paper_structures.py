@@ -16,7 +16,7 @@ from rpscli.analyses.kernels.step_lengths import uplifted_rate
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.damping import ModalDamping, RayleighDamping
-from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Profile, Superstructure, profile_stiffnesses
@@ -145,6 +145,6 @@ def oracle_devices(structure: PodiumStructure) -> tuple[oracle_kinds.OracleDevic
         elif isinstance(device, Tendon):
             forces = device.prestress, device.stiffness, device.yield_force
             found.append(oracle_kinds.Tendon(structure.columns, *forces))
-        else:
+        elif isinstance(device, RollingResistance):
             found.append(oracle_kinds.RollingResistance(device.lever))
     return tuple(found)

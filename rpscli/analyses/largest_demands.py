@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.device_results import DeviceDemand, device_demands, largest_force
+from rpscli.analyses.device_results import DeviceDemand, device_demands
 from rpscli.analyses.failure import failure_text
 from rpscli.analyses.kernels.history import History
 from rpscli.analyses.outcome import Outcome, outcome_of
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS, values_of
 from rpscli.frozen import frozen
-from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.planar import state
 from rpscli.shown import Shown, with_unit
@@ -118,21 +117,26 @@ class Demand(Shown):
     @property
     def max_damper_force(self) -> float | None:
         """Largest force of a viscous or friction damper [N]; None without one."""
-        return largest_force(self.structure, self.history, ViscousDamper, FrictionDamper)
+        return self._largest_force("max_damper_force")
 
     @property
     def max_stop_force(self) -> float | None:
         """Largest force of a stop [N]; None without one."""
-        return largest_force(self.structure, self.history, Stop)
+        return self._largest_force("max_stop_force")
+
+    def _largest_force(self, result: str) -> float | None:
+        """Largest force of the devices whose laws name a result [N]; None without any."""
+        devices = enumerate(self.structure.devices)
+        numbers = [number for number, device in devices if result in device.results]
+        return max((float(self.history.device_force[i]) for i in numbers), default=None)
 
     @property
     def lost_prestress(self) -> float | None:
         """Largest part of its prestress that a tendon has lost; None without prestress."""
         lost = [
-            1.0 - demand.remaining_prestress / device.prestress
+            1.0 - demand.remaining_prestress / prestress
             for device, demand in zip(self.structure.devices, self.devices, strict=True)
-            if isinstance(device, Tendon)
-            and device.prestress > 0.0
+            if (prestress := device.remaining_prestress(0.0))
             and demand.remaining_prestress is not None
         ]
         return max(lost, default=None)

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import FIXED_BASE_MODES, UPLIFTED, values_of
 from rpscli.frozen import frozen
-from rpscli.model.linearised_devices import left_out, linear_damping, tendon_stiffness
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.shown import Shown
@@ -115,7 +114,8 @@ class ModalResult(Shown):
     @property
     def left_out(self) -> tuple[str, ...]:
         """What of the devices is not linear, and therefore not in the modes."""
-        return tuple(left_out(self.structure))
+        laws = (device.linear(self.structure, 0.0, 0.0) for device in self.structure.devices)
+        return tuple(dict.fromkeys(law.left_out for law in laws if law.left_out))
 
     @property
     def uplifted(self) -> dict[str, UpliftedModes]:
@@ -188,8 +188,8 @@ def linearised_matrices(
     columns = 0.25 * structure.columns_mass * structure.bearing.inertia_ratio
     M[0, 0] = columns + structure.cap_beam_mass + structure.superstructure_mass * angle**2
     K[0, 0] = structure.weight * kappa / (2.0 * structure.bearing.semi_diagonal)
-    K[0, 0] += tendon_stiffness(structure, kappa, angle)
-    C[0, 0] = linear_damping(structure)
+    stiffness, C[0, 0] = _of_devices(structure, kappa, angle)
+    K[0, 0] += stiffness
     if (building := structure.superstructure) is not None:
         M[1:, 1:] = building.mass_matrix
         for whole, part in ((C, building.damping_matrix), (K, building.stiffness_matrix)):
@@ -199,17 +199,24 @@ def linearised_matrices(
     return M, C, K
 
 
+def _of_devices(structure: PodiumStructure, kappa: float, angle: float) -> tuple[float, float]:
+    """Stiffness [N/m] and damping [N s/m] that devices add to u_bR."""
+    laws = [device.linear(structure, kappa, angle) for device in structure.devices]
+    return sum(law.stiffness for law in laws), sum(law.damping for law in laws)
+
+
 def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> UpliftedModes:
     M, C, K = linearised_matrices(structure, kappa, angle)
     size = len(M)
     state = np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
     values, vectors = np.linalg.eig(state)
     diameter = 2.0 * structure.bearing.semi_diagonal
-    kappa += tendon_stiffness(structure, kappa, angle) * diameter / structure.weight
-    own = _own_pair(values, kappa, linear_damping(structure) / M.sum())
+    stiffness, coefficient = _of_devices(structure, kappa, angle)
+    kappa += stiffness * diameter / structure.weight
+    own = _own_pair(values, kappa, coefficient / M.sum())
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
     values, vectors = values[order].astype(complex), vectors[:size, order]
-    if kappa == linear_damping(structure) == 0.0:
+    if kappa == coefficient == 0.0:
         # A defective double zero: rounding splits it into +-sqrt(eps), which is no frequency.
         values[:2], vectors[:, :2] = 0.0, 1.0
     pairs = _pairs(values[2:])

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
-from rpscli.model.linearised_devices import stiffness_after_uplift
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.recentring import friction_force, restoring_force
+from rpscli.model.statics import friction_force, restoring_force
 from rpscli.model.superstructure import Superstructure
 from rpscli.shown import Shown, with_unit
 
@@ -143,12 +142,13 @@ def pushover(
         unloading_force=restoring_force(structure, rotation, farthest=end) - held,
     )
     building = structure.superstructure
+    added = sum(device.stiffness_after_uplift(structure) for device in structure.devices)
     return PushoverResult(
         structure=structure,
         uplift_force=float(curve.force[0]),
         critical_rotation=end,
         critical_displacement=float(displacement[-1]),
-        initial_stiffness=structure.initial_stiffness + stiffness_after_uplift(structure),
+        initial_stiffness=structure.initial_stiffness + added,
         curve=curve,
         capacity=tuple(_capacity(building, curve, p) for p in patterns) if building else (),
     )

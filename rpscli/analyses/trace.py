@@ -9,7 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.device_results import DeviceTrace, Rows, cap_beam_forces, device_trace
+from rpscli.analyses.device_results import DeviceTrace, Rows, cap_beam_forces
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import Record
@@ -104,7 +104,7 @@ def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trac
         What the kernel stored at samples.
     """
     samples = run.samples
-    devices = device_trace(run.devices)
+    devices = DeviceTrace(*np.moveaxis(run.devices, 1, 0))
     return Trace(
         time=np.arange(len(samples), dtype=np.float64) * dt,
         ground_acceleration=prolonged(run.ground, len(samples)),

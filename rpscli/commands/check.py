@@ -52,7 +52,7 @@ def command(
     if not draw and (output != OutputRequest(None, force=False) or look != USUAL):
         raise UsageError("only --draw writes something; options of files and figures go with it")
     given = read_case(request, terminal)
-    from rpscli.model.device_consequences import device_consequences
+    from rpscli.model.statics import device_consequences
     from rpscli.report.tables.derived import derived_quantities
 
     structure = given.case.structure

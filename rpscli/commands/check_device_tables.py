@@ -18,18 +18,12 @@ def device_tables(structure: PodiumStructure) -> Iterator[RenderableType]:
     """Each device's numbers, uplift with all of them, and from where the storey re-centres."""
     if not structure.devices:
         return
-    from rpscli.model.device_consequences import (
-        consequences,
-        returns,
-        uplift_acceleration,
-        uplift_force,
-    )
-    from rpscli.model.devices import name_of
+    from rpscli.model.statics import returns, uplift_acceleration, uplift_force
 
     found = [
-        (f"{index} {name_of(device)}", item.label, item.value, item.unit)
+        (f"{index} {device.kind}", item.label, item.value, item.unit)
         for index, device in enumerate(structure.devices)
-        for item in consequences(structure, device)
+        for item in device.consequences(structure)
     ]
     found.append(("all", "uplift force at the cap beam", uplift_force(structure), "N"))
     found.append(

@@ -15,7 +15,9 @@ from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, Podi
 class _OnCapBeam(Device):
     """A device that pushes the cap beam horizontally and follows its displacement u_b."""
 
-    in_each_column = False
+    @classmethod
+    def in_each_column(cls) -> bool:
+        return False
 
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
         return structure.path(rotation)[1]
@@ -182,7 +184,10 @@ class Tendon(Device):
     yield_force: float = math.inf
 
     kind = "tendon"
-    in_each_column = True
+
+    @classmethod
+    def in_each_column(cls) -> bool:
+        return True
 
     def __post_init__(self) -> None:
         _require_none_below_zero(prestress=self.prestress)

@@ -254,6 +254,7 @@ class Consequence(NamedTuple):
     value: float | None
 
 
+@dataclass(frozen=True)
 class Device(ABC):
     """The law of a device between ground and cap beam.
 
@@ -266,9 +267,9 @@ class Device(ABC):
     def kind(self) -> str:
         """Its name in a case."""
 
-    @property
+    @classmethod
     @abstractmethod
-    def in_each_column(self) -> bool:
+    def in_each_column(cls) -> bool:
         """Whether each column has one; its force and stroke are those of one then."""
 
     @property

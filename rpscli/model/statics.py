@@ -1,4 +1,4 @@
-"""Static behaviour with devices: what holds a tilt, from where the storey comes back (Theory, 11)."""
+"""Statics with devices: what holds a tilt, and from where the storey comes back (Theory, 11)."""
 
 from __future__ import annotations
 

@@ -14,13 +14,13 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.commands.timehistory_tables import timehistory_tables
 from rpscli.model.devices import (
-    Device,
     FrictionDamper,
     RollingResistance,
     Stop,
     Tendon,
     ViscousDamper,
 )
+from rpscli.model.podium import Device
 from rpscli.physics.planar.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.documents import timehistory_document
 from rpscli.report.tables.timehistory import history_columns

@@ -19,7 +19,6 @@ from rpscli.model.devices import (
     Stop,
     Tendon,
     ViscousDamper,
-    name_of,
 )
 from rpscli.physics.planar import state
 
@@ -142,4 +141,4 @@ def test_the_model_refuses_too(kind: str, values: tuple[float, ...]) -> None:
 
 
 def test_names() -> None:
-    assert name_of(Stop(0.1, 1e6)) == "stop"
+    assert Stop(0.1, 1e6).kind == "stop"

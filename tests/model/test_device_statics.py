@@ -13,16 +13,15 @@ from paper_structures import FLAT, oracle_devices, oracle_system, podium
 
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
-from rpscli.model.device_consequences import device_consequences, returns, uplift_force
 from rpscli.model.devices import (
-    Device,
     FrictionDamper,
     RollingResistance,
     Stop,
     Tendon,
     ViscousDamper,
 )
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.statics import device_consequences, returns, uplift_force
 
 DEVICES: tuple[Device, ...] = (
     FrictionDamper(1.2e5),

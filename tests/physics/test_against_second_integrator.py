@@ -24,7 +24,6 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.devices import (
-    Device,
     FrictionDamper,
     RollingResistance,
     Stop,
@@ -32,7 +31,7 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
 pytestmark = needs_compiled_kernels

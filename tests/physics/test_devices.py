@@ -15,15 +15,14 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.devices import (
-    Device,
     FrictionDamper,
     RollingResistance,
     Stop,
     Tendon,
     ViscousDamper,
 )
-from rpscli.model.podium import PodiumStructure
-from rpscli.model.recentring import (
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.statics import (
     largest_recentring_friction,
     recentres,
     restoring_force,

@@ -12,7 +12,6 @@ from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.devices import (
-    Device,
     FrictionDamper,
     RollingResistance,
     Stop,
@@ -20,7 +19,7 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
 RESIDUAL = 1e-6

@@ -35,7 +35,8 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.devices import Device, FrictionDamper, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
+from rpscli.model.podium import Device
 from rpscli.records.measures import integration
 from rpscli.records.measures.spectrum import response_spectrum
 from rpscli.records.source import load_record

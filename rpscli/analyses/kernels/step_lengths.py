@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.model.devices import Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
 
 UPLIFTED_ANGLE = 0.6
@@ -37,31 +36,12 @@ STEP_SECONDS, MODE_SECONDS = 4e-7, 4e-8
 
 def uplifted_rate(structure: PodiumStructure) -> float:
     """Taylor steps a second that follow the uplifted structure at accuracy 1 [1/s]."""
-    stiffness, coefficient = device_bounds(structure)
+    stiffness = sum(device.bounds(structure)[0] for device in structure.devices)
+    coefficient = sum(device.bounds(structure)[1] for device in structure.devices)
     mass = least_base_mass(structure)
     frequency = math.hypot(highest_frequency(structure), math.sqrt(stiffness / mass))
     decay = fastest_decay(structure) + coefficient / mass
     return max(frequency / uplifted_angle(structure), decay / UPLIFTED_DECAY)
-
-
-def device_bounds(structure: PodiumStructure) -> tuple[float, float]:
-    """Stiffness [N/m] and damping [N s/m] that devices add at most against u_b.
-
-    That of a tendon is N k_t (de/du_b)^2, de/dx being at most 2 (B + r beta) and du_b/dx at least
-    2 R cos(alpha). Powers of the velocity shorten their steps by themselves.
-    """
-    b = structure.bearing
-    radius = 2.0 * b.curvature_ratio * b.semi_diagonal * math.cos(b.alpha)
-    reach = math.tan(b.alpha) + radius * b.beta / (b.semi_diagonal * math.cos(b.alpha))
-    stiffness, damping = 0.0, 0.0
-    for device in structure.devices:
-        if isinstance(device, Stop):
-            stiffness, damping = stiffness + device.stiffness, damping + device.damping
-        elif isinstance(device, Tendon):
-            stiffness += structure.columns * device.stiffness * reach**2
-        elif isinstance(device, ViscousDamper) and device.exponent == 1.0:
-            damping += device.coefficient
-    return stiffness, damping
 
 
 def uplifted_angle(structure: PodiumStructure) -> float:

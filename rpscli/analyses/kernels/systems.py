@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple
 
 import numpy as np
 
 from rpscli.analyses.kernels.step_lengths import LAST_TERM, contact_rate, uplifted_rate
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.model.devices import DEVICES, RollingResistance
+from rpscli.model.devices import DEVICES
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.core.records import ORDER, Record, records
 from rpscli.physics.planar.state import SYSTEM
 
 DEVICE_KINDS = {kind: code for code, kind in enumerate(DEVICES.values())}
-"""Their codes in the kernels, whose constants are the devices' fields in their order."""
+"""Codes of laws in the kernels."""
 
 LEAST_SHAKEN = 1e-3
 """Modes that hardly take part are not given more weight than those that take part so much."""
@@ -85,10 +84,8 @@ def fill_devices(record: Record, structure: PodiumStructure) -> None:
     record.linear_speed = LINEAR_SPEED * speed
     for i, device in enumerate(structure.devices):
         record.device_kind[i] = DEVICE_KINDS[type(device)]
-        constants = astuple(device)
+        constants = device.constants(structure)
         record.device_constants[i, : len(constants)] = constants
-        if isinstance(device, RollingResistance):
-            record.device_constants[i, 0] = 2.0 * structure.weight * device.lever
 
 
 def fill_settings(

@@ -12,8 +12,8 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.trace import tilting_inertia
 from rpscli.analyses.verification.comparison import Comparison, compare, within
 from rpscli.analyses.verification.structures import FLAT, paper_podium
-from rpscli.model.devices import Device, FrictionDamper, RollingResistance, Stop, Tendon
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
 GROUP = "One swing of a rigid frame with devices (energy at the impact)"

@@ -18,8 +18,9 @@ from rpscli.case.schema.case_file import (
 from rpscli.case.text.document import Document, Fault, Path
 from rpscli.errors import listed
 from rpscli.model.bearing import Bearing
-from rpscli.model.devices import MOST_DEVICES
+from rpscli.model.devices import DEVICES as LAWS
 from rpscli.model.impact import ImpactKind, ImpactLaw
+from rpscli.model.podium import MOST_DEVICES
 
 RATIOS = ("semi_diagonal", "slenderness", "wedge_slenderness", "curvature_ratio")
 MEANINGS = {
@@ -243,17 +244,17 @@ def devices_rules(case: PartialCase) -> Iterator[Fault]:
             at_key=True,
         )
     for index, device in enumerate(devices):
-        if isinstance(device, dict) and device.get("kind") in DEVICE_KEYS:
+        if isinstance(device, dict) and str(device.get("kind")) in DEVICE_KEYS:
             yield from _keys_of(case, (*DEVICES, index), device["kind"])
             yield from _yield_force(case, (*DEVICES, index), device)
-    named = [isinstance(device, dict) and device.get("kind") for device in devices]
-    tendons = [index for index, kind in enumerate(named) if kind == "tendon"]
+    named = [str(isinstance(device, dict) and device.get("kind")) for device in devices]
+    of_columns = [i for i, kind in enumerate(named) if kind in LAWS and LAWS[kind].in_each_column()]
     columns = (*PODIUM, "columns")
-    if tendons and not case.has(columns):
+    if of_columns and not case.has(columns):
         yield Fault(
-            (*DEVICES, tendons[0]),
-            f"podium.devices.{tendons[0]} stands in each column, but podium.columns, their number,"
-            " is missing",
+            (*DEVICES, of_columns[0]),
+            f"podium.devices.{of_columns[0]} stands in each column, but podium.columns, their"
+            " number, is missing",
             needs=(columns,),
         )
 

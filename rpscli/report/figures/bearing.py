@@ -13,7 +13,7 @@ import numpy as np
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
 from rpscli.report.figures.column_outline import contact_points, leaning_outline
-from rpscli.report.figures.scene_devices import SceneDevices
+from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.storey_curve import draw_force
 
 if TYPE_CHECKING:

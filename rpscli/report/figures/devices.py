@@ -1,20 +1,52 @@
-"""Force-displacement loops of the devices of a time history."""
+"""Devices in figures: how each law is drawn in pictures of the structure, and their loops."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rpscli.model.devices import Tendon, name_of
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
+from rpscli.model.podium import Device
 from rpscli.report.figures import style
 from rpscli.report.figures.arguments import require
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
     from rpscli.analyses.results import TimeHistoryResult
+
+BRACE, POSTS, CABLES, NOWHERE = range(4)
+"""What stands for a device in a picture of the structure."""
+
+
+class Drawn(NamedTuple):
+    """How a law is drawn; resistance, the force on the cap beam turned round, has the sign -1."""
+
+    scene: int
+    force: str = "resistance"
+    stroke: str = "$u_b$ [m]"
+    sign: float = -1.0
+
+
+DRAWN: dict[type[Device], Drawn] = {
+    ViscousDamper: Drawn(BRACE),
+    FrictionDamper: Drawn(BRACE),
+    Stop: Drawn(POSTS),
+    Tendon: Drawn(CABLES, "tension of one", "elongation of one [m]", 1.0),
+    RollingResistance: Drawn(NOWHERE),
+}
+"""All laws; the one place that a new one is drawn from."""
 
 
 def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
@@ -37,18 +69,67 @@ def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
 def draw_device(axes: Axes, result: TimeHistoryResult, index: int) -> None:
     """Resistance of a device against displacement, of tendons tension against elongation.
 
-    Resistance is the force on the cap beam turned round, so that a loop that dissipates runs
-    clockwise and its area is the energy.
+    A loop that dissipates runs clockwise and its area is the energy.
     """
     require("devices", index, range(len(result.structure.devices)))
     trace, device = result.trace.devices, result.structure.devices[index]
-    tendon = isinstance(device, Tendon)
-    force = trace.force[:, index] if tendon else -trace.force[:, index]
+    drawn = DRAWN[type(device)]
+    force = drawn.sign * trace.force[:, index]
     factor, prefix = style.engineering(float(np.nanmax(np.abs(force), initial=0.0)))
     axes.plot(trace.displacement[:, index], factor * force, color=style.BLUE, lw=0.8)
     axes.axhline(0.0, color=style.BLACK, lw=0.5)
     axes.axvline(0.0, color=style.BLACK, lw=0.5)
-    axes.set_title(f"device {index}: {name_of(device).replace('_', ' ')}", fontsize=style.small())
-    axes.set_xlabel("elongation of one [m]" if tendon else "$u_b$ [m]")
-    axes.set_ylabel(f"{'tension of one' if tendon else 'resistance'} [{prefix}N]")
+    axes.set_title(f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small())
+    axes.set_xlabel(drawn.stroke)
+    axes.set_ylabel(f"{drawn.force} [{prefix}N]")
     axes.locator_params(axis="x", nbins=5)
+
+
+class SceneDevices:
+    """Devices in pictures of the structure, moved with the cap beam.
+
+    Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a brace;
+    cables stand where the feet of the columns do. `half` is half the width of the beam, `base` the
+    height of its underside at rest [m].
+    """
+
+    def __init__(
+        self,
+        axes: Axes,
+        devices: Sequence[Device],
+        feet: NDArray[np.float64],
+        half: float,
+        base: float,
+    ) -> None:
+        self.feet, self.half, self.base = feet, half, base
+        by_scene: dict[int, list[Any]] = {BRACE: [], POSTS: [], CABLES: [], NOWHERE: []}
+        for device in devices:
+            by_scene[DRAWN[type(device)].scene].append(device)
+        self.stops: list[tuple[float, float, Line2D]] = [
+            (side, stop.gap, axes.plot([], [], lw=2.5)[0])
+            for stop in by_scene[POSTS]
+            for side in (-1.0, 1.0)
+        ]
+        count = len(feet) if by_scene[CABLES] else 0
+        self.tendons = [axes.plot([], [], color=style.RED, lw=1.0)[0] for _ in range(count)]
+        look: dict[str, Any] = {"color": style.RED, "lw": 1.5, "marker": "s", "markevery": [1]}
+        self.brace = axes.plot([], [], **look, ms=5.0)[0] if by_scene[BRACE] else None
+
+    @property
+    def moving(self) -> list[Line2D]:
+        """All of them."""
+        brace = [] if self.brace is None else [self.brace]
+        return [*(post for _, _, post in self.stops), *self.tendons, *brace]
+
+    def show(self, shift: float, lift: float) -> None:
+        """Move them with the cap beam, displaced and lifted [m]."""
+        for side, gap, post in self.stops:
+            at, pushed = side * (self.half + gap), max(side * shift - gap, 0.0)
+            post.set_data([at, at + side * pushed], [0.0, 1.06 * self.base])
+            post.set_color(style.RED if pushed else style.BLACK)
+        for foot, tendon in zip(self.feet, self.tendons, strict=False):
+            tendon.set_data([foot, foot + shift], [0.0, self.base + lift])
+        if self.brace is not None:
+            start, end = -0.75 * self.half, shift - 0.45 * self.half
+            top = self.base + lift
+            self.brace.set_data([start, 0.5 * (start + end), end], [0.0, 0.5 * top, top])

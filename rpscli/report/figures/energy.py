@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rpscli.model.devices import name_of
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
@@ -45,7 +44,7 @@ def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
     ]
     for index, device in enumerate(result.structure.devices):
         energy = trace.devices.energy[:, index]
-        name = f"device {index}: {name_of(device).replace('_', ' ')}"
+        name = f"device {index}: {device.kind.replace('_', ' ')}"
         parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
     if result.structure.storeys:
         parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from rpscli.report.figures import style
 from rpscli.report.figures.column_outline import leaning_outline
+from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.levels import level_heights
-from rpscli.report.figures.scene_devices import SceneDevices
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.events import Event
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.model.devices import name_of
 from rpscli.report.files.csv_text import Column, columns_of
 
 
@@ -51,7 +50,7 @@ def _devices(result: TimeHistoryResult) -> Iterator[Column]:
     """Force, displacement and energy of each device, named by its kind."""
     trace = result.trace.devices
     for index, device in enumerate(result.structure.devices):
-        name = f"device_{index}_{name_of(device)}"
+        name = f"device_{index}_{device.kind}"
         yield Column(f"{name}_force", "N", trace.force[:, index])
         yield Column(f"{name}_displacement", "m", trace.displacement[:, index])
         yield Column(f"{name}_energy", "J", trace.energy[:, index])

@@ -18,7 +18,6 @@ from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault, Path, Place
 from rpscli.errors import CaseError
-from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.sweep.evaluation.points import Plan, RecordRequest
@@ -148,8 +147,8 @@ def needs_of(name: str) -> str:
     return f"{name} needs {needs}, which not every system of the study has"
 
 
-def _has(*kinds: type) -> Callable[[PodiumStructure], bool]:
-    return lambda structure: any(isinstance(device, kinds) for device in structure.devices)
+def _device_with(result: str) -> Callable[[PodiumStructure], bool]:
+    return lambda structure: any(result in device.results for device in structure.devices)
 
 
 HAS: dict[str, Callable[[PodiumStructure], bool]] = {
@@ -158,11 +157,9 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
         structure.superstructure is not None and structure.superstructure.storey_heights is not None
     ),
     "podium.friction in the case": lambda structure: structure.friction is not None,
-    "a damper in podium.devices": _has(ViscousDamper, FrictionDamper),
-    "a stop in podium.devices": _has(Stop),
-    "a prestressed tendon in podium.devices": lambda structure: any(
-        isinstance(device, Tendon) and device.prestress > 0.0 for device in structure.devices
-    ),
+    "a damper in podium.devices": _device_with("max_damper_force"),
+    "a stop in podium.devices": _device_with("max_stop_force"),
+    "a prestressed tendon in podium.devices": _device_with("lost_prestress"),
 }
 """Whether a structure has what a result needs, by the words of the table of results."""
 
