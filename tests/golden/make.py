@@ -163,6 +163,8 @@ MASKS = (
     ),
     (r'"(sha256|digest)": "[0-9a-f]+"', r'"\1": _'),
     (r"\b\d+(\.\d+)? (seconds?|minutes?|ms|s) (on|of|for|with|left)\b", "_ s"),
+    (r"\d+(\.\d+)? points/s", "_ points/s"),
+    (r"compiling the kernel.*\n", ""),
     (r"in \d+(\.\d+)? (s|seconds|minutes)\b", "in _ s"),
     (r"rps \d+\.\d+\.\d+\S*", "rps _"),
     (r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d)?", "_date_"),
