@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from rpscli.model.podium import PodiumStructure
     from rpscli.model.superstructure import Superstructure, profile_stiffnesses
     from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.measures.spectrum import response_spectrum
     from rpscli.records.source import load_record
+    from rpscli.records.spectrum import response_spectrum
     from rpscli.studies import Study, StudyResult, load_study
 
 _HOMES = {
@@ -53,7 +53,7 @@ _HOMES = {
     "rpscli.model.podium": ("PodiumStructure",),
     "rpscli.model.superstructure": ("Superstructure", "profile_stiffnesses"),
     "rpscli.records.ground_motion": ("GroundMotion",),
-    "rpscli.records.measures.spectrum": ("response_spectrum",),
+    "rpscli.records.spectrum": ("response_spectrum",),
     "rpscli.records.source": ("load_record",),
     "rpscli.studies": ("Study", "StudyResult", "load_study"),
 }

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.records.formats.at2_writer import at2_text
+from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
 
 RATE = 800.0  # Hz

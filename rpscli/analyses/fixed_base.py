@@ -11,7 +11,7 @@ from rpscli.analyses.kernels.systems import building_system
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.integration import velocity
+from rpscli.records.measures import velocity
 from rpscli.shown import Shown
 
 

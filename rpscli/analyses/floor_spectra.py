@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.frozen import frozen
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.spectrum import response_spectrum
+from rpscli.records.spectrum import response_spectrum
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]

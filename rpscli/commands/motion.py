@@ -136,7 +136,7 @@ def _factor(case: Case, request: MotionRequest, motion: GroundMotion) -> float:
 
 
 def _factor_to(case: Case, target: ScaleToSection, motion: GroundMotion, source: str) -> float:
-    from rpscli.records.measures.measure import factor_to, measured
+    from rpscli.records.measures import factor_to, measured
 
     period = target.period
     if target.measure == "Sa" and period is None:

@@ -15,8 +15,31 @@ from rpscli.frozen import frozen
 from rpscli.shown import Shown, with_unit
 
 if TYPE_CHECKING:
-    from rpscli.records.measures.measure import Measure
-from rpscli.records.scaling import is_usual, scale_warning
+    from rpscli.records.measures import Measure
+
+LEAST, MOST = 0.25, 4.0
+"""Factors between these are usual."""
+
+
+def is_usual(factor: float) -> bool:
+    """Whether a factor on a recorded motion is usual; its sign does not matter.
+
+    >>> is_usual(0.25), is_usual(-4.0), is_usual(4.01)
+    (True, True, False)
+    """
+    return LEAST <= abs(factor) <= MOST
+
+
+def scale_warning(name: str, factor: float) -> str:
+    """What to say of a record under a factor that is not usual.
+
+    >>> scale_warning("quake.at2", 1720.0)[:56]
+    'quake.at2 is scaled by 1720, beyond the usual 0.25 to 4:'
+    """
+    return (
+        f"{name} is scaled by {factor:.4g}, beyond the usual {LEAST:g} to {MOST:g}: records of"
+        " another size differ in more than their amplitude"
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -201,7 +224,7 @@ class GroundMotion(Shown):
         >>> motion.scaled_to("PGA", 1.5).acceleration.tolist()
         [0.0, 1.0, -1.5]
         """
-        from rpscli.records.measures.measure import (  # measures measure motions
+        from rpscli.records.measures import (  # measures measure motions
             MEASURE_UNITS,
             factor_to,
             measured,
@@ -275,13 +298,7 @@ class MotionComponents:
 
 
 def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:
-    """Refuse components of different time steps.
-
-    Raises
-    ------
-    RecordError
-        That calls the other one by its name, and says how to resample it.
-    """
+    """Refuse components of different time steps."""
     if one.dt != other.dt:
         raise RecordError(
             f"{other.source}: the {name} record has dt = {other.dt} s, {one.source} {one.dt} s:"

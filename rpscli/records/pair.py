@@ -48,25 +48,6 @@ def angle_of(query: Query) -> float:
 def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMotion:
     """What a structure sees whose plane stands at an angle to the first component.
 
-    Parameters
-    ----------
-    first, second : GroundMotion
-        At right angles to each other, with the same time step; the shorter one goes on as zero.
-    angle : float [deg]
-        From the first towards the second.
-
-    Returns
-    -------
-    GroundMotion
-        first cos(angle) + second sin(angle), with the texts of the first one.
-
-    Raises
-    ------
-    RecordError
-        If the time steps differ.
-
-    Examples
-    --------
     >>> north = GroundMotion(np.array([2.0, 0.0]), 0.1, "n", "n.at2", "PEER AT2")
     >>> east = GroundMotion(np.array([0.0, 4.0]), 0.1, "e", "e.at2", "PEER AT2")
     >>> rotated(north, east, 30.0).acceleration.round(6).tolist()

@@ -48,8 +48,6 @@ def numbers_in(line: str) -> list[float] | None:
     Blanks separate; so do commas when each field holds one number, which keeps decimal commas
     from being read as separators.
 
-    Examples
-    --------
     >>> numbers_in("-.1234E-02-.5678E-03  .5D-1")
     [-0.001234, -0.0005678, 0.05]
     >>> numbers_in("0,005 0,123") is None, numbers_in("0.005, 0.123"), numbers_in("nan") is None
@@ -70,8 +68,6 @@ def numbers_in(line: str) -> list[float] | None:
 def why_no_numbers(line: str) -> str:
     """What keeps a line from being read as numbers, if that is its punctuation; else nothing.
 
-    Examples
-    --------
     >>> why_no_numbers("0,005 0,123"), why_no_numbers("0.1; 0.2"), why_no_numbers("end")
     (' (decimal commas: write points)', ' (semicolons: separate by commas or blanks)', '')
     """
@@ -91,8 +87,6 @@ def numerals_in(line: str) -> list[str]:
 def last_digit(numeral: str) -> float:
     """The unit of the last digit that is printed.
 
-    Examples
-    --------
     >>> last_digit(".0050"), last_digit("2.50E-02")
     (0.0001, 0.0001)
     """
@@ -112,8 +106,6 @@ def _glued(fields: list[str]) -> list[float] | None:
 def canonical_unit(text: str) -> str | None:
     """One of the known names for a unit of acceleration, or None if it is not one.
 
-    Examples
-    --------
     >>> canonical_unit("CM/SEC/SEC"), canonical_unit("m/s^2"), canonical_unit("cm/s")
     ('cm/s2', 'm/s2', None)
     """
@@ -127,8 +119,6 @@ def canonical_unit(text: str) -> str | None:
 def unit_factor(unit: str) -> float:
     """The size of a canonical unit in m/s2.
 
-    Examples
-    --------
     >>> unit_factor("g"), unit_factor("gal")
     (9.80665, 0.01)
     """

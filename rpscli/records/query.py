@@ -35,15 +35,7 @@ SOME = 12
 
 
 def hint(word: str, known: Sequence[str]) -> str:
-    """What might have been meant: the nearest known word, or else all of them, or some of many.
-
-    Parameters
-    ----------
-    word : str
-        What was written.
-    known : sequence of str
-        All that may be written.
-    """
+    """What might have been meant: the nearest known word, or else all of them, or some of many."""
     close = nearest(word, known, LIKENESS)
     if close:
         return f"did you mean {close}?"
@@ -59,23 +51,7 @@ class Query:
     values: Mapping[str, str]
 
     def quantity(self, key: str, kind: str, default: float | None = None) -> float:
-        """A number with an optional unit, in SI.
-
-        Parameters
-        ----------
-        key : str
-            Name of the option.
-        kind : str
-            What it measures: "time", "frequency", "velocity", "angle", "ratio", or "direction",
-            which is an angle in degrees.
-        default : float, optional [SI]
-            Its value where it is not written.
-
-        Raises
-        ------
-        RecordError
-            If the option is missing and has no default, or is not such a number.
-        """
+        """A number with an optional unit, in SI."""
         if key not in self.values and default is not None:
             return default
         parts = self._parts(key)
@@ -119,22 +95,7 @@ class Query:
 
 
 def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
-    """Split `key=value&key=value`.
-
-    Parameters
-    ----------
-    text : str
-        What follows the question mark of a source.
-    source : str
-        The whole source, for messages.
-    allowed : sequence of str
-        The keys that there are.
-
-    Raises
-    ------
-    RecordError
-        If a key is unknown (the nearest one is named), comes twice or has no value.
-    """
+    """Split `key=value&key=value`."""
     values: dict[str, str] = {}
     for item in filter(None, text.split("&")):
         key, _, value = (part.strip() for part in item.partition("="))

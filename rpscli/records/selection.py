@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.measures.spectrum import response_spectrum
-from rpscli.records.targets.target import TargetSpectrum
+from rpscli.records.measures import intensity_measures
+from rpscli.records.spectrum import response_spectrum
+from rpscli.records.target import TargetSpectrum
 
 Array = NDArray[np.float64]
 
@@ -116,13 +116,6 @@ def select(
 ) -> Selection:
     """The motions and factors whose mean spectrum is nearest to the target.
 
-    Raises
-    ------
-    RecordError
-        If fewer motions than are wanted keep within the bounds.
-
-    Notes
-    -----
     Each motion alone gets the factor that makes the mean over the periods of ln(spectrum/target)
     zero, which is the best one in least squares, or the bound next to it; or the factor that
     brings it to a PGV. Which motions then have the mean spectrum nearest to the target is sought
@@ -153,15 +146,6 @@ def select(
 def misfit(spectra: Array, wanted: Array) -> Array:
     """Root mean square of ln(spectrum/target) over the last axis.
 
-    Parameters
-    ----------
-    spectra
-        (..., n) [m/s2].
-    wanted
-        (n,) [m/s2].
-
-    Examples
-    --------
     >>> round(float(misfit(np.array([2.0, 0.5]), np.ones(2))), 6)  # ln 2
     0.693147
     """
@@ -188,19 +172,7 @@ def event_of(motion: GroundMotion) -> str:
 def choose(
     scaled: Array, wanted: Array, events: Sequence[str], count: int, per_event: int
 ) -> list[int]:
-    """Places of the spectra whose mean is nearest to the target, in order.
-
-    Parameters
-    ----------
-    scaled
-        (m, n) spectra with their factors [m/s2].
-    wanted
-        (n,) [m/s2].
-    events
-        (m,) earthquakes; at least `count` spectra must keep within `per_event`.
-    count, per_event
-        How many spectra, and at most how many of one event.
-    """
+    """Places of the spectra whose mean is nearest to the target, in order."""
     order = np.argsort(misfit(scaled, wanted), kind="stable")
     best: tuple[float, list[int]] | None = None
     for first in order[:STARTS].tolist():

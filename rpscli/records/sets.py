@@ -19,7 +19,6 @@ import numpy as np
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.formats.time_axis import uniform_step
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.pair import angle_of, rotated
 from rpscli.records.query import hint, parse_query
@@ -63,20 +62,6 @@ class _Wanted(NamedTuple):
 def expand_set(rest: str, source: str) -> list[str]:
     """The single sources that a pattern such as `farfield/*` stands for.
 
-    Parameters
-    ----------
-    rest : str
-        What follows `fema_p695:`; `*` also stands for slashes.
-    source : str
-        The whole source, for messages.
-
-    Raises
-    ------
-    RecordError
-        If no component fits.
-
-    Examples
-    --------
     >>> expand_set("farfield/1/*?normalised", "")
     ['fema_p695:farfield/1/a?normalised', 'fema_p695:farfield/1/b?normalised']
     """
@@ -92,21 +77,7 @@ def expand_set(rest: str, source: str) -> list[str]:
 
 
 def load_component(rest: str, source: str) -> GroundMotion:
-    """Read one component, or a pair turned to a direction.
-
-    Parameters
-    ----------
-    rest : str
-        What follows `fema_p695:`: `farfield/1/b`, `farfield/1/b?normalised`, or a pair at an angle
-        from its first component towards the second [deg], `farfield/1?angle=30`.
-    source : str
-        The whole source, for messages.
-
-    Raises
-    ------
-    RecordError
-        If there is no such component or the package is not installed.
-    """
+    """Read one component, or a pair turned to a direction."""
     place, _, normalised, angle = wanted = _split(rest, source)
     if place not in wanted.known:
         remedy = f"load one {wanted.word} at a time" if "*" in place else hint(place, wanted.known)
@@ -154,6 +125,8 @@ def _package_folder(source: str) -> Path:
 def _component(folder: Path, component: str, source: str, *, normalised: bool) -> GroundMotion:
     import h5py  # part of an optional extra
     import hdf5plugin  # noqa: F401 -- registers the compression of the files
+
+    from rpscli.records.formats.record_text import uniform_step
 
     name, record, side = component.split("/")
     column = "NormalizedAcceleration" if normalised else "RecordedAcceleration"

@@ -10,13 +10,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from rpscli.errors import RecordError, nearest
-from rpscli.records import sets
-from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.made import pulses, synthetic
+from rpscli.records import pulses, sets, synthetic
+from rpscli.records.ground_motion import GroundMotion, is_usual, scale_warning
 from rpscli.records.pair import angle_of, rotated
 from rpscli.records.quantities import canonical_unit, unit_factor
 from rpscli.records.query import LIKENESS, Query, hint, parse_query
-from rpscli.records.scaling import is_usual, scale_warning
 
 _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
     sets.SCHEME: sets.load_component,
@@ -120,7 +118,7 @@ def _read(
     if path.is_dir():
         raise RecordError(f"{path}: a folder; name one of its files")
     _require_file(path, source)
-    from rpscli.records.formats.registry import read_record  # sets and pulses are no files
+    from rpscli.records.formats import read_record  # sets and pulses are no files
 
     return read_record(
         path,
@@ -137,19 +135,6 @@ def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> lis
     Files of a folder or glob come sorted by name, each with the options of the pattern; what a
     source stands for keeps its place in the list, and nothing comes twice. Of a folder, only the
     files that are recognised as records count (velocities and displacements do not).
-
-    Parameters
-    ----------
-    sources : sequence of str
-        As users write them: files, folders, globs, sets with ``*``, lists (``list:FILE``), pulses,
-        synthetic motions.
-    folder : Path, optional
-        Where relative paths start; else the working directory.
-
-    Raises
-    ------
-    RecordError
-        If a source stands for nothing.
     """
     expanded = [single for source in sources for single in _expand(source, folder)]
     return list(dict.fromkeys(expanded))
@@ -193,7 +178,7 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
         return sets.expand_set(rest, source)
     if scheme:
         return [source]
-    from rpscli.records.formats.registry import is_record
+    from rpscli.records.formats import is_record
 
     place, options = _split_options(source)
     suffix = f"?{options}" if options else ""

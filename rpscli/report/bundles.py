@@ -12,8 +12,8 @@ from rpscli.analyses.pushover import PushoverResult, pushover
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.spectrum import ResponseSpectrum
 from rpscli.records.selection import Selection
+from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.figures.bearing import bearing_figure
 from rpscli.report.figures.capacity import capacity_figure
 from rpscli.report.figures.devices import devices_figure

@@ -13,7 +13,7 @@ from rpscli.case.schema.keys import unit as key_unit
 from rpscli.case.study.reports import ReportOptions
 from rpscli.case.study.schema import DampingRatio
 from rpscli.errors import RecordError
-from rpscli.records.measures.measure import MEASURE_UNITS, Measure
+from rpscli.records.measures import MEASURE_UNITS, Measure
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.table import Array, Table

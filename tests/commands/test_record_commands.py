@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import Result
 
-from rpscli.records.measures.intensity import intensity_measures
+from rpscli.records.measures import intensity_measures
 from rpscli.records.source import expand_sources, load_record
 
 Invoke = Callable[..., Result]

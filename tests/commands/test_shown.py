@@ -10,7 +10,7 @@ import pytest
 from report.small_results import CURVED, KINDS, structure
 
 import rpscli
-from rpscli.records.measures.measure import measured
+from rpscli.records.measures import measured
 from rpscli.shown import Shown
 
 LONGEST = 600

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.records.formats.at2_writer import at2_text
+from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 

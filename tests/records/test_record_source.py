@@ -141,8 +141,8 @@ def test_files_whose_names_look_like_something_else(tmp_path: Path) -> None:
 
 def test_heavy_libraries_are_imported_when_they_are_needed() -> None:
     code = (
-        "import sys; import rpscli.records.source, rpscli.records.measures.spectrum, "
-        "rpscli.records.measures.intensity, rpscli.records.formats.at2_writer; "
+        "import sys; import rpscli.records.source, rpscli.records.spectrum, "
+        "rpscli.records.measures, rpscli.records.formats.at2; "
         "assert not {'scipy', 'h5py', 'hdf5plugin', 'matplotlib'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

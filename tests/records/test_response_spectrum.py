@@ -12,9 +12,9 @@ from scipy.signal import lsim
 
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.measures.spectrum import response_spectrum, spectral_acceleration
+from rpscli.records.measures import intensity_measures
 from rpscli.records.source import load_record
+from rpscli.records.spectrum import response_spectrum, spectral_acceleration
 
 
 def motion(values: Any, dt: float) -> GroundMotion:

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
+from rpscli.records.codes import load_target
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.measures.spectrum import response_spectrum
+from rpscli.records.measures import intensity_measures
 from rpscli.records.selection import PERIODS, SelectionRequest, choose, misfit, select
 from rpscli.records.source import load_record
-from rpscli.records.targets.source import load_target
+from rpscli.records.spectrum import response_spectrum
 
 TARGET = "en1998:?ag=0.3g&soil=C"
 

@@ -8,10 +8,9 @@ import pytest
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.integration import displacement, velocity
-from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.measures.spectrum import spectral_acceleration
+from rpscli.records.measures import displacement, intensity_measures, velocity
 from rpscli.records.source import load_record
+from rpscli.records.spectrum import spectral_acceleration
 
 SHIPPED = Path(__file__).parents[2] / "cases" / "records"
 PULSE = "synthetic:?pga=0.45g&seed=2&pulse_velocity=0.8&pulse_period=3"

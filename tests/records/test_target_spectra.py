@@ -9,9 +9,9 @@ import pytest
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.measures.spectrum import response_spectrum
+from rpscli.records.codes import load_target
 from rpscli.records.source import load_record
-from rpscli.records.targets.source import load_target
+from rpscli.records.spectrum import response_spectrum
 from rpscli.report.files.csv_text import csv_text
 from rpscli.report.tables.record import spectrum_columns
 

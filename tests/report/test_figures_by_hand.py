@@ -25,7 +25,7 @@ from rpscli.case.design import Term
 from rpscli.case.study.observed import OVERTURNED
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.selection import Candidate, Selection
-from rpscli.records.targets.target import TargetSpectrum
+from rpscli.records.target import TargetSpectrum
 from rpscli.report.design.figures import front_figure, region_figure, requirements_figure
 from rpscli.report.figures.selection import selection_figure
 from rpscli.report.figures.style import kept_figure

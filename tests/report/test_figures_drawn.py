@@ -37,9 +37,9 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device
-from rpscli.records.measures import integration
-from rpscli.records.measures.spectrum import response_spectrum
+from rpscli.records import measures
 from rpscli.records.source import load_record
+from rpscli.records.spectrum import response_spectrum
 from rpscli.report.figures.animation import frame_plan, history_film, modes_film
 from rpscli.report.figures.capacity import capacity_figure
 from rpscli.report.figures.devices import devices_figure
@@ -395,7 +395,7 @@ def test_record(drawn: Drawn) -> None:
     for axes, label, values in zip(
         panels,
         ("acceleration\n[m/s²]", "velocity\n[m/s]", "displacement\n[m]"),
-        (a, integration.velocity(a, dt), integration.displacement(a, dt)),
+        (a, measures.velocity(a, dt), measures.displacement(a, dt)),
         strict=True,
     ):
         assert axes.get_ylabel() == label

@@ -11,9 +11,9 @@ import pytest
 
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.model.impact import ImpactLaw
-from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.measures.spectrum import spectral_acceleration
+from rpscli.records.measures import intensity_measures
 from rpscli.records.source import load_record
+from rpscli.records.spectrum import spectral_acceleration
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.points.perturbation import changes

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rpscli.records.formats.at2_writer import at2_text
+from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
 from sweep.small_studies import ROOT
 

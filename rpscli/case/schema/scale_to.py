@@ -16,7 +16,7 @@ from pydantic import (
 
 from rpscli.case.schema.fields import Quantity, Section, refuse
 from rpscli.errors import hint
-from rpscli.records.measures.measure import MEASURE_UNITS, Measure
+from rpscli.records.measures import MEASURE_UNITS, Measure
 
 _TARGET = re.compile(r"\s*([A-Za-z]+)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 

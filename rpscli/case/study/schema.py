@@ -25,7 +25,7 @@ from rpscli.case.schema.fields import Quantity, Section, Text, Whole, first_faul
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import measured_value
 from rpscli.case.text.document import shown
-from rpscli.records.measures.measure import Measure
+from rpscli.records.measures import Measure
 
 Number = Annotated[float, Quantity()]
 Seed = Annotated[int, Whole(0)]

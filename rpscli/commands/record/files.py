@@ -29,7 +29,7 @@ def write_record(
     form: str | None,
 ) -> None:
     """Write the motion into the folder, or the file, that the command line names."""
-    from rpscli.records.measures.intensity import intensity_measures
+    from rpscli.records.measures import intensity_measures
     from rpscli.report.tables.record import record_document
 
     named = _named_format(output.place)
@@ -70,7 +70,7 @@ def _one_file(path: Path, content: str, output: OutputRequest, terminal: Termina
 
 
 def _text(motion: GroundMotion, form: str) -> str:
-    from rpscli.records.formats.at2_writer import at2_text
+    from rpscli.records.formats.at2 import at2_text
     from rpscli.report.tables.record import two_column_text
 
     return at2_text(motion) if form == "at2" else two_column_text(motion)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.measures.intensity import IntensityMeasures
+    from rpscli.records.measures import IntensityMeasures
 
 
 @click.command("info")
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @source_options
 def command(motion: GroundMotion, terminal: Terminal) -> None:
     """What was understood of SRC, and its intensity measures in SI units."""
-    from rpscli.records.measures.intensity import intensity_measures
+    from rpscli.records.measures import intensity_measures
     from rpscli.report.tables.record import record_document
 
     measures = intensity_measures(motion)

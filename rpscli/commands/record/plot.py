@@ -37,8 +37,8 @@ def command(motion: GroundMotion, output: OutputRequest, terminal: Terminal, loo
     """
     import numpy as np
 
-    from rpscli.records.measures.intensity import intensity_measures
-    from rpscli.records.measures.spectrum import response_spectrum
+    from rpscli.records.measures import intensity_measures
+    from rpscli.records.spectrum import response_spectrum
     from rpscli.report.bundles import record_files
     from rpscli.report.tables.record import record_document
 

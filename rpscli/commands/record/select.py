@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from rpscli.records.selection import Selection
-    from rpscli.records.targets.target import TargetSpectrum
+    from rpscli.records.target import TargetSpectrum
 
 WHY_PGV = (
     "Sa(T1) is the wrong aim for rocking: once lifted the structure has no period of its own, and"
@@ -108,9 +108,9 @@ def command(
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.
     """
+    from rpscli.records.codes import load_target
     from rpscli.records.selection import SelectionRequest, select
     from rpscli.records.source import expand_sources, load_record
-    from rpscli.records.targets.source import load_target
     from rpscli.report.bundles import selection_files
     from rpscli.report.tables.selection import selection_document
 

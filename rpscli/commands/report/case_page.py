@@ -121,7 +121,7 @@ def _components(request: HistoryRequest) -> list[Any]:
 
 def _record_tables(result: TimeHistoryResult) -> Iterator[Any]:
     from rpscli.commands.record.info import record_tables
-    from rpscli.records.measures.intensity import intensity_measures
+    from rpscli.records.measures import intensity_measures
 
     return record_tables(result.record, intensity_measures(result.record))
 

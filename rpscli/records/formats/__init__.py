@@ -1,1 +1,124 @@
-"""Record files: one module a format, and the registry that recognises them."""
+"""The record formats that can be read: told apart by content first, by extension second."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import RecordError
+from rpscli.records.formats.at2 import read_at2, recognises_at2
+from rpscli.records.formats.columns import read_columns, recognises_columns
+from rpscli.records.formats.cosmos import (
+    read_cosmos,
+    read_csmip,
+    recognises_cosmos,
+    recognises_csmip,
+)
+from rpscli.records.formats.esm import read_esm, recognises_esm
+from rpscli.records.formats.geonet import read_geonet, recognises_geonet
+from rpscli.records.formats.knet import read_knet, recognises_knet
+from rpscli.records.formats.record_text import RecordText, read_text
+from rpscli.records.formats.smc import read_smc, recognises_smc
+from rpscli.records.ground_motion import GroundMotion
+
+
+@dataclass(frozen=True)
+class RecordFormat:
+    """A file format: what it is called, how it is recognised, how it is read."""
+
+    name: str
+    extensions: tuple[str, ...]
+    recognises: Callable[[RecordText], bool]
+    read: Callable[[RecordText], GroundMotion]
+
+
+FORMATS = (
+    RecordFormat("PEER AT2", (".at2",), recognises_at2, read_at2),
+    RecordFormat("COSMOS v1", (".v1", ".v1c", ".v2c"), recognises_cosmos, read_cosmos),
+    RecordFormat("CSMIP volume 2", (".v2",), recognises_csmip, read_csmip),
+    RecordFormat("GeoNet volume 2", (".v2a",), recognises_geonet, read_geonet),
+    RecordFormat(
+        "K-NET ASCII",
+        (".ns", ".ew", ".ud", ".ns1", ".ew1", ".ud1", ".ns2", ".ew2", ".ud2"),
+        recognises_knet,
+        read_knet,
+    ),
+    RecordFormat("ESM ASCII", (".asc",), recognises_esm, read_esm),
+    RecordFormat("SMC", (".smc",), recognises_smc, read_smc),
+    RecordFormat("columns", (".txt", ".dat", ".csv", ".tsv"), recognises_columns, read_columns),
+)
+"""In the order of recognition; plain columns accept most, so they come last."""
+
+_OTHER_QUANTITIES = {
+    ".vt2": "velocity",
+    ".dt2": "displacement",
+}
+_STRONGEST, _WEAKEST = 4.0, 1e-3  # g
+_NONSENSE = 1e9  # g; raw counts taken for g have a hundredth, and squares stay finite
+_FINEST, _COARSEST = 1e-4, 0.1  # s
+
+
+def read_record(
+    path: Path,
+    source: str,
+    *,
+    dt: float | None = None,
+    units: str | None = None,
+    channel: int | None = None,
+) -> GroundMotion:
+    """Read one record file of any known format."""
+    _refuse_other_quantity(path)
+    text = read_text(path, source, dt=dt, units=units, channel=channel)
+    motion = (_by_content(text) or _by_extension(text)).read(text)
+    if motion.pga > _NONSENSE * STANDARD_GRAVITY:
+        raise text.fault(
+            f"the largest value is {motion.pga / STANDARD_GRAVITY:.3g} g, which is no acceleration"
+            " of the ground; the file is damaged, fetch it again"
+        )
+    return replace(motion, warnings=(*motion.warnings, *_implausible(motion)))
+
+
+def is_record(path: Path) -> bool:
+    """Whether a file's content is recognised as a record; what else lies in a folder is not."""
+    if path.suffix.lower() in _OTHER_QUANTITIES:
+        return False
+    try:
+        return _by_content(read_text(path, str(path))) is not None
+    except RecordError:
+        return False
+
+
+def _by_content(text: RecordText) -> RecordFormat | None:
+    return next((form for form in FORMATS if form.recognises(text)), None)
+
+
+def _by_extension(text: RecordText) -> RecordFormat:
+    # The format of that name then says what is missing.
+    extension = text.path.suffix.lower()
+    return next((form for form in FORMATS if extension in form.extensions), FORMATS[-1])
+
+
+def _refuse_other_quantity(path: Path) -> None:
+    quantity = _OTHER_QUANTITIES.get(path.suffix.lower())
+    if quantity:
+        raise RecordError(
+            f"{path}: {path.suffix} files hold {quantity}; give the acceleration record of the "
+            f"same station, {path.with_suffix('.AT2').name}"
+        )
+
+
+def _implausible(motion: GroundMotion) -> tuple[str, ...]:
+    peak = motion.pga / STANDARD_GRAVITY
+    doubts = []
+    if not _FINEST <= motion.dt <= _COARSEST:
+        doubts.append(
+            f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
+            f" {_COARSEST:g} s): check the time step"
+        )
+    if peak > _STRONGEST:
+        doubts.append(f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units")
+    if peak < _WEAKEST:
+        doubts.append(f"PGA = {peak:.3g} g is weaker than can be felt: check the units")
+    return tuple(doubts)

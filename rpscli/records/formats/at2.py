@@ -1,4 +1,4 @@
-"""PEER AT2 acceleration records, in the spellings that are really found.
+"""PEER AT2 acceleration records, in the spellings that are really found, and as they are written.
 
 A header of three to seven lines says who recorded what, in which units, how many values (NPTS)
 and how far apart (DT); then follow the values, one to eight on a line. NPTS and DT may stand
@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
+from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.formats.record_text import RecordText
 from rpscli.records.formats.statements import (
@@ -79,14 +81,7 @@ def recognises_at2(text: RecordText) -> bool:
 
 
 def read_at2(text: RecordText) -> GroundMotion:
-    """Read a PEER AT2 file.
-
-    Raises
-    ------
-    RecordError
-        If the header is not that of an acceleration record, states no units that are known, or
-        the values are not exactly NPTS finite numbers.
-    """
+    """Read a PEER AT2 file."""
     text.single_channel()
     header = _find_header(text)
     if header is None:
@@ -260,3 +255,58 @@ def _step(text: RecordText, statement: Statement) -> tuple[float, tuple[str, ...
         f"say ?dt={1.0 / rate:.9g}"
     )
     return dt, (note,)
+
+
+_VALUES_PER_LINE = 5
+_TITLE_WIDTH = 240
+_MADE = ("synthetic", "pulse")
+
+
+def at2_text(motion: GroundMotion) -> str:
+    """The content of the AT2 file of a motion, in g, to eight digits.
+
+    Its first line says that it is synthetic, or what it was converted from; DT is written with all
+    its digits.
+
+    >>> motion = GroundMotion([0.0, 9.80665], 0.01, "m", "m.txt", "one-column text")
+    >>> lines = at2_text(motion).splitlines()
+    >>> lines[0].partition(" BY ")[0]
+    'PEER AT2 LAYOUT, CONVERTED FROM ONE-COLUMN TEXT'
+    >>> lines[1:]  # doctest: +NORMALIZE_WHITESPACE
+    ['m', 'ACCELERATION TIME SERIES IN UNITS OF G', 'NPTS=      2, DT= 0.01 SEC',
+     '  0.0000000E+00  1.0000000E+00']
+    """
+    made = motion.format in _MADE
+    origin = (
+        "SYNTHETIC, NOT A RECORDING, MADE" if made else f"CONVERTED FROM {motion.format.upper()}"
+    )
+    title = "; ".join(filter(None, [motion.source if made else motion.name, motion.description]))
+    values = motion.acceleration / STANDARD_GRAVITY
+    rows = [
+        "".join(f"{value:15.7E}" for value in values[start : start + _VALUES_PER_LINE])
+        for start in range(0, motion.npts, _VALUES_PER_LINE)
+    ]
+    header = [
+        f"PEER AT2 LAYOUT, {origin} BY RPS {_version()}",
+        _one_line(title),
+        "ACCELERATION TIME SERIES IN UNITS OF G",
+        f"NPTS= {motion.npts:6d}, DT= {motion.dt!r} SEC",
+    ]
+    return "\n".join([*header, *rows]) + "\n"
+
+
+def _one_line(title: str) -> str:
+    # A title must not be taken for one of the header lines that carry numbers.
+    line = "".join(letter for letter in " ".join(title.split()) if letter.isprintable())
+    line = re.sub(r"\b(n)(pts)\b", r"\1-\2", line, flags=re.IGNORECASE)
+    line = re.sub(r"(?<![?&])\b(d)(t\s*=)", r"\1-\2", line, flags=re.IGNORECASE)
+    line = re.sub(r"\b(u)(nits?\s*(?:of|in|[=:]))", r"\1-\2", line, flags=re.IGNORECASE)
+    line = re.sub(r"\b(velocity|displacement)\s+time\b", r"\1-time", line, flags=re.IGNORECASE)
+    return line[:_TITLE_WIDTH]
+
+
+def _version() -> str:
+    try:
+        return version("rpscli")
+    except PackageNotFoundError:  # run from a source tree
+        return "(not installed)"

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.records.formats.record_text import RecordText
+from rpscli.records.formats.record_text import RecordText, printed_resolution, uniform_step
 from rpscli.records.formats.statements import (
     STATED_PATTERN,
     Statement,
@@ -23,7 +23,6 @@ from rpscli.records.formats.statements import (
     stated_count,
     stated_positive,
 )
-from rpscli.records.formats.time_axis import printed_resolution, uniform_step
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.quantities import (
     KNOWN_UNITS,
@@ -66,14 +65,7 @@ def recognises_columns(text: RecordText) -> bool:
 
 
 def read_columns(text: RecordText) -> GroundMotion:
-    """Read one or two columns, or rows of a bare AT2 body when `dt` and `units` are known.
-
-    Raises
-    ------
-    RecordError
-        If units or sampling interval are unknown, times are not uniform, the first numbers look
-        like a header, or the shape of the table fits none of these.
-    """
+    """Read one or two columns, or rows of a bare AT2 body when `dt` and `units` are known."""
     text.single_channel()
     table = _table(text)
     _check_count(text, table)
@@ -247,13 +239,7 @@ def _stated_step(text: RecordText, header: Sequence[Statement]) -> float | None:
 
 
 def _stated_units(text: RecordText, header: Sequence[Statement]) -> str | None:
-    """The canonical unit of acceleration that the header states.
-
-    Raises
-    ------
-    RecordError
-        If it states two different ones, or one that is not known.
-    """
+    """The canonical unit of acceleration that the header states."""
     units: set[str] = set()
     for line in header:
         for key in _UNITS_KEY.finditer(line.value):

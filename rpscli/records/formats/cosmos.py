@@ -1,16 +1,23 @@
-"""COSMOS v1 files of corrected acceleration."""
+"""Corrected acceleration of the Californian programme: COSMOS v1, and volume 2 of CSMIP."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from rpscli.records.formats.channels import Channel, chosen_channel, peak_warnings
 from rpscli.records.formats.record_text import RecordText
-from rpscli.records.formats.series import series
-from rpscli.records.formats.statements import Statement, refuse_other_duration, stated_count
+from rpscli.records.formats.statements import (
+    Channel,
+    Statement,
+    chosen_channel,
+    peak_warnings,
+    refuse_other_duration,
+    series,
+    stated_count,
+    stated_number,
+)
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, canonical_unit
+from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, canonical_unit, to_float
 
 _TITLE = re.compile(r"^(.*?)\(Format v0?1\.", re.IGNORECASE)
 _REALS = re.compile(r"^\s*(\d+)\s+Real-header values follow", re.IGNORECASE)
@@ -35,13 +42,7 @@ def recognises_cosmos(text: RecordText) -> bool:
 
 
 def read_cosmos(text: RecordText) -> GroundMotion:
-    """Read the corrected acceleration of a COSMOS v1 file.
-
-    Raises
-    ------
-    RecordError
-        If the file holds raw counts, velocity or displacement, besides the usual faults.
-    """
+    """Read the corrected acceleration of a COSMOS v1 file."""
     starts = [index for index, line in enumerate(text.heads) if _TITLE.match(line)]
     channel = chosen_channel(text, [_channel(text, i, start) for i, start in enumerate(starts, 1)])
     title = _TITLE.match(text.heads[channel.line])
@@ -88,3 +89,55 @@ def _channel(text: RecordText, place: int, start: int) -> Channel:
     label = " ".join(" ".join(text.heads[start + 8 : start + 9]).split())
     number = _STATION_CHANNEL.match(label)
     return Channel(int(number[1]) if number else place, start, label)
+
+
+_CSMIP_CHANNEL = re.compile(
+    r"^CORRECTED ACCELEROGRAM\b.*\bCHAN\s+(\d{1,9}):\s*(\S.*?)\s*(?:FROM)?\s*$", re.IGNORECASE
+)
+_CSMIP_POINTS = re.compile(
+    rf"^\s*(\d+)\s+POINTS OF ACCEL DATA EQUALLY SPACED AT\s+({NUMBER_PATTERN})\s*SEC.*"
+    rf"UNITS:\s*({UNIT_PATTERN})",
+    re.IGNORECASE,
+)
+_CSMIP_NEXT = re.compile(r"\s*\d+ POINTS OF |/&|CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
+_CSMIP_ROW = 8
+_CSMIP_PEAK = re.compile(rf"PEAK ACCELERATION\s*=\s*({NUMBER_PATTERN})", re.IGNORECASE)
+
+
+def recognises_csmip(text: RecordText) -> bool:
+    """Whether the first line is that of a volume 2 channel."""
+    return _CSMIP_CHANNEL.match(text.heads[0]) is not None
+
+
+def read_csmip(text: RecordText) -> GroundMotion:
+    """Read the acceleration of one channel of a CSMIP volume 2 file."""
+    channel = chosen_channel(
+        text,
+        [
+            Channel(int(match[1]), index, " ".join(match[2].split()))
+            for index, line in enumerate(text.heads)
+            if (match := _CSMIP_CHANNEL.match(line))
+        ],
+    )
+    peak = None
+    for index in range(channel.line, len(text.lines)):
+        line = text.heads[index]
+        peak = peak or _CSMIP_PEAK.search(line)
+        if points := _CSMIP_POINTS.match(line):
+            break
+    else:
+        raise text.fault("no line announces the acceleration data of this channel", channel.line)
+    unit, factor = text.agreed_factor(canonical_unit(points[3]))
+    count = stated_count(text, Statement("POINTS OF ACCEL DATA", points[1], index))
+    values = series(text, index + 1, count, width=_CSMIP_ROW, closed_by=_CSMIP_NEXT)
+    dt = stated_number(text, Statement("the spacing of the data", points[2], index))
+    titles = [line.strip() for line in text.heads[channel.line + 2 : channel.line + 7 : 4]]
+    return GroundMotion(
+        values * factor,
+        text.agreed_dt(dt),
+        text.name,
+        text.source,
+        "CSMIP volume 2",
+        f"{'; '.join(titles)}; channel {channel.number}, {channel.label}; values in {unit}",
+        peak_warnings(values, to_float(peak[1]), 1e-3) if peak else (),
+    )

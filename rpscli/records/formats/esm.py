@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 
-from rpscli.records.formats.channels import peak_warnings
 from rpscli.records.formats.record_text import RecordText
-from rpscli.records.formats.series import series
 from rpscli.records.formats.statements import (
     Statement,
+    peak_warnings,
     refuse_other_duration,
+    series,
     stated_count,
     stated_number,
 )
@@ -29,13 +29,7 @@ def recognises_esm(text: RecordText) -> bool:
 
 
 def read_esm(text: RecordText) -> GroundMotion:
-    """Read an ESM/ITACA acceleration file.
-
-    Raises
-    ------
-    RecordError
-        If the file holds velocity or displacement, besides the usual faults.
-    """
+    """Read an ESM/ITACA acceleration file."""
     text.single_channel()
     header: dict[str, str] = {}
     lines: dict[str, int] = {}

@@ -7,12 +7,14 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.records.formats.channels import Channel, chosen_channel, peak_warnings
 from rpscli.records.formats.record_text import RecordText
-from rpscli.records.formats.series import series
 from rpscli.records.formats.statements import (
+    Channel,
     Statement,
+    chosen_channel,
+    peak_warnings,
     refuse_other_duration,
+    series,
     stated_count,
     stated_number,
 )

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 
-from rpscli.records.formats.channels import peak_warnings
 from rpscli.records.formats.record_text import RecordText
-from rpscli.records.formats.series import series
 from rpscli.records.formats.statements import (
     MOST_VALUES,
     Statement,
     agreed,
+    peak_warnings,
+    series,
     stated_number,
     stated_positive,
 )

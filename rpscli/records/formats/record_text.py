@@ -1,14 +1,19 @@
-"""The text of a record file, with what the user said about it, before a format reads it."""
+"""The text of a record file, with what the user said of it, and the time step of its samples."""
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rpscli.errors import RecordError
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, last_digit, unit_factor
 
 _BINARY_KINDS = {
     b"PK\x03\x04": "a ZIP archive; unpack it first",
@@ -64,33 +69,12 @@ class RecordText:
         return self.path.stem + ("" if self.channel is None else f"_ch{self.channel}")
 
     def fault(self, message: str, line: int | None = None) -> RecordError:
-        """An error that names this file and, if given, the line (counted from zero).
-
-        Parameters
-        ----------
-        message : str
-            What is wrong, the rule and a remedy.
-        line : int, optional
-            Counted from zero.
-        """
+        """An error that names this file and, if given, the line (counted from zero)."""
         place = f"{self.path}" if line is None else f"{self.path}:{line + 1}"
         return RecordError(f"{place}: {message}")
 
     def agreed_factor(self, stated: str | None, header: str = "") -> tuple[str, float]:
-        """The unit of the values and its size in m/s2, from the file or from the user.
-
-        Parameters
-        ----------
-        stated
-            The unit that the file states.
-        header
-            What it says in its header instead, for the message.
-
-        Raises
-        ------
-        RecordError
-            If neither names a unit, or both do and they differ: nothing is scaled silently.
-        """
+        """The unit of the values and its size in m/s2, from the file or from the user."""
         if stated is None and self.units is None:
             raise self.fault(
                 f"the file does not state the units of its values"
@@ -112,13 +96,6 @@ class RecordText:
 
         A contradiction is refused. Within the tolerance the user may know the interval better than
         the file.
-
-        Parameters
-        ----------
-        stated : float or None [s]
-            What the file says.
-        tolerance : float
-            Relative; covers the digits that the file prints.
         """
         if stated is None and self.dt is None:
             raise self.fault(
@@ -155,27 +132,7 @@ def read_text(
     units: str | None = None,
     channel: int | None = None,
 ) -> RecordText:
-    """Read a record file as text.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    source : str
-        The source as the user wrote it.
-    dt : float, optional [s]
-        Sampling interval that the user gave.
-    units : str, optional
-        Unit of acceleration that the user gave, in any spelling.
-    channel : int, optional
-        The channel wanted from a file that holds several, from 1.
-
-    Raises
-    ------
-    RecordError
-        If it cannot be read, is empty, is not text (a picture, an archive), is a web page saved
-        under a record's name, or `units` is not a unit of acceleration.
-    """
+    """Read a record file as text."""
     unit = None if units is None else canonical_unit(units)
     if units is not None and unit is None:
         raise RecordError(f"{source}: units = {units!r} is not known; use one of {KNOWN_UNITS}")
@@ -218,3 +175,78 @@ def _decoded(data: bytes) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:  # station names of older files; every byte is a Latin-1 letter
         return data.decode("latin-1")
+
+
+_SUMMED = (1e-6, 1e-3)
+"""Shares of a step by which times may be off besides their rounding, from summing steps in double
+and in single precision."""
+
+_COARSEST = 0.25
+"""Share of a step beyond which rounding can no longer tell uniform times from others."""
+
+
+def printed_resolution(
+    printed: NDArray[np.float64], numerals: Iterable[str]
+) -> NDArray[np.float64]:
+    """The unit of the last digit of each time of a column, dropped zeros included.
+
+    Writers keep either a number of decimals or a number of significant digits: a unit holds for
+    a whole decade of times, and from one decade to the next grows by no more than ten.
+
+    >>> printed_resolution(np.array([0.0, 0.5, 1.0, 1.5]), ["0", "0.5", "1", "1.5"]).tolist()
+    [0.1, 0.1, 0.1, 0.1]
+    """
+    times = np.abs(printed)
+    units = np.fromiter(map(last_digit, numerals), dtype=np.float64, count=times.size)
+    decades = np.floor(np.log10(np.maximum(times, 1e-12)))
+    result = np.empty_like(units)
+    finest = math.inf
+    for decade in np.unique(decades[times > 0.0]):
+        inside = decades == decade
+        finest = min(10.0 * finest, float(units[inside].min()))
+        result[inside] = finest
+    result[times == 0.0] = result[times > 0.0].min(initial=1.0)
+    return result
+
+
+def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | float) -> float:
+    """The step of uniform times, the shortest decimal number that fits all of them.
+
+    >>> uniform_step(np.array([0.0, 0.0039, 0.0078, 0.0117, 0.0156]), 1e-4)
+    0.0039
+    """
+    steps = np.diff(times)
+    if not steps.min() > 0.0:
+        raise ValueError(f"the times do not increase after sample {int(np.argmin(steps)) + 1}")
+    typical = _median(steps)
+    rounding = np.minimum(0.5 * np.asarray(resolution), _COARSEST * typical)
+    for summed in _SUMMED:
+        step = _shortest_step(times, rounding + summed * typical)
+        if step is not None:
+            return step
+    off = np.abs(steps - typical)
+    first = int(np.argmax(off > 0.5 * off.max()))
+    raise ValueError(
+        f"the step after sample {first + 1} is {steps[first]:.6g} s, most others {typical:.6g} s"
+    )
+
+
+def _median(values: NDArray[np.float64]) -> float:
+    # What numpy's function gives, without the masked arrays that it imports.
+    ordered = np.sort(values)
+    return 0.5 * float(ordered[(values.size - 1) // 2] + ordered[values.size // 2])
+
+
+def _shortest_step(times: NDArray[np.float64], allowance: NDArray[np.float64]) -> float | None:
+    # Each time bounds the step from both sides; the bounds close in as the samples go on.
+    allowance = np.broadcast_to(allowance, times.shape)
+    count = np.arange(1, times.size)
+    elapsed = times[1:] - times[0]
+    either = allowance[1:] + (allowance[0] if times[0] else 0.0)  # a printed zero is exact
+    lowest = float(np.max((elapsed - either) / count))
+    highest = float(np.min((elapsed + either) / count))
+    if not 0.0 < lowest <= highest:
+        return None
+    middle = 0.5 * (lowest + highest)
+    candidates = (round(middle, decimals) for decimals in range(17))
+    return next((step for step in candidates if lowest <= step <= highest), middle)

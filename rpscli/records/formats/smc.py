@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import re
 
-from rpscli.records.formats.channels import peak_warnings
 from rpscli.records.formats.record_text import RecordText
-from rpscli.records.formats.series import series
-from rpscli.records.formats.statements import MOST_VALUES
+from rpscli.records.formats.statements import MOST_VALUES, peak_warnings, series
 from rpscli.records.ground_motion import GroundMotion
 
 _TITLE = re.compile(r"^\s*([1-5])\s+(UNCORRECTED|CORRECTED|VELOCITY|DISPLACEMENT|RESPONSE)\b")
@@ -26,13 +24,7 @@ def recognises_smc(text: RecordText) -> bool:
 
 
 def read_smc(text: RecordText) -> GroundMotion:
-    """Read a corrected accelerogram; the format's accelerations are in cm/s2.
-
-    Raises
-    ------
-    RecordError
-        If the file is uncorrected or holds velocity, displacement or spectra.
-    """
+    """Read a corrected accelerogram; the format's accelerations are in cm/s2."""
     text.single_channel()
     title = _TITLE.match(text.heads[0])
     if title is None or title[1] != _CORRECTED:

@@ -1,4 +1,4 @@
-"""What headers state: numbers that are read strictly, and refused where they contradict."""
+"""What a header announces, taken at its word: numbers, channels, and the rows that follow."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rpscli.records.formats.record_text import RecordText
-from rpscli.records.quantities import NUMBER_PATTERN, to_float
+from rpscli.records.quantities import NUMBER_PATTERN, numbers_in, to_float, why_no_numbers
 
 STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
 """A number as a header states it; one with a decimal comma is then refused by name."""
@@ -29,13 +32,7 @@ class Statement:
 
 
 def stated_number(text: RecordText, statement: Statement) -> float:
-    """The finite number that a header states.
-
-    Raises
-    ------
-    RecordError
-        If it is none, or has a decimal comma.
-    """
+    """The finite number that a header states."""
     name, numeral = statement.name, statement.value.strip()
     if re.fullmatch(r"[+-]?[0-9]*,[0-9]+", numeral):
         raise text.fault(
@@ -82,22 +79,7 @@ def agreed(
     statements: Sequence[Statement],
     meaning: Callable[[RecordText, Statement], object],
 ) -> Statement | None:
-    """The one thing that several statements of a header say; None if there is none.
-
-    Parameters
-    ----------
-    text : RecordText
-        The file.
-    statements : sequence of Statement
-        In the order of the file.
-    meaning : callable
-        Turns a statement into what it says, so that 0.01 and .010 agree.
-
-    Raises
-    ------
-    RecordError
-        If two contradict each other; both lines are named.
-    """
+    """The one thing that several statements of a header say; None if there is none."""
     if not statements:
         return None
     first = statements[0]
@@ -116,20 +98,9 @@ def agreed(
 def refuse_other_duration(
     text: RecordText, stated: Statement, count: int, dt: float, rounding: float
 ) -> None:
-    """Refuse a header whose duration is not that of its values and their spacing.
+    """Refuse a header whose duration [s] is not that of its values and their spacing.
 
-    Parameters
-    ----------
-    text : RecordText
-        The file.
-    stated : Statement [s]
-        The duration; agencies count the last interval or leave it out.
-    count : int
-        How many values are announced.
-    dt : float [s]
-        Their spacing.
-    rounding : float [s]
-        How far the statement may be rounded.
+    Agencies count the last interval or leave it out, and round.
     """
     duration = stated_number(text, stated)
     if abs(duration - (count - 0.5) * dt) > 0.51 * dt + rounding:
@@ -138,3 +109,110 @@ def refuse_other_duration(
             f" last {count * dt:g} s; correct the header, or fetch the file again",
             stated.line,
         )
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A channel of a file: its number, the line where it begins, what it calls itself."""
+
+    number: int
+    line: int
+    label: str
+
+
+def chosen_channel(text: RecordText, channels: Sequence[Channel]) -> Channel:
+    """The channel whose number the user asked for, or the only one."""
+    if not channels:
+        raise text.fault(
+            "no series of accelerations begins in this file; if it is of another format than its"
+            " name says, give it another ending (.txt for columns of numbers)"
+        )
+    listing = "; ".join(f"{channel.number}: {channel.label[:60]}" for channel in channels)
+    if text.channel is None:
+        if len(channels) == 1:
+            return channels[0]
+        raise text.fault(
+            f"the file holds {len(channels)} channels; say which one by "
+            f"?channel={channels[0].number} after the file name ({listing})"
+        )
+    wanted = [channel for channel in channels if channel.number == text.channel]
+    if not wanted:
+        raise text.fault(f"there is no channel {text.channel}; the file has {listing}")
+    if len(wanted) > 1:
+        raise text.fault(f"channel {text.channel} comes {len(wanted)} times: {listing}")
+    return wanted[0]
+
+
+def peak_warnings(values: NDArray[np.float64], stated: float, last_digit: float) -> tuple[str, ...]:
+    """A warning if the peak of the values is not the one that the header states.
+
+    Only its size is compared, since some agencies round it and some drop its sign.
+    """
+    peak = float(np.max(np.abs(values)))
+    if abs(peak - abs(stated)) <= 0.51 * last_digit + 1e-3 * abs(stated):
+        return ()
+    return (f"the values peak at {peak:.6g} and the header says {abs(stated):.6g}",)
+
+
+def series(
+    text: RecordText,
+    start: int,
+    count: int,
+    *,
+    width: int | None = None,
+    stop: int | None = None,
+    closed_by: re.Pattern[str] | None = None,
+) -> NDArray[np.float64]:
+    """Exactly `count` numbers of consecutive lines from `start`; blank lines are skipped.
+
+    Rows have `width` numbers, or as many as the first one, but for the last. They end before the
+    line `stop`, and only what `closed_by` matches may follow.
+    """
+    rows: list[tuple[int, list[float]]] = []
+    found = 0
+    end = len(text.lines) if stop is None else min(stop, len(text.lines))
+    for index in range(start, end):
+        line = text.lines[index]
+        row = numbers_in(line)
+        if row is None:
+            if closed_by is not None and closed_by.match(line):
+                end = index
+                break
+            raise _foreign_line(text, index, found, count)
+        if row:
+            rows.append((index, row))
+            found += len(row)
+    if found != count:
+        raise text.fault(
+            f"the header announces {count} values, but there are {found} up to"
+            f" {'the end' if end >= len(text.lines) else f'line {end}'}; the file is damaged,"
+            " fetch it again"
+        )
+    _refuse_ragged(text, rows, width or len(rows[0][1]))
+    return np.array([value for _, row in rows for value in row])
+
+
+def _foreign_line(text: RecordText, index: int, found: int, count: int) -> Exception:
+    line = text.lines[index].strip()[:40]
+    if found >= count:
+        return text.fault(
+            f"the header announces {count} values, and after {found} follows {line!r}; keep one"
+            " record in a file",
+            index,
+        )
+    return text.fault(
+        f"found {found} of the {count} values that the header announces, then {line!r}"
+        f"{why_no_numbers(text.lines[index])}; the file is damaged or cut short",
+        index,
+    )
+
+
+def _refuse_ragged(text: RecordText, rows: list[tuple[int, list[float]]], width: int) -> None:
+    for place, (index, row) in enumerate(rows):
+        last = place == len(rows) - 1
+        if len(row) != width and not (last and len(row) < width):
+            raise text.fault(
+                f"{len(row)} value(s) in a row where the format has {width}; the file is damaged,"
+                " fetch it again",
+                index,
+            )

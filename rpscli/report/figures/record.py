@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from rpscli.records.measures.integration import displacement, velocity
+from rpscli.records.measures import displacement, velocity
 from rpscli.report.figures import style
 from rpscli.report.figures.arguments import require
 from rpscli.report.figures.thinned import extremes
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.measures.spectrum import ResponseSpectrum
+    from rpscli.records.spectrum import ResponseSpectrum
 
 
 Quantity = Literal["acceleration", "velocity", "displacement"]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rpscli.records.measures.spectrum import ResponseSpectrum
+    from rpscli.records.spectrum import ResponseSpectrum
 
 
 def spectra_figure(spectra: Sequence[ResponseSpectrum], title: str) -> bytes:

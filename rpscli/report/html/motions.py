@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rpscli.records.measures.intensity import intensity_measures
-from rpscli.records.measures.spectrum import ResponseSpectrum, response_spectrum
+from rpscli.records.measures import intensity_measures
+from rpscli.records.spectrum import ResponseSpectrum, response_spectrum
 from rpscli.report.figures import style
 from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import Look

@@ -6,9 +6,8 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.integration import displacement, velocity
-from rpscli.records.measures.intensity import IntensityMeasures
-from rpscli.records.measures.spectrum import ResponseSpectrum
+from rpscli.records.measures import IntensityMeasures, displacement, velocity
+from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.files.csv_text import Column
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.analyses.demand import Request
-from rpscli.records.measures.measure import factor_to
+from rpscli.records.measures import factor_to
 from rpscli.sweep.evaluation.points import Plan, Point
 from rpscli.sweep.evaluation.record_cache import RecordCache
 from rpscli.sweep.evaluation.results import Results

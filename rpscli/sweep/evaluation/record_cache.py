@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import MotionComponents
-from rpscli.records.measures.measure import Measure, measured
+from rpscli.records.measures import Measure, measured
 from rpscli.records.source import load_record
 from rpscli.sweep.evaluation.points import RecordRequest
 

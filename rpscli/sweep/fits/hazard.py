@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from rpscli.case.text.document import shown
 from rpscli.case.text.files import read_text
 from rpscli.errors import CaseError
-from rpscli.records.measures.measure import MEASURE_UNITS, Measure
+from rpscli.records.measures import MEASURE_UNITS, Measure
 from rpscli.units import si_value
 
 Array = NDArray[np.float64]

@@ -17,7 +17,7 @@ from rpscli.case.study.reports import ReportRequest
 from rpscli.case.study.schema import Keys, Seed
 from rpscli.case.text.document import Document, Fault, dotted
 from rpscli.errors import listed
-from rpscli.records.measures.measure import Measure
+from rpscli.records.measures import Measure
 from rpscli.sweep.fits.lognormal import Lognormal
 from rpscli.sweep.intensities import Intensity, MeasureOptions, measure_without_period
 from rpscli.sweep.points.layout import StudyPoints

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from rpscli.case.schema.fields import Quantity, Section, Text
 from rpscli.errors import CaseError
-from rpscli.records.measures.measure import Measure
+from rpscli.records.measures import Measure
 from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard
 from rpscli.sweep.fits.lognormal import NOTHING, Band, percentiles
 from rpscli.sweep.points.layout import StudyPoints

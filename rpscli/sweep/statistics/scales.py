@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rpscli.records.made.pulses import SCHEME
-from rpscli.records.scaling import LEAST, MOST
+from rpscli.records.ground_motion import LEAST, MOST
+from rpscli.records.pulses import SCHEME
 from rpscli.sweep.table import Array, Table
 
 

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.made.pulse_shapes import mavroeidis_papageorgiou
-from rpscli.records.measures.integration import displacement, velocity
+from rpscli.records.measures import displacement, velocity
+from rpscli.records.pulses import mavroeidis_papageorgiou
 from rpscli.records.query import parse_query
 
 SCHEME = "synthetic"
@@ -51,20 +51,6 @@ _OPTIONS = (
 def load_synthetic(rest: str, source: str) -> GroundMotion:
     """Make a synthetic motion.
 
-    Parameters
-    ----------
-    rest : str
-        The source without `synthetic:`, such as `?pga=0.4g&seed=7`.
-    source : str
-        The whole source, for messages.
-
-    Raises
-    ------
-    RecordError
-        If an option is unknown, missing or out of range.
-
-    Notes
-    -----
     Options: `pga` (needed), `seed` (needed), `duration` (30 s), `dt` (0.01 s), `ground_frequency`
     (2.39 Hz) and `ground_damping` (0.6) of the soil, `cut_frequency` (0.239 Hz) and `cut_damping`
     (0.6) of the low cut; with `pulse_velocity`, also `pulse_period` (3 s) and `pulse_cycles` (2).
@@ -113,8 +99,6 @@ def load_synthetic(rest: str, source: str) -> GroundMotion:
 def envelope(fraction: NDArray[np.float64]) -> NDArray[np.float64]:
     """Saragoni-Hart envelope over time as a fraction of the duration; its peak is 1.
 
-    Examples
-    --------
     >>> envelope(np.array([0.0, 0.2, 1.0])).round(3).tolist()
     [0.0, 1.0, 0.01]
     """

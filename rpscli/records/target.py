@@ -1,35 +1,85 @@
-"""A target spectrum from a CSV file."""
+"""A target spectrum: pseudo-acceleration over the period with its peaks, or a CSV file."""
 
 from __future__ import annotations
 
 import csv
 import math
 import re
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
 from rpscli.records.query import parse_query
-from rpscli.records.targets.target import Array, TargetSpectrum, velocity_of
+
+Array = NDArray[np.float64]
+
+AMPLIFICATION = 1.65
+"""Pseudo-velocity over PGV: median of Newmark and Hall, 1982, at 5 % damping."""
+
+
+@dataclass(frozen=True)
+class TargetSpectrum:
+    """What the response spectra of motions are compared with.
+
+    Parameters
+    ----------
+    name : str
+        Short, for figures.
+    source : str
+        As the user wrote it.
+    damping : float
+        Share of critical damping.
+    span : tuple of float [s]
+        Periods between which it is defined.
+    shape : callable
+        Periods (n,) [s] to pseudo-accelerations (n,) [m/s2].
+    pgv : float, optional [m/s]
+        Peak ground velocity that goes with it; None if it cannot be told.
+    pgd : float, optional [m]
+        Peak ground displacement; None if the code gives none.
+    """
+
+    name: str
+    source: str
+    damping: float
+    span: tuple[float, float]
+    shape: Callable[[Array], Array]
+    pgv: float | None
+    pgd: float | None
+
+    def acceleration(self, periods: Array) -> Array:
+        """Pseudo-acceleration at periods (n,) [s], (n,) [m/s2]."""
+        low, high = self.span
+        outside = (periods < low * (1.0 - 1e-9)) | (periods > high * (1.0 + 1e-9))
+        if outside.any():
+            raise RecordError(
+                f"{self.source}: has no value at {periods[outside][0]:g} s; it is defined from"
+                f" {low:g} to {high:g} s: choose --periods within"
+            )
+        return self.shape(np.clip(periods, low, high))
+
+
+def velocity_of(shape: Callable[[Array], Array]) -> float:
+    """PGV [m/s] that goes with a 5 % spectrum: its pseudo-velocity at 1 s over 1.65.
+
+    FEMA, Hazus-MH 2.1, Earthquake Model Technical Manual, section 4.1.
+
+    >>> round(velocity_of(lambda periods: 9.80665 * 0.6 / periods), 4)
+    0.5676
+    """
+    return float(shape(np.ones(1))[0]) / (2.0 * math.pi) / AMPLIFICATION
+
 
 _HEAD = re.compile(r"\s*(.*?)\s*[\[(]([^\])]*)[\])]\s*")
 
 
 def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
-    """A spectrum of two columns, period and acceleration, linear between logarithms.
-
-    Parameters
-    ----------
-    path : Path
-        A CSV file whose first line names the columns with units: `period [s],acceleration [g]`;
-        further columns are not read. `spectrum.csv` of `rps record plot` is such a file.
-    options : str
-        `damping=0.05`.
-    source : str
-        The whole source, for messages.
-    """
+    """A spectrum of two columns, period and acceleration, linear between logarithms."""
     try:
         lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
     except (OSError, UnicodeDecodeError) as error:

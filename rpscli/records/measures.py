@@ -1,16 +1,44 @@
-"""Intensity measures of a ground motion, all in SI units."""
+"""What a ground motion measures: velocity, displacement, intensities; scaling to one."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures.integration import displacement, velocity
+from rpscli.records.spectrum import spectral_acceleration
+
+
+def velocity(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+    """Ground velocity at the samples, zero at the first one.
+
+    >>> velocity(np.array([0.0, 2.0, 2.0]), 0.5).tolist()
+    [0.0, 0.5, 1.5]
+    """
+    result = np.zeros_like(acceleration)
+    np.cumsum(0.5 * dt * (acceleration[:-1] + acceleration[1:]), out=result[1:])
+    return result
+
+
+def displacement(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+    """Ground displacement at the samples, zero at the first one.
+
+    Each step adds v dt + (2 a_0 + a_1) dt^2/6, the double integral of a linear acceleration.
+
+    >>> displacement(np.array([3.0, 3.0, 3.0]), 1.0).tolist()
+    [0.0, 1.5, 6.0]
+    """
+    start = velocity(acceleration, dt)[:-1]
+    step = dt * start + dt**2 * (2.0 * acceleration[:-1] + acceleration[1:]) / 6.0
+    result = np.zeros_like(acceleration)
+    np.cumsum(step, out=result[1:])
+    return result
 
 
 @dataclass(frozen=True)
@@ -41,19 +69,13 @@ class IntensityMeasures:
 def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
     """All measures of a motion.
 
-    Notes
-    -----
     Squares and absolute values are integrated by the trapezoidal rule, which is what published
     values use: for motions without content near the Nyquist frequency it is the more accurate
     one, while squares of the straight lines between samples fall short by dt/6 sum (a' dt)^2.
 
-    References
-    ----------
     A. Arias, in Seismic Design for Nuclear Power Plants, MIT Press, 1970.
     M. D. Trifunac and A. G. Brady, Bull. Seism. Soc. Am. 65, 1975 (duration).
 
-    Examples
-    --------
     >>> flat = GroundMotion(np.ones(101), 0.1, "flat", "", "")
     >>> measures = intensity_measures(flat)
     >>> round(measures.pgv, 9), round(measures.pgd, 9), round(measures.d5_95, 9)
@@ -83,3 +105,38 @@ def _crossing(husid: NDArray[np.float64], share: float, dt: float) -> float:
         return 0.0
     before = after - 1
     return dt * (before + float((level - husid[before]) / (husid[after] - husid[before])))
+
+
+Measure = Literal["PGA", "PGV", "PGD", "Sa", "Arias", "CAV"]
+
+MEASURE_UNITS: dict[Measure, str] = {
+    "PGA": "m/s2",
+    "PGV": "m/s",
+    "PGD": "m",
+    "Sa": "m/s2",
+    "Arias": "m/s",
+    "CAV": "m/s",
+}
+"""SI units."""
+
+
+def measured(
+    motion: GroundMotion, measure: Measure, period: float | None = None, damping: float = 0.05
+) -> float:
+    """A measure of a motion, SI units."""
+    if measure == "Sa":
+        assert period is not None, "Sa is asked for at a period"
+        return spectral_acceleration(motion, period, damping)
+    return float(getattr(intensity_measures(motion), measure.lower()))
+
+
+def factor_to(value: float, unscaled: float, measure: Measure, source: str) -> float:
+    """Factor on a motion that brings a measure of it to a value.
+
+    >>> factor_to(4.0, 1.0, "PGA", ""), factor_to(4.0, 1.0, "Arias", "")
+    (4.0, 2.0)
+    """
+    if unscaled <= 0.0:
+        raise RecordError(f"{source}: {measure} is 0: cannot scale it")
+    ratio = value / unscaled
+    return ratio**0.5 if measure == "Arias" else ratio

@@ -16,15 +16,47 @@ from numpy.typing import NDArray
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.made.pulse_shapes import (
-    LEAD,
-    cosine,
-    mavroeidis_papageorgiou,
-    ricker,
-    ricker_antisymmetric,
-    sine,
-)
 from rpscli.records.query import Query, hint, parse_query
+
+LEAD = 2.5
+"""Periods before the peak of a Ricker wavelet: at its start it is below 1e-12 of the peak."""
+
+
+def sine(tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    """One full period, or half of one, of a sine."""
+    return np.sin(2.0 * np.pi * tau)
+
+
+def cosine(tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    """One full period of a cosine: it starts and ends with a jump."""
+    return np.cos(2.0 * np.pi * tau)
+
+
+def ricker(tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Symmetric Ricker wavelet, the second derivative of a Gaussian (Ricker 1943)."""
+    x2 = (np.pi * (tau - LEAD)) ** 2
+    return (1.0 - 2.0 * x2) * np.exp(-x2)
+
+
+def ricker_antisymmetric(tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Antisymmetric Ricker wavelet, a third derivative; 1.38 brings its peak to one."""
+    x = np.pi * (tau - LEAD)
+    return (4.0 * x**2 / 3.0 - 3.0) * (2.0 * x / math.sqrt(3.0)) * np.exp(-2.0 * x**2 / 3.0) / 1.38
+
+
+def mavroeidis_papageorgiou(
+    tau: NDArray[np.float64], cycles: float, phase: float
+) -> NDArray[np.float64]:
+    """Acceleration of the Mavroeidis-Papageorgiou pulse of unit velocity amplitude and period.
+
+    Mavroeidis and Papageorgiou, BSSA 93(3), 2003, equation 3.
+    """
+    s = 2.0 * np.pi * (tau - 0.5 * cycles)
+    inside = np.abs(s) <= np.pi * cycles
+    bell = np.sin(s / cycles) * np.cos(s + phase)
+    wave = cycles * np.sin(s + phase) * (1.0 + np.cos(s / cycles))
+    return np.where(inside, -np.pi / cycles * (bell + wave), 0.0)
+
 
 SCHEME = "pulse"
 
@@ -57,20 +89,6 @@ PULSES = (*_PULSES, _MAVROEIDIS)
 def load_pulse(rest: str, source: str) -> GroundMotion:
     """Make a pulse.
 
-    Parameters
-    ----------
-    rest : str
-        The source without `pulse:`, such as `sine?amplitude=0.4g&period=1.2`.
-    source : str
-        The whole source, for messages.
-
-    Raises
-    ------
-    RecordError
-        If the name or an option is unknown, missing or out of range.
-
-    Notes
-    -----
     `amplitude` is the peak acceleration (for the Mavroeidis-Papageorgiou pulse that of the whole
     wave), `period` that of the oscillation. `dt` defaults to a 2000th of the period and has to
     divide pulses of one period. The Mavroeidis-Papageorgiou pulse takes `cycles` (default 2) and

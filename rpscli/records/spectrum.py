@@ -86,16 +86,7 @@ def response_spectrum(
 
 
 def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 0.05) -> float:
-    """Pseudo-acceleration Sa(T) [m/s2] at one period; the PGA at T = 0.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-    period : float [s]
-        T of the oscillator.
-    damping : float
-        Share of critical damping, from 0 up to but below 1.
-    """
+    """Pseudo-acceleration Sa(T) [m/s2] at one period; the PGA at T = 0."""
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
 
@@ -143,8 +134,6 @@ def _step_matrices(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Map of (displacement, velocity) over a step, and of the ground acceleration at its ends.
 
-    Notes
-    -----
     Exponential of the system extended by the ground acceleration and its slope, with the step as
     the unit of time. The closed formulae lose all digits where w dt is small.
     """

@@ -1,0 +1,190 @@
+"""Target spectra of EN 1998-1:2004, ASCE/SEI 7-16 and SP 14.13330.2018; which one is meant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from rpscli.errors import RecordError
+from rpscli.records.query import hint, parse_query
+from rpscli.records.target import Array, TargetSpectrum, table_spectrum, velocity_of
+
+EN1998_SOILS = {
+    "1": {
+        "A": (1.00, 0.15, 0.4, 2.0),
+        "B": (1.20, 0.15, 0.5, 2.0),
+        "C": (1.15, 0.20, 0.6, 2.0),
+        "D": (1.35, 0.20, 0.8, 2.0),
+        "E": (1.40, 0.15, 0.5, 2.0),
+    },
+    "2": {
+        "A": (1.00, 0.05, 0.25, 1.2),
+        "B": (1.35, 0.05, 0.25, 1.2),
+        "C": (1.50, 0.10, 0.25, 1.2),
+        "D": (1.80, 0.10, 0.30, 1.2),
+        "E": (1.60, 0.05, 0.25, 1.2),
+    },
+}
+"""S, T_B, T_C, T_D [s] by type and ground type: tables 3.2 and 3.3, recommended values."""
+
+EN1998_LONGEST = 4.0
+"""Where clause 3.2.2.2 ends [s]."""
+
+
+def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
+    """Elastic spectrum of clause 3.2.2.2, expressions (3.2) to (3.6), `ag=0.3g&soil=B&type=1`.
+
+    a_g is that of ground type A with the importance factor.
+
+    Up to T_B: a_g S (1 + T/T_B (2.5 eta - 1)); to T_C: 2.5 a_g S eta; to T_D: that times T_C/T;
+    to 4 s: times T_C T_D/T^2; eta = sqrt(10/(5 + xi)) >= 0.55 with xi in per cent. The peak
+    displacement is d_g = 0.025 a_g S T_C T_D, expression (3.12).
+
+    >>> target = en1998_spectrum("?ag=2 m/s2&soil=C", "")
+    >>> target.acceleration(np.array([0.0, 0.1, 0.3, 1.2, 4.0])).round(5).tolist()
+    [2.3, 4.025, 5.75, 2.875, 0.43125]
+    >>> round(target.pgd, 5)
+    0.069
+    """
+    query = parse_query(rest.lstrip("?"), source, ("ag", "soil", "type", "damping"))
+    kind, soil = query.values.get("type", "1"), query.values.get("soil", "A").upper()
+    for word, given, known in (("type", kind, EN1998_SOILS), ("soil", soil, EN1998_SOILS["1"])):
+        if given not in known:
+            raise RecordError(f"{source}: {word} = {given!r} is not known; {hint(given, [*known])}")
+    S, T_B, T_C, T_D = EN1998_SOILS[kind][soil]
+    a_g, damping = query.acceleration("ag"), query.quantity("damping", "ratio", 0.05)
+    if a_g <= 0.0 or not 0.0 <= damping < 1.0:
+        raise RecordError(f"{source}: ag must be > 0 and damping in [0, 1); 5 % is 0.05")
+    eta = max(0.55, math.sqrt(10.0 / (5.0 + 100.0 * damping)))
+
+    def shape(T: Array, eta: float = eta) -> Array:
+        rising = 1.0 + T / T_B * (2.5 * eta - 1.0)
+        falling = 2.5 * eta * np.minimum(1.0, T_C / np.maximum(T, T_C))
+        falling *= np.minimum(1.0, T_D / np.maximum(T, T_D))
+        return a_g * S * np.where(T_B > T, rising, falling)
+
+    return TargetSpectrum(
+        name=f"EN 1998-1 type {kind}, ground {soil}",
+        source=source,
+        damping=damping,
+        span=(0.0, EN1998_LONGEST),
+        shape=shape,
+        pgv=velocity_of(lambda T: shape(T, 1.0)),
+        pgd=0.025 * a_g * S * T_C * T_D,
+    )
+
+
+ASCE7_LEVELS = {"design": 1.0, "mcer": 1.5}
+"""Factors on the design spectrum: clauses 11.4.6 and 11.4.7."""
+
+
+def asce7_spectrum(rest: str, source: str) -> TargetSpectrum:
+    """Design spectrum of clause 11.4.6, equations (11.4-5) to (11.4-7), at 5 % damping.
+
+    `sds=1.0g&sd1=0.6g&tl=8`; `level=mcer` is 1.5 times that.
+
+    Up to T_0 = 0.2 T_S: S_DS (0.4 + 0.6 T/T_0); to T_S = S_D1/S_DS: S_DS; to T_L: S_D1/T (with
+    S_D1 as the acceleration at 1 s); beyond: S_D1 T_L/T^2. The code gives no peak displacement.
+
+    >>> target = asce7_spectrum("?sds=10 m/s2&sd1=6 m/s2&tl=4", "")
+    >>> target.acceleration(np.array([0.0, 0.06, 0.3, 1.2, 4.0, 8.0])).round(6).tolist()
+    [4.0, 7.0, 10.0, 5.0, 1.5, 0.375]
+    """
+    query = parse_query(rest.lstrip("?"), source, ("sds", "sd1", "tl", "level"))
+    level = query.values.get("level", "design").lower()
+    if level not in ASCE7_LEVELS:
+        raise RecordError(
+            f"{source}: level = {level!r} is not known; {hint(level, [*ASCE7_LEVELS])}"
+        )
+    short, long = (ASCE7_LEVELS[level] * query.acceleration(key) for key in ("sds", "sd1"))
+    T_L = query.quantity("tl", "time")
+    if not (short > 0.0 and 0.0 < long / short < T_L):
+        raise RecordError(f"{source}: sds and sd1 must be > 0, and sd1/sds, in s, below tl")
+    T_S = long / short
+    T_0 = 0.2 * T_S
+
+    def shape(T: Array) -> Array:
+        rising = short * (0.4 + 0.6 * T / T_0)
+        falling = long / np.maximum(T, T_S) * np.minimum(1.0, T_L / np.maximum(T, T_L))
+        return np.where(T_0 > T, rising, falling)
+
+    return TargetSpectrum(
+        name=f"ASCE 7, {'MCE_R' if level == 'mcer' else 'design'}",
+        source=source,
+        damping=0.05,
+        span=(0.0, np.inf),
+        shape=shape,
+        pgv=velocity_of(shape),
+        pgd=None,
+    )
+
+
+SP14_CORNERS = {"I": 0.4, "II": 0.4, "III": 0.8, "IV": 0.8}
+"""End of the plateau [s] by soil category, clause 5.6."""
+
+SP14_LEAST = 0.8
+"""Of the dynamic coefficient, clause 5.6."""
+
+
+def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
+    """A times the dynamic coefficient beta(T) of clause 5.6, at 5 % damping.
+
+    A is the acceleration of the site: 1, 2 and 4 m/s2 for intensities 7, 8 and 9 (clause 5.5).
+
+    beta = 1 + 15 T up to 0.1 s, 2.5 up to 0.4 s (categories I and II) or 0.8 s (III and IV), then
+    2.5 sqrt(0.4/T) or 2.5 sqrt(0.8/T), nowhere less than 0.8. The reduction factor of structures
+    that may be damaged is not in it. The code gives no peak displacement.
+
+    >>> target = sp14_spectrum("?acceleration=2 m/s2&soil=III", "")
+    >>> target.acceleration(np.array([0.0, 0.05, 0.5, 3.2, 20.0])).round(6).tolist()
+    [2.0, 3.5, 5.0, 2.5, 1.6]
+    """
+    query = parse_query(rest.lstrip("?"), source, ("acceleration", "soil"))
+    soil = query.values.get("soil", "II").upper()
+    if soil not in SP14_CORNERS:
+        raise RecordError(f"{source}: soil = {soil!r} is not known; {hint(soil, [*SP14_CORNERS])}")
+    A, corner = query.acceleration("acceleration"), SP14_CORNERS[soil]
+    if A <= 0.0:
+        raise RecordError(f"{source}: acceleration must be > 0; it is 4 m/s2 for intensity 9")
+
+    def shape(T: Array) -> Array:
+        falling = 2.5 * np.sqrt(corner / np.maximum(T, corner))
+        return A * np.where(T <= 0.1, 1.0 + 15.0 * T, np.maximum(falling, SP14_LEAST))
+
+    return TargetSpectrum(
+        name=f"SP 14.13330, soil {soil}",
+        source=source,
+        damping=0.05,
+        span=(0.0, np.inf),
+        shape=shape,
+        pgv=velocity_of(shape),
+        pgd=None,
+    )
+
+
+_CODES: dict[str, Callable[[str, str], TargetSpectrum]] = {
+    "en1998": en1998_spectrum,
+    "asce7": asce7_spectrum,
+    "sp14": sp14_spectrum,
+}
+
+
+def load_target(source: str) -> TargetSpectrum:
+    """A spectrum of a code by its parameters, or from a CSV file."""
+    scheme, colon, rest = source.partition(":")
+    if colon and scheme in _CODES:
+        return _CODES[scheme](rest, source)
+    place, _, options = source.partition("?")
+    path = Path(place)
+    if path.is_file():
+        return table_spectrum(path, options, source)
+    if colon and len(scheme) > 1:
+        raise RecordError(
+            f"{source}: {scheme!r} is no code that is known; {hint(scheme, [*_CODES])}, or a file"
+        )
+    raise RecordError(
+        f"{source}: there is no file {path}; give a CSV file or a code: {', '.join(_CODES)}"
+    )

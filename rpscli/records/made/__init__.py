@@ -1,1 +1,0 @@
-"""Ground motions that nobody recorded: pulses and seeded noise."""

@@ -1,1 +1,0 @@
-"""What a ground motion measures: integrals, intensities, spectra."""

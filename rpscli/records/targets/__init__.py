@@ -1,1 +1,0 @@
-"""Spectra that motions are chosen to fit: a table, or the design spectra of codes."""
