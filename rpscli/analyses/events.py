@@ -1,12 +1,18 @@
-"""What happened in a history, and when: the kernel's log in words."""
+"""What happened in a history, and when: the kernel's log in words.
+
+>>> from rpscli.physics.planar import state
+>>> EVENT_NAMES[state.UPLIFT], EVENT_NAMES[state.OVERTURNING], EVENT_NAMES[state.TENDON_TAUT]
+('uplift', 'overturning', 'tendon_taut')
+>>> len(EVENT_NAMES) == state.EVENT_KINDS
+True
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from rpscli.physics.core.records import Record
-from rpscli.physics.planar import state
 
 EventKind = Literal[
     "uplift",
@@ -25,22 +31,8 @@ EventKind = Literal[
     "tendon_taut",
 ]
 
-EVENT_NAMES: dict[int, EventKind] = {
-    state.UPLIFT: "uplift",
-    state.IMPACT: "impact",
-    state.RECONTACT: "recontact",
-    state.ROLLING_TO_ROCKING: "rolling_to_rocking",
-    state.ROCKING_TO_ROLLING: "rocking_to_rolling",
-    state.CRITICAL_PASSAGE: "critical_rotation_passed",
-    state.OVERTURNING: "overturning",
-    state.STICKING: "sticking",
-    state.SLIDING: "sliding",
-    state.STOP_MET: "stop_met",
-    state.STOP_LEFT: "stop_left",
-    state.TENDON_YIELDING: "tendon_yielding",
-    state.TENDON_SLACK: "tendon_slack",
-    state.TENDON_TAUT: "tendon_taut",
-}
+EVENT_NAMES: tuple[EventKind, ...] = get_args(EventKind)
+"""By the codes of the kernels."""
 
 
 @dataclass(frozen=True)

@@ -88,19 +88,7 @@ def fixed_base_floor_spectra(
 
 
 def floor_spectra(accelerations: Array, dt: float, periods: Array, damping: float) -> FloorSpectra:
-    """Spectra of histories side by side.
-
-    Parameters
-    ----------
-    accelerations : array, shape (samples, n) [m/s2]
-        Absolute.
-    dt : float [s]
-        Sampling interval.
-    periods : array, shape (p,) [s]
-        Natural periods.
-    damping : float
-        Share of critical damping.
-    """
+    """Spectra of histories side by side."""
     spectra = [
         response_spectrum(GroundMotion(floor, dt, "floor", "floor", "response"), periods, damping)
         for floor in accelerations.T

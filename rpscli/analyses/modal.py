@@ -168,17 +168,9 @@ def linearised_matrices(
 ) -> tuple[Array, Array, Array]:
     """M_L, C_L, K_L in the coordinates [2 R theta, u_t], each (n + 1, n + 1).
 
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    kappa
-        Dimensionless stiffness of the storey: 2 rho - 1 rolling, -1 rocking.
-    angle
-        alpha rolling, alpha' rocking [rad].
+    The storey's dimensionless stiffness `kappa` is 2 rho - 1 rolling, -1 rocking, the angle alpha
+    rolling, alpha' rocking [rad].
 
-    Notes
-    -----
     Paper, Table 2, where the sign of the (2 rho - 1) term must be +: with the printed one a larger
     radius would soften the storey (Theory, section 9). Linear dampers and elastic tendons belong
     to u_b (Theory, section 11).

@@ -172,15 +172,7 @@ def _capacity(
 
 
 def load_pattern(building: Superstructure, pattern: PatternName | Sequence[float]) -> Array:
-    """Floor forces (n,) of sum 1, from the bottom.
-
-    Parameters
-    ----------
-    building
-        n storeys on the cap beam.
-    pattern
-        Name of a pattern, or (n,) floor forces in any unit.
-    """
+    """Floor forces (n,) of sum 1, from the bottom; a given pattern has any unit."""
     if isinstance(pattern, str):
         n = building.storeys
         heights = building.storey_heights

@@ -79,30 +79,14 @@ class Trace(Shown):
     devices: DeviceTrace
 
     def at(self, rows: Rows) -> Trace:
-        """Only some samples.
-
-        Parameters
-        ----------
-        rows
-            Their numbers, or a slice.
-        """
+        """Only some samples."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}
         devices = values.pop("devices").at(rows)
         return Trace(**{name: of[rows] for name, of in values.items()}, devices=devices)
 
 
 def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trace:
-    """Histories from what the kernel stored at samples every `dt` [s].
-
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    dt
-        Sampling interval [s].
-    run
-        What the kernel stored at samples.
-    """
+    """Histories from what the kernel stored at samples every `dt` [s]."""
     samples = run.samples
     devices = DeviceTrace(*np.moveaxis(run.devices, 1, 0))
     return Trace(
@@ -207,15 +191,7 @@ def _contact_forces(
 
 
 def prolonged(acceleration: Array, samples: int) -> Array:
-    """The acceleration at so many samples [m/s2]: zero after the record's end.
-
-    Parameters
-    ----------
-    acceleration
-        (npts,) [m/s2].
-    samples
-        How many are wanted, more than npts or fewer.
-    """
+    """The acceleration at so many samples [m/s2]: zero after the record's end."""
     length = min(samples, len(acceleration))
     return np.pad(acceleration[:length], (0, samples - length))
 
@@ -223,17 +199,7 @@ def prolonged(acceleration: Array, samples: int) -> Array:
 def base_accelerations(
     structure: PodiumStructure, samples: Record, B: Array, C: Array
 ) -> tuple[Array, Array]:
-    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8), 0 in full contact.
-
-    Parameters
-    ----------
-    structure
-        What moves.
-    samples
-        (samples,) `state.SAMPLE`.
-    B, C
-        Contact arm and contact height over R (samples,).
-    """
+    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8), 0 in full contact."""
     from rpscli.physics.planar.equation_of_motion import cap_beam_acceleration
 
     b = structure.bearing
@@ -252,15 +218,7 @@ def base_accelerations(
 
 
 def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
-    """N m_c R^2 A(x) along a path (samples,) [kg m2].
-
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    B, C
-        (samples,) contact arm and contact height over R.
-    """
+    """N m_c R^2 A(x) along a path (samples,) [kg m2]."""
     from rpscli.physics.planar.equation_of_motion import inertia
 
     io_1, beam = structure.bearing.inertia_ratio - 1.0, 4.0 * structure.gamma

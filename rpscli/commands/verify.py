@@ -21,7 +21,7 @@ from rpscli.report.numbers import shown
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from rpscli.analyses.verification.comparison import Comparison
+    from rpscli.analyses.verification.known import Comparison
 
 DIGITS = 7
 
@@ -34,7 +34,7 @@ def command(terminal: Terminal) -> None:
     Takes some seconds, half a minute if the kernels have to be compiled first. The exit code is 6
     if a single number is off.
     """
-    from rpscli.analyses.verification.suite import verification
+    from rpscli.analyses.verification import verification
 
     announce_compilation(terminal, moving=True)
     found = list(verification())

@@ -7,7 +7,7 @@ import pytest
 from paper_structures import podium
 
 from rpscli.analyses.modal import UpliftedModes, modal
-from rpscli.analyses.verification.modes import (
+from rpscli.analyses.verification.statics import (
     AMPLIFICATION,
     FREQUENCY_PARAMETER,
     ROCKING,

@@ -12,16 +12,16 @@ from click.testing import CliRunner
 from oracles.second_integrator import simulate
 from paper_structures import needs_compiled_kernels, oracle_system
 
-from rpscli.analyses.verification import geometry, suite
-from rpscli.analyses.verification.comparison import Known, compare
-from rpscli.analyses.verification.histories import (
+from rpscli.analyses import verification as suite
+from rpscli.analyses.verification import statics
+from rpscli.analyses.verification.known import Known, block, compare, paper_podium
+from rpscli.analyses.verification.motions import (
     FREE_VIBRATION,
     REFERENCES,
     Reference,
     shipped_record,
 )
-from rpscli.analyses.verification.pulses import least_amplitude
-from rpscli.analyses.verification.structures import block, paper_podium
+from rpscli.analyses.verification.overturning import least_amplitude
 from rpscli.cli import program
 from rpscli.records.source import load_record
 
@@ -60,9 +60,9 @@ def test_the_table_has_a_verdict_for_each_number(short: None) -> None:
 
 
 def test_a_number_that_is_off_ends_with_6(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = list(geometry.EXPECTED)
+    rows = list(statics.GEOMETRIES)
     rows[4] = rows[4]._replace(critical_rotation="0.2947")
-    monkeypatch.setattr(geometry, "EXPECTED", tuple(rows))
+    monkeypatch.setattr(statics, "GEOMETRIES", tuple(rows))
     result = CliRunner().invoke(program, ["verify"])
     assert result.exit_code == 6
     assert result.stdout.count("DIFFERS") == 1
@@ -71,7 +71,7 @@ def test_a_number_that_is_off_ends_with_6(short: None, monkeypatch: pytest.Monke
 
 
 def test_the_document_says_what_is_off(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(geometry, "EXPECTED", geometry.EXPECTED[:1])
+    monkeypatch.setattr(statics, "GEOMETRIES", statics.GEOMETRIES[:1])
     known = replace(compare("made", "one", "-", Known(1.0, 0.5), 1.6), unit="m")
     monkeypatch.setattr(suite, "modes", lambda: iter((known,)))
     result = CliRunner().invoke(program, ["verify", "--json"])
@@ -84,7 +84,7 @@ def test_the_document_says_what_is_off(short: None, monkeypatch: pytest.MonkeyPa
 
 
 def test_counts_are_told_as_whole_numbers(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(geometry, "EXPECTED", ())
+    monkeypatch.setattr(statics, "GEOMETRIES", ())
     known = compare("made", "impacts", "-", Known(52.0, 0.0), 53.0)
     monkeypatch.setattr(suite, "modes", lambda: iter((known,)))
     result = CliRunner().invoke(program, ["verify"])

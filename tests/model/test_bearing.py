@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from paper_structures import FLAT
 from scipy.optimize import brentq
 
-from rpscli.analyses.verification.comparison import Known, printed
-from rpscli.analyses.verification.geometry import EXPECTED, Geometry
+from rpscli.analyses.verification.known import Known, printed
+from rpscli.analyses.verification.statics import GEOMETRIES, Geometry
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.planar import geometry
@@ -22,7 +22,7 @@ def close(known: Known) -> object:
     return pytest.approx(known.value, abs=known.tolerance)
 
 
-@pytest.mark.parametrize("row", EXPECTED)
+@pytest.mark.parametrize("row", GEOMETRIES)
 def test_table_of_geometry(row: Geometry) -> None:
     bearing = Bearing(1.5, row.tan_alpha, 2.0 * row.tan_alpha, row.rho)
     _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(np.array([bearing.critical_rotation]))

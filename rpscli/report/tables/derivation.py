@@ -51,15 +51,7 @@ class Derivation(NamedTuple):
 
 
 def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterator[Derivation]:
-    """All derived quantities that are numbers, in the order in which they follow from each other.
-
-    Parameters
-    ----------
-    structure
-        The structure.
-    podium
-        The section of the case, which says what is given and what follows.
-    """
+    """All derived quantities that are numbers, in the order in which they follow."""
     letters = _letters(structure)
     formulas = _formulas(structure, podium)
     for row in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD):

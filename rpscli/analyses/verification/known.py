@@ -1,8 +1,9 @@
-"""Structures with known answers: those of the paper, single blocks, and ground motions for them."""
+"""Numbers that are known beside those that the program finds, and of which structures."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,48 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import GroundMotion
+
+
+@dataclass(frozen=True)
+class Known:
+    """A number that should come out, and the largest difference that is still agreement."""
+
+    value: float
+    tolerance: float
+
+
+def printed(digits: str, units: float = 0.5) -> Known:
+    """A printed number; the tolerance is half of its last digit, or so many of them."""
+    decimals = len(digits.partition(".")[2])
+    return Known(float(digits), float(f"{units * 10.0**-decimals:.6g}"))
+
+
+def within(value: float, share: float) -> Known:
+    """A number that holds up to a share of it."""
+    return Known(value, abs(value) * share)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One line of a verification: what is compared, of which structure, both values in one unit."""
+
+    group: str
+    quantity: str
+    unit: str
+    expected: float
+    computed: float
+    tolerance: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether the computed value is close enough; one that is no number never is."""
+        return abs(self.computed - self.expected) <= self.tolerance
+
+
+def compare(group: str, quantity: str, unit: str, known: Known, computed: float) -> Comparison:
+    """The comparison of a known number with a computed one."""
+    return Comparison(group, quantity, unit, known.value, float(computed), known.tolerance)
+
 
 FLAT = 0.0
 """Curvature ratio of flat ends."""
@@ -31,19 +74,7 @@ ROUNDED_GRAVITY = 9.81
 def paper_podium(
     storeys: int, tan_alpha: float, rho: float, semi_diagonal: float = 1.5
 ) -> PodiumStructure:
-    """The paper's: gamma = 10, eta = n, T1 = n/10 s, 5 % in modes 1 and 2 (Theory, section 7).
-
-    Parameters
-    ----------
-    storeys
-        n.
-    tan_alpha
-        Slenderness.
-    rho
-        Radius of the arcs; 0 for flat ends.
-    semi_diagonal
-        R [m].
-    """
+    """The paper's: gamma = 10, eta = n, T1 = n/10 s, 5 % in modes 1 and 2 (Theory, section 7)."""
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, storeys / 10.0, "sine")
     building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
@@ -57,17 +88,7 @@ def block(
     restitution: float | None = None,
     gravity: float = STANDARD_GRAVITY,
 ) -> PodiumStructure:
-    """A rectangular block that stands alone; Housner's restitution unless it is given.
-
-    Parameters
-    ----------
-    half_width, half_height
-        [m].
-    restitution
-        e; None for Housner's.
-    gravity
-        g [m/s2].
-    """
+    """A rectangular block that stands alone; Housner's restitution unless it is given."""
     law = ImpactLaw() if restitution is None else ImpactLaw("value", restitution)
     slope = half_width / half_height
     bearing = Bearing(math.hypot(half_width, half_height), slope, slope, FLAT)
@@ -77,29 +98,11 @@ def block(
 def slender_block(
     size: float, restitution: float | None = None, gravity: float = STANDARD_GRAVITY
 ) -> PodiumStructure:
-    """A block of semi-diagonal `size` so slender that it obeys the linear theory.
-
-    Parameters
-    ----------
-    size
-        Semi-diagonal R [m].
-    restitution
-        e; None for Housner's.
-    gravity
-        g [m/s2].
-    """
+    """A block of semi-diagonal `size` so slender that it obeys the linear theory."""
     alpha = math.atan(SLENDER)
     return block(size * math.sin(alpha), size * math.cos(alpha), restitution, gravity)
 
 
 def motion(acceleration: ArrayLike, dt: float) -> GroundMotion:
-    """A ground motion from its samples [m/s2].
-
-    Parameters
-    ----------
-    acceleration
-        (npts,) [m/s2].
-    dt
-        Sampling interval [s].
-    """
+    """A ground motion from its samples [m/s2]."""
     return GroundMotion(np.asarray(acceleration, dtype=float), dt, "made", "made", "made")

@@ -11,14 +11,17 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.verification.comparison import Comparison, Known, compare, within
-from rpscli.analyses.verification.structures import (
+from rpscli.analyses.verification.known import (
     LINEAR,
     ROUNDED_GRAVITY,
     SLENDER,
+    Comparison,
+    Known,
     block,
+    compare,
     motion,
     slender_block,
+    within,
 )
 from rpscli.model.podium import PodiumStructure
 
@@ -42,19 +45,7 @@ CHORDS = (2.0 * math.pi * DT) ** 2 / 8.0
 
 
 class Overturned(NamedTuple):
-    """A block of half sizes [m], its pulse, and the least amplitude [g].
-
-    Parameters
-    ----------
-    half_width, half_height
-        Of the block [m].
-    pulse
-        Its name in `SHAPES`.
-    theory
-        Of the block that was integrated: linear or nonlinear.
-    least
-        Amplitude [g].
-    """
+    """A block of half sizes [m], its pulse, linear or nonlinear, and the least amplitude [g]."""
 
     half_width: float
     half_height: float
@@ -133,15 +124,6 @@ def least_amplitude(structure: PodiumStructure, pulse: str, near: float) -> floa
     """The least amplitude that overturns [g], sought within 5 % of a value.
 
     Not a number if the structure stands 5 % above it, or falls 5 % below it.
-
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    pulse
-        Its name in `SHAPES`.
-    near
-        Amplitude about which is sought [g].
     """
     low, high = 0.95 * near, 1.05 * near
     if _overturns(structure, low, pulse) or not _overturns(structure, high, pulse):

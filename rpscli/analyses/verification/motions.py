@@ -1,0 +1,241 @@
+"""Histories: full contact, after an impact, free rocking, one swing with devices, earthquakes.
+
+The earthquakes are shipped motions that a second integrator followed. Its unknowns are the tilt and
+the storey drifts, its mass matrix is full, its steps are those of DOP853, and full contact is a
+matrix exponential; it shares nothing with the kernels. It is too slow to run here: a test of the
+program computes these numbers again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import rpscli.records
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.trace import tilting_inertia
+from rpscli.analyses.verification.known import (
+    FLAT,
+    LINEAR,
+    SLENDER,
+    Comparison,
+    Known,
+    compare,
+    motion,
+    paper_podium,
+    slender_block,
+    within,
+)
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.superstructure import Superstructure
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.source import load_record
+
+CONTACT = "Full contact (exact solution for a load that is linear between samples)"
+IMPACT = "One storey after its first well separated impact (closed form)"
+
+
+def buildings() -> Iterator[Comparison]:
+    """Base shear and roof displacement without uplift; base shear after an impact."""
+    record = _weak_motion()
+    for storeys in (1, 3, 9):
+        structure = paper_podium(storeys, 0.15, 0.5)
+        result = time_history(structure, record, TimeHistorySettings(free_vibration=0.0))
+        assert structure.superstructure is not None, "the paper's structures have buildings"
+        exact = exact_displacements(structure.superstructure, record)
+        largest = np.max(np.abs(exact), axis=0)
+        shear = float(structure.superstructure.stiffnesses[0] * largest[0])
+        roof = float(np.max(np.abs(result.trace.floor_displacements[:, -1])))
+        # Rounding of a few hundred steps, and of an exponential of a stiff matrix.
+        for name, unit, expected, value in (
+            ("base shear", "N", shear, result.max_base_shear),
+            ("roof displacement", "m", float(largest[-1]), roof),
+        ):
+            known = within(expected, 1e-9)
+            yield compare(CONTACT, f"{name}, n = {storeys}", unit, known, value)
+    yield _after_impact()
+
+
+def exact_displacements(building: Superstructure, record: GroundMotion) -> NDArray[np.float64]:
+    """(npts, n) floor displacements on a fixed base [m], by one matrix exponential a sample."""
+    from scipy.linalg import expm
+
+    n, dt = building.storeys, record.dt
+    flow = np.zeros((2 * n + 2, 2 * n + 2))
+    flow[:n, n : 2 * n] = np.eye(n)
+    inverse = np.linalg.inv(building.mass_matrix)
+    flow[n : 2 * n, :n] = -inverse @ building.stiffness_matrix
+    flow[n : 2 * n, n : 2 * n] = -inverse @ building.damping_matrix
+    flow[n : 2 * n, 2 * n] = -1.0
+    flow[2 * n, 2 * n + 1] = 1.0
+    step = expm(flow * dt)
+    state, states = np.zeros(2 * n + 2), [np.zeros(n)]
+    for start, end in zip(record.acceleration[:-1], record.acceleration[1:], strict=True):
+        state[2 * n :] = start, (end - start) / dt
+        state = step @ state
+        states.append(state[:n])
+    return np.array(states)
+
+
+def _weak_motion() -> GroundMotion:
+    """Three sines under a rounded envelope, too weak for uplift."""
+    t = np.arange(401) * 0.02
+    waves = np.sin(5.0 * t) + np.sin(11.0 * t + 1.0) + np.sin(23.0 * t + 2.0)
+    return motion(0.05 * waves * np.sin(math.pi * t / t[-1]), 0.02)
+
+
+def _after_impact() -> Comparison:
+    """V swings from V_st about -V_st: it reaches 1 + 2 exp(-pi xi_u/sqrt(1 - xi_u^2)).
+
+    xi_u = xi omega_u/omega_0 for stiffness-proportional damping, gravity neglected (Theory,
+    section 6).
+    """
+    structure = paper_podium(1, 0.15, 0.5)
+    base = 0.25 * structure.columns_mass * structure.bearing.inertia_ratio
+    base += structure.cap_beam_mass + structure.superstructure_mass * structure.bearing.alpha**2
+    xi = 0.05 * math.sqrt(1.0 + structure.superstructure_mass / base)
+    expected = 1.0 + 2.0 * math.exp(-math.pi * xi / math.sqrt(1.0 - xi**2))
+    settings = replace(TimeHistorySettings(free_vibration=3.0), initial_rotation=0.12)
+    result = time_history(structure, motion(np.zeros(2), 0.001), settings, with_fixed_base=False)
+    first = next(event.time for event in result.events if event.kind == "impact")
+    after = (result.trace.time > first) & (result.trace.time < first + 0.1)
+    swing = np.max(np.abs(result.trace.storey_shears[after, 0])) / structure.static_base_shear
+    # The shear still rings a little before the impact, and C and A vary with the rotation.
+    return compare(IMPACT, "V_b/V_st, tan a = 0.15, rho = 0.5", "-", within(expected, 0.03), swing)
+
+
+ROCKING = "Free rocking of a slender block, R = 1 m, e = 0.9 (Housner, linear theory)"
+RESTITUTION = 0.9
+STEP = 0.002
+STARTS = (0.2, 0.5, 0.9)
+"""theta/alpha at the release."""
+
+
+def free_rocking() -> Iterator[Comparison]:
+    """T = (4/p) acosh(1/(1 - phi)) and phi_n = 1 - sqrt(1 - e^(2n) [1 - (1 - phi_0)^2])."""
+    structure = slender_block(1.0, RESTITUTION)
+    p, alpha = math.sqrt(0.75 * structure.gravity), math.atan(SLENDER)
+    for start in STARTS:
+        settings = TimeHistorySettings(free_vibration=6.0, initial_rotation=start * alpha)
+        result = time_history(structure, motion(np.zeros(2), STEP), settings, with_fixed_base=False)
+        impacts = [event.time for event in result.events if event.kind == "impact"]
+        quarter = within(math.acosh(1.0 / (1.0 - start)) / p, LINEAR)
+        where = f"phi_0 = {start:g}"
+        yield compare(ROCKING, f"a quarter of the period, {where}", "s", quarter, impacts[0])
+        for n in (1, 2, 3):
+            phi = 1.0 - math.sqrt(1.0 - RESTITUTION ** (2 * n) * (1.0 - (1.0 - start) ** 2))
+            inside = (result.trace.time > impacts[n - 1]) & (result.trace.time < impacts[n])
+            peak = float(np.max(np.abs(result.trace.rotation[inside])))
+            # The peak lies up to half a sample from the largest sample of its parabola.
+            missed = p**2 * (1.0 - phi) * STEP**2 / 8.0
+            known = within(phi, LINEAR + missed / phi)
+            yield compare(ROCKING, f"phi after {n} impacts, {where}", "-", known, peak / alpha)
+            half = within(2.0 * math.acosh(1.0 / (1.0 - phi)) / p, LINEAR)
+            time = impacts[n] - impacts[n - 1]
+            yield compare(ROCKING, f"half period after {n} impacts, {where}", "s", half, time)
+
+
+SWING = "One swing of a rigid frame with devices (energy at the impact)"
+EXACT = 1e-9
+START = 0.7
+"""Tilt from which it is let go, over theta_cr."""
+
+COLUMNS = 4
+
+
+def devices() -> Iterator[Comparison]:
+    """Energy at the first impact over that without devices."""
+    for rho in (FLAT, 0.5):
+        bare = replace(paper_podium(1, 0.15, rho), superstructure=None, columns=COLUMNS)
+        x = START * bare.critical_rotation
+        F, u, v = (float(value[0]) for value in bare.path(np.array([x])))
+        e = float(bare.bearing.tendon_elongation(np.array([x]))[0])
+        W, lifted = bare.weight, bare.weight * v
+        F_d, k_s, d = 0.3 * F, 5.0 * F / u, 0.4 * u
+        f, P, k_t = 0.01 * bare.bearing.half_width, 0.02 * W, 0.1 * W / e
+        swings: tuple[tuple[str, Device, float], ...] = (
+            ("friction", FrictionDamper(F_d), -F_d * u),
+            ("rolling resistance", RollingResistance(f), -2.0 * W * f * x),
+            ("stop", Stop(d, k_s), 0.5 * k_s * (u - d) ** 2),
+            ("tendons", Tendon(P, k_t), COLUMNS * (P * e + 0.5 * k_t * e**2)),
+        )
+        for name, device, change in swings:
+            known = within(1.0 + change / lifted, EXACT)
+            found = energy_of_impact(replace(bare, devices=(device,)), x) / lifted
+            ends = f"rho = {rho:g}" if rho else "flat"
+            yield compare(SWING, f"E/(W v_b), {name}, {ends}", "-", known, found)
+
+
+def energy_of_impact(structure: PodiumStructure, rotation: float) -> float:
+    """Kinetic energy of the first impact after a release [J]."""
+    settings = TimeHistorySettings(initial_rotation=rotation, free_vibration=3.0)
+    still = GroundMotion(np.zeros(2), 0.01, "stillness", "made", "made")
+    result = time_history(structure, still, settings)
+    rate = next(event.rotation_rate_before for event in result.events if event.kind == "impact")
+    at = np.zeros(1)
+    b = structure.bearing
+    B, C = np.sin(b.alpha) + at, np.cos(b.alpha) + at
+    return float(0.5 * tilting_inertia(structure, B, C)[0] * rate**2)
+
+
+EARTHQUAKES = "Earthquakes against a second integrator (DOP853 in tilt and drifts)"
+FREE_VIBRATION = 2.0
+ACCURACY = 4.0
+"""Steps a quarter as long as usual: both integrators are converged then."""
+
+CONVERGED = 2e-7
+"""Impacts multiply what is left of the errors of both."""
+
+
+class Reference(NamedTuple):
+    """A history, and what the second integrator finds: max |theta| [rad], V_b/V_st, impacts."""
+
+    record: str
+    storeys: int
+    tan_alpha: float
+    rho: float
+    max_rotation: float
+    base_shear_ratio: float
+    impacts: int
+
+
+REFERENCES = (
+    Reference("synthetic_far_field", 3, 0.10, 1.5, 0.0702881264, 2.252459866, 52),
+    Reference("synthetic_far_field", 3, 0.15, 0.25, 0.0736422804, 2.233656228, 209),
+    Reference("synthetic_near_field_pulse", 2, 0.20, 1.5, 0.0425053056, 2.764409418, 124),
+    Reference("synthetic_near_field_pulse", 3, 0.20, FLAT, 0.2207060255, 2.437501670, 111),
+)
+
+
+def shipped_record(name: str) -> str:
+    """Source of a motion that comes with the program."""
+    return str(Path(rpscli.records.__file__).with_name("shipped") / f"{name}.at2")
+
+
+def histories() -> Iterator[Comparison]:
+    """Largest rotation and base shear, and the number of impacts."""
+    settings = TimeHistorySettings(
+        free_vibration=FREE_VIBRATION, accuracy=ACCURACY, recontact_rule="relative"
+    )
+    for row in REFERENCES:
+        structure = paper_podium(row.storeys, row.tan_alpha, row.rho)
+        record = load_record(shipped_record(row.record))
+        result = time_history(structure, record, settings, with_fixed_base=False)
+        ends = f"rho = {row.rho:g}" if row.rho else "flat"
+        short = row.record.removeprefix("synthetic_").replace("_", " ")
+        where = f"{short}, n = {row.storeys}, tan a = {row.tan_alpha:g}, {ends}"
+        shear = result.max_base_shear / structure.static_base_shear
+        for name, unit, known, computed in (
+            ("theta", "rad", within(row.max_rotation, CONVERGED), result.max_rotation),
+            ("V_b/V_st", "-", within(row.base_shear_ratio, CONVERGED), shear),
+            ("impacts", "-", Known(float(row.impacts), 0.0), float(result.impacts)),
+        ):
+            yield compare(EARTHQUAKES, f"{name}, {where}", unit, known, computed)
