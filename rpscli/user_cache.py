@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import stat
 import tempfile
+import warnings
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 VARIABLE = "RPS_CACHE_DIR"
@@ -14,12 +14,11 @@ VARIABLE = "RPS_CACHE_DIR"
 
 
 def user_cache() -> Path | None:
-    """A folder that this user may write to, made if needed; None if there is no such place.
+    """A folder that only this user may write to, made if needed; None if there is no such place.
 
-    ``RPS_CACHE_DIR`` wins, then the user's cache folder, then a private one in the system's
-    temporary folder.
+    ``RPS_CACHE_DIR`` wins, then the user's cache folder, then one in the system's temporary folder.
     """
-    return next((place for place in _places() if _is_writable(place)), None)
+    return next((place for place in _places() if _is_writable(place) and is_private(place)), None)
 
 
 def _places() -> Iterator[Path]:
@@ -27,24 +26,36 @@ def _places() -> Iterator[Path]:
         yield Path(named)
     home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
     yield Path(home) / "rps"
-    # What is cached is run as code: everybody may write to the temporary folder, so a folder there
-    # counts only if nobody else made it, and nobody else may write to it.
     user = os.getuid() if hasattr(os, "getuid") else 0
     place = Path(tempfile.gettempdir()) / f"rps-{user}"
-    with suppress(OSError):
-        place.mkdir(mode=0o700, exist_ok=True)
-        found = place.lstat()
-        if stat.S_ISDIR(found.st_mode) and (os.name == "nt" or _is_private(found, user)):
-            yield place
+    if not place.is_symlink():  # everybody may put one there
+        yield place
 
 
-def _is_private(found: os.stat_result, user: int) -> bool:
-    return found.st_uid == user and not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO)
+def is_private(folder: Path) -> bool:
+    """Whether nobody but its owner, who is this user, may write to a folder; else says so.
+
+    What is cached is run as code.
+    """
+    if os.name == "nt":
+        return True
+    found = folder.stat()
+    if found.st_uid != os.getuid():
+        warnings.warn(f"{folder} belongs to somebody else and is not used", stacklevel=2)
+    elif found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        warnings.warn(
+            f"others may write to {folder}, where code is kept, so it is not used;"
+            f" chmod go-w {folder}",
+            stacklevel=2,
+        )
+    else:
+        return True
+    return False
 
 
 def _is_writable(folder: Path) -> bool:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             return True
     except OSError:

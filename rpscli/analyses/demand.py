@@ -125,7 +125,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
     run = run_of(stacked, motions.items, histories)
     storeys = requests[0].structure.storeys
     lanes = LANES if len(requests) >= worth_lanes else 1
-    with compiled():
+    with compiled(equipped=any(r.structure.devices for r in requests)):
         integrate(run, lanes)
     return histories_of(run.results, storeys)
 

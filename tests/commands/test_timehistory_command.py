@@ -6,7 +6,6 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
-from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -261,10 +260,10 @@ def test_an_animation(rps_json: InvokeJson) -> None:
 def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
     monkeypatch.setattr("rpscli.physics.core.compile.is_compiled", lambda _: False)
-    monkeypatch.setattr("rpscli.analyses.kernels.compilation._first", Lock())
+    monkeypatch.setattr("rpscli.analyses.kernels.compilation._begun", set())
     heard = rps("timehistory", "small.yaml").stderr
     assert heard.count("compiling the kernel") == 1
-    monkeypatch.setattr("rpscli.analyses.kernels.compilation._first", Lock())
+    monkeypatch.setattr("rpscli.analyses.kernels.compilation._begun", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
 
 

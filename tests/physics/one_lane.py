@@ -68,7 +68,7 @@ class OneLane:
         systems = stacked_systems([(structure, settings or TimeHistorySettings())])
         self.run = run_of(systems, [stillness(LEAST_DT)], [Request(0, 0)])
         self.system = systems[0]
-        self.state = empty_state(self.storeys, lanes=1)
+        self.state = empty_state(self.storeys, lanes=1, equipped=bool(structure.devices))
         self.s = self.state[0]
         begin_history(self.s, 0, self.run, 0)
         self.s.side[0] = side

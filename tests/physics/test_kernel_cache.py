@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import os
-import pickle
 import shutil
 import stat
 import subprocess
@@ -23,22 +22,19 @@ from rpscli.physics.core.compile import (
     is_compiled,
     kernel,
     remember_compiled,
-    sound_cache,
     sources_digest,
 )
-from rpscli.physics.core.kernel_files import NOTES, discard_damaged, note_files
+from rpscli.physics.planar import prepare
 from rpscli.user_cache import user_cache
 
 
 @pytest.fixture(autouse=True)
 def fresh_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
     """The folder is remembered for the process; each test looks for it anew."""
-    for remembered in (cache_folder, sound_cache):
-        remembered.cache_clear()
+    cache_folder.cache_clear()
     yield monkeypatch
     monkeypatch.undo()
-    for remembered in (cache_folder, sound_cache):
-        remembered.cache_clear()
+    cache_folder.cache_clear()
 
 
 def test_the_user_may_name_the_place(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -71,11 +67,36 @@ def test_nowhere_to_write_means_no_cache(fresh_folder: pytest.MonkeyPatch, tmp_p
     assert double(3.0) == 6.0
 
 
-@pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
-def test_a_shared_temporary_folder_is_used_only_if_nobody_else_can_write_there(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+owners = pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
+
+
+@owners
+@pytest.mark.parametrize("mode", [0o777, 0o775, 0o722])
+def test_a_place_that_others_may_write_to_is_not_used(
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path, mode: int
 ) -> None:
     """Machine code from there is run."""
+    fresh_folder.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "shared"))
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "shared").chmod(mode)
+    with pytest.warns(UserWarning, match=f"others may write to {tmp_path / 'shared'}.*chmod go-w"):
+        assert user_cache() == tmp_path / "cache" / "rps"
+    assert stat.S_IMODE((tmp_path / "cache" / "rps").stat().st_mode) == 0o700
+    (tmp_path / "shared").chmod(0o755)
+    folder = cache_folder()
+    assert folder is not None
+    assert folder.parent == tmp_path / "shared"
+    folder.chmod(mode)
+    cache_folder.cache_clear()
+    with pytest.warns(UserWarning, match=f"others may write to {folder}"):
+        assert cache_folder() is None
+
+
+@owners
+def test_a_temporary_folder_that_somebody_else_made_is_not_used(
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     (tmp_path / "file").write_text("no folder")
     fresh_folder.setenv("RPS_CACHE_DIR", "")
     fresh_folder.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
@@ -83,13 +104,13 @@ def test_a_shared_temporary_folder_is_used_only_if_nobody_else_can_write_there(
     own = tmp_path / f"rps-{os.getuid()}"
     assert user_cache() == own
     assert stat.S_IMODE(own.stat().st_mode) == 0o700
-    own.chmod(0o777)
-    assert user_cache() is None
-    own.chmod(0o700)
     somebody = os.getuid() + 1
     own.rename(tmp_path / f"rps-{somebody}")
-    fresh_folder.setattr(os, "getuid", lambda: somebody)
+    own.symlink_to(tmp_path / f"rps-{somebody}")
     assert user_cache() is None
+    fresh_folder.setattr(os, "getuid", lambda: somebody)
+    with pytest.warns(UserWarning, match="belongs to somebody else"):
+        assert user_cache() is None
 
 
 @pytest.mark.parametrize("source", ["core/lanes.py", "planar/steps.py", "planar/devices/rest.py"])
@@ -171,7 +192,7 @@ compilation.remember_compiled("four")
 
 
 @needs_compiled_kernels
-def test_a_damaged_cache_is_thrown_away_and_filled_again(tmp_path: Path) -> None:
+def test_files_without_content_are_thrown_away_and_made_again(tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
     environment = {**os.environ, "RPS_CACHE_DIR": str(tmp_path / "cache")}
@@ -183,51 +204,74 @@ def test_a_damaged_cache_is_thrown_away_and_filled_again(tmp_path: Path) -> None
             command, env=environment, capture_output=True, text=True, check=True
         ).stdout.strip()
 
-    def only(suffix: str) -> Path:
+    assert run() == "0 False"
+    assert run() == "1 True"
+    for suffix in ("nbi", "nbc"):
         (file,) = (tmp_path / "cache").rglob(f"*.{suffix}")
-        return file
-
-    assert run() == "0 False"
-    assert run() == "1 True"
-    only("nbi").write_bytes(b"")  # what a power loss leaves
-    assert run() == "0 False"
-    code = bytearray(only("nbc").read_bytes())
-    code[len(code) // 2] ^= 4  # numba would run it
-    only("nbc").write_bytes(code)
-    assert run() == "0 False"
+        file.write_bytes(b"")  # what a power loss leaves
+        assert run() == "0 False"
     assert run() == "1 True"
 
 
-@pytest.mark.parametrize("damage", [b"", b"no pickle", pickle.dumps([1, 2, 3])[:-3]])
-def test_an_index_that_is_not_whole_is_damaged(tmp_path: Path, damage: bytes) -> None:
-    index, code = tmp_path / "a.nbi", tmp_path / "a.1.nbc"
-    index.write_bytes(pickle.dumps("version") + pickle.dumps({"a": code.name}))
-    code.write_bytes(b"machine code")
-    (tmp_path / "a.compiled").touch()
-    note_files(tmp_path)
-    assert not discard_damaged(tmp_path)
-    index.write_bytes(damage)
-    note_files(tmp_path)  # by a process that ends later
-    assert discard_damaged(tmp_path)
-    assert not list(tmp_path.iterdir())
+TWO_RECORDS = """
+import sys
+import numpy as np
+from rpscli.physics.core.compile import kernel
+
+@kernel
+def inner(record) -> float:
+    total = 0.0
+    for i in range(record.x.shape[0]):
+        total += record.x[i]
+    BULK
+    return total * record.y
+
+@kernel
+def outer(records) -> float:
+    return inner(records[0])
+
+KINDS = {
+    "small": np.dtype([("y", float), ("x", float, (3,)), ("z", float, (2,))]),
+    "large": np.dtype([("z", float, (20,)), ("x", float, (7,)), ("y", float)]),
+}
+for name in sys.argv[1:]:
+    records = np.ones(1, KINDS[name]).view(np.recarray)
+    records.y = 4.0
+    print(round(outer(records), 9), sum(outer.stats.cache_hits.values()))
+"""
 
 
-def test_an_index_of_another_form_is_not_damaged(tmp_path: Path) -> None:
-    (tmp_path / "a.nbi").write_bytes(b"no pickle")
-    note_files(tmp_path)
-    assert not discard_damaged(tmp_path)
+@needs_compiled_kernels
+def test_code_of_one_record_is_not_called_for_another(tmp_path: Path) -> None:
+    """Compiled by two processes, loaded by a third."""
+    program = tmp_path / "program.py"
+    # Were it shorter, the compiler would copy the inner function into the outer one.
+    bulk = "\n    ".join(
+        f"total += np.cos(total) * np.sin({i}.0 * record.y) * 0.0" for i in range(60)
+    )
+    program.write_text(TWO_RECORDS.replace("BULK", bulk))
+    environment = {**os.environ, "RPS_CACHE_DIR": str(tmp_path / "cache")}
+
+    def run(*kinds: str) -> list[str]:
+        command = [sys.executable, str(program), *kinds]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+        return done.stdout.splitlines()
+
+    assert run("small") == ["12.0 0"]
+    assert run("large") == ["28.0 0"]
+    assert run("small", "large") == ["12.0 1", "28.0 2"]
 
 
-def test_notes_that_are_damaged_themselves_are_made_anew(tmp_path: Path) -> None:
-    code = tmp_path / "below" / "a.nbc"
-    code.parent.mkdir()
-    code.write_bytes(b"machine code")
-    note_files(tmp_path)
-    assert not discard_damaged(tmp_path)
-    for notes in (b"", b"[1]", b"\xff"):
-        (tmp_path / NOTES).write_bytes(notes)
-        assert not discard_damaged(tmp_path)
-    note_files(tmp_path)
-    code.write_bytes(b"other code!!")
-    assert discard_damaged(tmp_path)
-    assert not code.exists()
+@needs_compiled_kernels
+def test_the_second_process_runs_nothing_from_the_working_folder(
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "numba.py").write_text("open('was_run', 'w').close()\n")
+    fresh_folder.chdir(tmp_path)
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
+    fresh_folder.setenv("NUMBA_DISABLE_JIT", "1")  # the other process: it has nothing to compile
+    fresh_folder.setattr(prepare, "compile_phases", lambda **_: None)
+    fresh_folder.setattr(prepare, "integrate_lanes", lambda *_: None)
+    fresh_folder.setattr(sys, "path", [place for place in sys.path if place])
+    prepare.compile_kernel(equipped=False)
+    assert not (tmp_path / "was_run").exists()

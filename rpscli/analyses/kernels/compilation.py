@@ -1,4 +1,4 @@
-"""Whether the kernel has to be compiled, and who wants to know before it happens."""
+"""Whether a kernel has to be compiled, and who wants to know before it happens."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from threading import Lock
 
-Listener = Callable[[], AbstractContextManager[None]]
-"""Called before the kernel is compiled; open until it is."""
+Listener = Callable[[str], AbstractContextManager[None]]
+"""Called with the name of a kernel before it is compiled; open until it is."""
 
 _listeners: list[Listener] = []
-_first = Lock()
-"""Taken by the first who compiles, and kept."""
+_begun: set[str] = set()
+"""Kernels that somebody compiles, or has compiled."""
+_lock = Lock()
 
-KERNEL = "kernel"
+KERNELS = ("kernel", "kernel with devices")
+"""A case without devices needs the first one only, the others the second."""
 
 
 def announce_to(listener: Listener) -> None:
@@ -21,26 +23,30 @@ def announce_to(listener: Listener) -> None:
     _listeners[:] = [listener]
 
 
-def is_ready() -> bool:
+def is_ready(*, equipped: bool = False) -> bool:
     """Whether the kernel was compiled before, so that calling it starts at once."""
     from rpscli.physics.core.compile import is_compiled
 
-    return is_compiled(KERNEL)
+    return is_compiled(KERNELS[equipped])
 
 
 @contextmanager
-def compiled() -> Iterator[None]:
+def compiled(*, equipped: bool) -> Iterator[None]:
     """Around a call of the kernel: announce the compilation if there is one, and remember it."""
     from rpscli.physics.core.compile import remember_compiled
     from rpscli.physics.planar.prepare import compile_kernel
 
-    if is_ready():
+    name = KERNELS[equipped]
+    if is_ready(equipped=equipped):
         yield
         return
     with ExitStack() as told:
-        if _first.acquire(blocking=False):
+        with _lock:
+            first = name not in _begun
+            _begun.add(name)
+        if first:
             for listener in _listeners:
-                told.enter_context(listener())
-            compile_kernel()
+                told.enter_context(listener(name))
+            compile_kernel(equipped=equipped)
         yield
-    remember_compiled(KERNEL)
+    remember_compiled(name)

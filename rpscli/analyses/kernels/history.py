@@ -336,7 +336,7 @@ def sampled_history(
     events = FIRST_LOG
     while True:
         run = run_of(systems, motions, [request], rows=rows, events=events)
-        with compiled():
+        with compiled(equipped=bool(structure.devices)):
             integrate(run, lanes=1)
         history = histories_of(run.results, structure.storeys)[0]
         if (seen := int(history.counts.sum())) <= events:

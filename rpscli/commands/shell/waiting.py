@@ -94,16 +94,16 @@ def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContext
 
 
 def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
-    """Say so if the kernel has to be compiled; `moving` where no bar shows that work goes on."""
+    """Say so if a kernel has to be compiled; `moving` where no bar shows that work goes on."""
     from rpscli.analyses.kernels.compilation import announce_to
 
     @contextmanager
-    def told() -> Iterator[None]:
+    def told(kernel: str) -> Iterator[None]:
         from rpscli.physics.core.compile import cache_folder
 
-        nowhere = f"each time: no folder for it can be written; name one in {VARIABLE}"
+        nowhere = f"each time: no folder that is yours alone can be written; name one in {VARIABLE}"
         often = "once for this version" if cache_folder() else nowhere
-        terminal.note(f"compiling the kernel, {often}: half a minute")
+        terminal.note(f"compiling the {kernel}, {often}: half a minute")
         with passing_time("compiling", terminal) if moving else nullcontext():
             yield
 

@@ -7,19 +7,18 @@ what is found there always belongs to the program that runs.
 
 from __future__ import annotations
 
-import atexit
 import hashlib
 import re
 from collections.abc import Callable
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from numba.extending import register_jitable
+from numba.core import types
+from numba.extending import overload, register_jitable
 
-from rpscli.physics.core.kernel_files import discard_damaged, note_files
-from rpscli.user_cache import user_cache
+from rpscli.user_cache import is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -38,6 +37,19 @@ CONSTANTS = SOURCES.parent / "constants.py"
 """The one module outside of the sources that decides about a kernel: how large its records are."""
 
 
+def _name_in_code(kind: types.Type) -> tuple[str, tuple[int]]:
+    """What a type is called in the names of machine code: the digest of all that it holds."""
+    digest = hashlib.sha256(kind.name.encode()).hexdigest()
+    return type(kind).__name__, (int(digest[:12], 16),)
+
+
+# numba (0.68) names a record by a running number of the process, and an array in it without its
+# shape. Machine code of two records, compiled by two processes and loaded by a third, then has the
+# same names, and the code of one is called for the other: garbage without a warning.
+cast("Any", types.Record).mangling_args = property(_name_in_code)
+cast("Any", types.NestedArray).mangling_args = property(_name_in_code)
+
+
 def sources_digest(folder: Path, *others: Path) -> str:
     """Digest of all Python sources below a folder, their places included, and of other files."""
     digest = hashlib.sha256()
@@ -51,30 +63,27 @@ def sources_digest(folder: Path, *others: Path) -> str:
 
 @cache
 def cache_folder() -> Path | None:
-    """Folder of the compiled kernels; None if no place is writable."""
-    place = user_cache()
-    if place is None:
+    """Folder of the compiled kernels; None if no place is writable, or others may write there.
+
+    What a power loss leaves, files without content, numba would stumble over: then all go.
+    """
+    if (place := user_cache()) is None:
         return None
     folder = place / f"kernels-{sources_digest(SOURCES, CONSTANTS)}"
-    folder.mkdir(exist_ok=True)
-    return folder
-
-
-@cache
-def sound_cache() -> Path | None:
-    """The cache folder without what a disk has damaged; None where there can be none."""
-    if (folder := cache_folder()) is not None:
-        try:
-            discard_damaged(folder)
-        except OSError:
-            return None
-        atexit.register(note_files, folder)
-    return folder
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        files = [file for file in folder.rglob("*.nb[ci]") if file.is_file()]
+        if not all(file.stat().st_size for file in files):
+            for file in [*files, *folder.glob("*.compiled")]:
+                file.unlink(missing_ok=True)
+    except OSError:
+        return None
+    return folder if is_private(folder) else None
 
 
 def kernel(function: Function) -> Function:
     """Compile at the first call from Python, without the GIL; keep the machine code on disk."""
-    folder, config = sound_cache(), cast("Any", numba.config)
+    folder, config = cache_folder(), cast("Any", numba.config)
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
     try:
         return cast("Function", numba.njit(function, cache=folder is not None, **OPTIONS))
@@ -100,20 +109,42 @@ def specialised(function: Function) -> Function:
     return cast("Function", numba.njit(function, **OPTIONS))
 
 
+def compiled_with(field: str, *, otherwise: object = None) -> Callable[[Function], Function]:
+    """Compile for records (the first argument) with a field; of others return a constant.
+
+    So a kernel is compiled without what its records have no fields for.
+    """
+
+    def nothing(*_: object) -> object:
+        return otherwise
+
+    def decorate(function: Function) -> Function:
+        @wraps(function)
+        def chosen(record: Any, *others: Any) -> Any:
+            return (function if field in record.dtype.names else nothing)(record, *others)
+
+        @overload(chosen, jit_options=cast("Any", OPTIONS), strict=False)
+        def choose(record: Any, *_: Any) -> Callable[..., Any]:
+            return function if field in record.fields else nothing
+
+        return cast("Function", chosen)
+
+    return decorate
+
+
 _compiled_here: set[str] = set()
 
 
 def is_compiled(name: str) -> bool:
     """Whether `remember_compiled` was told so by any process that uses the same cache folder."""
-    folder = sound_cache()
+    folder = cache_folder()
     return name in _compiled_here or (folder is not None and (folder / _mark(name)).exists())
 
 
 def remember_compiled(name: str) -> None:
     """Note that the machine code of a kernel is in memory and, if there is a cache, on disk."""
     _compiled_here.add(name)
-    if (folder := sound_cache()) is not None:
-        note_files(folder)
+    if (folder := cache_folder()) is not None:
         (folder / _mark(name)).touch()
 
 

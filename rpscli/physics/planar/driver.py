@@ -54,7 +54,8 @@ def integrate(run: Run, lanes: int = LANES) -> None:
     lanes
         Histories side by side: 1 or `LANES`. The results are the same.
     """
-    integrate_lanes(empty_state(int(run.systems.n[0]), lanes), run)
+    equipped = bool(run.systems.devices.any())
+    integrate_lanes(empty_state(int(run.systems.n[0]), lanes, equipped=equipped), run)
 
 
 @kernel
@@ -67,7 +68,7 @@ def integrate_lanes(state: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- 
     """
     s = state[0]
     systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block
-    s.audited, s.equipped = 1 if output.samples.shape[0] > 0 else 0, has_devices(systems)
+    s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, s.lanes
     begun = False
     while active > 0:
@@ -108,8 +109,7 @@ def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -
     s = state[0]
     take_steps(s)
     check_steps(s)
-    if s.equipped > 0:
-        check_devices(s)
+    check_devices(s)
     observe_ends(s)
     observe_lanes(s, systems, blocks[0], log)
     accept_steps(s)
@@ -140,15 +140,6 @@ def next_history(s: Record, l: int, run: Run) -> int:
         return fate
     idle(s, l)
     return GOES_ON
-
-
-@compiled
-def has_devices(systems: Record) -> int:
-    """1 if any structure has devices."""
-    for i in range(systems.shape[0]):
-        if systems[i].devices > 0:
-            return 1
-    return 0
 
 
 @compiled
@@ -223,8 +214,6 @@ def load_system(s: Record, l: int, system: Record) -> None:
     s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
     s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
     s.theta_cr[l], s.last_term[l] = system.theta_cr, system.last_term
-    s.half_width[l], s.arc_end[l] = system.R * math.sin(system.alpha), system.beta
-    s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
     for r in range(s.n):
         s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[r], system.two_xi_omega[r]
         s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[r], system.shear_weight[r]

@@ -20,21 +20,22 @@ import numpy as np
 
 from rpscli.physics.core.compile import cache_folder
 from rpscli.physics.core.records import NO_HISTORY, Record
-from rpscli.physics.planar.driver import advance_lanes, integrate, next_history
+from rpscli.physics.planar.driver import advance_lanes, integrate_lanes, next_history
 from rpscli.physics.planar.events import go_on_renewed, resolve_step
 from rpscli.physics.planar.full_contact.modal_block import integrate_fixed_base
 from rpscli.physics.planar.full_contact.stand import stand
 from rpscli.physics.planar.run import empty_run, empty_state
 
 
-def compile_kernel() -> None:
-    """Compile the kernel; what fails in a part is left to the first call.
+def compile_kernel(*, equipped: bool) -> None:
+    """Compile the kernel, with devices or without; what fails in a part is left to the first call.
 
     Without a cache, or without machine code at all, there is nothing to prepare.
     """
     if cast("Any", numba.config).DISABLE_JIT or cache_folder() is None or not sys.executable:
         return
-    command = [sys.executable, "-m", __name__]
+    # Without -P a numba.py in the working folder would be run.
+    command = [sys.executable, "-P", "-m", __name__, "equipped" if equipped else "plain"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     silent = subprocess.DEVNULL
     with (
@@ -44,17 +45,17 @@ def compile_kernel() -> None:
         ) as other,
     ):
         try:
-            compile_phases()
+            compile_phases(equipped=equipped)
             other.wait()
-            integrate(empty_run(1), 1)
+            integrate_lanes(empty_state(1, 1, equipped=equipped), empty_run(1))
         except BaseException:
             other.kill()
             raise
 
 
-def compile_phases() -> None:
+def compile_phases(*, equipped: bool) -> None:
     """Full contact, what begins a phase or a history, and the building on a fixed base."""
-    run, s = empty_run(1), no_histories()[0]
+    run, s = empty_run(1), no_histories(equipped=equipped)[0]
     stand(s, 0, run.systems[0], run.block[0], run.acceleration, run.output)
     next_history(s, 0, run)
     go_on_renewed(s, 0, run.systems[0], run.output)
@@ -62,16 +63,16 @@ def compile_phases() -> None:
     integrate_fixed_base(run.acceleration, 1.0, 0, run.systems, run.block, floors, largest)
 
 
-def compile_steps() -> None:
+def compile_steps(*, equipped: bool) -> None:
     """Uplifted steps of all lanes, and those of one that end on an event."""
-    run, state = empty_run(1), no_histories()
+    run, state = empty_run(1), no_histories(equipped=equipped)
     advance_lanes(state, run.systems, run.block, run.output.log)
     resolve_step(state[0], 0, run.systems[0], run.block[0], run.output.log)
 
 
-def no_histories() -> Record:
+def no_histories(*, equipped: bool) -> Record:
     """Lanes for which there is nothing to do."""
-    state = empty_state(1)
+    state = empty_state(1, equipped=equipped)
     state.history[:] = NO_HISTORY
     return state
 
@@ -90,4 +91,4 @@ def garbage_kept() -> Iterator[None]:
 
 if __name__ == "__main__":
     with garbage_kept():
-        compile_steps()
+        compile_steps(equipped=sys.argv[1:] == ["equipped"])

@@ -8,7 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.physics.core.records import LANES, Floats, Record, records
-from rpscli.physics.planar.state import BLOCK, EVENT, REQUEST, RESULT, SAMPLE, STATE, SYSTEM
+from rpscli.physics.planar.state import (
+    BLOCK,
+    EQUIPPED_STATE,
+    EVENT,
+    REQUEST,
+    RESULT,
+    SAMPLE,
+    STATE,
+    SYSTEM,
+)
 
 
 class Output(NamedTuple):
@@ -62,15 +71,19 @@ class Run(NamedTuple):
     block: Record
 
 
-def empty_state(storeys: int, lanes: int = LANES) -> Record:
+def empty_state(storeys: int, lanes: int = LANES, *, equipped: bool = False) -> Record:
     """Lanes with nothing to do, an array of one record; all of them are used, or one.
 
     Parameters
     ----------
     storeys
         n, for all lanes.
+    lanes
+        1 or `LANES`.
+    equipped
+        Whether any structure has devices.
     """
-    state = records(STATE)
+    state = records(EQUIPPED_STATE if equipped else STATE)
     state.n, state.lanes = storeys, lanes
     return state
 

@@ -157,15 +157,13 @@ def take_steps(s: Record) -> None:
     Reads the motion at the start of the step, and leaves it; writes the Taylor terms and the end.
     """
     begin_terms(s)
-    if s.equipped > 0:
-        begin_devices(s)
+    begin_devices(s)
     if s.lanes == 1:
         extend_all(s, 1)
     else:
         extend_all(s, LANES)
     add_terms(s)
-    if s.equipped > 0:
-        set_devices_at_ends(s)
+    set_devices_at_ends(s)
     accelerate(s)
 
 
@@ -180,32 +178,25 @@ def extend_all(s: Record, lanes: int) -> None:
     """
     extend_rotation(s, lanes, 1)
     extend_modes(s, lanes, 1)
-    extend_equipped(s, 1)
+    extend_devices(s, 1)
     extend_rotation(s, lanes, 2)
     extend_modes(s, lanes, 2)
-    extend_equipped(s, 2)
+    extend_devices(s, 2)
     extend_rotation(s, lanes, 3)
     extend_modes(s, lanes, 3)
-    extend_equipped(s, 3)
+    extend_devices(s, 3)
     extend_rotation(s, lanes, 4)
     extend_modes(s, lanes, 4)
-    extend_equipped(s, 4)
+    extend_devices(s, 4)
     extend_rotation(s, lanes, 5)
     extend_modes(s, lanes, 5)
-    extend_equipped(s, 5)
+    extend_devices(s, 5)
     extend_rotation(s, lanes, 6)
     extend_modes(s, lanes, 6)
-    extend_equipped(s, 6)
+    extend_devices(s, 6)
     extend_rotation(s, lanes, 7)
     extend_modes(s, lanes, 7)
-    extend_equipped(s, 7)
-
-
-@compiled
-def extend_equipped(s: Record, m: int) -> None:
-    """Terms of order m of devices, where there are any."""
-    if s.equipped > 0:
-        extend_devices(s, m)
+    extend_devices(s, 7)
 
 
 @compiled

@@ -21,6 +21,7 @@ from rpscli.physics.core.quintic import (
     quintic,
 )
 from rpscli.physics.core.records import ORDER, Record
+from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.devices.forces import cap_beam_path, opening
 from rpscli.physics.planar.state import (
     AFTER_PHASE_CHANGE,
@@ -152,7 +153,7 @@ def meets_kink(s: Record, l: int) -> bool:
     return not FALLS <= rate / first <= RISES
 
 
-@compiled
+@with_devices()
 def check_devices(s: Record) -> None:
     """Withdraw the acceptance of steps in which a device may change its law, or that end too far.
 
@@ -173,7 +174,7 @@ def check_devices(s: Record) -> None:
             s.accepted[l], s.at_sample[l], s.peak_inside[l] = 0.0, 0.0, 0.0
 
 
-@compiled
+@with_devices(otherwise=(NO_PASSAGE, -1))
 def locate_change(s: Record, l: int, block: Record) -> tuple[float, int]:
     """Fraction of the step at which the first device changes its law, and the watched function."""
     first, found = NO_PASSAGE, -1
@@ -211,7 +212,7 @@ def refined(s: Record, l: int, guess: float) -> float:
     return t
 
 
-@compiled
+@with_devices()
 def change_law(s: Record, l: int, log: Record, which: int) -> None:
     """What the watched function that fell below zero stands for; the lane is where it did.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import Floats, Record
 from rpscli.physics.core.series import NODES, WEIGHTS, integral, value
+from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.devices.forces import cap_beam_path, opening, resistance, tension
 from rpscli.physics.planar.devices.rest import held
 from rpscli.physics.planar.equation_of_motion import rotation_terms
@@ -21,7 +22,7 @@ from rpscli.physics.planar.state import (
 )
 
 
-@compiled
+@with_devices()
 def book_devices(s: Record, l: int, fraction: float) -> None:
     """Book what the devices of a lane dissipate in the first part of its step.
 
@@ -54,7 +55,7 @@ def book_devices(s: Record, l: int, fraction: float) -> None:
             s.device_energy[i, l] += fraction * s.step[l] * WEIGHTS[n] * power
 
 
-@compiled
+@with_devices()
 def observe_devices(s: Record, l: int) -> None:
     """Raise the largest forces and rates of devices by those at the end of the step.
 
@@ -139,7 +140,7 @@ def stored_in(s: Record, l: int, i: int, path: float, e: float) -> float:
 # What devices do at a sample of the record, and leave behind at the end.
 
 
-@compiled
+@with_devices()
 def store_devices(s: Record, l: int, sample: Floats) -> None:
     """Keep force, displacement, dissipated and stored energy of each device of a lane.
 
@@ -169,7 +170,7 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
         sample[3, i] = stored_in(s, l, i, path, e)
 
 
-@compiled
+@with_devices()
 def leave_devices(s: Record, l: int, result: Record) -> None:
     """Write what the devices of a lane leave behind at the end of its history.
 

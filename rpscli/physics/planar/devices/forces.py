@@ -14,6 +14,7 @@ import numpy as np
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import ORDER, TERMS, Record
 from rpscli.physics.core.series import sine_cosine
+from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.equation_of_motion import (
     cap_beam_displacement,
     contact_height,
@@ -78,7 +79,7 @@ def cap_beam_path(s: Record, l: int, theta: float, theta_dot: float) -> tuple[fl
     return path, s.diameter[l] * C * theta_dot, C
 
 
-@compiled
+@with_devices()
 def set_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
     """What the devices of a lane do at a tilt and its rate; writes `next_device`, push and pull.
 
@@ -99,7 +100,7 @@ def set_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
     s.next_pull[l] = tense * rise
 
 
-@compiled
+@with_devices()
 def set_devices_at_ends(s: Record) -> None:
     """The same at the ends of the steps of all lanes."""
     for l in range(s.lanes):
@@ -219,7 +220,7 @@ def expand_opening(s: Record, l: int) -> None:
 # by the velocity: near its zero steps are short, and up to `linear_speed` the power is linear.
 
 
-@compiled
+@with_devices()
 def begin_devices(s: Record) -> None:
     """Terms of order 0, in lanes with devices."""
     for l in range(s.lanes):
@@ -241,7 +242,7 @@ def begin_devices(s: Record) -> None:
         s.resistance_terms[0, l], s.tension[l], s.tendon_stiffness[l] = resisting, tense, stiffness
 
 
-@compiled
+@with_devices()
 def extend_devices(s: Record, m: int) -> None:
     """Terms of order m, in lanes with devices: all those of the tilt up to m are known."""
     for l in range(s.lanes):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.lanes import log_event, time_of
 from rpscli.physics.core.records import INSTANTS, Record
 from rpscli.physics.core.series import sine_cosine
+from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.devices.events import has_friction, turn_tendons
 from rpscli.physics.planar.devices.forces import cap_beam_path, opening, resistance, tension
 from rpscli.physics.planar.equation_of_motion import (
@@ -32,14 +35,13 @@ from rpscli.physics.planar.state import (
 )
 
 
-@compiled
+@with_devices()
 def load_devices(s: Record, l: int, system: Record) -> None:
     """Begin a history with its devices as they are at rest and upright."""
-    s.devices[l], s.columns[l], s.linear_speed[l] = (
-        system.devices,
-        system.columns,
-        system.linear_speed,
-    )
+    s.devices[l], s.columns[l] = system.devices, system.columns
+    s.linear_speed[l] = system.linear_speed
+    s.half_width[l], s.arc_end[l] = system.R * math.sin(system.alpha), system.beta
+    s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
     s.friction_force[l], s.friction_moment[l], s.tendons[l], s.kinked[l] = 0.0, 0.0, 0, 0.0
     s.direction[l], s.next_device[l], s.next_push[l], s.next_pull[l] = 1.0, 0.0, 0.0, 0.0
     for m in range(s.device_terms.shape[0]):
@@ -63,7 +65,7 @@ def load_devices(s: Record, l: int, system: Record) -> None:
             s.next_pull[l] += system.columns * system.device_constants[i, 0]
 
 
-@compiled
+@with_devices()
 def begin_excursion(s: Record, l: int) -> None:
     """Leave x = 0: friction acts against growing tilts, and a stop without a gap is met at once."""
     s.direction[l] = 1.0
@@ -72,7 +74,7 @@ def begin_excursion(s: Record, l: int) -> None:
             s.device_branch[i, l] = WORKING if s.device_constants[i, 0, l] == 0.0 else IDLE
 
 
-@compiled
+@with_devices()
 def release_devices(s: Record, l: int) -> None:
     """Be held at a tilt: stops push, and tendons that cannot hold it have yielded."""
     path, _, _ = cap_beam_path(s, l, s.theta[l], 0.0)
@@ -87,7 +89,7 @@ def release_devices(s: Record, l: int) -> None:
     s.direction[l] = 1.0
 
 
-@compiled
+@with_devices(otherwise=(0.0, 0.0))
 def holding(s: Record, l: int) -> tuple[float, float]:
     """Horizontal force at the cap beam against a tilt at rest [N].
 
@@ -127,7 +129,7 @@ def held(s: Record, l: int) -> float:
     return float((pushed - elastic) / friction)
 
 
-@compiled
+@with_devices()
 def hold_block(s: Record, l: int, block: Record) -> None:
     """Write what devices push the cap beam with at all instants of a block, where it is stuck.
 
@@ -148,7 +150,7 @@ def hold_block(s: Record, l: int, block: Record) -> None:
         block.push[k] = -s.side[l] * (steady + held(s, l) * s.friction_force[l])
 
 
-@compiled
+@with_devices(otherwise=0.0)
 def resting_pull(s: Record, l: int) -> float:
     """What tendons pull the cap beam down with at rest [N]."""
     pull = 0.0
@@ -159,7 +161,7 @@ def resting_pull(s: Record, l: int) -> float:
     return pull
 
 
-@compiled
+@with_devices(otherwise=False)
 def turn(s: Record, l: int, log: Record) -> bool:
     """After x' = 0 under friction: go on to the side that is pushed to; True if neither is.
 
@@ -183,7 +185,7 @@ def turn(s: Record, l: int, log: Record) -> bool:
     return True
 
 
-@compiled
+@with_devices()
 def slide(s: Record, l: int, log: Record, side: float) -> None:
     """Leave a tilt that friction held, to the right or to the left.
 
