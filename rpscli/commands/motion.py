@@ -72,14 +72,11 @@ def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator
 
 def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
     """What identifies a motion in `run.json`; digests are those of the scaled samples."""
-    components = {"horizontal": motion.horizontal, "vertical": motion.vertical}
-    return {
-        "scale": motion.scale,
-        **{
-            name: found and {"source": found.source, "sha256": found.digest}
-            for name, found in components.items()
-        },
+    sources = {
+        name: {"source": found.source, "sha256": found.digest}
+        for name, found in motion.named.items()
     }
+    return {"scale": motion.scale, "horizontal": None, "vertical": None, **sources}
 
 
 def motion_source(case: Case, request: MotionRequest) -> Path | str:
@@ -100,24 +97,20 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     RecordError
         If a record cannot be read or scaled, or the components have different time steps.
     """
-    from rpscli.records.ground_motion import MotionComponents
-    from rpscli.records.source import load_record
+    from rpscli.records.source import load_components, load_record
 
     given = case.record if request.record is None else None
-    vertical: GroundMotion | None = None
     if request.record is not None:
-        horizontal = load_record(request.record)
-    elif given is not None:
-        how: dict[str, Any] = {"folder": case.folder, "dt": given.dt, "units": given.units}
-        horizontal = load_record(given.source, **how)
-        if given.vertical is not None and request.vertical is None:
-            vertical = load_record(given.vertical, **how)
-    else:
+        motion = load_components(request.record, request.vertical)
+    elif given is None:
         raise UsageError(f"{case.source}: the case names no record; give one with --record")
-    if request.vertical is not None:
-        vertical = load_record(request.vertical)
-    motion = MotionComponents(horizontal, vertical)
-    scale = _factor(case, request, horizontal)
+    else:
+        own = given.vertical if request.vertical is None else None
+        how = {"folder": case.folder, "dt": given.dt, "units": given.units}
+        motion = load_components(given.source, own, **how)
+        if request.vertical is not None:
+            motion = replace(motion, vertical=load_record(request.vertical))
+    scale = _factor(case, request, motion.horizontal)
     return motion if scale == 1.0 else motion.scaled(scale)
 
 

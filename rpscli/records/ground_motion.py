@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
-from rpscli.frozen import frozen
+from rpscli.frozen import Frozen, frozen
 from rpscli.shown import Shown, with_unit
 
 if TYPE_CHECKING:
@@ -242,29 +242,16 @@ class GroundMotion(Shown):
 
 
 @dataclass(frozen=True, eq=False)
-class MotionComponents:
+class MotionComponents(Frozen):
     """The components of one ground motion: horizontal, and vertical where that is known.
 
-    Parameters
-    ----------
-    horizontal : GroundMotion
-        Along the structure.
-    vertical : GroundMotion, optional
-        Positive upwards, with the same time step; it may be longer or shorter.
-    scale : float
-        What the accelerations of both were multiplied by since they were read.
+    The vertical one is positive upwards and has the same time step; it may be longer or shorter.
+    Both were multiplied by `scale` since they were read.
 
-    Raises
-    ------
-    RecordError
-        If their time steps differ.
-
-    Examples
-    --------
     >>> along = GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5, "x", "x.at2", "PEER AT2")
     >>> up = GroundMotion(np.array([1.0, 2.0]), 0.5, "z", "z.at2", "PEER AT2")
-    >>> MotionComponents(along, up).of_one_length[1].acceleration.tolist()
-    [1.0, 2.0, 0.0]
+    >>> MotionComponents(along, up).samples.tolist()
+    [[0.0, 2.0, -3.0], [1.0, 2.0, 0.0]]
     """
 
     horizontal: GroundMotion
@@ -272,13 +259,34 @@ class MotionComponents:
     scale: float = 1.0
 
     def __post_init__(self) -> None:
-        if self.vertical is not None:
-            require_one_step(self.horizontal, self.vertical, "vertical")
+        for name, motion in self.named.items():
+            require_one_step(self.horizontal, motion, name)
+
+    @property
+    def named(self) -> dict[str, GroundMotion]:
+        """Those that there are, by their names in documents, in the order of `samples`."""
+        every = {"horizontal": self.horizontal, "vertical": self.vertical}
+        return {name: motion for name, motion in every.items() if motion is not None}
+
+    @cached_property
+    def samples(self) -> NDArray[np.float64]:
+        """Accelerations (components, npts of the longest) [m/s2]; shorter ones go on as zero."""
+        motions = self.named.values()
+        found = np.zeros((len(motions), max(motion.npts for motion in motions)))
+        for row, motion in zip(found, motions, strict=True):
+            row[: motion.npts] = motion.acceleration
+        return frozen(found)
+
+    @property
+    def digest(self) -> bytes:
+        """Of the samples of all components."""
+        parts = [self.horizontal.digest, self.vertical.digest if self.vertical else ""]
+        return hashlib.sha256("|".join(parts).encode()).digest()
 
     def scaled(self, factor: float) -> MotionComponents:
-        """Both components times `factor`."""
-        vertical = self.vertical and self.vertical.scaled(factor)
-        return MotionComponents(self.horizontal.scaled(factor), vertical, self.scale * factor)
+        """All components times `factor`."""
+        named = {name: motion.scaled(factor) for name, motion in self.named.items()}
+        return MotionComponents(**named, scale=self.scale * factor)
 
     @property
     def scale_warnings(self) -> tuple[str, ...]:
@@ -293,20 +301,15 @@ class MotionComponents:
         along, up = self.horizontal, self.vertical
         if up is None or up.npts == along.npts:
             return along, up
-        npts = max(along.npts, up.npts)
-        return _prolonged(along, npts), _prolonged(up, npts)
+        one, other = self.samples
+        return replace(along, acceleration=one), replace(up, acceleration=other)
 
 
 def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:
-    """Refuse components of different time steps."""
+    """Refuse components of different time steps; the other one is called by its name."""
     if one.dt != other.dt:
         raise RecordError(
             f"{other.source}: the {name} record has dt = {other.dt} s, {one.source} {one.dt} s:"
             " they must agree; resample one of them with"
             f" `rps record convert {other.source} --resample {one.dt}`"
         )
-
-
-def _prolonged(motion: GroundMotion, npts: int) -> GroundMotion:
-    after = np.zeros(npts - motion.npts)
-    return replace(motion, acceleration=np.concatenate([motion.acceleration, after]))

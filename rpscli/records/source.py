@@ -8,10 +8,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from rpscli.errors import RecordError, nearest
 from rpscli.records import pulses, sets, synthetic
-from rpscli.records.ground_motion import GroundMotion, is_usual, scale_warning
+from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import angle_of, rotated
 from rpscli.records.quantities import canonical_unit, unit_factor
 from rpscli.records.query import LIKENESS, Query, hint, parse_query
@@ -69,6 +70,12 @@ def load_record(
         # Results of different factors go to different folders.
         name = f"{motion.name}_x{factor:.4g}"
         return replace(motion.scaled(factor), name=name, source=source, warnings=warnings)
+
+
+def load_components(source: str, vertical: str | None, **how: Any) -> MotionComponents:
+    """The components of a motion, read alike; `how` is that of `load_record`."""
+    along = load_record(source, **how)
+    return MotionComponents(along, None if vertical is None else load_record(vertical, **how))
 
 
 def _split_factor(source: str) -> tuple[str, str]:

@@ -107,16 +107,11 @@ def _sections(
     else:
         request, done, result = history
         ground = [*blocks_of(_record_tables(result))]
-        ground += [motion_pictures(each, look) for each in _components(request)]
+        ground += [motion_pictures(each, look) for each in request.ground.named.values()]
         made.insert(0, Section("In short", list(_in_short(done, result))))
         made += [Section("Ground motion", ground), Section("Response", _response(request, result))]
     repeat: list[Block] = [*_repeat(given, motion), *stored]
     return [*made, shared.hidden_section(), Section("How to repeat it", repeat)]
-
-
-def _components(request: HistoryRequest) -> list[Any]:
-    found = (request.ground.horizontal, request.ground.vertical)
-    return [each for each in found if each is not None]
 
 
 def _record_tables(result: TimeHistoryResult) -> Iterator[Any]:
@@ -169,10 +164,10 @@ def _input(given: CaseInput, request: HistoryRequest | None) -> list[Block]:
     motions = {}
     if request is not None:
         ground = request.ground
-        for name, each in (("record", ground.horizontal), ("vertical record", ground.vertical)):
-            if each is not None:
-                motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
-                motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
+        for component, each in ground.named.items():
+            name = f"{component} record".removeprefix("horizontal ")
+            motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
+            motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
     origin = listing(
         ("case", case.source),
         ("SHA-256 of its text", case.digest),

@@ -12,7 +12,7 @@ from typing import Generic, TypeVar
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import Measure, measured
-from rpscli.records.source import load_record
+from rpscli.records.source import load_components
 from rpscli.sweep.evaluation.points import RecordRequest
 
 Key = TypeVar("Key", bound=Hashable)
@@ -80,11 +80,9 @@ class RecordCache:
 
         def make() -> bytes:
             try:
-                motion = self.motion(request)
+                return self.motion(request).digest
             except RecordError as error:
                 return hashlib.sha256(f"unreadable: {request.source}: {error}".encode()).digest()
-            parts = [motion.horizontal.digest, motion.vertical.digest if motion.vertical else ""]
-            return hashlib.sha256("|".join(parts).encode()).digest()
 
         return self._digests.value(request, make)
 
@@ -106,18 +104,13 @@ def _samples(found: MotionComponents | str) -> float:
     """Room that a motion takes, both components together; a reason hardly any."""
     if isinstance(found, str):
         return 1.0
-    return found.horizontal.npts + (found.vertical.npts if found.vertical else 0)
+    return sum(motion.npts for motion in found.named.values())
 
 
 def _load(request: RecordRequest) -> MotionComponents | str:
     """The motion, or why there is none."""
     source, folder, vertical, dt, units = request
-    place = Path(folder)
     try:
-        horizontal = load_record(source, folder=place, dt=dt, units=units)
-        if vertical is None:
-            return MotionComponents(horizontal)
-        upwards = load_record(vertical, folder=place, dt=dt, units=units)
-        return MotionComponents(horizontal, upwards)
+        return load_components(source, vertical, folder=Path(folder), dt=dt, units=units)
     except (RecordError, OSError) as error:
         return str(error)
