@@ -38,10 +38,10 @@ from rpscli.constants import MOST_JOBS
 from rpscli.errors import CaseError, UsageError, hint
 from rpscli.frozen import frozen
 from rpscli.report.figures.look import Look, read_style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.folder import study_folder
 from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.statistics import summary_columns, verdict_columns
+from rpscli.report.table import Column
 from rpscli.shown import Shown
 from rpscli.study_run import StudyRun, require_results
 from rpscli.sweep.evaluation.context import StudyContext

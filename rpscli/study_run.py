@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rpscli.case.conditions import Condition
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError
 from rpscli.report.figures.look import Look
-from rpscli.report.files.csv_text import columns_of, csv_text, quoted
 from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.report import add_notes
 from rpscli.report.study.requirements import lacking, requirement_faults
@@ -25,6 +24,7 @@ from rpscli.report.study.statistics import (
     verdict_document,
     verdict_lines,
 )
+from rpscli.report.table import columns_of, csv_text
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.described import reproduction
@@ -197,9 +197,8 @@ class StudyRun:
         found.files["points.csv"] = "".join(points_csv(self.table))
         found.failures += self._failures(place, found)
         if found.failures:
-            rows = [tuple(map(quoted, failure)) for failure in found.failures]
             found.files["failed.csv"] = csv_text(
-                columns_of(dict.fromkeys(Failure._fields, "-"), rows)
+                columns_of(dict.fromkeys(Failure._fields, "-"), found.failures)
             )
         if self.summary is not None:
             found.files["statistics.csv"] = csv_text(summary_columns(self.summary))

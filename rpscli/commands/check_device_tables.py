@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rpscli.commands.shell.tables import table
 from rpscli.report.numbers import large, shown
+from rpscli.report.table import Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.model.podium import PodiumStructure
 
 
-def device_tables(structure: PodiumStructure) -> Iterator[RenderableType]:
+def device_tables(structure: PodiumStructure) -> Iterator[Part]:
     """Each device's numbers, uplift with all of them, and from where the storey re-centres."""
     if not structure.devices:
         return
@@ -33,9 +31,9 @@ def device_tables(structure: PodiumStructure) -> Iterator[RenderableType]:
     for device, label, value, unit in found:
         number, name = large(value, unit)
         rows.append((device, label, "never" if number is None else shown(number), name))
-    yield table(("device", "", "value", "unit"), rows, words=2)
+    yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
     if back := returns(structure):
-        yield table(
+        yield Table.of_texts(
             ("from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"),
             [
                 (

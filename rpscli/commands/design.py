@@ -24,7 +24,7 @@ from rpscli.commands.study import SweepChoices, compute, show_dry_run, study_hea
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
-from rpscli.report.files.csv_text import csv_text
+from rpscli.report.table import csv_text
 
 if TYPE_CHECKING:
     from rpscli.case.study.study import Study as CheckedStudy

@@ -6,13 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rpscli.case.conditions import condition_text
-from rpscli.commands.shell.tables import listing, sentence, table, title
 from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.numbers import large, measured, shown
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.sweep.design.answer import Answer
     from rpscli.sweep.statistics.verdicts import StudyVerdict
 
@@ -24,22 +22,22 @@ def answer_tables(
     document: dict[str, Any],
     answer: Answer,
     confirmation: Mapping[str, Sequence[StudyVerdict]],
-) -> Iterator[RenderableType]:
+) -> Iterator[Part]:
     """Best design, requirements, what the records do to it, and what confirms which design."""
     from rpscli.report.study.statistics import verdict_text
 
     counts = document["designs"]
     best = document["best"]
-    yield title(document["study"]["title"])
-    yield listing([(name.replace("_", " "), str(count)) for name, count in counts.items()])
+    yield Heading(document["study"]["title"])
+    yield Table.listing([(name.replace("_", " "), str(count)) for name, count in counts.items()])
     yield _values(document, best or document["closest"], "best" if best else "fails least")
     yield _requirements(document, answer)
     if best is not None:
-        yield listing(list(_records(document)))
+        yield Table.listing(list(_records(document)))
     if len(answer.front):
-        yield sentence(f"front of both aims: {len(answer.front)} designs, in front.csv")
+        yield f"front of both aims: {len(answer.front)} designs, in front.csv"
     if confirmation:
-        yield title(f"confirmation with {len(answer.task.confirming)} records that were not used")
+        yield Heading(f"confirmation with {len(answer.task.confirming)} records that were not used")
         rows = [
             (
                 design,
@@ -51,11 +49,11 @@ def answer_tables(
             for design, verdicts in confirmation.items()
             for verdict in verdicts
         ]
-        yield table(("design", "limit", "", "asked for", "found"), rows, words=5)
-    yield sentence(ONE_DIRECTION)
+        yield Table.of_texts(("design", "limit", "", "asked for", "found"), rows, words=5, keys=2)
+    yield ONE_DIRECTION
 
 
-def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> RenderableType:
+def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> Table:
     from rpscli.report.study.labels import symbol
     from rpscli.sweep.intensities import unit_of
 
@@ -80,7 +78,7 @@ def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> Rend
                 _interval(limits),
             )
         )
-    return table(("", "", head, "95 % of resamples"), rows, words=2)
+    return Table.of_texts(("", "", head, "95 % of resamples"), rows, words=2)
 
 
 def _further_aims(
@@ -100,7 +98,7 @@ def _interval(interval: Iterable[float]) -> str:
     return " to ".join(shown(end, 3) for end in known) or "-"
 
 
-def _requirements(document: dict[str, Any], answer: Answer) -> RenderableType:
+def _requirements(document: dict[str, Any], answer: Answer) -> Table:
     rows = []
     for row, requirement in zip(document["requirements"], answer.judged.requirements, strict=True):
         if row["binds"]:
@@ -118,7 +116,7 @@ def _requirements(document: dict[str, Any], answer: Answer) -> RenderableType:
             )
         )
     heads = ("requirement", "asked for", "", "found", "met by")
-    return table(heads, rows, words=3)
+    return Table.of_texts(heads, rows, words=3)
 
 
 def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:

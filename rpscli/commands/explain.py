@@ -13,14 +13,12 @@ from rpscli.analyses import result_quantities
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.commands.shell.completions import case_keys
 from rpscli.commands.shell.options import terminal_options
-from rpscli.commands.shell.tables import listing, sentence, title
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, nearest
 from rpscli.report.documents import heading
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.case.schema.keys import KeyReference
 
 BEARING = """\
@@ -155,31 +153,31 @@ def _tables(
     words: Iterable[tuple[str, str]],
     reports: Iterable[tuple[str, str]],
     options: Iterable[KeyReference],
-) -> Iterator[RenderableType]:
+) -> Iterator[Part]:
     for key in keys:
-        yield title(key.key)
-        yield listing(list(_lines(key)))
+        yield Heading(key.key)
+        yield Table.listing(list(_lines(key)))
         drawing = next((DRAWINGS[place] for place in DRAWINGS if key.key.startswith(place)), None)
         if drawing:
-            yield sentence(drawing)
+            yield drawing
     for quantity in results:
-        yield title(f"{quantity.name}, a result")
+        yield Heading(f"{quantity.name}, a result")
         shown = _of_result(quantity)
         names = {"limit": "limit, as in", "needs": "needs", "meaning": "is"}
         rows = [("means", quantity.label), ("unit", quantity.unit or "none")]
         rows += [(names[name], str(shown[name])) for name in names if name in shown]
         if quantity.from_below:
             rows.append(("limits", "are at_least, since small values are bad"))
-        yield listing(rows)
+        yield Table.listing(rows)
     for name, meaning in words:
-        yield title(name)
-        yield sentence(meaning)
+        yield Heading(name)
+        yield meaning
     for name, meaning in reports:
-        yield title(f"{name}, a report of studies")
-        yield sentence(meaning)
+        yield Heading(f"{name}, a report of studies")
+        yield meaning
     for option in options:
-        yield title(f"option {option.key}")
-        yield listing(list(_lines(option)))
+        yield Heading(f"option {option.key}")
+        yield Table.listing(list(_lines(option)))
 
 
 def _lines(key: KeyReference) -> Iterator[tuple[str, str]]:

@@ -18,8 +18,6 @@ from rpscli.commands.shell.options import (
     output_options,
     terminal_options,
 )
-from rpscli.commands.shell.tables import sentence, table
-from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import counted
 from rpscli.errors import listed
@@ -27,10 +25,9 @@ from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 from rpscli.report.numbers import shown
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.analyses.modal import ModalResult
 
 
@@ -77,7 +74,7 @@ def command(
     terminal.result(document, _tables(result, given.case.title))
 
 
-def _tables(result: ModalResult, title: str) -> Iterator[RenderableType]:
+def _tables(result: ModalResult, title: str) -> Iterator[Part]:
     storey = [
         (
             name,
@@ -87,19 +84,21 @@ def _tables(result: ModalResult, title: str) -> Iterator[RenderableType]:
         )
         for name, modes in result.uplifted.items()
     ]
-    yield heading_line(title)
-    yield table(("storey's own mode", "", "p_ext rad/s", "rigid estimate rad/s"), storey, words=2)
+    yield Heading(title)
+    yield Table.of_texts(
+        ("storey's own mode", "", "p_ext rad/s", "rigid estimate rad/s"), storey, words=2
+    )
     if result.left_out:
-        yield sentence(f"Not linear, and left out: {listed(result.left_out, 'and')}.")
+        yield f"Not linear, and left out: {listed(result.left_out, 'and')}."
     if (fixed := result.fixed_base) is None:
         return
     rows = [
         (str(i + 1), shown(w), shown(fixed.periods[i]), shown(100.0 * fixed.damping[i], 3))
         for i, w in enumerate(fixed.frequencies)
     ]
-    yield table(("full contact", "rad/s", "T s", "xi %"), rows)
+    yield Table.of_texts(("full contact", "rad/s", "T s", "xi %"), rows)
     for name, modes in result.uplifted.items():
-        yield table(
+        yield Table.of_texts(
             (f"{name}", "rad/s", "of fixed base", "xi %", "of fixed base"),
             [
                 (

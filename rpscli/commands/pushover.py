@@ -17,17 +17,14 @@ from rpscli.commands.shell.options import (
     output_options,
     terminal_options,
 )
-from rpscli.commands.shell.tables import listing, table
-from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading, pushover_document
 from rpscli.report.figures.look import Look
 from rpscli.report.numbers import measured, shown
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.analyses.pushover import PatternName, PushoverResult
 
 
@@ -97,7 +94,7 @@ def _pattern(text: str) -> PatternName | list[float]:
         ) from None
 
 
-def _tables(result: PushoverResult, title: str) -> Iterator[RenderableType]:
+def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
     scalars = {q.name: (q.label, measured(getattr(result, q.name), q.unit)) for q in PUSHOVER}
     rows = [
         scalars["uplift_force"],
@@ -107,8 +104,8 @@ def _tables(result: PushoverResult, title: str) -> Iterator[RenderableType]:
         scalars["critical_displacement"],
         ("lift at the critical rotation", measured(float(result.curve.lift[-1]), "m")),
     ]
-    yield heading_line(title)
-    yield listing(rows)
+    yield Heading(title)
+    yield Table.listing(rows)
     if result.capacity:
         capacity = [
             (
@@ -118,4 +115,6 @@ def _tables(result: PushoverResult, title: str) -> Iterator[RenderableType]:
             )
             for curve in result.capacity
         ]
-        yield table(("pattern", "roof at uplift m", "largest sum of floor forces kN"), capacity)
+        yield Table.of_texts(
+            ("pattern", "roof at uplift m", "largest sum of floor forces kN"), capacity
+        )

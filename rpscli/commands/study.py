@@ -12,15 +12,13 @@ import click
 from rpscli.case.conditions import Condition
 from rpscli.commands.shell.failure import INTERRUPTED
 from rpscli.commands.shell.options import CaseRequest
-from rpscli.commands.shell.tables import listing, title
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, duration, progress_report, watched
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.studies import Study
     from rpscli.study_run import StudyRun
     from rpscli.sweep.points.layout import StudyPoints
@@ -174,19 +172,17 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
     terminal.result(document, _dry_run_tables(document, points.values()))
 
 
-def _dry_run_tables(
-    document: dict[str, Any], points: Iterable[dict[str, Any]]
-) -> Iterator[RenderableType]:
+def _dry_run_tables(document: dict[str, Any], points: Iterable[dict[str, Any]]) -> Iterator[Part]:
     from rpscli.report.study.labels import label
 
-    yield title(document["study"]["title"])
+    yield Heading(document["study"]["title"])
     names = ("points", "systems", "records", "scales", "members")
     expected = document["estimate"]
     text = f"about {duration(expected['seconds'])} on {expected['jobs']} cores"
     counts = [(name, str(document[name])) for name in names]
-    yield listing([*counts, ("time", f"{text}, by {expected['source']}")])
+    yield Table.listing([*counts, ("time", f"{text}, by {expected['source']}")])
     rows = []
     for point in points:
         varied = (label(key, value) for key, value in point.items() if key != "point")
         rows.append((f"point {point['point']}", ", ".join(varied)))
-    yield listing(rows)
+    yield Table.listing(rows)

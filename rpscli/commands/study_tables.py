@@ -6,13 +6,10 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rpscli.case.conditions import condition_text
-from rpscli.commands.shell.tables import table
 from rpscli.report.numbers import large, shown
+from rpscli.report.table import Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-    from rich.table import Table
-
     from rpscli.analyses.result_quantities import ResultQuantity
     from rpscli.sweep.statistics.fractiles import Spread
     from rpscli.sweep.statistics.summary import Summary
@@ -25,7 +22,7 @@ A_TABLE = 3
 """Quantities side by side in a table that fits a page."""
 
 
-def summary_tables(summary: Summary) -> Iterator[RenderableType]:
+def summary_tables(summary: Summary) -> Iterator[Part]:
     """Outcomes; then median, 84 % fractile and largest value of the main demands."""
     rows = summary.rows[:MOST_ROWS]
     heads, cells = _system_columns(summary, [row.values for row in rows])
@@ -33,10 +30,11 @@ def summary_tables(summary: Summary) -> Iterator[RenderableType]:
     outcomes = [
         [str(over.of), str(failed), str(over.number), over.interval] for failed, over in shares
     ]
-    yield table(
+    yield Table.of_texts(
         [*heads, "counted", "failed", "overturned", "95 % interval"],
         [[*system, *outcome] for system, outcome in zip(cells, outcomes, strict=True)],
         words=len(heads),
+        keys=len(heads),
     )
     main = [place for place, quantity in enumerate(summary.quantities) if quantity.demand]
     for first in range(0, len(main), A_TABLE):
@@ -46,10 +44,11 @@ def summary_tables(summary: Summary) -> Iterator[RenderableType]:
             [_spread(row.spreads[place], summary.quantities[place]) for place in places]
             for row in rows
         ]
-        yield table(
+        yield Table.of_texts(
             [*heads, *named],
             [[*system, *spread] for system, spread in zip(cells, spreads, strict=True)],
             words=len(heads),
+            keys=len(heads),
         )
     yield (
         "demands: median / 84 % fractile / largest; an overturned history is larger than any"
@@ -100,4 +99,6 @@ def verdict_table(summary: Summary, verdicts: Sequence[StudyVerdict]) -> Table:
         ]
         for system, verdict in zip(cells, ordered, strict=True)
     ]
-    return table([*heads, "limit", "", "asked for", "found"], rows, words=len(heads) + 3)
+    keys = len(heads) + 1
+    heads += ["limit", "", "asked for", "found"]
+    return Table.of_texts(heads, rows, words=keys + 2, keys=keys)

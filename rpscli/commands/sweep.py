@@ -20,7 +20,6 @@ from rpscli.commands.shell.options import (
     run_options,
     terminal_options,
 )
-from rpscli.commands.shell.tables import listing, title
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import (
     SweepChoices,
@@ -34,10 +33,9 @@ from rpscli.commands.study import (
 from rpscli.commands.study_tables import summary_tables, verdict_table
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.study_run import Collected, StudyRun
 
 
@@ -125,16 +123,16 @@ def command(
     leave(error)
 
 
-def _tables(run: StudyRun, found: Collected) -> Iterator[RenderableType]:
-    yield title(run.layout.study.title)
+def _tables(run: StudyRun, found: Collected) -> Iterator[Part]:
+    yield Heading(run.layout.study.title)
     counts = {"points": len(run.table), **run.outcomes}
-    yield listing([(name, str(count)) for name, count in counts.items()])
+    yield Table.listing([(name, str(count)) for name, count in counts.items()])
     if run.summary is not None:
         yield from summary_tables(run.summary)
         if run.verdicts:
             yield verdict_table(run.summary, run.verdicts)
     for stem, lines in found.findings.items():
-        yield title(stem)
-        yield listing(lines)
+        yield Heading(stem)
+        yield Table.listing(lines)
     if run.summary is not None:
         yield ONE_DIRECTION

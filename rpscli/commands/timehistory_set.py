@@ -18,8 +18,6 @@ from rpscli.case.conditions import (
 from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import OutputRequest
-from rpscli.commands.shell.tables import table
-from rpscli.commands.shell.tables import title as heading_line
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.timehistory_run import (
     COMMAND,
@@ -32,7 +30,6 @@ from rpscli.errors import AnalysisError, LimitExceeded, RpsError
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.drawing import Artists
 from rpscli.report.figures.look import Look
-from rpscli.report.files.csv_text import csv_text
 from rpscli.report.files.json_text import json_text
 from rpscli.report.files.output_folder import OutputFolder
 from rpscli.report.numbers import large, shown
@@ -42,11 +39,10 @@ from rpscli.report.study.record_set import (
     set_verdict_document,
     statistics_columns,
 )
+from rpscli.report.table import Heading, Part, Table, csv_text
 from rpscli.sweep.statistics.record_set import RecordSet, SetVerdict, record_set, set_verdicts
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.analyses.result_quantities import ResultQuantity
 
 WARNINGS_SHOWN = 5
@@ -211,9 +207,9 @@ def _set_document(case: Computed) -> dict[str, Any]:
     }
 
 
-def _tables(computed: Sequence[Computed]) -> Iterator[RenderableType]:
+def _tables(computed: Sequence[Computed]) -> Iterator[Part]:
     for case in computed:
-        yield heading_line(case.given.case.title)
+        yield Heading(case.given.case.title)
         main = [quantity for quantity in case.together.demands if quantity.demand]
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, main[first : first + A_TABLE])
@@ -224,7 +220,7 @@ def _tables(computed: Sequence[Computed]) -> Iterator[RenderableType]:
     yield ONE_DIRECTION
 
 
-def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> RenderableType:
+def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> Table:
     rows = [
         [label, _word(history.document["outcome"])]
         + [shown(large(history.document[q.name], q.unit)[0], DIGITS) for q in quantities]
@@ -236,7 +232,7 @@ def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> Rend
             values = [large(getattr(case.together.demands[q], name), q.unit)[0] for q in quantities]
             rows.append([label, "", *(shown(value, DIGITS) for value in values)])
     heads = [f"{q.label} {large(None, q.unit)[1]}".strip() for q in quantities]
-    return table(["record", "", *heads], rows, words=2)
+    return Table.of_texts(["record", "", *heads], rows, words=2)
 
 
 def _word(outcome: str) -> str:
@@ -245,7 +241,7 @@ def _word(outcome: str) -> str:
     )
 
 
-def _verdict_table(computed: Sequence[Computed]) -> RenderableType:
+def _verdict_table(computed: Sequence[Computed]) -> Table:
     rows = []
     for case in computed:
         for verdict in case.verdicts:
@@ -263,4 +259,4 @@ def _verdict_table(computed: Sequence[Computed]) -> RenderableType:
                     f"{verdict.beyond.number} of {verdict.beyond.of} beyond{largest}",
                 ]
             )
-    return table(["case", "limit", "", "asked for", "found"], rows, words=5)
+    return Table.of_texts(["case", "limit", "", "asked for", "found"], rows, words=5, keys=2)

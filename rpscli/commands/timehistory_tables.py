@@ -7,17 +7,13 @@ from typing import TYPE_CHECKING
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import EVENTS, Condition
 from rpscli.commands.acceptance import Verdict
-from rpscli.commands.shell.tables import table
-from rpscli.commands.shell.tables import title as heading_line
 from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.numbers import measured, percent, shown
+from rpscli.report.table import Heading, Part, Table
 from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-
-    from rich.console import RenderableType
-    from rich.table import Table
 
     from rpscli.analyses.results import TimeHistoryResult
 
@@ -36,9 +32,9 @@ Row = tuple[str, str, str, str]
 
 def timehistory_tables(
     result: TimeHistoryResult, verdicts: Sequence[Verdict], title: str
-) -> Iterator[RenderableType]:
+) -> Iterator[Part]:
     """What happened; the storeys, if there are any; the limits, if there are any."""
-    yield heading_line(f"{title}, {result.record.name}")
+    yield Heading(f"{title}, {result.record.name}")
     yield f"outcome: {outcome_text(result)}"
     yield outcome_table(result)
     if result.structure.storeys:
@@ -101,8 +97,8 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     rows += [_row(result, "duration"), *_energy(result)]
     heads = ["", "on bearings", "normalised", "fixed base"]
     if result.fixed_base is None:
-        return table(heads[:3], [row[:3] for row in rows])
-    return table(heads, rows)
+        return Table.of_texts(heads[:3], [row[:3] for row in rows])
+    return Table.of_texts(heads, rows)
 
 
 def _row(
@@ -155,7 +151,7 @@ def storeys_table(result: TimeHistoryResult) -> Table:
     ]
     drift = "drift ratio" if ratio else "drift mm"
     heads = ["storey", "shear kN", "fixed", drift, "fixed", "acceleration m/s2", "fixed"]
-    return table(heads, rows)
+    return Table.of_texts(heads, rows)
 
 
 def devices_table(result: TimeHistoryResult) -> Table:
@@ -173,7 +169,7 @@ def devices_table(result: TimeHistoryResult) -> Table:
         ]
         for index, demand in enumerate(result.devices)
     ]
-    return table(["device", "force", "stroke", "velocity", "energy", ""], rows)
+    return Table.of_texts(["device", "force", "stroke", "velocity", "energy", ""], rows)
 
 
 def limits_table(verdicts: Sequence[Verdict]) -> Table:
@@ -191,4 +187,4 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
         )
         for v in verdicts
     ]
-    return table(["limit", "", "from", "value", "asked for"], rows, words=3)
+    return Table.of_texts(["limit", "", "from", "value", "asked for"], rows, words=3)

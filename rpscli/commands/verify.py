@@ -11,16 +11,14 @@ import click
 
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import terminal_options
-from rpscli.commands.shell.tables import table, title
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import VerificationMismatch
 from rpscli.report.documents import heading
 from rpscli.report.numbers import shown
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from rpscli.analyses.verification.known import Comparison
 
 DIGITS = 7
@@ -50,10 +48,10 @@ def command(terminal: Terminal) -> None:
     leave(error)
 
 
-def _tables(found: Sequence[Comparison]) -> Iterator[RenderableType]:
+def _tables(found: Sequence[Comparison]) -> Iterator[Part]:
     for group, lines in groupby(found, lambda line: line.group):
-        yield title(group)
-        yield table(
+        yield Heading(group)
+        yield Table.of_texts(
             ("quantity", "expected", "computed", "tolerance", "verdict"),
             [
                 (
@@ -65,7 +63,7 @@ def _tables(found: Sequence[Comparison]) -> Iterator[RenderableType]:
             ],
         )
     off = sum(not line.holds for line in found)
-    yield title(f"{len(found)} numbers compared, {off or 'none'} off")
+    yield Heading(f"{len(found)} numbers compared, {off or 'none'} off")
 
 
 def _numbers(line: Comparison) -> tuple[str, str, str]:

@@ -30,8 +30,8 @@ from rpscli.report.figures.rotation import rotation_figure
 from rpscli.report.figures.selection import selection_figure
 from rpscli.report.figures.storey_curve import storey_curve_figure
 from rpscli.report.figures.thinned import thinned
-from rpscli.report.files.csv_text import csv_lines, csv_text
 from rpscli.report.files.whole_files import Content
+from rpscli.report.table import csv_lines, csv_text
 from rpscli.report.tables.floor_spectra import floor_spectra_columns
 from rpscli.report.tables.modal import eigenvalue_columns, mode_columns, shape_columns
 from rpscli.report.tables.pushover import capacity_columns, storey_curve_columns

@@ -14,8 +14,8 @@ from click.testing import Result
 
 from rpscli.cli import COMMANDS
 from rpscli.commands.record.group import MEMBERS
-from rpscli.commands.shell.tables import table
 from rpscli.commands.shell.terminal import rendered
+from rpscli.report.table import Table
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]
@@ -260,7 +260,7 @@ def test_tables_are_no_wider_than_a_narrow_terminal(monkeypatch: pytest.MonkeyPa
     rows = [["farfield_1_a", "survived", "0.123456", "10000", "3"]]
     for columns, tables in (("40", 2), ("100", 1)):
         monkeypatch.setenv("COLUMNS", columns)
-        lines = rendered([table(heads, rows, words=2)]).splitlines()
+        lines = rendered([Table.of_texts(heads, rows, words=2)]).splitlines()
         assert max(map(len, lines)) <= int(columns)
         assert sum(line.startswith("farfield_1_a") for line in lines) == tables
         assert all(word in " ".join(lines) for word in rows[0])

@@ -12,7 +12,7 @@ from rpscli.errors import RecordError
 from rpscli.records.codes import load_target
 from rpscli.records.source import load_record
 from rpscli.records.spectrum import response_spectrum
-from rpscli.report.files.csv_text import csv_text
+from rpscli.report.table import csv_text
 from rpscli.report.tables.record import spectrum_columns
 
 G = STANDARD_GRAVITY

@@ -17,9 +17,10 @@ from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures.look import USUAL
 from rpscli.report.html.elements import element, written
 from rpscli.report.html.motions import motion_pictures
-from rpscli.report.html.page import MOST_BYTES, Block, Code, Notice, Section, Table, is_about, page
+from rpscli.report.html.page import MOST_BYTES, Block, Code, Notice, Section, is_about, page
 from rpscli.report.html.pictures import Picture, page_look, pictures
 from rpscli.report.html.sections import derived_section, hidden_section, structure_section
+from rpscli.report.table import Table
 
 HOSTILE = """<script>alert("x")</script> & 'quotes' "too" </style></title> \x00 $a_b$"""
 
@@ -54,7 +55,7 @@ def test_text_is_never_taken_for_tags() -> None:
         HOSTILE,
         Notice(HOSTILE),
         Code(HOSTILE),
-        Table([HOSTILE], [[HOSTILE]]),
+        Table.of_texts([HOSTILE], [[HOSTILE]]),
         *structure_section(structure(), HOSTILE, USUAL).blocks,
     ]
     parsed = Parsed(page(HOSTILE, HOSTILE, [Section(HOSTILE, blocks)], HOSTILE))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import math
 
@@ -11,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rpscli.analyses.result_quantities import plain
-from rpscli.report.files.csv_text import Column, csv_text
 from rpscli.report.files.json_text import json_text
+from rpscli.report.table import Column, Table, csv_text, records
 
 values = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False)
@@ -59,3 +61,28 @@ def test_what_does_not_exist_is_an_empty_cell() -> None:
 def test_columns_of_different_lengths_are_a_mistake() -> None:
     with pytest.raises(ValueError, match="zip"):
         csv_text([Column("x", "m", [1.0]), Column("y", "m", [1.0, 2.0])])
+
+
+texts = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
+
+
+@given(st.lists(texts, min_size=1), texts)
+def test_a_cell_may_hold_anything(cells: list[str], head: str) -> None:
+    text = csv_text([Column(head, "-", cells), Column("x", "m", range(len(cells)))])
+    rows = [[f"{head} [-]", "x [m]"], *([cell, str(i)] for i, cell in enumerate(cells))]
+    assert list(csv.reader(io.StringIO(text, newline=""))) == rows
+
+
+def test_lists_and_mappings_are_written_as_json() -> None:
+    assert (
+        csv_text([Column("a", "-", [[1, 2], {"b": None}])]) == 'a [-]\n"[1, 2]"\n"{""b"": null}"\n'
+    )
+
+
+def test_a_table_has_one_row_for_readers_files_and_documents() -> None:
+    shear = Column("max_base_shear", "N", [1.5e6, None], "base shear kN")
+    columns = [Column("record", "-", ["El Centro, 1940.at2", "b"], "record", str), shear]
+    assert Table(columns).heads == ["record", "base shear kN"]
+    assert Table(columns).rows == [("El Centro, 1940.at2", "1500"), ("b", "-")]
+    assert csv_text(columns).splitlines()[1:] == ['"El Centro, 1940.at2",1500000', "b,"]
+    assert records(columns)[1] == {"record": "b", "max_base_shear": None}

@@ -9,7 +9,7 @@ import pytest
 
 from report.small_results import KINDS
 from rpscli.report.figures import thinned
-from rpscli.report.files.csv_text import Column, csv_lines, csv_text
+from rpscli.report.table import Column, csv_lines, csv_text
 
 
 def test_extremes_of_every_stretch_stay(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,6 @@ from rpscli.case.schema.keys import unit
 from rpscli.commands.shell import waiting as sweep_progress
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import progress_line, progress_report
-from rpscli.report.files.csv_text import quoted
 from rpscli.report.study.labels import labels
 from rpscli.sweep.run.runner import Progress
 
@@ -74,9 +73,3 @@ def test_units_come_from_the_case_format() -> None:
     assert unit("superstructure.stiffness.0") == "N/m"
     assert unit("podium.bearing.slenderness") == "-"
     assert unit("record") == "-"
-
-
-def test_cells_with_commas_are_quoted() -> None:
-    assert quoted('a, "b"') == '"a, ""b"""'
-    assert quoted([1, 2]) == '"[1, 2]"'
-    assert quoted(1.5) == 1.5

@@ -8,16 +8,14 @@ import click
 
 from rpscli.commands.record.input import source_options
 from rpscli.commands.shell.options import terminal_options
-from rpscli.commands.shell.tables import listing
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.report.documents import heading
 from rpscli.report.numbers import shown
+from rpscli.report.table import Part, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    from rich.console import RenderableType
 
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.records.measures import IntensityMeasures
@@ -36,7 +34,7 @@ def command(motion: GroundMotion, terminal: Terminal) -> None:
     terminal.result(document, record_tables(motion, measures))
 
 
-def record_tables(motion: GroundMotion, measures: IntensityMeasures) -> Iterator[RenderableType]:
+def record_tables(motion: GroundMotion, measures: IntensityMeasures) -> Iterator[Part]:
     """What was read, and how strong it is."""
     rows = [
         ("source", motion.source),
@@ -51,4 +49,4 @@ def record_tables(motion: GroundMotion, measures: IntensityMeasures) -> Iterator
         ("CAV", f"{shown(measures.cav)} m/s"),
         ("significant duration, 5-95 %", f"{shown(measures.d5_95)} s"),
     ]
-    yield listing([("name", motion.name), *rows])
+    yield Table.listing([("name", motion.name), *rows])

@@ -15,18 +15,16 @@ from rpscli.commands.shell.options import (
     output_options,
     terminal_options,
 )
-from rpscli.commands.shell.tables import listing, sentence, table
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files.output_folder import OutputFolder, Run
 from rpscli.report.numbers import shown
+from rpscli.report.table import Part, Table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    from rich.console import RenderableType
 
     from rpscli.records.selection import Selection
     from rpscli.records.target import TargetSpectrum
@@ -150,7 +148,7 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
     return target.pgv if pgv is None else pgv
 
 
-def _tables(selection: Selection) -> Iterator[RenderableType]:
+def _tables(selection: Selection) -> Iterator[Part]:
     heads = ("motion", "event", "factor", "PGV [m/s]", "PGD [m]", "misfit")
     rows = [
         (
@@ -164,8 +162,8 @@ def _tables(selection: Selection) -> Iterator[RenderableType]:
         for one in selection.chosen
     ]
     target = selection.target
-    yield table(heads, rows, words=2)
-    yield listing(
+    yield Table.of_texts(heads, rows, words=2)
+    yield Table.listing(
         [
             ("target", target.name),
             ("misfit of the mean, rms of ln(mean/target)", f"{selection.misfit:.4f}"),
@@ -175,4 +173,4 @@ def _tables(selection: Selection) -> Iterator[RenderableType]:
             ("chosen among", f"{selection.candidates}; {selection.refused} beyond the factors"),
         ]
     )
-    yield sentence(WHY_PGV)
+    yield WHY_PGV

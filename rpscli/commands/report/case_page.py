@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from rpscli.commands.case_input import CaseInput, case_heading
 from rpscli.commands.motion import MotionRequest
-from rpscli.commands.report.blocks import blocks_of
 from rpscli.commands.report.comparison import compared
 from rpscli.commands.report.subject import SUMMARY, Earlier
 from rpscli.commands.shell.failure import concluded
@@ -106,7 +105,7 @@ def _sections(
         made.insert(0, Section("In short", [text, *notices(case.warnings)]))
     else:
         request, done, result = history
-        ground = [*blocks_of(_record_tables(result))]
+        ground = [*_record_tables(result)]
         ground += [motion_pictures(each, look) for each in request.ground.named.values()]
         made.insert(0, Section("In short", list(_in_short(done, result))))
         made += [Section("Ground motion", ground), Section("Response", _response(request, result))]
@@ -132,7 +131,7 @@ def _in_short(done: HistoryResult, result: TimeHistoryResult) -> Iterator[Block]
         exceeded = sum(verdict.exceeded for verdict in done.verdicts)
         of = f"of {len(done.verdicts)} limits"
         yield f"{exceeded} {of} exceeded." if exceeded else f"All {len(done.verdicts)} limits met."
-        yield from blocks_of([limits_table(done.verdicts)])
+        yield limits_table(done.verdicts)
     else:
         yield "No limits were set."
     yield from notices(done.document["warnings"])
@@ -154,7 +153,7 @@ def _response(request: HistoryRequest, result: TimeHistoryResult) -> list[Block]
         tables.append(storeys_table(result))
     files = ((path.name, content) for path, content in request.folder.contents.items())
     drawn = [Picture(found, CAPTIONS[stem]) for stem, found in pictures(files)]
-    return [*blocks_of(tables), *drawn]
+    return [*tables, *drawn]
 
 
 def _input(given: CaseInput, request: HistoryRequest | None) -> list[Block]:

@@ -9,7 +9,8 @@ from typing import Any
 
 from rpscli.analyses.result_quantities import plain
 from rpscli.commands.report.subject import SUMMARY
-from rpscli.report.html.page import Block, Notice, Table
+from rpscli.report.html.page import Block, Notice
+from rpscli.report.table import Table
 
 MADE_ANEW = frozenset(
     ("files", "rps_version", "case", "verdicts", "passed", "exit_code", "command")
@@ -35,7 +36,10 @@ def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
     if not differing:
         return [text]
     warning = f"{text} {len(differing)} differ; this page shows what was computed anew."
-    return [Notice(warning), Table(("result", "stored", "computed anew"), differing, words=1)]
+    return [
+        Notice(warning),
+        Table.of_texts(("result", "stored", "computed anew"), differing, words=1),
+    ]
 
 
 def _leaves(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

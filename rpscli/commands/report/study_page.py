@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rpscli.commands.case_input import RESULTS
-from rpscli.commands.report.blocks import blocks_of
 from rpscli.commands.report.case_page import PageDone, notices, programs
 from rpscli.commands.report.subject import Earlier
 from rpscli.commands.shell.failure import concluded
@@ -22,9 +21,10 @@ from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.html import sections as shared
 from rpscli.report.html.motions import motions_section
-from rpscli.report.html.page import Block, Code, Section, Table
+from rpscli.report.html.page import Block, Code, Section
 from rpscli.report.html.pictures import Picture, page_look, pictures
 from rpscli.report.study.labels import label
+from rpscli.report.table import Table
 from rpscli.sweep.evaluation.systems import resolved
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _sections(
     drawn: list[Block] = [
         Picture(each, _caption(study, stem)) for stem, each in pictures(found.files.items())
     ]
-    statistics = list(blocks_of(summary_tables(run.summary))) if run.summary else []
+    statistics = list(summary_tables(run.summary)) if run.summary else []
     ground = Section("Ground motions", [])
     if run.summary:
         ground = motions_section(*_motions(study), study.title, look)
@@ -133,12 +133,12 @@ def _of_first(section: Section, study: Study) -> Section:
 
 def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator[Block]:
     counts = {"points": len(run.table), **run.outcomes}
-    yield Table(tuple(counts), [tuple(map(str, counts.values()))], words=0)
+    yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
     if run.summary is not None and run.verdicts:
         exceeded = sum(verdict.exceeded for verdict in run.verdicts)
         verdicts = f"{len(run.verdicts)} limits of a system at an intensity"
         yield f"{exceeded} of {verdicts} exceeded." if exceeded else f"All {verdicts} are met."
-        yield from blocks_of([verdict_table(run.summary, run.verdicts)])
+        yield verdict_table(run.summary, run.verdicts)
     elif run.summary is not None:
         yield "No limits were set."
     texts = [*notes, *(str(error) for error in found.broken)]

@@ -5,19 +5,25 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Iterable, Iterator, Mapping
-from copy import copy
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rpscli.errors import OutputError
 from rpscli.report.files.json_text import json_text
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rich.console import Console, RenderableType
+    from rich.console import Console
+    from rich.table import Table as RichTable
+    from rich.text import Text
 
 PLAIN_WIDTH = 100
 """Columns where the output is no terminal and COLUMNS is not set."""
+LONGEST_WORD, LONGEST_HEAD = 30, 14
+"""Which is not broken, in cells and in heads."""
+GAP = 3
+"""Between two columns."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +55,7 @@ class Terminal:
                 self.told.add(text)
                 self.note(f"warning: {text}")
 
-    def result(self, document: Mapping[str, Any], tables: Iterable[RenderableType] = ()) -> None:
+    def result(self, document: Mapping[str, Any], tables: Iterable[Part] = ()) -> None:
         """The result, as a document or as tables."""
         if self.as_json:
             emit(json_text(document), sys.stdout)
@@ -57,29 +63,63 @@ class Terminal:
             emit(rendered(tables), sys.stdout)
 
 
-def fitting(shown: RenderableType, console: Console) -> Iterator[RenderableType]:
-    """The parts of a table that is wider than the terminal: its first column begins each."""
-    from rich.measure import Measurement
-    from rich.table import Table
-
-    def width(table: RenderableType) -> int:
-        return Measurement.get(console, console.options.update(max_width=10_000), table).minimum
-
-    if not isinstance(shown, Table) or len(shown.columns) < 3 or width(shown) <= console.width:
-        yield shown
-        return
-    first, *others = shown.columns
+def fitting(table: Table, console: Console) -> Iterator[RichTable]:
+    """The parts of a table that is wider than the terminal: its keys begin each."""
+    columns = list(range(len(table.columns)))
+    keys, others = columns[: table.keys], columns[table.keys :]
     while others:
         for count in range(len(others), 0, -1):
-            part = copy(shown)
-            part.columns = [first, *others[:count]]
-            if count == 1 or width(part) <= console.width:
+            shown = [*keys, *others[:count]]
+            # rich takes from all columns what is missing, and then gives numbers back what they
+            # need: where that is too much, all of the room is to come from words.
+            made = (_made(table, shown, firm=firm) for firm in (False, True))
+            part = next((each for each in made if _width(each, console) <= console.width), None)
+            if part is not None:
                 break
         others = others[count:]
-        yield part
+        yield part or _made(table, shown, firm=False)
 
 
-def rendered(tables: Iterable[RenderableType]) -> str:
+def _width(made: RichTable, console: Console) -> int:
+    """Columns of the terminal that a table takes, or would if its numbers were not broken."""
+    from rich.segment import Segment
+
+    needed = sum(column.width or column.min_width or 1 for column in made.columns)
+    needed += GAP * (len(made.columns) - 1)
+    lines = Segment.split_lines(console.render(made))
+    widths = (sum(segment.cell_length for segment in line) for line in lines)
+    return max(needed if made.show_header else 0, *widths, 0)
+
+
+def _made(table: Table, columns: Sequence[int], *, firm: bool) -> RichTable:
+    """Some columns of a table: words fold where it is narrow, numbers stand right and never do."""
+    from rich import box
+    from rich.table import Table as RichTable
+
+    heads, rows = table.heads, table.rows
+    if not any(heads):
+        made = RichTable(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+    else:
+        made = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
+    for index in columns:
+        cells, head = [row[index] for row in rows], heads[index]
+        in_head = min(max(map(len, head.split()), default=0), LONGEST_HEAD)
+        if not any(heads):
+            made.add_column(overflow="fold" if index else "ellipsis")
+        elif index < table.words:
+            word = max((len(word) for cell in cells for word in cell.split()), default=0)
+            least = max(min(word, LONGEST_WORD), in_head)
+            made.add_column(head, overflow="fold", min_width=least)
+        else:
+            least = max(in_head, *map(len, cells), 0)
+            width = least if firm else None
+            made.add_column(head, justify="right", overflow="fold", width=width, min_width=least)
+    for row in rows:
+        made.add_row(*(row[index] for index in columns))
+    return made
+
+
+def rendered(tables: Iterable[Part]) -> str:
     """Text of tables for the standard output: coloured and as wide as a terminal, if it is one."""
     from rich.console import Console
 
@@ -97,12 +137,22 @@ def rendered(tables: Iterable[RenderableType]) -> str:
         markup=False,
         emoji=False,
     )
-    for number, part in enumerate(part for table in tables for part in fitting(table, console)):
+    for number, part in enumerate(_parts(tables, console)):
         if number:
             console.print()
         console.print(part, crop=False)  # too wide is better than cut off
     page.seek(0)
     return page.read()
+
+
+def _parts(tables: Iterable[Part], console: Console) -> Iterator[RichTable | Text]:
+    from rich.text import Text
+
+    for part in tables:
+        if isinstance(part, Table):
+            yield from fitting(part, console)
+        else:
+            yield Text(part, style="bold" if isinstance(part, Heading) else "")
 
 
 def emit(text: str, stream: TextIO | None) -> None:

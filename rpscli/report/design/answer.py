@@ -8,9 +8,9 @@ from typing import Any
 
 from rpscli.case.conditions import EVENTS, LIMITS
 from rpscli.case.design import Aim
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.statistics import reached
+from rpscli.report.table import Column
 from rpscli.sweep.design.answer import NONE, Answer, Interval
 from rpscli.sweep.design.judgement import Requirement
 from rpscli.sweep.intensities import unit_of

@@ -14,8 +14,9 @@ from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.record import record_figure
 from rpscli.report.figures.spectra import spectra_figure
-from rpscli.report.html.page import Block, Section, Table
+from rpscli.report.html.page import Block, Section
 from rpscli.report.html.pictures import Picture, page_look
+from rpscli.report.table import Table
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
@@ -70,7 +71,7 @@ def _table(motions: Sequence[GroundMotion]) -> Table:
     heads = (
         "record", "SHA-256 begins with", "duration [s]", "PGA [m/s2]", "PGV [m/s]", "5-95 % [s]"
     )  # fmt: skip
-    return Table(heads, rows, words=2)
+    return Table.of_texts(heads, rows, words=2)
 
 
 def _spectrum(motion: GroundMotion) -> ResponseSpectrum:

@@ -9,20 +9,12 @@ from xml.etree.ElementTree import Element
 
 from rpscli.report.html.elements import element, written
 from rpscli.report.html.pictures import Picture, figures
+from rpscli.report.table import Table
 
 MOST_BYTES = 1_000_000
 """Of a page that can be sent by mail and read on a telephone."""
 FOR_FIGURES = 840_000
 """Letters for all figures of a page together."""
-
-
-@dataclass(frozen=True)
-class Table:
-    """Texts in rows; so many columns from the left hold words, those after them numbers."""
-
-    heads: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    words: int = 1
 
 
 @dataclass(frozen=True)
@@ -138,7 +130,8 @@ def _table(table: Table) -> Element:
         ]
         return element("tr", cells)
 
-    head = element("thead", row("th", table.heads)) if any(table.heads) else None
+    heads = table.heads
+    head = element("thead", row("th", heads)) if any(heads) else None
     body = element("tbody", [row("td", texts) for texts in table.rows])
     return element("div", element("table", head, body), class_="wide")
 

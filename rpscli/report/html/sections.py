@@ -12,8 +12,9 @@ from rpscli.report.bundles import bearing_files
 from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.structure import structure_figure
-from rpscli.report.html.page import Block, Section, Table
+from rpscli.report.html.page import Block, Section
 from rpscli.report.html.pictures import Picture, page_look, pictures
+from rpscli.report.table import Table
 from rpscli.report.tables.derivation import derivations, first_shape
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def _storeys(structure: PodiumStructure) -> Table:
         for storey in reversed(range(building.storeys))
     ]
     heads = ("storey", "height [m]", "mass m_i [kg]", "stiffness k_i [N/m]", "first mode φ_i")
-    return Table(heads, rows, words=1)
+    return Table.of_texts(heads, rows, words=1)
 
 
 def input_table(content: Mapping[str, Any]) -> Table:
@@ -67,7 +68,7 @@ def input_table(content: Mapping[str, Any]) -> Table:
     for key, value in _leaves(content):
         of_key = unit(key)
         rows.append((key, _plain(value), "" if of_key == "-" else of_key))
-    return Table(("key", "value", "unit"), rows, words=3)
+    return Table.of_texts(("key", "value", "unit"), rows, words=3)
 
 
 def derived_section(structure: PodiumStructure, podium: Mapping[str, Any]) -> Section:
@@ -93,7 +94,7 @@ def derived_section(structure: PodiumStructure, podium: Mapping[str, Any]) -> Se
         "Derived quantities",
         [
             text,
-            Table(
+            Table.of_texts(
                 ("quantity", "symbol", "formula", "with numbers", "value", "unit"), rows, words=4
             ),
         ],
@@ -105,7 +106,7 @@ def hidden_section(*more: Block) -> Section:
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
     lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
     head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
-    return Section("What the model leaves out", [Table(head, _bare(rows), words=2), *more])
+    return Section("What the model leaves out", [Table.of_texts(head, _bare(rows), words=2), *more])
 
 
 def _bare(rows: Sequence[Sequence[str]]) -> list[list[str]]:
@@ -114,7 +115,7 @@ def _bare(rows: Sequence[Sequence[str]]) -> list[list[str]]:
 
 def listing(*rows: tuple[str, str | None]) -> Table:
     """Names and what they stand for; without those that stand for nothing."""
-    return Table((), [(name, text) for name, text in rows if text], words=2)
+    return Table.listing((name, text) for name, text in rows if text)
 
 
 def _leaves(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

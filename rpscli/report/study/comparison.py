@@ -10,11 +10,11 @@ import numpy as np
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.study.observed import OVERTURNED
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.fragility import measure_name
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import log_ticks
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.reports.comparison import (
     FITTED,
     Compared,
@@ -104,7 +104,7 @@ def fragility_columns(report: ComparisonReport) -> list[Column]:
         Column("beta", "-", [fit.beta for fit in fits]),
         Column("beta_low", "-", [fit.beta_band[0] for fit in fits]),
         Column("beta_high", "-", [fit.beta_band[1] for fit in fits]),
-        Column("note", "-", [quoted(fit.note) for fit in fits]),
+        Column("note", "-", [fit.note for fit in fits]),
     ]
 
 
@@ -141,7 +141,7 @@ def pair_columns(report: ComparisonReport) -> list[Column]:
     requests = [report.table.layout[point].record for point in points]
     return [
         *_named(report, [row[0] for row in rows]),
-        Column("record", "-", [quoted(request.source) for request in requests if request]),
+        Column("record", "-", [request.source for request in requests if request]),
         Column("point", "-", [point + 1 for point in points]),
         Column(
             report.intensity.measure,

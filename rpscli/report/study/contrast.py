@@ -9,10 +9,10 @@ import numpy as np
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import Values, key_columns, labels, plain, symbol
 from rpscli.report.study.panels import left_out
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.reports.contrast import (
     Contrast,

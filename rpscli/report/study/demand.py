@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import (
     break_if_narrow,
@@ -20,6 +19,7 @@ from rpscli.report.study.panels import (
     remarks,
 )
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.reports.demand import DemandOptions, DemandPanel, DemandReport, demand_report
 
@@ -44,7 +44,7 @@ def demand_columns(report: DemandReport) -> list[Column]:
     for name, attribute in FITTED:
         columns.append(Column(name, "-", [getattr(p.fit, attribute, None) for p in panels]))
     columns += [Column(name, "-", [getattr(p, name) for p in panels]) for name in COUNTS]
-    return [*columns, Column("note", "-", [quoted(panel.note) for panel in panels])]
+    return [*columns, Column("note", "-", [panel.note for panel in panels])]
 
 
 def demand_figure(report: DemandReport, title: str) -> bytes:

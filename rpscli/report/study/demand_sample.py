@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
 from rpscli.report.study.panels import by_values, left_out, panel_figure, remarks
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.reports.demand_sample import (
     DemandSample,
     DemandSampleOptions,

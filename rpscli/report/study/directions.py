@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns
 from rpscli.report.study.panels import by_values, left_out, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.report.study.statistics import reached
+from rpscli.report.table import Column
 from rpscli.sweep.reports.directions import (
     DirectionsOptions,
     DirectionsPanel,
@@ -53,7 +53,7 @@ def pair_columns(report: DirectionsReport) -> list[Column]:
     ]
     return [
         *key_columns(report.keys, [panel.values for panel, *_ in rows]),
-        Column("pair", "-", [quoted(curve.pair) for _, curve, _ in rows]),
+        Column("pair", "-", [curve.pair for _, curve, _ in rows]),
         Column("directions", "-", [len(curve.angles) for _, curve, _ in rows]),
         Column("overturned", "-", [curve.overturned for _, curve, _ in rows]),
         Column("failed", "-", [curve.failed for _, curve, _ in rows]),

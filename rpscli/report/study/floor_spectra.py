@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
 from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.report.study.statistics import reached
+from rpscli.report.table import Column
 from rpscli.sweep.reports.floor_spectra import (
     FRACTILES,
     FloorSpectraOptions,

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from rpscli.case.conditions import LIMITS
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import (
     Layout,
@@ -19,6 +18,7 @@ from rpscli.report.study.panels import (
 )
 from rpscli.report.study.report import Report
 from rpscli.report.study.statistics import share_columns
+from rpscli.report.table import Column
 from rpscli.sweep.intensities import Intensity, measure_without_period
 from rpscli.sweep.reports.fragility import (
     Fragility,
@@ -43,7 +43,7 @@ def fragility_columns(report: FragilityReport) -> list[Column]:
     im = report.intensity.measure
     return [
         *key_columns(report.series_keys, [c.values for c in curves]),
-        Column("limit", "-", [quoted(c.limit.label) for c in curves]),
+        Column("limit", "-", [c.limit.label for c in curves]),
         Column("intensity", "-", [im] * len(curves)),
         Column("method", "-", [c.fit.method for c in curves]),
         Column("median", unit, [c.fit.median for c in curves]),
@@ -56,7 +56,7 @@ def fragility_columns(report: FragilityReport) -> list[Column]:
         Column("exceeded", "-", [c.exceeded for c in curves]),
         Column("overturned_among_them", "-", [c.overturned for c in curves]),
         Column("failed", "-", [c.failed for c in curves]),
-        Column("note", "-", [quoted(c.fit.note) for c in curves]),
+        Column("note", "-", [c.fit.note for c in curves]),
     ]
 
 
@@ -67,7 +67,7 @@ def curve_columns(report: FragilityReport) -> list[Column]:
     curves = [c for c, _ in rows]
     return [
         *key_columns(report.series_keys, [c.values for c in curves]),
-        Column("limit", "-", [quoted(c.limit.label) for c in curves]),
+        Column("limit", "-", [c.limit.label for c in curves]),
         Column(report.intensity.measure, report.intensity.unit, [c.grid[i] for c, i in rows]),
         Column("probability", "-", [c.fit.curve[i] for c, i in rows]),
         Column("low", "-", [c.fit.band[0][i] for c, i in rows]),
@@ -81,7 +81,7 @@ def observed_columns(report: FragilityReport) -> list[Column]:
     shares = [share(round(c.observed.share[i] * n), n) for c, i in rows for n in [_points(c, i)]]
     return [
         *key_columns(report.series_keys, [c.values for c, _ in rows]),
-        Column("limit", "-", [quoted(c.limit.label) for c, _ in rows]),
+        Column("limit", "-", [c.limit.label for c, _ in rows]),
         Column(
             report.intensity.measure,
             report.intensity.unit,

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
 from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.reports.ida import (

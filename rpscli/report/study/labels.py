@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 
-from rpscli.report.files.csv_text import Column, quoted
+from rpscli.report.table import Column
 from rpscli.sweep.intensities import unit_of
 from rpscli.units import in_si
 
@@ -96,6 +96,6 @@ def _unit_behind(key: str, value: object) -> str:
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
     """One column a key, from its values in each row."""
     return [
-        Column(key, unit_of(key), [quoted(in_si(row[place], unit_of(key))) for row in rows])
+        Column(key, unit_of(key), [in_si(row[place], unit_of(key)) for row in rows])
         for place, key in enumerate(keys)
     ]

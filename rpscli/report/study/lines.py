@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns, labels, plain, symbol
 from rpscli.report.study.panels import by_values, colour, left_out, over, panel_figure, remarks
 from rpscli.report.study.report import Report
 from rpscli.report.study.statistics import reached
+from rpscli.report.table import Column
 from rpscli.sweep.evaluation.results import KNOWN, quantity
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.reports.lines import (
@@ -44,7 +44,7 @@ def lines_columns(report: LinesReport) -> list[Column]:
         *key_columns(report.series_keys, [line.values for _, line, _ in rows]),
         Column("result", "-", [line.result for _, line, _ in rows]),
         Column("unit", "-", [_unit(line.result) for _, line, _ in rows]),
-        Column(x_name, _unit(x_name), [quoted(line.x[place]) for _, line, place in rows]),
+        Column(x_name, _unit(x_name), [line.x[place] for _, line, place in rows]),
         Column("value", _common_unit(report), [reached(line.y[i]) for _, line, i in rows]),
     ]
     if report.statistic:

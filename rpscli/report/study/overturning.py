@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, label, labels, plain
 from rpscli.report.study.panels import left_out, over
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.reports.overturning import (
     Cell,
     OverturningOptions,

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import by_values, colour, left_out, marker, panel_figure, remarks
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.reports.overturning_spectrum import (
     SpectrumOptions,
     SpectrumPanel,

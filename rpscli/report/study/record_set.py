@@ -7,8 +7,8 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.analyses.result_quantities import HISTORY
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.statistics import reached, share_document
+from rpscli.report.table import Column
 from rpscli.sweep.statistics.record_set import RecordSet, SetVerdict
 
 STATISTICS = {

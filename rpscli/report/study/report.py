@@ -12,7 +12,7 @@ from rpscli.case.study.schema import Analysis
 from rpscli.report.figures.drawing import figure_files
 from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.figures.style import Target, kept_figure
-from rpscli.report.files.csv_text import Column, csv_text
+from rpscli.report.table import Column, csv_text
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.study_results import StudyResults
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.fragility import limit_name, measure_name, side_by_side
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.study.panels import Layout, colour, log_ticks, over, panel_figure, remarks
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.reports.fragility import LimitState, limit_states
 from rpscli.sweep.reports.risk import (
     Risk,
@@ -46,7 +46,7 @@ def risk_columns(report: RiskReport) -> list[Column]:
         Column(f"half_from_{measured.measure}_below", measured.unit, [r.half for r in risks]),
         Column("median", measured.unit, [r.fragility.fit.median for r in risks]),
         Column("beta", "-", [r.fragility.fit.beta for r in risks]),
-        Column("note", "-", [quoted("; ".join(_notes(r)) or None) for r in risks]),
+        Column("note", "-", ["; ".join(_notes(r)) or None for r in risks]),
     ]
 
 
@@ -76,7 +76,7 @@ def _systems(report: RiskReport, risks: list[Risk] | tuple[Risk, ...]) -> list[C
     values = [risk.fragility.values for risk in risks]
     return [
         *key_columns(report.fragilities.series_keys, values),
-        Column("limit", "-", [quoted(risk.fragility.limit.label) for risk in risks]),
+        Column("limit", "-", [risk.fragility.limit.label for risk in risks]),
     ]
 
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.study.labels import key_columns, label
 from rpscli.report.study.panels import by_values, colour, left_out, marker, panel_figure
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.points.described import described
 from rpscli.sweep.reports.rotation import (
     RotationOptions,
@@ -36,7 +36,7 @@ def rotation_columns(report: RotationReport) -> list[Column]:
         *varied,
         Column("outcome", "-", table.outcomes[points].tolist()),
         Column("rotation_over_alpha", "-", np.concatenate([pair.rotation for pair in pairs])),
-        Column(f"reference {report.key}", "-", [quoted(report.reference)] * len(rows)),
+        Column(f"reference {report.key}", "-", [report.reference] * len(rows)),
         Column("reference_outcome", "-", table.outcomes[references].tolist()),
         Column(
             "reference_rotation_over_alpha",

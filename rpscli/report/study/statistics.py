@@ -8,9 +8,9 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.case.conditions import LIMITS, Condition, condition_text
-from rpscli.report.files.csv_text import Column, quoted
 from rpscli.report.numbers import shown
 from rpscli.report.study.labels import key_columns, labels
+from rpscli.report.table import Column
 from rpscli.sweep.statistics.share import Share
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import StudyVerdict
@@ -71,7 +71,7 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> li
         *share_columns("beyond", [verdict.beyond for verdict in verdicts]),
         Column("overturned_among_them", "-", [verdict.overturned for verdict in verdicts]),
         Column("exceeded", "-", [str(verdict.exceeded).lower() for verdict in verdicts]),
-        Column("source", "-", [quoted(condition.source) for condition in conditions]),
+        Column("source", "-", [condition.source for condition in conditions]),
     ]
 
 

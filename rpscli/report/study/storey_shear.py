@@ -8,7 +8,6 @@ import numpy as np
 
 from rpscli.analyses.result_quantities import STOREY_SHEARS
 from rpscli.report.figures import style
-from rpscli.report.files.csv_text import Column
 from rpscli.report.study.labels import key_columns
 from rpscli.report.study.panels import (
     break_if_narrow,
@@ -19,6 +18,7 @@ from rpscli.report.study.panels import (
     remarks,
 )
 from rpscli.report.study.report import Report
+from rpscli.report.table import Column
 from rpscli.sweep.reports.storey_shear import (
     StoreyProfile,
     StoreyShearOptions,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rpscli.analyses.floor_spectra import FloorSpectra
-from rpscli.report.files.csv_text import Column
+from rpscli.report.table import Column
 
 
 def floor_spectra_columns(isolated: FloorSpectra, fixed: FloorSpectra | None) -> list[Column]:

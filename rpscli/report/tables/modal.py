@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.modal import ModalResult
-from rpscli.report.files.csv_text import Column, columns_of
+from rpscli.report.table import Column, columns_of
 
 
 def mode_columns(result: ModalResult) -> list[Column]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from rpscli.analyses.pushover import CapacityCurve, StoreyCurve
 from rpscli.analyses.result_quantities import STOREY_CURVE
-from rpscli.report.files.csv_text import Column
+from rpscli.report.table import Column
 
 
 def storey_curve_columns(curve: StoreyCurve) -> list[Column]:

@@ -8,7 +8,7 @@ from typing import Any
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
 from rpscli.records.spectrum import ResponseSpectrum
-from rpscli.report.files.csv_text import Column
+from rpscli.report.table import Column
 
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:

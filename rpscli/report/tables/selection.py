@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rpscli.records.selection import Candidate, Selection
-from rpscli.report.files.csv_text import Column, quoted
+from rpscli.report.table import Column
 
 
 def selection_document(selection: Selection) -> dict[str, Any]:
@@ -46,9 +46,9 @@ def selection_columns(selection: Selection) -> list[Column]:
     """`selection.csv`: one row a motion, its peaks scaled."""
     chosen = selection.chosen
     return [
-        Column("source", "-", [quoted(one.motion.source) for one in chosen]),
+        Column("source", "-", [one.motion.source for one in chosen]),
         Column("factor", "-", [one.factor for one in chosen]),
-        Column("event", "-", [quoted(one.event) for one in chosen]),
+        Column("event", "-", [one.event for one in chosen]),
         Column("pga", "m/s2", [one.factor * one.motion.pga for one in chosen]),
         Column("pgv", "m/s", [one.factor * one.pgv for one in chosen]),
         Column("pgd", "m", [one.factor * one.pgd for one in chosen]),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import STOREYS
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.report.files.csv_text import Column
+from rpscli.report.table import Column
 
 Array = NDArray[np.float64]
 

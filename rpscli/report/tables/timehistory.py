@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.events import Event
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.report.files.csv_text import Column, columns_of
+from rpscli.report.table import Column, columns_of
 
 
 def history_columns(result: TimeHistoryResult) -> list[Column]:

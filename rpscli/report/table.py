@@ -1,0 +1,145 @@
+"""One table for files, terminals, pages and documents.
+
+A column has a name, an SI unit and values, which is what files and documents hold, and a label and
+a form for readers. `csv_text` and `records` write columns; a `Table` says how readers see them.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+from rpscli.report.numbers import large, shown
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_PIECE = 4096  # rows
+_QUOTED = re.compile(r'[,"\n\r]')
+
+
+class Column(NamedTuple):
+    """One column of a table; a value that does not exist is None, and an empty cell.
+
+    `label` and `form` are for readers: what stands above, with the unit that they see, and how a
+    value becomes a text.
+    """
+
+    name: str
+    unit: str
+    values: Iterable[Any] | NDArray[Any]
+    label: str = ""
+    form: Callable[[Any], str] | None = None
+
+    @property
+    def title(self) -> str:
+        """Name and unit, ``-`` for a number without one."""
+        return f"{self.name} [{self.unit}]"
+
+    def texts(self) -> list[str]:
+        """What readers see of the values: by default four digits, thousands of large units."""
+        form = self.form or (lambda value: shown(large(value, self.unit)[0]))
+        return [form(value) for value in _one_by_one(self.values)]
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns as readers see them.
+
+    So many columns from the left hold words, which may be broken; those after them hold numbers. So
+    many say what a row is about, and are repeated where a table is too wide for a terminal.
+    """
+
+    columns: Sequence[Column]
+    words: int = 1
+    keys: int = 1
+
+    @classmethod
+    def of_texts(
+        cls, heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1, keys: int = 1
+    ) -> Table:
+        """A table whose rows are texts already."""
+        cells = list(zip(*rows, strict=True)) or [()] * len(heads)
+        columns = [Column(h, "-", each, h, str) for h, each in zip(heads, cells, strict=True)]
+        return cls(columns, words, keys)
+
+    @classmethod
+    def listing(cls, rows: Iterable[tuple[str, str]]) -> Table:
+        """Names and what they stand for, without heads."""
+        return cls.of_texts(("", ""), rows, words=2)
+
+    @property
+    def heads(self) -> list[str]:
+        """What stands above the columns."""
+        return [column.label for column in self.columns]
+
+    @property
+    def rows(self) -> list[tuple[str, ...]]:
+        """Texts of each row."""
+        return list(zip(*(column.texts() for column in self.columns), strict=True))
+
+
+class Heading(str):
+    """A title above tables."""
+
+    __slots__ = ()
+
+
+Part = Table | Heading | str
+"""What a command shows: a plain text is a remark between tables."""
+
+
+def columns_of(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[Column]:
+    """Columns with these names and units from the rows of a table."""
+    cells = list(zip(*rows, strict=True)) or [()] * len(heads)
+    return [Column(*head, values) for head, values in zip(heads.items(), cells, strict=True)]
+
+
+def csv_text(columns: Sequence[Column]) -> str:
+    """The columns as CSV; numbers with ten significant digits, quotes where a cell needs them.
+
+    >>> print(csv_text([Column("time", "s", [0.0, 0.5]), Column("kind", "-", ["a, b", None])]))
+    time [s],kind [-]
+    0,"a, b"
+    0.5,
+    <BLANKLINE>
+    """
+    return "".join(csv_lines(columns))
+
+
+def csv_lines(columns: Sequence[Column]) -> Iterator[str]:
+    """The same line by line, for tables that are too long to be in memory as text."""
+    cells = [map(_cell, _one_by_one(column.values)) for column in columns]
+    yield ",".join(_cell(column.title) for column in columns) + "\n"
+    for row in zip(*cells, strict=True):
+        yield ",".join(row) + "\n"
+
+
+def records(columns: Sequence[Column]) -> list[dict[str, Any]]:
+    """Rows for a JSON document: values by the names of their columns."""
+    names = [column.name for column in columns]
+    cells = zip(*(_one_by_one(column.values) for column in columns), strict=True)
+    return [dict(zip(names, row, strict=True)) for row in cells]
+
+
+def _one_by_one(values: Iterable[Any] | NDArray[Any]) -> Iterator[Any]:
+    if not hasattr(values, "tolist"):  # numpy need not be there
+        yield from values
+        return
+    array = cast("NDArray[Any]", values)
+    # Piece by piece, since as objects numbers take four times the memory.
+    for start in range(0, len(array), _PIECE):
+        yield from array[start : start + _PIECE].tolist()
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return format(value + 0.0, ".10g") if math.isfinite(value) else ""
+    if value is None:
+        return ""
+    text = json.dumps(value) if isinstance(value, list | tuple | dict) else str(value)
+    return '"' + text.replace('"', '""') + '"' if _QUOTED.search(text) else text
