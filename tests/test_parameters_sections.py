@@ -68,6 +68,14 @@ def unexplained(node: ast.FunctionDef | ast.ClassDef, standing: set[str]) -> set
     return open_to_all - known if len(names) > 1 else set()
 
 
+def shared(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
+    """Arguments of the methods of a class, which are not its fields."""
+    if isinstance(node, ast.FunctionDef):
+        return set()
+    methods = [each for each in public(node.body) if isinstance(each, ast.FunctionDef)]
+    return {name for each in methods for name in arguments(each)} - set(fields(node.body)[0])
+
+
 def parsed(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 
@@ -90,8 +98,11 @@ def test_what_is_missing_is_found(source: str, missing: set[str]) -> None:
     assert unexplained(node, set()) == missing
 
 
-def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef]]:
-    """What `import rpscli` offers, and the published formulae of the model, with their modules."""
+def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[str]]]:
+    """What `import rpscli` offers, and the published formulae of the model, with their modules.
+
+    Beside each stand the names that its class explains for all its methods.
+    """
     modules = {name: set(names) for name, names in rpscli._HOMES.items()}
     for file in (ROOT / "model").rglob("*.py"):
         modules.setdefault(".".join(file.relative_to(ROOT.parent).with_suffix("").parts), set())
@@ -103,13 +114,13 @@ def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef]]:
             if node.name in names or ".model." in module:
                 # An answer to what a base class asks has no docstring; linters see to all others.
                 for each in filter(ast.get_docstring, public([node])):
-                    yield module, each
+                    yield module, each, described(ast.get_docstring(node)) & shared(node)
 
 
 def test_arguments_and_fields_are_explained() -> None:
     missing = {
         f"{module}: {node.name}": names
-        for module, node in public_nodes()
-        if (names := unexplained(node, set()))
+        for module, node, standing in public_nodes()
+        if (names := unexplained(node, standing))
     }
     assert not missing

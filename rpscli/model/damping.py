@@ -81,16 +81,8 @@ class ModalDamping:
 
         Parameters
         ----------
-        M, K
-            Mass [kg] and stiffness [N/m], (n, n).
-        w
-            Fixed-base circular frequencies, (n,), ascending [rad/s].
-        Phi
-            Mass-normalised mode shapes, (n, n), one a column [kg^-1/2].
-
-        Returns
-        -------
-        (n, n) [N s/m].
+        M, K, w, Phi
+            As those of `RayleighDamping.matrix`.
         """
         del K
         weighted = M.diagonal()[:, None] * Phi

@@ -78,12 +78,8 @@ def rigid_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
 
     Parameters
     ----------
-    bearing
-        Shape of every column.
-    gamma
-        m_b/(N m_c), cap beam over columns.
-    eta
-        M_tot/m_b, building over cap beam.
+    bearing, gamma, eta
+        As those of `ImpactLaw.ratio`.
     """
     Io, carried = bearing.inertia_ratio, 4.0 * gamma * (1.0 + eta)
     return 1.0 - 2.0 * math.sin(bearing.alpha) ** 2 * (1.0 + carried) / (Io + carried)
@@ -94,12 +90,8 @@ def flexible_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
 
     Parameters
     ----------
-    bearing
-        Shape of every column.
-    gamma
-        m_b/(N m_c), cap beam over columns.
-    eta
-        M_tot/m_b, building over cap beam.
+    bearing, gamma, eta
+        As those of `ImpactLaw.ratio`.
     """
     Io, a = bearing.inertia_ratio, bearing.alpha
     sin2, beam, floors = math.sin(a) ** 2, 4.0 * gamma, 4.0 * gamma * eta * math.sin(a) ** 2

@@ -203,55 +203,36 @@ class PodiumStructure(Shown):
 
 
 class AtRest(NamedTuple):
-    """Horizontal forces of a device on the cap beam at rest, at the rotations asked for [N].
-
-    Parameters
-    ----------
-    restoring
-        Needed in addition to hold a rotation > 0.
-    held
-        Friction, which holds as much either way.
-    """
+    """Horizontal forces of a device on the cap beam at rest, at the rotations asked for [N]."""
 
     restoring: Array | float = 0.0
+    """Needed in addition to hold a rotation > 0."""
     held: Array | float = 0.0
+    """Friction, which holds as much either way."""
 
 
 class Linear(NamedTuple):
-    """What a device adds to small motions u_bR = 2 R theta on one side (Theory, sections 6, 11).
-
-    Parameters
-    ----------
-    stiffness, damping
-        To first order [N/m], [N s/m].
-    left_out
-        In words, what of it is not linear; empty if nothing.
-    """
+    """What a device adds to small motions u_bR = 2 R theta on one side (Theory, sections 6, 11)."""
 
     stiffness: float = 0.0
+    """To first order [N/m]."""
     damping: float = 0.0
+    """[N s/m]."""
     left_out: str = ""
+    """In words, what of it is not linear; empty if nothing."""
 
 
 class Consequence(NamedTuple):
-    """A number that follows from one device.
-
-    Parameters
-    ----------
-    name
-        In JSON.
-    label
-        The words of a table.
-    unit
-        SI; ``-`` for plain numbers.
-    value
-        None if it is never reached.
-    """
+    """A number that follows from one device: its name in JSON, and the words of a table."""
 
     name: str
+    """In JSON."""
     label: str
+    """In tables."""
     unit: str
+    """SI; ``-`` for plain numbers."""
     value: float | None
+    """None if it is never reached."""
 
 
 @dataclass(frozen=True)
@@ -260,6 +241,21 @@ class Device(ABC):
 
     Whatever follows from a device is asked here and answered by every law: a law that leaves a
     question open cannot be made. How it is drawn is told in `report.figures.devices`.
+
+    Parameters
+    ----------
+    structure
+        On which it acts.
+    rotation
+        |theta|, of any shape [rad]; of `beam_forces` theta.
+    farthest
+        Rotation to which it was drawn before [rad].
+    kappa, angle
+        2 rho - 1 and alpha rolling, -1 and alpha' rocking [-, rad].
+    force
+        Of the device, as histories have it [N].
+    length
+        [m].
     """
 
     @property
@@ -283,17 +279,7 @@ class Device(ABC):
 
     @abstractmethod
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
-        """Forces at rest.
-
-        Parameters
-        ----------
-        structure
-            On which it acts.
-        rotation
-            Rotations >= 0, of any shape [rad].
-        farthest
-            Rotation to which it was drawn before [rad].
-        """
+        """Forces at rest."""
 
     @abstractmethod
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
@@ -301,17 +287,7 @@ class Device(ABC):
 
     @abstractmethod
     def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
-        """What modes hold of it.
-
-        Parameters
-        ----------
-        structure
-            On which it acts.
-        kappa
-            2 rho - 1 rolling, -1 rocking.
-        angle
-            alpha rolling, alpha' rocking [rad].
-        """
+        """What modes hold of it."""
 
     @abstractmethod
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
@@ -323,53 +299,24 @@ class Device(ABC):
 
     @abstractmethod
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
-        """How far it moves.
-
-        Parameters
-        ----------
-        structure
-            On which it acts.
-        rotation
-            |theta| [rad].
-        """
+        """How far it moves [m]."""
 
     @abstractmethod
     def beam_forces(
         self, structure: PodiumStructure, rotation: Array, force: Array
     ) -> tuple[Array, Array]:
-        """Forces on the cap beam, to the right and downwards [N].
-
-        Parameters
-        ----------
-        structure
-            On which it acts.
-        rotation
-            theta [rad].
-        force
-            Of the device, as histories have it [N].
-        """
+        """Forces on the cap beam, to the right and downwards [N]."""
 
     @abstractmethod
     def remaining_prestress(self, permanent: float) -> float | None:
         """Of one, upright, after a permanent elongation [m]; None without [N]."""
 
     def reached_at(self, structure: PodiumStructure, length: float) -> float | None:
-        """The |theta| at which its stroke reaches a length; None beyond 2 theta_cr [rad].
-
-        Parameters
-        ----------
-        structure
-            On which it acts.
-        length
-            [m].
-        """
+        """The |theta| at which its stroke reaches a length; None beyond 2 theta_cr [rad]."""
+        from scipy.optimize import brentq
 
         def excess(x: float) -> float:
             return float(self.stroke(structure, np.array([x]))[0]) - length
 
         end = 2.0 * structure.critical_rotation
-        if excess(end) < 0.0:
-            return None
-        from scipy.optimize import brentq
-
-        return float(brentq(excess, 0.0, end))
+        return None if excess(end) < 0.0 else float(brentq(excess, 0.0, end))

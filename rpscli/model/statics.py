@@ -16,27 +16,18 @@ POINTS = 400
 
 
 class Return(NamedTuple):
-    """Whether the storey comes back from rest at a rotation, and against how much friction.
-
-    Parameters
-    ----------
-    rotation
-        From which it starts at rest [rad].
-    displacement
-        u_b there [m].
-    largest_friction
-        What friction may hold at most for it to come back, a force at the cap beam [N].
-    friction
-        What friction holds at most on the way [N].
-    recentres
-        Whether it comes back to full contact.
-    """
+    """Whether the storey comes back from rest at a rotation, and against how much friction."""
 
     rotation: float
+    """From which it starts at rest [rad]."""
     displacement: float
+    """u_b there [m]."""
     largest_friction: float
+    """What friction may hold at most for it to come back, a force at the cap beam [N]."""
     friction: float
+    """What friction holds at most on the way [N]."""
     recentres: bool
+    """Whether it comes back to full contact."""
 
 
 def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float = 0.0) -> Array:
