@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
+import numpy as np
+
 from rpscli.analyses.kernels.compilation import compiled
-from rpscli.analyses.kernels.history import History, histories_of, refuse_steps, run_of
 from rpscli.analyses.kernels.history import Request as HistoryRequest
+from rpscli.analyses.kernels.history import refuse_steps, run_of
 from rpscli.analyses.kernels.step_lengths import longest_time
 from rpscli.analyses.kernels.systems import stacked_systems
-from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.frozen import frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -22,21 +25,7 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """One history to run: a structure under a record, both of its components times `scale`.
-
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    record
-        Horizontal ground acceleration.
-    settings
-        Accuracy, tolerance, limits.
-    scale
-        Multiplies both components.
-    vertical
-        Vertical ground acceleration with the same time step, positive upwards.
-    """
+    """One history to run: a structure under a record, both of its components times `scale`."""
 
     structure: PodiumStructure
     record: GroundMotion
@@ -50,34 +39,31 @@ WORTH_LANES = 8
 with the same results. A step of all lanes takes as long as some five of one."""
 
 
-def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> list[Demand]:
-    """Largest demands of many histories.
+def histories(
+    requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
+) -> Iterator[tuple[list[int], Histories]]:
+    """Many histories: numbers of the requests with one number of storeys, and their results.
 
-    Parameters
-    ----------
-    requests
-        In any order; structures and records that are the same object are stored once. Those with
-        the same number of storeys run together, side by side in one core if there are many.
-    worth_lanes
-        How many are many.
+    Structures and records that are the same object are stored once. Those with the same number of
+    storeys run together, side by side in one core if there are at least `worth_lanes`. No result
+    depends on the others, or on the order.
 
-    Returns
-    -------
-    One demand a request, in their order. None of them depends on the others, or on the order.
-
-    Notes
-    -----
     The kernels run without the GIL: call this from several threads to use several cores.
     """
-    answers: dict[int, Demand] = {}
     groups: dict[int, list[int]] = {}
     for i, request in enumerate(requests):
         groups.setdefault(request.structure.storeys, []).append(i)
     for members in groups.values():
-        histories = _run([requests[i] for i in members], worth_lanes)
-        for i, history in zip(members, histories, strict=True):
-            answers[i] = Demand(requests[i].structure, history)
-    return [answers[i] for i in range(len(requests))]
+        yield members, _run([requests[i] for i in members], worth_lanes)
+
+
+def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> list[Demand]:
+    """Largest demands of each of many histories, in their order; see `histories`."""
+    found: dict[int, Demand] = {}
+    for members, together in histories(requests, worth_lanes=worth_lanes):
+        for i, left in zip(members, together.left.view(np.recarray), strict=True):
+            found[i] = Demand(requests[i].structure, left)
+    return [found[i] for i in range(len(requests))]
 
 
 def demand(
@@ -104,30 +90,31 @@ def demand(
     return demands([Request(structure, record, chosen, vertical=vertical)])[0]
 
 
-def _run(requests: Sequence[Request], worth_lanes: int) -> list[History]:
+def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
     from rpscli.physics.planar.driver import integrate
 
+    structures = _Distinct[PodiumStructure]()
     systems = _Distinct[tuple[PodiumStructure, TimeHistorySettings]]()
     motions = _Distinct[GroundMotion]()
-    histories = []
+    given, of_structure = [], []
     for r in requests:
         record, vertical = MotionComponents(r.record, r.vertical).of_one_length
+        of_structure.append(structures.number(id(r.structure), r.structure))
         system = systems.number((id(r.structure), r.settings), (r.structure, r.settings))
         along = motions.number((id(r.record), id(r.vertical)), record)
         above = None
         if vertical is not None:
             above = motions.number((id(r.vertical), id(r.record), "up"), vertical)
-        histories.append(HistoryRequest(system, along, above, r.scale))
+        given.append(HistoryRequest(system, along, above, r.scale))
     stacked = stacked_systems(systems.items)
-    for r, history in zip(requests, histories, strict=True):
-        seconds = longest_time(r.settings, r.record.duration)
-        refuse_steps(seconds * float(stacked.uplifted_rate[history.system]))
-    run = run_of(stacked, motions.items, histories)
-    storeys = requests[0].structure.storeys
+    rates = stacked["uplifted_rate"].tolist()
+    for r, history in zip(requests, given, strict=True):
+        refuse_steps(longest_time(r.settings, r.record.duration) * rates[history.system])
+    run = run_of(stacked, motions.items, given)
     lanes = LANES if len(requests) >= worth_lanes else 1
     with compiled(equipped=any(r.structure.devices for r in requests)):
         integrate(run, lanes)
-    return histories_of(run.results, storeys)
+    return Histories(structures.items, of_structure, frozen(run.results))
 
 
 class _Distinct(Generic[Item]):

@@ -8,9 +8,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernels.history import History
 from rpscli.frozen import Frozen
 from rpscli.model.podium import PodiumStructure
+from rpscli.physics.core.records import Record
 
 Array = NDArray[np.float64]
 Rows: TypeAlias = slice | NDArray[np.intp]
@@ -40,17 +40,17 @@ class DeviceDemand:
     """Of a tendon at the end, upright [N]; None of others."""
 
 
-def device_demands(structure: PodiumStructure, history: History) -> tuple[DeviceDemand, ...]:
-    """Demands of each device, in the order of the structure's."""
-    rotation = np.array([history.max_rotation])
+def device_demands(structure: PodiumStructure, history: Record) -> tuple[DeviceDemand, ...]:
+    """Demands of each device from a `state.RESULT`, in the order of the structure's."""
+    rotation = np.array([history["max_theta"]])
     return tuple(
         DeviceDemand(
             device.kind,
-            float(history.device_force[i]),
+            float(history["device_force"][i]),
             float(device.stroke(structure, rotation)[0]),
-            float(history.device_velocity[i]),
-            float(history.device_energy[i]),
-            device.remaining_prestress(float(history.permanent[i])),
+            float(history["device_velocity"][i]),
+            float(history["device_energy"][i]),
+            device.remaining_prestress(float(history["permanent"][i])),
         )
         for i, device in enumerate(structure.devices)
     )

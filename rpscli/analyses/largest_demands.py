@@ -1,23 +1,276 @@
-"""What a history asks of its structure at most: the results that need no samples."""
+"""What histories ask of their structures at most: the results that need no samples."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.device_results import DeviceDemand, device_demands
-from rpscli.analyses.failure import failure_text
-from rpscli.analyses.kernels.history import History
-from rpscli.analyses.outcome import Outcome, outcome_of
-from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS, values_of
+from rpscli.analyses.outcome import OUTCOME_WORDS, Outcome, failure_text, outcome_of
+from rpscli.analyses.result_quantities import HISTORY, KERNEL_FIELDS, ResultQuantity, values_of
 from rpscli.frozen import frozen
-from rpscli.model.podium import PodiumStructure
-from rpscli.physics.planar import state
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.physics.core.records import Record, record_type
+from rpscli.physics.planar import geometry, state
 from rpscli.shown import Shown, with_unit
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+
+class Histories:
+    """Results of histories as columns (histories, ...), NaN where a history has none.
+
+    The structures have one number of storeys; `number` says which of them a history belongs to.
+    """
+
+    def __init__(
+        self, structures: Sequence[PodiumStructure], number: Sequence[int], left: Record
+    ) -> None:
+        # Fields by attribute, which records of the kernels have, take numpy ten times as long.
+        self.left = left.view(record_type(state.RESULT), np.ndarray)
+        self.structures, self.number = structures, np.array(number)
+        self.storeys = structures[0].storeys
+
+    @classmethod
+    def of_one(cls, structure: PodiumStructure, history: Record) -> Histories:
+        """A batch of one history."""
+        return cls([structure], [0], np.array([history], dtype=record_type(state.RESULT)))
+
+    @property
+    def outcomes(self) -> NDArray[np.str_]:
+        """How each ended, in words."""
+        return np.asarray(OUTCOME_WORDS[self.left["outcome"]])
+
+    def column(self, name: str) -> Array:
+        """The values of a result of the table of results: a field of the kernel's, or made here."""
+        field = KERNEL_FIELDS.get(name)
+        values: Array = self.left[field] if field else getattr(self, name)
+        return values
+
+    def columns(self, quantities: Iterable[ResultQuantity]) -> dict[str, Array]:
+        """Finite values by name; NaN where there is none."""
+        with np.errstate(all="ignore"):
+            values = {q.name: self.column(q.name) + 0.0 for q in quantities}  # no -0.0
+        for column in values.values():
+            column[~np.isfinite(column)] = np.nan
+        return values
+
+    def _kept(self, field: str) -> Array:
+        values: Array = self.left[field]
+        return values
+
+    def _each(self, constant: Callable[[PodiumStructure], Any]) -> Array:
+        """Of the structure of each history; NaN for None."""
+        found = np.array([constant(structure) for structure in self.structures], np.float64)
+        return np.asarray(found[self.number])
+
+    @property
+    def max_rotation_time(self) -> Array:
+        """Of those that rotated."""
+        return np.where(self._kept("max_theta") > 0.0, self._kept("max_theta_time"), np.nan)
+
+    @cached_property
+    def critical_rotation(self) -> Array:
+        """theta_cr."""
+        return self._each(lambda structure: structure.critical_rotation)
+
+    @property
+    def rotation_ratio(self) -> Array:
+        """max |theta|/theta_cr."""
+        return self._kept("max_theta") / self.critical_rotation
+
+    @property
+    def critical_passage_time(self) -> Array:
+        """Of those that passed theta_cr."""
+        time = self._kept("critical_time")
+        return np.where(time >= 0.0, time, np.nan)
+
+    @property
+    def residual_rotation(self) -> Array:
+        """|theta| at the end."""
+        return np.abs(self._kept("rotation"))
+
+    @cached_property
+    def _path(self) -> tuple[Array, Array]:
+        """u_b and v_b (3, histories) at the largest rotation, the largest up to theta_cr, the end.
+
+        u_b grows with |theta|, v_b up to theta_cr.
+        """
+        largest = self._kept("max_theta")
+        highest = np.minimum(largest, self.critical_rotation)
+        bearings = [structure.bearing for structure in self.structures]
+        rolling, rocking = (
+            geometry.Phase(*np.array(phases).T[:, self.number])
+            for phases in ([b.rolling for b in bearings], [b.rocking for b in bearings])
+        )
+        beta = np.array([b.beta for b in bearings])[self.number]
+        rotations = np.array([largest, highest, self.residual_rotation])
+        _, _, u, v = geometry.path_along(rolling, rocking, beta, rotations)
+        diameter = 2.0 * np.array([b.semi_diagonal for b in bearings])[self.number]
+        return diameter * u, diameter * v
+
+    @property
+    def max_cap_beam_displacement(self) -> Array:
+        """u_b at the largest rotation."""
+        return np.asarray(self._path[0][0])
+
+    @property
+    def max_lift(self) -> Array:
+        """v_b at the largest rotation up to theta_cr."""
+        return np.asarray(self._path[1][1])
+
+    @property
+    def residual_displacement(self) -> Array:
+        """u_b at the end."""
+        return np.asarray(self._path[0][2])
+
+    @property
+    def storey_shears(self) -> Array:
+        """(histories, n)."""
+        return self._kept("storey_shear")[:, : self.storeys]
+
+    @property
+    def floor_accelerations(self) -> Array:
+        """(histories, n)."""
+        return self._kept("floor_acceleration")[:, : self.storeys]
+
+    @property
+    def max_base_shear(self) -> Array:
+        """Of the first storey; 0 without one."""
+        return self.storey_shears[:, 0] if self.storeys else np.zeros(len(self.left))
+
+    @property
+    def base_shear_ratio(self) -> Array:
+        """max_base_shear over V_st."""
+        static = self._each(lambda structure: structure.static_base_shear or None)
+        return self.max_base_shear / static
+
+    @property
+    def max_floor_acceleration(self) -> Array:
+        """Largest of all floors."""
+        return _largest(self.floor_accelerations)
+
+    @property
+    def max_drifts(self) -> Array:
+        """(histories, n)."""
+        if not self.storeys:
+            return self.storey_shears
+        return self.storey_shears / self._each(
+            lambda s: s.superstructure and s.superstructure.stiffnesses
+        )
+
+    @property
+    def drift_ratio(self) -> Array:
+        """Largest of all storeys."""
+        unknown = np.full(self.storeys, np.nan)
+
+        def heights(structure: PodiumStructure) -> Array:
+            building = structure.superstructure
+            known = None if building is None else building.storey_heights
+            return unknown if known is None else known
+
+        return _largest(self.max_drifts / self._each(heights))
+
+    @property
+    def friction_demand(self) -> Array:
+        """Largest |F|/N of both ends."""
+        return np.maximum(self._kept("friction_top"), self._kept("friction_bottom"))
+
+    @property
+    def friction_ratio(self) -> Array:
+        """friction_demand over the coefficient."""
+        return self.friction_demand / self._each(lambda structure: structure.friction)
+
+    @property
+    def uplifts(self) -> Array:
+        """Events."""
+        return self._kept("events")[:, state.UPLIFT]
+
+    @property
+    def impacts(self) -> Array:
+        """Events."""
+        return self._kept("events")[:, state.IMPACT]
+
+    @property
+    def max_damper_force(self) -> Array:
+        """Of viscous and friction dampers."""
+        return self._largest_force("max_damper_force")
+
+    @property
+    def max_stop_force(self) -> Array:
+        """Of stops."""
+        return self._largest_force("max_stop_force")
+
+    def _largest_force(self, result: str) -> Array:
+        """Of the devices whose laws name a result."""
+        found = np.full((len(self.left), state.SLOTS), np.nan)
+        for rows, i, device in self._devices():
+            if result in device.results:
+                found[rows, i] = self._kept("device_force")[rows, i]
+        return np.asarray(np.fmax.reduce(found, axis=1))
+
+    @property
+    def lost_prestress(self) -> Array:
+        """Largest part that a tendon has lost of its prestress."""
+        found = np.full((len(self.left), state.SLOTS), np.nan)
+        for rows, i, device in self._devices():
+            if prestress := device.remaining_prestress(0.0):
+                permanent = self._kept("permanent")[rows, i].tolist()
+                remaining = [device.remaining_prestress(length) for length in permanent]
+                found[rows, i] = 1.0 - np.array(remaining, np.float64) / prestress
+        return np.asarray(np.fmax.reduce(found, axis=1))
+
+    def _devices(self) -> Iterator[tuple[NDArray[np.int64], int, Device]]:
+        """Numbers of the histories of each structure, and the slots and laws of its devices."""
+        for number, structure in enumerate(self.structures):
+            for i, device in enumerate(structure.devices):
+                yield np.flatnonzero(self.number == number), i, device
+
+    @property
+    def energy_devices(self) -> Array:
+        """Of all devices."""
+        return np.asarray(self._kept("device_energy").sum(axis=1))
+
+
+def _largest(values: Array) -> Array:
+    """Of each row; NaN of empty ones."""
+    return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
+
+
+class _Result(Generic[T]):
+    """An attribute of `Demand`: the result of its name, of a batch of one history."""
+
+    def __init__(self, doc: str) -> None:
+        self.__doc__ = doc
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, demand: None, owner: type) -> _Result[T]: ...
+    @overload
+    def __get__(self, demand: Demand, owner: type) -> T: ...
+    def __get__(self, demand: Demand | None, owner: type) -> _Result[T] | T:
+        if demand is None:
+            return self
+        found: T = self._told(demand._alone.column(self._name)[0])  # noqa: SLF001
+        return found
+
+    def _told(self, value: Any) -> Any:
+        return value.item() if value.ndim == 0 else frozen(value)
+
+
+class _Optional(_Result[float | None]):
+    """One that not every history has: None in place of NaN."""
+
+    def _told(self, value: Any) -> Any:
+        return None if np.isnan(value) else float(value)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -29,11 +282,15 @@ class Demand(Shown):
     structure
         Podium, bearings and building.
     history
-        What its history left behind.
+        What its history left behind: a `physics.planar.state.RESULT`.
     """
 
     structure: PodiumStructure
-    history: History
+    history: Record
+
+    @cached_property
+    def _alone(self) -> Histories:
+        return Histories.of_one(self.structure, self.history)
 
     @property
     def outcome(self) -> Outcome:
@@ -53,178 +310,65 @@ class Demand(Shown):
     @property
     def stays_tilted(self) -> bool:
         """Whether friction holds the storey tilted at the end."""
-        return self.history.phase == state.STUCK
+        return bool(self.history["phase"] == state.STUCK)
 
-    @property
-    def max_rotation(self) -> float:
-        """Largest |theta|, turning points between samples included [rad]."""
-        return self.history.max_rotation
-
-    @property
-    def max_rotation_time(self) -> float | None:
-        """When |theta| was largest [s]; None if there was no rotation."""
-        return self.history.max_rotation_time if self.max_rotation > 0.0 else None
-
-    @property
-    def rotation_ratio(self) -> float:
-        """max |theta|/theta_cr."""
-        return self.max_rotation / self.critical_rotation
-
-    @property
-    def critical_rotation(self) -> float:
-        """theta_cr [rad]."""
-        return self.structure.critical_rotation
-
-    @property
-    def critical_passage_time(self) -> float | None:
-        """When |theta| passed theta_cr for the first time [s]; None if never."""
-        return self.history.critical_time if self.history.critical_time >= 0.0 else None
-
-    @property
-    def max_cap_beam_displacement(self) -> float:
-        """Largest |u_b| [m]; u_b grows with |theta|."""
-        return self._paths[0][0]
-
-    @property
-    def max_lift(self) -> float:
-        """Largest v_b, by which the building is lifted [m]; it grows up to theta_cr."""
-        return self._paths[1][1]
-
-    @property
-    def residual_rotation(self) -> float:
-        """|theta| at the end of the history [rad]; 0 in full contact."""
-        return abs(self.history.rotation)
-
-    @property
-    def residual_displacement(self) -> float:
-        """|u_b| at the end of the history [m]; 0 in full contact."""
-        return self._paths[0][2]
-
-    @cached_property
-    def _paths(self) -> tuple[list[float], list[float]]:
-        """u_b and v_b [m] at the largest rotation, at the largest up to theta_cr, at the end."""
-        highest = min(self.max_rotation, self.critical_rotation)
-        _, u, v = self.structure.path(
-            np.array([self.max_rotation, highest, self.residual_rotation])
-        )
-        return u.tolist(), v.tolist()
+    max_rotation = _Result[float]("Largest |theta|, turning points between samples included [rad].")
+    max_rotation_time = _Optional("When |theta| was largest [s]; None if there was no rotation.")
+    rotation_ratio = _Result[float]("max |theta|/theta_cr.")
+    critical_rotation = _Result[float]("theta_cr [rad].")
+    critical_passage_time = _Optional(
+        "When |theta| passed theta_cr for the first time [s]; None if never."
+    )
+    max_cap_beam_displacement = _Result[float]("Largest |u_b| [m]; u_b grows with |theta|.")
+    max_lift = _Result[float](
+        "Largest v_b, by which the building is lifted [m]; it grows up to theta_cr."
+    )
+    residual_rotation = _Result[float]("|theta| at the end of the history [rad].")
+    residual_displacement = _Result[float]("|u_b| at the end [m]; 0 in full contact.")
+    max_damper_force = _Optional(
+        "Largest force of a viscous or friction damper [N]; None without one."
+    )
+    max_stop_force = _Optional("Largest force of a stop [N]; None without one.")
+    lost_prestress = _Optional(
+        "Largest part of its prestress that a tendon has lost; None without prestress."
+    )
+    energy_devices = _Result[float]("Energy dissipated in all devices [J].")
+    storey_shears = _Result[Array](
+        "(n,) largest elastic shears k_i d_i at the samples [N], from the bottom."
+    )
+    floor_accelerations = _Result[Array](
+        "(n,) largest absolute accelerations at the samples [m/s2], from the bottom."
+    )
+    max_floor_acceleration = _Optional(
+        "Largest of `floor_accelerations` [m/s2]; None without a superstructure."
+    )
+    max_base_shear = _Result[float](
+        "Largest elastic shear of the first storey [N]; 0 without a superstructure."
+    )
+    base_shear_ratio = _Optional(
+        "max_base_shear over V_st = M_tot g tan(alpha); None without a superstructure."
+    )
+    max_drifts = _Result[Array]("(n,) largest storey drifts [m].")
+    drift_ratio = _Optional("Largest drift over storey height; None where no heights are given.")
+    friction_demand = _Result[float](
+        "Largest |F|/N at either end of the columns: the friction that no sliding needs."
+    )
+    friction_ratio = _Optional(
+        "friction_demand over the coefficient of friction; None where that is not given."
+    )
+    uplifts = _Result[int]("Number of uplifts from full contact.")
+    impacts = _Result[int]("Number of impacts, those that end in re-contact included.")
+    duration = _Result[float]("Length of the history with its free vibration [s].")
+    energy_impact = _Result[float]("Net energy lost at impacts and re-contacts [J].")
+    energy_created = _Result[float](
+        "Energy gained where the impact law sets floors in motion [J] (Theory, section 4)."
+    )
+    creating_impacts = _Result[int]("Number of impacts that gained energy.")
 
     @property
     def devices(self) -> tuple[DeviceDemand, ...]:
         """Demands of each device, in the order of the structure's."""
         return device_demands(self.structure, self.history)
-
-    @property
-    def max_damper_force(self) -> float | None:
-        """Largest force of a viscous or friction damper [N]; None without one."""
-        return self._largest_force("max_damper_force")
-
-    @property
-    def max_stop_force(self) -> float | None:
-        """Largest force of a stop [N]; None without one."""
-        return self._largest_force("max_stop_force")
-
-    def _largest_force(self, result: str) -> float | None:
-        """Largest force of the devices whose laws name a result [N]; None without any."""
-        devices = enumerate(self.structure.devices)
-        numbers = [number for number, device in devices if result in device.results]
-        return max((float(self.history.device_force[i]) for i in numbers), default=None)
-
-    @property
-    def lost_prestress(self) -> float | None:
-        """Largest part of its prestress that a tendon has lost; None without prestress."""
-        lost = [
-            1.0 - demand.remaining_prestress / prestress
-            for device, demand in zip(self.structure.devices, self.devices, strict=True)
-            if (prestress := device.remaining_prestress(0.0))
-            and demand.remaining_prestress is not None
-        ]
-        return max(lost, default=None)
-
-    @property
-    def energy_devices(self) -> float:
-        """Energy dissipated in all devices [J]."""
-        return float(self.history.device_energy.sum())
-
-    @property
-    def storey_shears(self) -> NDArray[np.float64]:
-        """(n,) largest elastic shears k_i d_i at the samples [N], from the bottom."""
-        return self.history.storey_shears
-
-    @property
-    def floor_accelerations(self) -> NDArray[np.float64]:
-        """(n,) largest absolute accelerations at the samples [m/s2], from the bottom."""
-        return self.history.floor_accelerations
-
-    @property
-    def max_floor_acceleration(self) -> float | None:
-        """Largest of `floor_accelerations` [m/s2]; None without a superstructure."""
-        return _largest(self.floor_accelerations)
-
-    @property
-    def max_base_shear(self) -> float:
-        """Largest elastic shear of the first storey [N]; 0 without a superstructure."""
-        return float(self.storey_shears[0]) if len(self.storey_shears) else 0.0
-
-    @property
-    def base_shear_ratio(self) -> float | None:
-        """max_base_shear over V_st = M_tot g tan(alpha); None without a superstructure."""
-        static = self.structure.static_base_shear
-        return self.max_base_shear / static if static > 0.0 else None
-
-    @property
-    def max_drifts(self) -> NDArray[np.float64]:
-        """(n,) largest storey drifts [m]."""
-        building = self.structure.superstructure
-        return frozen(self.storey_shears / building.stiffnesses) if building else self.storey_shears
-
-    @property
-    def drift_ratio(self) -> float | None:
-        """Largest drift over storey height; None where no heights are given."""
-        building = self.structure.superstructure
-        ratios = None if building is None else building.drift_ratios(self.max_drifts)
-        return None if ratios is None else float(np.max(ratios))
-
-    @property
-    def friction_demand(self) -> float:
-        """Largest |F|/N at either end of the columns: the friction that no sliding needs."""
-        return float(max(self.history.friction))
-
-    @property
-    def friction_ratio(self) -> float | None:
-        """friction_demand over the coefficient of friction; None where that is not given."""
-        coefficient = self.structure.friction
-        return None if coefficient is None else self.friction_demand / coefficient
-
-    @property
-    def uplifts(self) -> int:
-        """Number of uplifts from full contact."""
-        return int(self.history.counts[state.UPLIFT])
-
-    @property
-    def impacts(self) -> int:
-        """Number of impacts, those that end in re-contact included."""
-        return int(self.history.counts[state.IMPACT])
-
-    @property
-    def duration(self) -> float:
-        """Length of the history with its free vibration [s]."""
-        return self.history.time
-
-    @property
-    def energy_impact(self) -> float:
-        """Net energy lost at impacts and re-contacts [J]."""
-        return self.history.energy_lost
-
-    @property
-    def energy_created(self) -> float:
-        """Energy gained where the impact law sets floors in motion [J] (Theory, section 4)."""
-        return self.history.energy_created
-
-    @property
-    def creating_impacts(self) -> int:
-        """Number of impacts that gained energy."""
-        return self.history.creating_impacts
 
     def facts(self) -> dict[str, Any]:
         """Outcome and scalar results with their units, the main demands first."""
@@ -240,12 +384,3 @@ class Demand(Shown):
         A value that does not exist, or is infinite, is None.
         """
         return {"outcome": self.outcome, **values_of(self, HISTORY)}
-
-    def results(self) -> dict[str, Any]:
-        """What a study keeps of a history besides its outcome."""
-        return values_of(self, (*HISTORY, *IMPACTS, STOREY_SHEARS))
-
-
-def _largest(values: NDArray[np.float64]) -> float | None:
-    """The largest of some values; None if there are none."""
-    return float(np.max(values)) if len(values) else None

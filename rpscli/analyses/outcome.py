@@ -1,10 +1,12 @@
-"""How a history ended."""
+"""How a history ended, and why one could not be carried to its end, in words."""
 
 from __future__ import annotations
 
 from typing import Literal
 
-from rpscli.analyses.kernels.history import History
+import numpy as np
+
+from rpscli.physics.core.records import Record
 from rpscli.physics.planar import state
 
 Outcome = Literal["at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"]
@@ -15,8 +17,42 @@ OUTCOMES: dict[int, Outcome] = {
     state.OVERTURNED_ROLLING: "overturned_rolling",
     state.OVERTURNED_ROCKING: "overturned_rocking",
 }
+"""Proper endings; every other code is a failure."""
+
+OUTCOME_WORDS = np.array(
+    [OUTCOMES.get(code, "failed") for code in range(state.FAILED_STEP_TOO_SMALL + 1)]
+)
+"""By the codes of `physics.planar.state`, of which RUNNING counts from the end."""
+
+PHASE_NAMES = {
+    state.FULL_CONTACT: "full contact",
+    state.ROLLING: "rolling",
+    state.ROCKING: "rocking",
+}
+
+REASONS = {
+    state.FAILED_NOT_FINITE: (
+        "the motion is no longer finite; check masses and stiffnesses, or raise analysis.accuracy"
+    ),
+    state.FAILED_TOO_MANY_EVENTS: (
+        "there are more events than analysis.max_events allows; raise it,"
+        " or raise analysis.recontact_tolerance"
+    ),
+    state.FAILED_STEP_TOO_SMALL: (
+        "events follow each other without time passing; raise analysis.recontact_tolerance"
+    ),
+}
 
 
-def outcome_of(history: History) -> Outcome:
-    """The outcome; every code that is no proper ending is a failure."""
-    return OUTCOMES.get(history.outcome, "failed")
+def outcome_of(history: Record) -> Outcome:
+    """The outcome of a `state.RESULT`."""
+    return OUTCOMES.get(int(history["outcome"]), "failed")
+
+
+def failure_text(history: Record) -> str | None:
+    """Time, phase, rotation and reason of a failure; None if the history ended well."""
+    reason = REASONS.get(int(history["outcome"]))
+    if reason is None:
+        return None
+    phase, theta = PHASE_NAMES[int(history["phase"])], history["rotation"] + 0.0
+    return f"at t = {history['time']:.6g} s, {phase}, theta = {theta:.6g} rad: {reason}"

@@ -1,9 +1,11 @@
 """The table of results: each quantity's name, unit, label and symbol, and what it is used for.
 
-A quantity has its value in the attribute of its name: those of histories in `Demand`, those of
-modes in `FixedBaseModes` and `UpliftedModes`, those of the static curves in `PushoverResult` and
-`StoreyCurve`. JSON documents, headers of CSV files, tables for the terminal, limits, reports and
-figures all read this table, which imports nothing, so that the schema of a case can.
+A quantity has its value in the attribute of its name: those of modes in `FixedBaseModes` and
+`UpliftedModes`, those of the static curves in `PushoverResult` and `StoreyCurve`. Those of
+histories are a field of the kernel's record, which `kernel` names, or an attribute of `Histories`,
+for many of them at once; `Demand` has the same for one. JSON documents, headers of CSV files,
+stores of studies, tables for the terminal, limits, reports and figures all read this table, which
+imports nothing, so that the schema of a case can.
 """
 
 from __future__ import annotations
@@ -41,6 +43,8 @@ class ResultQuantity(NamedTuple):
         Whether small values are bad, so that a limit is the least that is admissible.
     column
         Its head in a table of storeys, where that is not the name.
+    kernel
+        The field of `physics.planar.state.RESULT` that holds it; empty where it is computed.
     """
 
     name: str
@@ -54,6 +58,7 @@ class ResultQuantity(NamedTuple):
     meaning: str = ""
     from_below: bool = False
     column: str = ""
+    kernel: str = ""
 
     @property
     def axis_label(self) -> str:
@@ -117,7 +122,8 @@ def plain(value: Any) -> Any:
 
 HISTORY = (
     ResultQuantity(
-        "max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1"
+        "max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1",
+        kernel="max_theta",
     ),
     ResultQuantity("max_rotation_time", "s", "largest rotation at"),
     ResultQuantity(
@@ -158,7 +164,7 @@ HISTORY = (
     ),
     ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
-    ResultQuantity("duration", "s", "duration"),
+    ResultQuantity("duration", "s", "duration", kernel="time"),
     ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
     ResultQuantity(
         "friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction in the case",
@@ -191,11 +197,18 @@ with `whole_histories: true`."""
 
 IMPACTS = (
     ResultQuantity("energy_devices", "J", "energy dissipated in devices"),
-    ResultQuantity("energy_impact", "J", "energy lost at impacts"),
-    ResultQuantity("energy_created", "J", "energy created at impacts"),
-    ResultQuantity("creating_impacts", "-", "impacts that created energy", whole=True),
-)
+    ResultQuantity("energy_impact", "J", "energy lost at impacts", kernel="energy_lost"),
+    ResultQuantity(
+        "energy_created", "J", "energy created at impacts", kernel="energy_created"
+    ),
+    ResultQuantity(
+        "creating_impacts", "-", "impacts that created energy", whole=True,
+        kernel="creating_impacts",
+    ),
+)  # fmt: skip
 """What the impacts of a history did, in the table of a study."""
+
+KERNEL_FIELDS = {q.name: q.kernel for q in (*HISTORY, *IMPACTS) if q.kernel}
 
 INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s", "PGV"))
 """Peaks of the scaled motion of a history, in the table of a study."""

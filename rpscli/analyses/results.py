@@ -102,15 +102,17 @@ class TimeHistoryResult(Demand):
     def energy(self) -> Energy:
         """The energy audit."""
         history, devices = self.history, self.energy_devices
-        available = history.energy_input + float(self.trace.energy_stored[0])
-        residual = available - history.energy_damped - devices - history.energy_lost
-        residual -= history.energy_stored
+        supplied, damped, lost, stored = (
+            float(history[f"energy_{name}"]) for name in ("input", "damped", "lost", "stored")
+        )
+        stored = stored + float(history["device_stored"].sum())
+        available = supplied + float(self.trace.energy_stored[0])
         return Energy(
-            input=history.energy_input,
-            damped=history.energy_damped,
-            impact=history.energy_lost,
-            stored=history.energy_stored,
-            residual=residual,
+            input=supplied,
+            damped=damped,
+            impact=lost,
+            stored=stored,
+            residual=available - damped - devices - lost - stored,
             created=self.energy_created,
             devices=devices,
         )
@@ -206,7 +208,7 @@ class TimeHistoryResult(Demand):
     def warnings(self) -> tuple[str, ...]:
         """What the user must know before trusting the numbers."""
         notes = [*self.record.warnings, *self._near_the_limit()]
-        least = min(self.history.least_normal)
+        least = min(self.history["normal_top"], self.history["normal_bottom"])
         if least <= 0.0:
             notes.append(
                 "contact is lost: the normal force between columns and beam or ground falls to"
@@ -219,7 +221,7 @@ class TimeHistoryResult(Demand):
                 f"the rigid impact law created {share:.1%} of the energy supplied at impacts;"
                 " compare with `impact: {law: flexible}`"
             )
-        if self.outcome == "survived" and self.history.phase not in RESTING:
+        if self.outcome == "survived" and self.history["phase"] not in RESTING:
             if self.settings.free_vibration is not None:
                 notes.append(
                     "the storey still moves at the end; a longer `analysis.free_vibration`"

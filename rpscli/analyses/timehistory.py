@@ -50,7 +50,7 @@ def time_history(
     run = sampled_history(structure, record, vertical, settings)
     fixed = None
     if with_fixed_base and structure.superstructure is not None:
-        intervals = max(run.history.intervals, record.npts - 1)
+        intervals = max(int(run.history.intervals), record.npts - 1)
         fixed = fixed_base_response(structure, record, intervals)
     return TimeHistoryResult(
         structure=structure,

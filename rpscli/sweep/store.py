@@ -4,25 +4,29 @@ The rollback journal makes each transaction whole: a kill at any moment leaves t
 were stored before. The writer holds the file's lock from the first to the last moment, so that a
 second process is refused, and a dead one leaves nothing behind that needs to be removed.
 
-Every row carries a digest of its fields, which is compared whenever it is read: a disk that lost a
-bit makes no number.
+Points are stored by batches, whose results are columns of binary numbers. Every row of the file
+carries a digest of its fields, which is compared whenever it is read: a disk that lost a bit makes
+no number.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
+
+import numpy as np
 
 from rpscli.errors import OutputError, Refused, RpsError
-from rpscli.sweep.evaluation.results import FAILED, Results
+from rpscli.sweep.evaluation.results import FAILED, Array, PointResults, at_path, no_results, put
 
 FILE = "study.sqlite"
-FORMAT = "2"
+FORMAT = "3"
 APPLICATION = 0x72707331
 """Marks the file as ours in its header: "rps1"."""
 
@@ -32,38 +36,32 @@ CREATE TABLE IF NOT EXISTS meta (
     value TEXT NOT NULL,
     digest BLOB NOT NULL      -- of the other fields, here and below
 ) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS points (
-    key BLOB PRIMARY KEY,     -- digest of resolved case, record, scale and solver
-    point TEXT NOT NULL,      -- what the study called it: varied keys, record, scale (JSON)
-    outcome TEXT NOT NULL,
-    message TEXT,             -- why it failed
-    results TEXT NOT NULL,    -- JSON
+CREATE TABLE IF NOT EXISTS batches (
+    id INTEGER PRIMARY KEY,   -- of two results of a point the later one counts
+    keys BLOB NOT NULL,       -- of each point the digest of resolved case, record, scale and solver
+    outcomes BLOB NOT NULL,   -- of each point
+    messages TEXT NOT NULL,   -- by the number of the point in the batch: why it failed (JSON)
+    columns TEXT NOT NULL,    -- name and sizes of the results of a point (JSON)
+    numbers BLOB NOT NULL,    -- of each column, point by point; NaN where there is none
     digest BLOB NOT NULL
-) WITHOUT ROWID;
+);
 CREATE TABLE IF NOT EXISTS fixed_base (
     key BLOB PRIMARY KEY,
-    storey_shears TEXT NOT NULL,
+    storey_shears BLOB NOT NULL,
     digest BLOB NOT NULL
 ) WITHOUT ROWID;
 """
 
+KEY = 32
+"""Bytes of the key of a point."""
 
-class Stored(NamedTuple):
-    """A point as it stands in the store."""
+WORD = 20
+"""Bytes of an outcome."""
 
-    outcome: str
-    message: str | None
-    results: Results
+FLOAT = "<f8"
 
-
-class Entry(NamedTuple):
-    """A point on its way into the store."""
-
-    key: bytes
-    point: Mapping[str, Any]
-    outcome: str
-    message: str | None
-    results: Results
+Stored = Callable[[Iterable[str]], PointResults]
+"""Reads results of some points by name; elements of lists by their index, as in `at_path`."""
 
 
 class Store:
@@ -198,7 +196,7 @@ class Store:
             row = self._db.execute("SELECT * FROM meta WHERE name = ?", (name,)).fetchone()
             return None if row is None else self._verified(row)[1].decode()
 
-    def _verified(self, row: tuple[Any, ...]) -> tuple[Any, ...]:
+    def _verified(self, row: Sequence[Any]) -> tuple[Any, ...]:
         """The fields of a row before its digest, which they must have."""
         *fields, digest = row
         if digest != _digest(fields):
@@ -211,41 +209,78 @@ class Store:
             rows = [_signed(*fact) for fact in facts.items()]
             self._db.executemany("REPLACE INTO meta VALUES (?, ?, ?)", rows)
 
-    def add(self, entries: Iterable[Entry]) -> None:
-        """Store points in one transaction; when this returns they are on disk."""
-        rows = [
-            _signed(e.key, _json(e.point), e.outcome, e.message, _json(e.results)) for e in entries
-        ]
+    def add(self, keys: Sequence[bytes], results: PointResults) -> None:
+        """Store the results of some points; when this returns they are on disk."""
+        columns = {n: c for n, c in results.columns.items() if not np.isnan(c).all()}
+        fields = (
+            b"".join(keys),
+            results.outcomes.astype(f"S{WORD}").tobytes(),
+            _json(results.messages),
+            _json({name: column.shape[1:] for name, column in columns.items()}),
+            b"".join(column.astype(FLOAT).tobytes() for column in columns.values()),
+        )
         with self._transaction():
-            self._db.executemany("REPLACE INTO points VALUES (?, ?, ?, ?, ?, ?)", rows)
+            sql = "INSERT INTO batches VALUES (NULL, ?, ?, ?, ?, ?, ?)"
+            self._db.execute(sql, _signed(*fields))
+
+    def _batches(self) -> Iterator[tuple[list[bytes], PointResults]]:
+        """Keys and results of all batches, the oldest first; columns are views of what was read."""
+        with self._told():
+            for _, *row in self._db.execute("SELECT * FROM batches ORDER BY id"):
+                keys, outcomes, messages, shapes, numbers = self._verified(row)
+                count, start, columns = len(keys) // KEY, 0, {}
+                for name, sizes in json.loads(shapes).items():
+                    length = count * math.prod(sizes)
+                    column = np.frombuffer(numbers, FLOAT, length, start)
+                    columns[name] = column.reshape(count, *sizes)
+                    start += column.nbytes
+                words = np.frombuffer(outcomes, f"S{WORD}").astype(str)
+                told = {int(row): text for row, text in json.loads(messages).items()}
+                split_keys = [keys[i : i + KEY] for i in range(0, len(keys), KEY)]
+                yield split_keys, PointResults(words, told, columns)
 
     def outcomes(self) -> dict[bytes, bool]:
-        """Keys of all stored points, and whether each failed; every row is looked at."""
-        with self._told():
-            rows = map(self._verified, self._db.execute("SELECT * FROM points"))
-            return {key: outcome.decode() == FAILED for key, _, outcome, _, _ in rows}
+        """Keys of all stored points, and whether each failed; everything stored is looked at."""
+        found: dict[bytes, bool] = {}
+        for keys, results in self._batches():
+            found.update(zip(keys, (results.outcomes == FAILED).tolist(), strict=True))
+        return found
 
-    def stored(self, keys: Iterable[bytes]) -> Iterator[Stored | None]:
-        """Points in the order of the keys; None for those that are not there."""
-        with self._told():
-            for key in keys:
-                row = self._db.execute("SELECT * FROM points WHERE key = ?", (key,)).fetchone()
-                yield None if row is None else self._point(row)
+    def stored(self, keys: Sequence[bytes]) -> Stored:
+        """Points in the order of the keys, of which the results with some names are read."""
+        return lambda names: self._read(keys, names)
 
-    def _point(self, row: tuple[Any, ...]) -> Stored:
-        _, _, outcome, message, results = self._verified(row)
-        message = None if message is None else message.decode()
-        return Stored(outcome.decode(), message, json.loads(results))
+    def _read(self, keys: Sequence[bytes], names: Iterable[str]) -> PointResults:
+        places: dict[bytes, int] = {}
+        rows = np.array([places.setdefault(key, len(places)) for key in keys], np.int64)
+        wanted, found = tuple(names), no_results(len(places))
+        for batch, results in self._batches():
+            known = [(i, places[key]) for i, key in enumerate(batch) if key in places]
+            if not known:
+                continue
+            here, there = np.array(known).T
+            found.outcomes[there] = results.outcomes[here]
+            found.messages.update((place, results.messages.get(i, "")) for i, place in known)
+            for column in found.columns.values():
+                column[there] = np.nan
+            for name in wanted:
+                values = at_path(results.columns, name)
+                if values is not None:
+                    put(found, there, name, values[here])
+        failed = np.flatnonzero(found.outcomes[rows] == FAILED)
+        messages = {row: found.messages[rows[row]] for row in failed.tolist()}
+        columns = {name: column[rows] for name, column in found.columns.items()}
+        return PointResults(found.outcomes[rows], messages, columns)
 
-    def fixed_base(self) -> dict[bytes, list[float]]:
+    def fixed_base(self) -> dict[bytes, Array]:
         """Storey shears on a fixed base, by key."""
         with self._told():
             rows = map(self._verified, self._db.execute("SELECT * FROM fixed_base"))
-            return {key: json.loads(text) for key, text in rows}
+            return {key: np.frombuffer(numbers, FLOAT) for key, numbers in rows}
 
-    def add_fixed_base(self, shears: Mapping[bytes, list[float]]) -> None:
+    def add_fixed_base(self, shears: Mapping[bytes, Array]) -> None:
         """Store storey shears on a fixed base."""
-        rows = [_signed(key, _json(values)) for key, values in shears.items()]
+        rows = [_signed(key, values.astype(FLOAT).tobytes()) for key, values in shears.items()]
         with self._transaction():
             self._db.executemany("REPLACE INTO fixed_base VALUES (?, ?, ?)", rows)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,8 +22,8 @@ class StudyResults:
     context: StudyContext
     jobs: int
 
-    def stored(self) -> Iterator[Stored | None]:
-        """Everything that is stored of each point, lists too."""
+    def stored(self) -> Stored:
+        """Everything that is stored of each point by name, lists too."""
         return self.store.stored(self.keys)
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -10,16 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.result_quantities import STOREY_SHEARS
 from rpscli.frozen import Frozen, frozen
-from rpscli.sweep.evaluation.results import FAILED, SCALARS, value_at
+from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Stored
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-
-MISSING = ""
-"""Outcome of a point that has not been computed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,26 +61,23 @@ class Table(Frozen):
         return frozen(np.char.startswith(self.outcomes, "overturned"))
 
 
-def tabulate(layout: StudyPoints, stored: Iterable[Stored | None]) -> Table:
-    """Columns from the rows of the store, given in the order of the study."""
+def tabulate(layout: StudyPoints, stored: Stored) -> Table:
+    """Columns of what is stored, given in the order of the study."""
     names, count = SCALARS[layout.plan.analysis], len(layout)
-    values = np.full((count, len(names)), np.nan)
-    outcomes = np.full(count, MISSING, dtype="U20")
-    scale = np.full(count, np.nan)
-    messages: dict[int, str] = {}
-    shears = np.full((count, max(properties.storeys for properties in layout.properties)), np.nan)
-    for number, row in enumerate(stored):
-        if row is None:
-            continue
-        outcomes[number] = row.outcome
-        if row.outcome == FAILED:
-            messages[number] = row.message or "no reason was given"
-        scale[number] = row.results.get("scale", np.nan)
-        values[number] = [value_at(row.results, name) for name in names]  # NaN for None
-        profile = row.results.get("storey_shears", ())
-        shears[number, : len(profile)] = profile
-    columns = dict(zip(names, np.ascontiguousarray(values.T), strict=True))
-    return Table(layout, outcomes, scale, columns, messages, shears)
+    found = stored([*names, "scale", STOREY_SHEARS.name])
+    unknown = np.full(count, np.nan)
+    most = max(properties.storeys for properties in layout.properties)
+    shears = np.full((count, most), np.nan)
+    if (known := found.columns.get(STOREY_SHEARS.name)) is not None:
+        shears[:, : known.shape[1]] = known
+    return Table(
+        layout,
+        found.outcomes,
+        found.columns.get("scale", unknown),
+        {name: found.columns.get(name, unknown) for name in names},
+        {row: text or "no reason was given" for row, text in found.messages.items()},
+        shears,
+    )
 
 
 class Dimension(NamedTuple):

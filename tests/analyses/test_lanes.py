@@ -19,7 +19,8 @@ from paper_structures import (
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import sampled_history
-from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.largest_demands import Demand, Histories
+from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.damping import ModalDamping, RayleighDamping
@@ -101,7 +102,10 @@ def ensemble(
 def bits(found: Demand) -> list[object]:
     """Everything that a study keeps, and the accelerations: equal only if every bit is."""
     arrays = (found.storey_shears.tobytes(), found.floor_accelerations.tobytes())
-    return [found.outcome, found.failure, *found.results().values(), *arrays]
+    alone = Histories.of_one(found.structure, found.history)
+    columns = alone.columns((*HISTORY, *IMPACTS, STOREY_SHEARS))
+    results = [column.tobytes() for column in columns.values()]
+    return [found.outcome, found.failure, *results, *arrays]
 
 
 def all_bits(requests: Sequence[Request], worth_lanes: int) -> list[list[object]]:

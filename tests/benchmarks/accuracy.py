@@ -88,7 +88,7 @@ def steps(ensemble: Ensemble, records: list[GroundMotion], accuracy: float) -> f
         for r in records[:COUNTED]
     ]
     samples = sum(h.intervals for h in histories)
-    return sum(h.steps for h in histories) / samples
+    return float(sum(h.steps for h in histories) / samples)
 
 
 def main() -> None:

@@ -64,7 +64,7 @@ def rps_alone(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
 def rps_sampled(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
     """One history with all of its samples and its log of events."""
     history = sampled_history(building, record, None, SETTINGS).history
-    return PeerHistory(history.max_rotation, int(history.counts[IMPACT]))
+    return PeerHistory(float(history.max_theta), int(history.events[IMPACT]))
 
 
 def rps_lanes(building: PodiumStructure, records: Sequence[GroundMotion]) -> Contest:

@@ -104,7 +104,7 @@ def test_a_crest_between_samples_that_just_passes_is_seen() -> None:
     assert np.max(np.abs(seen.trace.rotation)) < critical * (1.0 - 1e-6)
     event = passage_of(seen)
     # near the crest the height is quadratic in time: the root of 1e-11 and some
-    assert event.time == pytest.approx(seen.history.max_rotation_time, abs=1e-5)
+    assert event.time == pytest.approx(seen.history.max_theta_time, abs=1e-5)
     assert abs(event.rotation_rate_before) < 1e-4
 
 

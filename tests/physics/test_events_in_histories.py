@@ -218,9 +218,7 @@ def test_the_largest_tilt_may_lie_in_a_step_that_ends_on_an_impact(rho: float) -
     assert [e.kind for e in coarse.events] == [e.kind for e in fine.events]
     assert coarse.impacts > 0
     up, down = coarse.events[:2]
-    assert up.time < coarse.history.max_rotation_time < down.time < 0.3
+    assert up.time < coarse.history.max_theta_time < down.time < 0.3
     # the ground's corner at 0.2 s is a sample; behind it the motion is almost a cubic
     assert coarse.max_rotation == pytest.approx(fine.max_rotation, rel=1e-8)
-    assert coarse.history.max_rotation_time == pytest.approx(
-        fine.history.max_rotation_time, abs=1e-8
-    )
+    assert coarse.history.max_theta_time == pytest.approx(fine.history.max_theta_time, abs=1e-8)

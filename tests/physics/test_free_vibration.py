@@ -66,7 +66,7 @@ def test_auto_finds_the_largest_demands(seed: int) -> None:
 def test_not_all_of_those_cases_are_trivial() -> None:
     results = [time_history(*random_case(seed), with_fixed_base=False) for seed in range(40)]
     survived = [r for r in results if r.outcome == "survived"]
-    late = [r for r in survived if r.history.max_rotation_time > r.record.duration]
+    late = [r for r in survived if r.history.max_theta_time > r.record.duration]
     assert len(survived) > 20
     assert len(late) > 5
     again = [r for r in survived if r.uplifts > 1]

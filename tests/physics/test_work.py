@@ -32,7 +32,7 @@ def steps_an_event(result: TimeHistoryResult) -> float:
     """Steps beyond those of the uplifted intervals, over the number of events."""
     uplifted = int(np.count_nonzero(result.trace.phase))
     plain = uplifted * steps_an_interval(result.structure, result.record.dt)
-    return (result.history.steps - plain) / len(result.events)
+    return float(result.history.steps - plain) / len(result.events)
 
 
 @needs_compiled_kernels

@@ -10,14 +10,15 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from rpscli.cli import program
-from rpscli.sweep.evaluation.batch import Row, run_batch
+from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.evaluation.results import PointResults
 from rpscli.sweep.run import threads
-from rpscli.sweep.store import Entry, Store
+from rpscli.sweep.store import Store
 
 LAST = 3
 """Number of the batch at which the signal comes."""
@@ -27,7 +28,7 @@ stored: list[int] = []
 store_points = Store.add
 
 
-def compute(context: StudyContext, points: Sequence[Point]) -> list[Row]:
+def compute(context: StudyContext, points: Sequence[Point]) -> PointResults:
     """A batch, when all earlier ones are stored."""
     begun.append(len(points))
     while len(stored) < len(begun) - 1:
@@ -39,11 +40,11 @@ def compute(context: StudyContext, points: Sequence[Point]) -> list[Row]:
     return run_batch(context, points)
 
 
-def add(store: Store, entries: Iterable[Entry]) -> None:
+def add(store: Store, keys: Sequence[bytes], results: PointResults) -> None:
     """Store a batch."""
     if len(stored) == LAST - 1 and NUMBER == signal.SIGKILL:
         store._db.set_trace_callback(die_before_commit)
-    store_points(store, entries)
+    store_points(store, keys, results)
     stored.append(1)
 
 

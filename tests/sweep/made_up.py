@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
-from rpscli.sweep.evaluation.results import SCALARS
+import numpy as np
+
+from rpscli.sweep import table
+from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
 from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.store import Stored
-from rpscli.sweep.table import Table, tabulate
+from rpscli.sweep.table import Table
 from sweep.small_studies import STUDY, Make
+
+
+class Stored(NamedTuple):
+    """What a study might hold of a point."""
+
+    outcome: str
+    message: str | None
+    results: dict[str, Any]
+
 
 Answer = Callable[[int], Stored]
 
@@ -20,6 +32,26 @@ def stored(outcome: str = "survived", **results: object) -> Stored:
     whole: dict[str, object] = dict.fromkeys(SCALARS["timehistory"], 0.0)
     shears = results.pop("storey_shears", [3.0, 2.0, 1.0])
     return Stored(outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears})
+
+
+def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResults]:
+    """Rows as a store hands them out, by the names of their columns."""
+    points = [row or Stored(MISSING, None, {}) for row in rows]
+    names = dict.fromkeys(name for point in points for name in point.results)
+    columns = {name: stacked([point.results.get(name) for point in points]) for name in names}
+    outcomes = np.array([point.outcome for point in points], dtype="U20")
+    told = {n: point.message or "" for n, point in enumerate(points) if point.outcome == FAILED}
+
+    def read(wanted: Iterable[str]) -> PointResults:
+        known = {name: at_path(columns, name) for name in wanted}
+        found = {name: column for name, column in known.items() if column is not None}
+        return PointResults(outcomes, told, found)
+
+    return read
+
+
+def tabulate(layout: StudyPoints, rows: Iterable[Stored | None]) -> Table:
+    return table.tabulate(layout, reader(rows))
 
 
 def table_of(make: Make, answer: Answer, *changes: tuple[str, str]) -> Table:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+import numpy as np
 import pytest
 
-from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.demand import Request, histories
+from rpscli.analyses.largest_demands import Histories
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
@@ -13,7 +16,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.records.source import load_record
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.results import SCALARS, value_at
+from rpscli.sweep.evaluation.results import SCALARS, PointResults, at_path
 from rpscli.sweep.evaluation.systems import resolved
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.run.keys import point_key
@@ -22,13 +25,25 @@ from sweep.small_studies import STUDY, Make
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
 
 
+def rows(results: PointResults) -> list[dict[str, object]]:
+    """Outcome, message and results of each point, None where it has none."""
+    found = []
+    for row, outcome in enumerate(results.outcomes.tolist()):
+        told: dict[str, object] = {"outcome": outcome, "message": results.messages.get(row)}
+        for name, column in results.columns.items():
+            value = column[row]
+            told[name] = value.tolist() if value.ndim else None if np.isnan(value) else float(value)
+        found.append({name: value for name, value in told.items() if value is not None})
+    return found
+
+
 def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
     layout = lay_out(study_of())
     together = run_batch(StudyContext(layout.plan), list(layout))
     backwards = run_batch(StudyContext(layout.plan), list(layout)[::-1])
-    alone = [run_batch(StudyContext(layout.plan), [layout[number]])[0] for number in (0, 17, 35)]
-    assert backwards[::-1] == together
-    assert alone == [together[number] for number in (0, 17, 35)]
+    alone = [run_batch(StudyContext(layout.plan), [layout[number]]) for number in (0, 17, 35)]
+    assert rows(backwards)[::-1] == rows(together)
+    assert [rows(one)[0] for one in alone] == [rows(together)[number] for number in (0, 17, 35)]
 
 
 def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
@@ -43,14 +58,14 @@ def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
         assert structure.restitution == pytest.approx(changed, rel=1e-12)
         motion = load_record(point.record.source).scaled(point.scale * point.scale_change)
         single = time_history(structure, motion, case.analysis).scalars()
-        row = run_batch(context, [point])[0]
-        assert row.outcome == single["outcome"]
+        (row,) = rows(run_batch(context, [point]))
+        assert row["outcome"] == single["outcome"]
         for name in set(single) & set(SCALARS["timehistory"]):
             # Kernels for one and for many histories round differently; impacts amplify that.
             expected = (
                 single[name] if single[name] is None else pytest.approx(single[name], rel=1e-6)
             )
-            assert row.results[name] == expected, name
+            assert row.get(name) == expected, name
 
 
 def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
@@ -58,15 +73,15 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
     whole = lay_out(study_of(STUDY, ("scale: [", "whole_histories: true\nscale: [")))
     context, more = StudyContext(brief.plan), StudyContext(whole.plan)
     for number in (3, 20):
-        without = run_batch(context, [brief[number]])[0]
-        row = run_batch(more, [whole[number]])[0]
-        assert {name: row.results[name] for name in without.results} == without.results
+        (without,) = rows(run_batch(context, [brief[number]]))
+        (row,) = rows(run_batch(more, [whole[number]]))
+        assert {name: row[name] for name in without} == without
         history = context.history(brief[number])
         motion = history.record.scaled(history.scale)
         single = time_history(history.structure, motion, history.settings)
-        assert {name: row.results[name] for name in set(row.results) - set(without.results)} == {
-            quantity.name: getattr(single, quantity.name) for quantity in SAMPLED
-        }
+        told = {quantity.name: getattr(single, quantity.name) for quantity in SAMPLED}
+        assert {name: row.get(name) for name in told} == told
+        assert set(row) - set(without) <= set(told)
     assert point_key(brief, context, brief[3]) != point_key(whole, more, whole[3])
 
 
@@ -74,9 +89,9 @@ def test_whole_histories_tell_when_columns_slide(study_of: Make) -> None:
     changes = ("base: base.yaml", "base: base.yaml\nwhole_histories: true")
     layout = lay_out(study_of(STUDY, changes, overrides=("podium.friction=0.12",)))
     point = layout[20]  # tan(alpha) = 0.15 and more than that is asked of the friction
-    (row,) = run_batch(StudyContext(layout.plan), [point])
-    assert row.results["friction_ratio"] > 1.0
-    assert 0.0 < row.results["sliding_time"] < row.results["max_rotation_time"]
+    results = run_batch(StudyContext(layout.plan), [point]).columns
+    assert results["friction_ratio"][0] > 1.0
+    assert 0.0 < results["sliding_time"][0] < results["max_rotation_time"][0]
 
 
 def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: Make) -> None:
@@ -84,12 +99,12 @@ def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: M
     points = list(layout)[:4]
     assert points[0].record is not None
     bad = points[1]._replace(record=points[0].record._replace(source="gone.at2"))
-    rows = run_batch(StudyContext(layout.plan), [points[0], bad, points[2]])
-    assert [row.outcome for row in rows][1] == "failed"
-    assert "gone.at2" in str(rows[1].message)
-    assert rows[1].results == {}
-    whole = run_batch(StudyContext(layout.plan), points)
-    assert [rows[0], rows[2]] == [whole[0], whole[2]]
+    found = rows(run_batch(StudyContext(layout.plan), [points[0], bad, points[2]]))
+    assert found[1]["outcome"] == "failed"
+    assert "gone.at2" in str(found[1].pop("message"))
+    assert set(found[1]) == {"outcome", "storey_shears"}
+    whole = rows(run_batch(StudyContext(layout.plan), points))
+    assert [found[0], found[2]] == [whole[0], whole[2]]
 
 
 def test_an_exception_of_the_kernel_is_told_for_its_point_only(
@@ -98,38 +113,39 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
     layout = lay_out(study_of())
     points = list(layout)[:3]
 
-    def fragile(requests: list[Request]) -> list[Demand]:
+    def fragile(requests: list[Request]) -> Iterator[tuple[list[int], Histories]]:
         if any(request.scale == 1.0 for request in requests):
             raise FloatingPointError("boom")
-        return demands(requests)
+        return histories(requests)
 
-    monkeypatch.setattr("rpscli.sweep.evaluation.batch.demands", fragile)
-    rows = run_batch(StudyContext(layout.plan), points)
-    assert [row.outcome == "failed" for row in rows] == [False, True, False]
-    assert rows[1].message == "FloatingPointError: boom"
+    monkeypatch.setattr("rpscli.sweep.evaluation.batch.histories", fragile)
+    found = run_batch(StudyContext(layout.plan), points)
+    assert (found.outcomes == "failed").tolist() == [False, True, False]
+    assert found.messages == {1: "FloatingPointError: boom"}
 
 
 def test_modal_points_have_the_modes(study_of: Make) -> None:
     begin = STUDY.index("records:")
     layout = lay_out(study_of(STUDY[:begin] + "analysis: modal\n"))
     context = StudyContext(layout.plan)
-    rows = run_batch(context, list(layout))
-    flat, curved = rows[2].results, rows[0].results
-    assert flat["rolling"] is None
+    columns = run_batch(context, list(layout)).columns
+    assert np.isnan(columns["rolling.frequency_ratio"][2]).all()  # flat
     modes = modal(context.systems[layout[0]].structure)
     assert modes.rolling is not None
-    found = value_at(curved, "rolling.frequency_ratio.0")
-    assert found == modes.rolling.frequency_ratio[0]
-    assert value_at(curved, "rolling.frequency_ratio.7") is None
-    assert curved["fixed_base"]["shapes"][0] == [0.0, *modes.fixed_base.shapes[:, 0]]  # type: ignore[union-attr]
+    found = at_path(columns, "rolling.frequency_ratio.0")
+    assert found is not None
+    assert found[0] == modes.rolling.frequency_ratio[0]
+    assert at_path(columns, "rolling.frequency_ratio.7") is None
+    shape = columns["fixed_base.shapes"][0, 0].tolist()
+    assert shape == [0.0, *modes.fixed_base.shapes[:, 0]]  # type: ignore[union-attr]
 
 
 def test_pushover_points_have_the_curve(study_of: Make) -> None:
     begin = STUDY.index("records:")
     layout = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
     context = StudyContext(layout.plan)
-    row = run_batch(context, [layout[0]])[0]
+    found = run_batch(context, [layout[0]])
     expected = pushover(context.systems[layout[0]].structure)
-    assert row.outcome == "done"
-    assert row.results["uplift_force"] == expected.uplift_force
-    assert row.results["curve"]["force"] == expected.curve.force.tolist()
+    assert found.outcomes.tolist() == ["done"]
+    assert found.columns["uplift_force"][0] == expected.uplift_force
+    assert found.columns["curve.force"][0].tolist() == expected.curve.force.tolist()

@@ -89,14 +89,14 @@ def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make, sched
     deadly = Deadly()
     given: dict[Any, list[Point]] = {deadly: [layout[0], layout[1]]}
     finished = distributed.as_completed(loop=engine._client.loop, with_results=True)
-    assert engine._rows(deadly, error, given, finished) == []
+    assert engine._computed(deadly, error, given, finished) == []
     # Each is tried alone, and these can be computed after all.
-    alone = [engine._rows(future, rows, given, finished) for future, rows in finished]
-    assert sorted(row.number for (row,) in alone) == [0, 1]
+    alone = [engine._computed(future, found, given, finished) for future, found in finished]
+    assert sorted(points[0].number for ((points, _),) in alone) == [0, 1]
     given[deadly] = [layout[0]]
-    (row,) = engine._rows(deadly, error, given, finished)
-    assert (row.number, row.outcome) == (0, "failed")
-    assert "died" in str(row.message)
+    ((points, results),) = engine._computed(deadly, error, given, finished)
+    assert (points[0].number, results.outcomes.tolist()) == (0, ["failed"])
+    assert "died" in results.messages[0]
     engine._client.close()
 
 

@@ -29,8 +29,7 @@ from rpscli.sweep.reports.comparison import (
 )
 from rpscli.sweep.statistics.agreement import Maxima, agreement, threshold
 from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import tabulate
-from sweep.made_up import ALPHA, place, stored
+from sweep.made_up import ALPHA, place, stored, tabulate
 from sweep.small_studies import Make
 
 RECORDS = 8

@@ -372,11 +372,12 @@ def test_the_shipped_design_against_a_grid(workplace: Path, no_figures: None) ->
     context = StudyContext(design.plan)
     numbers = range(0, len(design), LARGEST_BATCH)
     batches = [[design[n] for n in range(f, min(f + LARGEST_BATCH, len(design)))] for f in numbers]
-    rows = [row for batch in batches for row in run_batch(context, batch)]
-    fallen = np.array([row.outcome.startswith("overturned") for row in rows]).reshape(-1, 22)
+    results = [run_batch(context, batch) for batch in batches]
+    outcomes = np.concatenate([found.outcomes for found in results])
+    fallen = np.char.startswith(outcomes, "overturned").reshape(-1, 22)
 
     def fractile(name: str, share: float) -> Array:
-        reached = np.array([row.results[name] for row in rows]).reshape(-1, 22)
+        reached = np.concatenate([found.columns[name] for found in results]).reshape(-1, 22)
         reached[fallen] = np.inf
         return np.asarray(np.quantile(reached, share, axis=1, method="inverted_cdf"))
 

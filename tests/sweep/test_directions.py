@@ -20,9 +20,7 @@ from rpscli.sweep.reports.directions import (
     directions_report,
     without_directions,
 )
-from rpscli.sweep.store import Stored
-from rpscli.sweep.table import tabulate
-from sweep.made_up import RHO, stored
+from sweep.made_up import RHO, Stored, stored, tabulate
 from sweep.small_studies import Make
 
 ANGLES = (0, 45, 90, 135)

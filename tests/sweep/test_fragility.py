@@ -23,8 +23,7 @@ from rpscli.sweep.reports.overturning_spectrum import (
     records_without_period,
     spectrum_report,
 )
-from rpscli.sweep.store import Stored
-from rpscli.sweep.table import tabulate
+from sweep.made_up import Stored, tabulate
 from sweep.small_studies import STUDY, Make
 
 Array = NDArray[np.float64]

@@ -15,9 +15,10 @@ from pathlib import Path
 import pytest
 from click.testing import Result
 
-from rpscli.sweep.evaluation.batch import Row, run_batch
+from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.evaluation.results import MISSING, PointResults
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.run.keys import all_keys
 from rpscli.sweep.run.resume import resume
@@ -104,7 +105,7 @@ def test_the_second_ctrl_c_stops_at_once(
     told: list[str] = []
     over = threading.Event()
 
-    def one_batch(context: StudyContext, points: Sequence[Point]) -> list[Row]:
+    def one_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
         if points[0].number:
             over.wait()
         return run_batch(context, points)
@@ -134,7 +135,7 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
     context = StudyContext(layout.plan)
     heard = threading.Event()
 
-    def one_batch(context: StudyContext, points: Sequence[Point]) -> list[Row]:
+    def one_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
         time.sleep(0.5)  # until the main thread waits
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         os.kill(os.getpid(), signal.SIGINT)  # only this thread takes it: the waiting one sleeps on
@@ -173,18 +174,19 @@ def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None
         begin = resume(layout, all_keys(layout, context), store, retry_failed=False)
         assert len(begin.pending) == 18
         run(layout, begin, store, Threads(context, 1))
-        rows = list(store.stored(begin.keys))
-    assert len(rows) == 36
-    assert rows[0] == rows[1]
-    assert None not in rows
+        found = store.stored(begin.keys)(["max_rotation"])
+    rotation = found.columns["max_rotation"]
+    assert rotation.shape == (36,)
+    assert rotation[0] == rotation[1]
+    assert MISSING not in found.outcomes
 
 
 def test_an_error_of_the_engine_is_not_swallowed(study_of: Make, workplace: Path) -> None:
     layout = lay_out(study_of())
 
-    def broken() -> Iterator[list[object]]:
-        yield [object()]
+    def broken() -> Iterator[object]:
+        yield object()
 
     engine = Threads(StudyContext(layout.plan), 2)
-    with pytest.raises(AttributeError):
+    with pytest.raises(TypeError):
         list(engine.outcomes(broken()))  # type: ignore[arg-type]

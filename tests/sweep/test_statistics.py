@@ -24,9 +24,8 @@ from rpscli.sweep.reports.storey_shear import (
     storey_shear_report,
     unlike_buildings,
 )
-from rpscli.sweep.store import Stored
-from rpscli.sweep.table import groups, tabulate
-from sweep.made_up import ALPHA, RHO, place, stored, table_of
+from rpscli.sweep.table import groups
+from sweep.made_up import ALPHA, RHO, Stored, place, reader, stored, table_of, tabulate
 from sweep.small_studies import STUDY, Make
 
 
@@ -268,7 +267,7 @@ def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
     table = table_of(study_of, answer)
     rows = [answer(number) for number in range(36)]
     options = LinesOptions(x="scale", y=("max_rotation",), panels=(ALPHA,))
-    report = lines_report(table, rows, options)
+    report = lines_report(table, reader(rows), options)
     assert report.series_keys == (RHO,)
     assert [len(panel.lines) for panel in report.panels] == [3, 3]
     assert report.panels[0].lines[0].x == (0.5, 1.0)
@@ -279,7 +278,7 @@ def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) 
     sizes = (f"{RHO}: [critical, 0.5, 0]", "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]")
     table = table_of(study_of, lambda _: stored(), sizes)
     options = LinesOptions(x="podium.bearing.semi_diagonal", y=("max_rotation",), series=())
-    (panel,) = lines_report(table, [stored()] * 36, options).panels
+    (panel,) = lines_report(table, reader([stored()] * 36), options).panels
     assert panel.lines[0].x == (1.5, 2.0, 2.5)
 
 
@@ -287,12 +286,12 @@ def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: M
     begin = STUDY.index("records:")
     layout = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
     rows = [
-        Stored("done", None, {"curve": {"force": [2.0, 1.0 * n], "displacement": [0.0, 1.0]}})
+        Stored("done", None, {"curve.force": [2.0, 1.0 * n], "curve.displacement": [0.0, 1.0]})
         for n in range(6)
     ]
     table = tabulate(layout, rows)
     options = LinesOptions(x="curve.displacement", y=("curve.force",), panels=(ALPHA,))
-    first, _ = lines_report(table, rows, options).panels
+    first, _ = lines_report(table, reader(rows), options).panels
     assert [line.y for line in first.lines] == [(2.0, 0.0), (2.0, 1.0), (2.0, 2.0)]
     assert first.lines[0].x == (0.0, 1.0)
 
@@ -328,7 +327,7 @@ def test_lines_say_what_stands_for_the_records(
     table = table_of(study_of, answer)
     rows = [answer(number) for number in range(36)]
     options = LinesOptions(x=ALPHA, y=("max_rotation",), statistic=statistic, series=("scale",))
-    report = lines_report(table, rows, options)
+    report = lines_report(table, reader(rows), options)
     assert report.pooled == (f"3 values of {RHO}",)
     (panel,) = report.panels
     assert [line.values for line in panel.lines] == [(0.5,), (1.0,)]
@@ -341,6 +340,6 @@ def test_lines_say_what_stands_for_the_records(
 
 def test_lines_keep_intensities_apart(study_of: Make) -> None:
     table = table_of(study_of, lambda _: stored())
-    rows = [stored() for _ in range(36)]
+    rows = reader([stored()] * 36)
     report = lines_report(table, rows, LinesOptions(x=ALPHA, y=("max_rotation",)))
     assert (report.series_keys, report.pooled) == ((RHO, "scale"), ())

@@ -11,28 +11,51 @@ import numpy as np
 import pytest
 
 from rpscli.errors import OutputError, Refused, RpsError
-from rpscli.sweep.store import FILE, Entry, Store, Stored
+from rpscli.sweep.evaluation.results import PointResults
+from rpscli.sweep.store import FILE, Store
 
 
-def entry(number: int, outcome: str = "survived") -> Entry:
-    return Entry(bytes([number] * 32), {"n": number}, outcome, None, {"x": 0.1 * number})
+def key(number: int) -> bytes:
+    return bytes([number] * 32)
+
+
+def batch(*numbers: int, failed: bool = False) -> tuple[list[bytes], PointResults]:
+    """Points that survived, or failed."""
+    values = np.full(len(numbers), np.nan) if failed else 0.1 * np.array(numbers)
+    outcomes = np.array(["failed" if failed else "survived"] * len(numbers), dtype="U20")
+    messages = dict.fromkeys(range(len(numbers)), "why") if failed else {}
+    columns = {"x": values, "list": np.column_stack([values, values + 1.0])}
+    return list(map(key, numbers)), PointResults(outcomes, messages, columns)
+
+
+def rows(store: Store, *numbers: int) -> list[Any]:
+    """Outcome, message, x and the second of the list of some points."""
+    found = store.stored(list(map(key, numbers)))(["x", "list.1", "unknown"])
+    nothing = np.full(len(numbers), np.nan)
+    x, last = (found.columns.get(name, nothing).tolist() for name in ("x", "list.1"))
+    assert "unknown" not in found.columns
+    told = [found.messages.get(row) for row in range(len(numbers))]
+    return [repr(row) for row in zip(found.outcomes.tolist(), told, x, last, strict=True)]
 
 
 def test_what_is_stored_is_there_after_reopening(tmp_path: Path) -> None:
     with Store(tmp_path) as store:
-        store.add([entry(1), entry(2, "failed")])
+        store.add(*batch(1, 3))
+        store.add(*batch(2, failed=True))
         store.note(study="a")
     with Store(tmp_path) as store:
-        assert store.outcomes() == {bytes([1] * 32): False, bytes([2] * 32): True}
-        found = list(store.stored([bytes([2] * 32), bytes([9] * 32), bytes([1] * 32)]))
-        assert found == [
-            Stored("failed", None, {"x": 0.2}),
-            None,
-            Stored("survived", None, {"x": 0.1}),
+        assert store.outcomes() == {key(1): False, key(3): False, key(2): True}
+        assert rows(store, 2, 9, 1, 1) == [
+            "('failed', 'why', nan, nan)",
+            "('', None, nan, nan)",
+            *["('survived', None, 0.1, 1.1)"] * 2,
         ]
         assert store.meta("study") == "a"
-        store.add([entry(2)])
-        assert store.outcomes()[bytes([2] * 32)] is False
+        store.add(*batch(2))
+        assert store.outcomes()[key(2)] is False
+        assert rows(store, 2) == ["('survived', None, 0.2, 1.2)"]
+        store.add(*batch(2, failed=True))
+        assert rows(store, 2) == ["('failed', 'why', nan, nan)"]
 
 
 def test_a_second_process_is_refused(tmp_path: Path) -> None:
@@ -45,10 +68,10 @@ def test_a_second_process_is_refused(tmp_path: Path) -> None:
 
 def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> None:
     with Store(tmp_path) as store:
-        store.add(entry(number) for number in range(200))
+        store.add(*batch(*range(200)))
     with Store(tmp_path, fresh=True) as store:
         assert store.outcomes() == {}
-        store.add(entry(number) for number in range(200))
+        store.add(*batch(*range(200)))
     path = tmp_path / FILE
     content = bytearray(path.read_bytes())
     content[1024:] = b"\xff" * (len(content) - 1024)
@@ -61,12 +84,13 @@ def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> Non
 
 def test_one_digit_of_a_result_is_not_believed(tmp_path: Path) -> None:
     with Store(tmp_path) as store:
-        store.add(entry(number) for number in range(9))
+        store.add(*batch(*range(9)))
         store.note(study="pinned")
-        store.add_fixed_base({b"key": [1.25]})
+        store.add_fixed_base({b"key": np.array([1.25])})
     path = tmp_path / FILE
     whole = path.read_bytes()
-    for old, new in ((b'"x":0.4', b'"x":0.9'), (b"survived", b"survivex"), (b"1.25", b"1.26")):
+    changes = [[np.float64(x).tobytes() for x in pair] for pair in ((0.4, 0.9), (1.25, 1.26))]
+    for old, new in (*changes, (b"survived", b"survivex")):
         assert old in whole
         path.write_bytes(whole.replace(old, new, 1))
         with Store(tmp_path) as store, pytest.raises(RpsError, match=r"damaged.*digest.*--fresh"):
@@ -77,18 +101,19 @@ def test_one_digit_of_a_result_is_not_believed(tmp_path: Path) -> None:
 
 
 def contents(folder: Path) -> list[Any]:
-    keys = [bytes([number] * 32) for number in range(40)]
     with Store(folder) as store:
-        return [store.outcomes(), list(store.stored(keys)), store.fixed_base(), store.meta("study")]
+        shears = {name: values.tolist() for name, values in store.fixed_base().items()}
+        return [store.outcomes(), rows(store, *range(40)), shears, store.meta("study")]
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_damage_is_one_message_with_a_remedy_or_harmless(tmp_path: Path, seed: int) -> None:
     """Bits flipped and ends cut off: what is still read is what was written."""
     with Store(tmp_path) as store:
-        store.add(entry(number) for number in range(40))
+        for first in range(0, 40, 8):
+            store.add(*batch(*range(first, first + 8)))
         store.note(study="pinned")
-        store.add_fixed_base({b"key": [1.25]})
+        store.add_fixed_base({b"key": np.array([1.25])})
     path, told = tmp_path / FILE, 0
     whole, known = path.read_bytes(), contents(tmp_path)
     rng = np.random.default_rng(seed)
@@ -108,7 +133,7 @@ def test_damage_is_one_message_with_a_remedy_or_harmless(tmp_path: Path, seed: i
         else:
             # a point that is found under no name is computed again
             for before, after in zip(known[1], found[1], strict=True):
-                assert after in (before, None)
+                assert after in (before, "('', None, nan, nan)")
             assert found[2] in (known[2], {})
             assert found[3] in (known[3], None)
     assert told > 10
@@ -118,7 +143,7 @@ def test_damage_is_one_message_with_a_remedy_or_harmless(tmp_path: Path, seed: i
 def test_a_store_that_is_deleted_while_it_is_used_is_told(tmp_path: Path, what: str) -> None:
     folder = tmp_path / "o"
     with Store(folder) as store:
-        store.add([entry(1)])
+        store.add(*batch(1))
         store.require()
         if what == "folder":
             shutil.rmtree(folder)
@@ -127,7 +152,7 @@ def test_a_store_that_is_deleted_while_it_is_used_is_told(tmp_path: Path, what: 
         if what == "other":
             (folder / FILE).write_bytes(b"")
         with pytest.raises(OutputError, match=r"deleted or replaced.*same command"):
-            store.add([entry(2)])
+            store.add(*batch(2))
         with pytest.raises(OutputError, match="deleted or replaced"):
             store.require()
 
@@ -147,30 +172,25 @@ def test_files_of_others_are_left_alone(tmp_path: Path) -> None:
             Store(tmp_path, fresh=fresh)
 
 
-def test_another_format_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("form", ["0", "2"])
+def test_another_format_is_refused(tmp_path: Path, form: str) -> None:
     with Store(tmp_path) as store:
-        store.note(format="0")
-    with pytest.raises(Refused, match=r"format 0.*--fresh"):
+        store.note(format=form)
+    with pytest.raises(Refused, match=rf"format {form}.*--fresh"):
         Store(tmp_path)
 
 
 def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path: Path) -> None:
     with Store(tmp_path) as store:
-        store.add([entry(1)])
+        store.add(*batch(1))
         # SQLite reports a limit on its pages as a full disk.
         store._db.execute("PRAGMA max_page_count = 1")
-        big = [entry(n)._replace(results={"x": [0.0] * 5000}) for n in range(2, 9)]
         with pytest.raises(OutputError, match=r"disk is full.*same\s+command"):
-            store.add(big)
-        assert list(store.outcomes()) == [bytes([1] * 32)]
+            store.add(*batch(*range(2, 200)))
+        assert list(store.outcomes()) == [key(1)]
 
 
 def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="-o"):
         Store(tmp_path / "file" / "folder")
-
-
-def test_numbers_that_json_does_not_know_are_never_stored(tmp_path: Path) -> None:
-    with Store(tmp_path) as store, pytest.raises(ValueError, match="JSON"):
-        store.add([entry(1)._replace(results={"x": float("nan")})])

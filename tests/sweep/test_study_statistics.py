@@ -22,9 +22,8 @@ from rpscli.sweep.statistics.scales import scale_notes
 from rpscli.sweep.statistics.share import share
 from rpscli.sweep.statistics.summary import Summary, summary
 from rpscli.sweep.statistics.verdicts import judged
-from rpscli.sweep.store import Stored
 from rpscli.sweep.table import Table
-from sweep.made_up import ALPHA, RHO, place, stored, table_of
+from sweep.made_up import ALPHA, RHO, Stored, place, stored, table_of
 from sweep.small_studies import BASE, STUDY, Make
 
 FIVE = ("seed: [1, 2, 3]", "seed: [1, 2, 3, 4, 5]")

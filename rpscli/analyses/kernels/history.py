@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,8 @@ from rpscli.analyses.kernels.step_lengths import most_steps
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
-from rpscli.frozen import Frozen
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.core.records import NO_RECORD, Record, records
+from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
 from rpscli.physics.planar.run import Output, Run, empty_block
 from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -32,126 +32,8 @@ FIRST_LOG = 4096
 """Rows of the event log at the first attempt; a longer history is run once more."""
 
 
-@dataclass(frozen=True, eq=False)
-class History(Frozen):
-    """What one history leaves behind besides samples and log, SI units.
-
-    Parameters
-    ----------
-    outcome, phase
-        At the end, coded in `physics.planar.state`.
-    rotation, time
-        theta [rad] and time [s] at the end.
-    intervals
-        Sampling intervals that were followed.
-    max_rotation, max_rotation_time
-        max |theta| [rad], and when [s].
-    critical_time
-        When theta_cr was first passed [s]; negative if never.
-    storey_shears, floor_accelerations
-        (n,) largest k_i d_i [N] and absolute accelerations [m/s2].
-    friction, least_normal
-        (2,) largest |F|/N, and least normal force over the weight on it, at the upper and at the
-        lower end of the columns.
-    energy_input, energy_damped
-        By the ground, in the building [J]; known of sampled histories only.
-    energy_lost, energy_stored
-        At impacts, where energy created counts negatively, and stored at the end [J].
-    energy_created, creating_impacts
-        Energy created at impacts [J], and how many did.
-    counts
-        Of events, by the codes of `physics.planar.state`.
-    steps
-        Taylor steps.
-    device_force, device_velocity, device_energy
-        (slots,) largest force [N], largest rate [m/s], dissipated energy [J].
-    device_stored, permanent
-        (slots,) what is stored at the end over the start [J], plastic elongation of a tendon [m].
-    """
-
-    outcome: int
-    phase: int
-    rotation: float
-    time: float
-    intervals: int
-    max_rotation: float
-    max_rotation_time: float
-    critical_time: float
-    storey_shears: NDArray[np.float64]
-    floor_accelerations: NDArray[np.float64]
-    friction: NDArray[np.float64]
-    least_normal: NDArray[np.float64]
-    energy_input: float
-    energy_damped: float
-    energy_lost: float
-    energy_stored: float
-    energy_created: float
-    creating_impacts: int
-    counts: NDArray[np.int64]
-    steps: int
-    device_force: NDArray[np.float64]
-    device_velocity: NDArray[np.float64]
-    device_energy: NDArray[np.float64]
-    device_stored: NDArray[np.float64]
-    permanent: NDArray[np.float64]
-
-
-def histories_of(results: Record, storeys: int) -> list[History]:
-    """The histories of some `state.RESULT`.
-
-    Parameters
-    ----------
-    results
-        Records of `state.RESULT`.
-    storeys
-        n of their structures.
-    """
-    # Fields by attribute take numpy ten times as long.
-    plain = results.view(np.dtype((np.void, results.dtype)), np.ndarray)
-    return [_history_of(result, storeys) for result in plain]
-
-
-def _history_of(result: Any, storeys: int) -> History:
-    return History(
-        outcome=int(result["outcome"]),
-        phase=int(result["phase"]),
-        rotation=float(result["rotation"]),
-        time=float(result["time"]),
-        intervals=int(result["intervals"]),
-        max_rotation=float(result["max_theta"]),
-        max_rotation_time=float(result["max_theta_time"]),
-        critical_time=float(result["critical_time"]),
-        storey_shears=result["storey_shear"][:storeys].copy(),
-        floor_accelerations=result["floor_acceleration"][:storeys].copy(),
-        friction=np.array([result["friction_top"], result["friction_bottom"]]),
-        least_normal=np.array([result["normal_top"], result["normal_bottom"]]),
-        energy_input=float(result["energy_input"]),
-        energy_damped=float(result["energy_damped"]),
-        energy_lost=float(result["energy_lost"]),
-        energy_stored=float(result["energy_stored"] + result["device_stored"].sum()),
-        energy_created=float(result["energy_created"]),
-        creating_impacts=int(result["creating_impacts"]),
-        counts=result["events"].copy(),
-        steps=int(result["steps"]),
-        device_force=result["device_force"].copy(),
-        device_velocity=result["device_velocity"].copy(),
-        device_energy=result["device_energy"].copy(),
-        device_stored=result["device_stored"].copy(),
-        permanent=result["permanent"].copy(),
-    )
-
-
-@dataclass(frozen=True)
-class Request:
-    """A history to run: numbers of its structure and its records among all, and a factor.
-
-    Parameters
-    ----------
-    system, record, vertical
-        Numbers of its structure and of the two components among all; no vertical one if None.
-    scale
-        Multiplies both components.
-    """
+class Request(NamedTuple):
+    """A history to run: numbers of its structure and its two components among all, and a factor."""
 
     system: int
     record: int
@@ -169,37 +51,29 @@ def run_of(
 ) -> Run:
     """What the kernel needs to run histories, and room for their results.
 
-    Parameters
-    ----------
-    systems
-        (S,) records, see `stacked_systems`.
-    motions
-        Records of the ground; those of the two components of a motion are equally long.
-    requests
-        The histories.
-    rows, events
-        Samples and events of the first history for which there is room.
+    Components of a motion are equally long; `rows` samples and `events` of the first history are
+    kept.
     """
-    n = int(systems.n[0])
-    starts = np.cumsum([0] + [motion.npts for motion in motions])
+    n = int(systems["n"][0])
+    lengths = [motion.npts for motion in motions]
+    starts = [0, *accumulate(lengths)]
     given = records(REQUEST, count=len(requests))
-    along = [motions[request.record] for request in requests]
-    above = [request.vertical for request in requests]
-    given.system = [request.system for request in requests]
-    given.record = [starts[request.record] for request in requests]
-    given.vertical = [NO_RECORD if number is None else starts[number] for number in above]
-    given.npts, given.dt = [motion.npts for motion in along], [motion.dt for motion in along]
-    given.scale = [request.scale for request in requests]
+    plain = given.view(record_type(REQUEST), np.ndarray)
+    for row, (system, record, vertical, scale) in zip(plain, requests, strict=True):
+        above = NO_RECORD if vertical is None else starts[vertical]
+        row["system"], row["record"], row["vertical"] = system, starts[record], above
+        row["npts"], row["dt"], row["scale"] = lengths[record], motions[record].dt, scale
+    along = [motion.acceleration for motion in motions]
     return Run(
         systems=systems,
         requests=given,
-        acceleration=np.concatenate([motion.acceleration for motion in motions]),
+        acceleration=along[0] if len(along) == 1 else np.concatenate(along),
         results=records(RESULT, count=len(requests)),
         output=Output(
             samples=records(SAMPLE, count=rows),
             floors=np.empty((rows, 2, n)),
             log=records(EVENT, count=events),
-            devices=np.empty((rows, 4, int(systems.devices.max()))),
+            devices=np.empty((rows, 4, int(systems["devices"].max()))),
         ),
         block=empty_block(n),
     )
@@ -212,7 +86,7 @@ class SampledHistory:
     Parameters
     ----------
     history
-        What is left behind at the end.
+        A `state.RESULT`: what is left behind at the end.
     ground, vertical
         Horizontal and vertical acceleration, as long as the longer component [m/s2].
     samples
@@ -225,7 +99,7 @@ class SampledHistory:
         (intervals + 1, 4, devices), see `physics.planar.run.Output`.
     """
 
-    history: History
+    history: Record
     ground: NDArray[np.float64]
     vertical: NDArray[np.float64] | None
     samples: Record
@@ -338,12 +212,12 @@ def sampled_history(
         run = run_of(systems, motions, [request], rows=rows, events=events)
         with compiled(equipped=bool(structure.devices)):
             integrate(run, lanes=1)
-        history = histories_of(run.results, structure.storeys)[0]
-        if (seen := int(history.counts.sum())) <= events:
+        history = run.results[0]
+        if (seen := int(history.events.sum())) <= events:
             break
         events = seen
         del run  # before there is room for another
-    kept, output = history.intervals + 1, run.output
+    kept, output = int(history.intervals) + 1, run.output
     # Shortened in place, which nothing else looks at: a copy would take as much again.
     for array in (output.floors, output.devices):
         array.resize((kept, *array.shape[1:]), refcheck=False)

@@ -12,7 +12,7 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.model.devices import DEVICES
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.core.records import ORDER, Record, records
+from rpscli.physics.core.records import ORDER, Record, record_type, records
 from rpscli.physics.planar.state import SYSTEM
 
 DEVICE_KINDS = {kind: code for code, kind in enumerate(DEVICES.values())}
@@ -25,7 +25,8 @@ LEAST_SHAKEN = 1e-3
 def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
     """Structures with the same number of storeys, each with its settings: (S,) records."""
     stacked = records(SYSTEM, count=len(systems))
-    for record, (structure, settings) in zip(stacked, systems, strict=True):
+    plain = stacked.view(record_type(SYSTEM), np.ndarray)  # attributes take ten times as long
+    for record, (structure, settings) in zip(plain, systems, strict=True):
         fill_podium(record, structure)
         fill_settings(record, structure, settings)
         if structure.superstructure is not None:
@@ -36,32 +37,24 @@ def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings
 def building_system(building: Superstructure) -> Record:
     """A building alone, (1,): what full contact on a fixed base reads."""
     system = records(SYSTEM)
-    fill_building(system[0], building)
+    fill_building(system.view(record_type(SYSTEM), np.ndarray)[0], building)
     return system
 
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
-    """The rocking storey.
-
-    Parameters
-    ----------
-    record
-        A `state.SYSTEM`: written.
-    structure
-        Podium, bearings and building.
-    """
+    """The rocking storey."""
     b = structure.bearing
-    record.n = structure.storeys
-    record.R, record.alpha, record.beta = b.semi_diagonal, b.alpha, b.beta
-    record.theta_cr = b.critical_rotation
-    record.rolling[:], record.rocking[:] = b.rolling, b.rocking
-    record.Io, record.gamma, record.eta = b.inertia_ratio, structure.gamma, structure.eta
-    record.columns_mass = structure.columns_mass
-    record.cap_beam_mass = structure.cap_beam_mass
-    record.floors_mass = structure.superstructure_mass
-    record.gravity = structure.gravity
-    record.restitution = structure.restitution
-    record.floors_jump = structure.impact_law.floors_jump
+    record["n"] = structure.storeys
+    record["R"], record["alpha"], record["beta"] = b.semi_diagonal, b.alpha, b.beta
+    record["theta_cr"] = b.critical_rotation
+    record["rolling"], record["rocking"] = b.rolling, b.rocking
+    record["Io"], record["gamma"], record["eta"] = b.inertia_ratio, structure.gamma, structure.eta
+    record["columns_mass"] = structure.columns_mass
+    record["cap_beam_mass"] = structure.cap_beam_mass
+    record["floors_mass"] = structure.superstructure_mass
+    record["gravity"] = structure.gravity
+    record["restitution"] = structure.restitution
+    record["floors_jump"] = structure.impact_law.floors_jump
     fill_devices(record, structure)
 
 
@@ -70,37 +63,20 @@ LINEAR_SPEED = 1e-8
 
 
 def fill_devices(record: Record, structure: PodiumStructure) -> None:
-    """The devices, each with the constants of its law.
-
-    Parameters
-    ----------
-    record
-        A `state.SYSTEM`: written.
-    structure
-        Podium with its devices.
-    """
-    record.columns, record.devices = structure.columns, len(structure.devices)
+    """The devices, each with the constants of its law."""
+    record["columns"], record["devices"] = structure.columns, len(structure.devices)
     speed = math.sqrt(structure.gravity * structure.bearing.semi_diagonal)
-    record.linear_speed = LINEAR_SPEED * speed
+    record["linear_speed"] = LINEAR_SPEED * speed
     for i, device in enumerate(structure.devices):
-        record.device_kind[i] = DEVICE_KINDS[type(device)]
+        record["device_kind"][i] = DEVICE_KINDS[type(device)]
         constants = device.constants(structure)
-        record.device_constants[i, : len(constants)] = constants
+        record["device_constants"][i, : len(constants)] = constants
 
 
 def fill_settings(
     record: Record, structure: PodiumStructure, settings: TimeHistorySettings
 ) -> None:
     """How the motion is followed.
-
-    Parameters
-    ----------
-    record
-        A `state.SYSTEM`: written.
-    structure
-        Podium, bearings and building.
-    settings
-        Accuracy, tolerance, limits.
 
     Raises
     ------
@@ -120,16 +96,16 @@ def fill_settings(
             f" overturning limit {limit:.6g} rad"
         )
     free = settings.free_vibration
-    record.theta_limit = limit
-    record.uplifted_rate = settings.accuracy * uplifted_rate(structure)
-    record.contact_rate = contact_rate(structure)
-    record.last_term = LAST_TERM * settings.accuracy**-ORDER
-    record.recontact_tolerance = settings.recontact_tolerance
-    record.bounces = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
-    record.max_events = settings.max_events
-    record.initial_rotation = settings.initial_rotation
-    record.free_vibration = LONGEST_FREE_VIBRATION if free is None else free
-    record.until_rest = free is None
+    record["theta_limit"] = limit
+    record["uplifted_rate"] = settings.accuracy * uplifted_rate(structure)
+    record["contact_rate"] = contact_rate(structure)
+    record["last_term"] = LAST_TERM * settings.accuracy**-ORDER
+    record["recontact_tolerance"] = settings.recontact_tolerance
+    record["bounces"] = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
+    record["max_events"] = settings.max_events
+    record["initial_rotation"] = settings.initial_rotation
+    record["free_vibration"] = LONGEST_FREE_VIBRATION if free is None else free
+    record["until_rest"] = free is None
 
 
 def bounces_left_out(structure: PodiumStructure) -> float:
@@ -148,22 +124,15 @@ def fill_building(record: Record, building: Superstructure) -> None:
     The weights of `physics.planar.demands` are best where what a mode adds to a demand is in
     proportion to its weighted square; modal forces are as large as Gamma_r, if all modes shake
     alike.
-
-    Parameters
-    ----------
-    record
-        A `state.SYSTEM`: written.
-    building
-        n storeys on the cap beam.
     """
-    n = record.n = building.storeys
+    n = record["n"] = building.storeys
     omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T
     omega2, shaken = omega * omega, np.abs(building.participation)
     weight = 1.0 / np.maximum(shaken, LEAST_SHAKEN * shaken.max())
     shears = np.diff(shapes, prepend=0.0) * building.stiffnesses
-    record.omega[:n], record.xi[:n], record.Gamma[:n] = omega, xi, building.participation
-    record.omega2[:n], record.two_xi_omega[:n] = omega2, 2.0 * xi * omega
-    record.phi[:n, :n], record.storey_shear_of[:n, :n] = shapes, shears
-    record.shear_weight[:n], record.acceleration_weight[:n] = omega2 * omega2 * weight, weight
-    record.shear_bound_of[:n] = 1.0 / np.sum(shears.T**2 / record.shear_weight[:n], axis=1)
-    record.acceleration_bound_of[:n] = 1.0 / np.sum(shapes.T**2 / weight, axis=1)
+    record["omega"][:n], record["xi"][:n], record["Gamma"][:n] = omega, xi, building.participation
+    record["omega2"][:n], record["two_xi_omega"][:n] = omega2, 2.0 * xi * omega
+    record["phi"][:n, :n], record["storey_shear_of"][:n, :n] = shapes, shears
+    record["shear_weight"][:n], record["acceleration_weight"][:n] = omega2 * omega2 * weight, weight
+    record["shear_bound_of"][:n] = 1.0 / np.sum(shears.T**2 / record["shear_weight"][:n], axis=1)
+    record["acceleration_bound_of"][:n] = 1.0 / np.sum(shapes.T**2 / weight, axis=1)

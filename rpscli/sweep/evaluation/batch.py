@@ -1,4 +1,4 @@
-"""A batch of points -> its outcomes: the one place where the work of a study is done.
+"""A batch of points -> their results: the one place where the work of a study is done.
 
 Pure: what comes out for a point depends on the point and the plan alone, not on its batch, the
 order, or the process. A point that cannot be computed gives a row that says why.
@@ -6,68 +6,107 @@ order, or the process. A point that cannot be computed gives a row that says why
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar
 
-from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.largest_demands import Demand
-from rpscli.analyses.result_quantities import SAMPLED, values_of
+import numpy as np
+
+from rpscli.analyses.demand import Request, histories
+from rpscli.analyses.largest_demands import Histories
+from rpscli.analyses.outcome import failure_text
+from rpscli.analyses.result_quantities import HISTORY, IMPACTS, SAMPLED, STOREY_SHEARS, values_of
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import RpsError
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
-from rpscli.sweep.evaluation.results import DONE, FAILED, Results, parametric_results
+from rpscli.sweep.evaluation.results import (
+    DONE,
+    FAILED,
+    Array,
+    Indices,
+    PointResults,
+    failures,
+    parametric_results,
+    put,
+    stacked,
+)
 
 Result = TypeVar("Result")
 
-
-class Row(NamedTuple):
-    """What became of a point. Results are empty where it failed, and the message says why."""
-
-    number: int
-    outcome: str
-    message: str | None
-    results: Results
+KEPT = (*HISTORY, *IMPACTS, STOREY_SHEARS)
+"""What a study keeps of a history besides its outcome, its scale and its intensities."""
 
 
-def run_batch(context: StudyContext, points: Sequence[Point]) -> list[Row]:
-    """Outcomes of some points of the study, in the same order."""
+def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
+    """Results of some points of the study, in the same order."""
     if context.plan.analysis != "timehistory":
-        return [_row(point, _attempt(_parametric, context, point)) for point in points]
-    if context.plan.whole:
-        return [_whole_history_row(context, point) for point in points]
-    histories = [_attempt(context.history, point) for point in points]
-    found = iter(_demands([history for history in histories if isinstance(history, Request)]))
-    demanded = [next(found) if isinstance(h, Request) else h for h in histories]
-    return [
-        _history_row(context, point, history, demand)
-        for point, history, demand in zip(points, histories, demanded, strict=True)
-    ]
+        return _parametric(context, points)
+    found = failures(["not computed"] * len(points))
+    requests: dict[int, Request] = {}
+    for row, point in enumerate(points):
+        request = _attempt(context.history, point)
+        if isinstance(request, str):
+            found.messages[row] = request
+        else:
+            requests[row] = request
+    rows = np.array([*requests], np.int64)
+    run = _whole if context.plan.whole else _together
+    for members, results, sampled in run([*requests.values()]):
+        at = rows[members]
+        if isinstance(results, str):
+            found.messages.update(dict.fromkeys(at.tolist(), results))
+        else:
+            _keep(found, at, results, results.columns(KEPT) | sampled)
+    done = np.flatnonzero(found.outcomes != FAILED)
+    scales = np.array([requests[row].scale for row in done.tolist()])
+    put(found, done, "scale", scales)
+    for name, values in context.intensities([points[row] for row in done.tolist()], scales).items():
+        put(found, done, name, values)
+    return found
 
 
-def _demands(requests: list[Request]) -> list[Demand | str]:
-    """Largest demands of each history, or why there are none."""
-    together = _attempt(demands, requests)
-    if not isinstance(together, str):
-        return list(together)
+def _keep(found: PointResults, at: Indices, results: Histories, columns: dict[str, Array]) -> None:
+    """Add histories at some rows; of those that failed, why."""
+    outcomes = results.outcomes
+    good = outcomes != FAILED
+    for row, left in zip(at[~good].tolist(), results.left[~good], strict=True):
+        found.messages[row] = str(failure_text(left))
+    found.outcomes[at] = outcomes
+    for row in at[good].tolist():
+        del found.messages[row]
+    for name, values in columns.items():
+        put(found, at[good], name, values[good])
+
+
+Run = tuple[list[int], Histories | str, dict[str, Array]]
+"""Numbers of histories, what was found or why nothing was, and what their samples tell."""
+
+
+def _together(requests: list[Request]) -> list[Run]:
+    """Histories side by side."""
+    found = _attempt(_histories, requests)
+    if not isinstance(found, str):
+        return [(members, results, {}) for members, results in found]
     # One of them cannot be had: which one shows when each is tried alone.
-    alone = (_attempt(demands, [request]) for request in requests)
-    return [found if isinstance(found, str) else found[0] for found in alone]
+    alone = [_attempt(_histories, [request]) for request in requests]
+    return [([i], r if isinstance(r, str) else r[0][1], {}) for i, r in enumerate(alone)]
 
 
-def _parametric(context: StudyContext, point: Point) -> Results:
-    return parametric_results(context.plan.analysis, context.systems[point].structure)
+def _histories(requests: list[Request]) -> list[tuple[list[int], Histories]]:
+    return list(histories(requests))
 
 
-def _whole_history_row(context: StudyContext, point: Point) -> Row:
-    """Of a history by itself, with what its samples tell."""
-    history = _attempt(context.history, point)
-    found = history if isinstance(history, str) else _attempt(_whole_history, history)
-    row = _history_row(context, point, history, found)
-    if isinstance(found, str) or row.outcome == FAILED:
-        return row
-    return row._replace(results=row.results | values_of(found, SAMPLED))
+def _whole(requests: list[Request]) -> Iterator[Run]:
+    """Each by itself, with what its samples tell."""
+    for i, request in enumerate(requests):
+        found = _attempt(_whole_history, request)
+        if isinstance(found, str):
+            yield [i], found, {}
+        else:
+            sampled = values_of(found, SAMPLED)
+            results = Histories.of_one(found.structure, found.history)
+            yield [i], results, {name: stacked([v]) for name, v in sampled.items()}
 
 
 def _whole_history(request: Request) -> TimeHistoryResult:
@@ -80,21 +119,25 @@ def _whole_history(request: Request) -> TimeHistoryResult:
     )
 
 
-def _history_row(
-    context: StudyContext, point: Point, history: Request | str, demand: Demand | str
-) -> Row:
-    if isinstance(history, str):
-        return _row(point, history)
-    if isinstance(demand, str) or demand.failure is not None:
-        return _row(point, demand if isinstance(demand, str) else str(demand.failure))
-    results = demand.results() | context.intensities(point)
-    return Row(point.number, demand.outcome, None, {"scale": history.scale} | results)
+def _parametric(context: StudyContext, points: Sequence[Point]) -> PointResults:
+    """Of an analysis without histories."""
+    found = failures([""] * len(points))
+    rows: list[dict[str, Any]] = []
+    for row, point in enumerate(points):
+        results = _attempt(_parametric_results, context, point)
+        if isinstance(results, str):
+            found.messages[row] = results
+        else:
+            found.outcomes[row] = DONE
+            del found.messages[row]
+        rows.append({} if isinstance(results, str) else results)
+    for name in dict.fromkeys(name for row in rows for name in row):
+        found.columns[name] = stacked([row.get(name) for row in rows])
+    return found
 
 
-def _row(point: Point, results: Results | str) -> Row:
-    if isinstance(results, str):
-        return Row(point.number, FAILED, results, {})
-    return Row(point.number, DONE, None, results)
+def _parametric_results(context: StudyContext, point: Point) -> dict[str, Any]:
+    return parametric_results(context.plan.analysis, context.systems[point].structure)
 
 
 def _attempt(work: Callable[..., Result], *given: Any) -> Result | str:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from rpscli.analyses.demand import Request
-from rpscli.records.measures import factor_to
+from rpscli.records.measures import Measure, factor_to
 from rpscli.sweep.evaluation.points import Plan, Point
 from rpscli.sweep.evaluation.record_cache import RecordCache
-from rpscli.sweep.evaluation.results import Results
+from rpscli.sweep.evaluation.results import Array
 from rpscli.sweep.evaluation.systems import Systems
+
+PEAKS: tuple[Measure, ...] = ("PGA", "PGV")
+"""What the table of a study tells of each scaled motion."""
 
 
 class StudyContext:
@@ -48,11 +55,9 @@ class StudyContext:
             vertical=motion.vertical,
         )
 
-    def intensities(self, point: Point) -> Results:
-        """Peaks of the scaled motion."""
-        assert point.record is not None, "points of histories have a record"
-        size = abs(self.factor(point))
-        return {
-            "pga": size * self.records.intensity(point.record, "PGA"),
-            "pgv": size * self.records.intensity(point.record, "PGV"),
-        }
+    def intensities(self, points: Sequence[Point], factors: Array) -> dict[str, Array]:
+        """Peaks of the scaled motions of some points, (points,)."""
+        requests = [point.record for point in points]
+        peaks = {r: [self.records.intensity(r, m) for m in PEAKS] for r in set(requests) if r}
+        found = np.array([peaks[r] for r in requests if r]).reshape(-1, len(PEAKS))
+        return {m.lower(): np.abs(factors) * found[:, i] for i, m in enumerate(PEAKS)}

@@ -1,24 +1,78 @@
-"""Results of one point under their published names."""
+"""Results of points as columns under their published names."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.analyses import result_quantities as rq
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
-from rpscli.analyses.result_quantities import ResultQuantity, plain
+from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.case.study.schema import Analysis
 from rpscli.model.podium import PodiumStructure
 
-Results = dict[str, Any]
-"""Numbers, None, lists of numbers, and mappings of these; JSON-able."""
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 DONE = "done"
 """Outcome of an analysis that has no others."""
 
 FAILED = "failed"
+
+MISSING = ""
+"""Outcome of a point that has not been computed."""
+
+
+class PointResults(NamedTuple):
+    """What became of some points, of which each has a row.
+
+    `outcomes` are (points,) words; `messages` say by the number of the row why points failed;
+    `columns` are (points, ...) under the names of results, NaN where a point has none.
+    """
+
+    outcomes: NDArray[np.str_]
+    messages: dict[int, str]
+    columns: dict[str, Array]
+
+    def failed(self) -> int:
+        """How many failed."""
+        return int(np.count_nonzero(self.outcomes == FAILED))
+
+
+def no_results(count: int) -> PointResults:
+    """Of points about which nothing is known yet."""
+    return PointResults(np.full(count, MISSING, dtype="U20"), {}, {})
+
+
+def put(found: PointResults, at: Indices, name: str, values: Array) -> None:
+    """Set a column at some rows; what is wider than the column so far widens it."""
+    column = found.columns.get(name)
+    shape = (len(found.outcomes), *values.shape[1:])
+    if column is None:
+        column = found.columns[name] = np.full(shape, np.nan)
+    elif any(new > old for new, old in zip(shape, column.shape, strict=True)):
+        before, wider = column, map(max, shape, column.shape)
+        column = found.columns[name] = np.full(tuple(wider), np.nan)
+        column[_up_to(before.shape)] = before
+    inner: Any = (at, *_up_to(values.shape[1:]))
+    column[inner] = values
+
+
+def _up_to(shape: Sequence[int]) -> tuple[slice, ...]:
+    return tuple(slice(0, size) for size in shape)
+
+
+def failures(messages: Sequence[str]) -> PointResults:
+    """Of points that all failed."""
+    found = no_results(len(messages))
+    found.outcomes[:] = FAILED
+    found.messages.update(enumerate(messages))
+    return found
+
 
 Named = dict[str, ResultQuantity]
 """Quantities by their dotted paths in the results of a point."""
@@ -64,47 +118,73 @@ def quantity(analysis: Analysis, path: str) -> ResultQuantity | None:
     >>> quantity("modal", "rolling.frequency_ratio.0").unit, quantity("modal", "rolling.period")
     ('-', None)
     """
-    parts = path.split(".")
-    while parts and parts[-1].isdecimal():
-        parts.pop()
-    return KNOWN[analysis].get(".".join(parts))
+    return KNOWN[analysis].get(split(path)[0])
 
 
-def parametric_results(analysis: Analysis, structure: PodiumStructure) -> Results:
-    """Results of a modal or pushover analysis."""
-    return _modal(structure) if analysis == "modal" else _pushover(structure)
+def parametric_results(analysis: Analysis, structure: PodiumStructure) -> dict[str, Any]:
+    """Results of a modal or pushover analysis: numbers and lists under dotted paths."""
+    found = _modal(structure) if analysis == "modal" else _pushover(structure)
+    return {path: found[path] for path in KNOWN[analysis] if path in found}
 
 
-def _modal(structure: PodiumStructure) -> Results:
+def _modal(structure: PodiumStructure) -> dict[str, Any]:
     result = modal(structure)
-    found: Results = {**result.results(), rq.LEVEL.name: list(range(structure.storeys + 1))}
-    states = result.uplifted | ({"fixed_base": result.fixed_base} if result.fixed_base else {})
+    found: dict[str, Any] = {rq.LEVEL.name: range(structure.storeys + 1)}
+    states: dict[str, Any] = {**result.uplifted, "fixed_base": result.fixed_base}
     for state, modes in states.items():
-        found[state] |= plain(modes.profiles())
-        found[state].pop(rq.EIGENVALUES.name, None)
+        if modes is not None:
+            found |= {f"{state}.{name}": values for name, values in modes.profiles().items()}
+            lists = rq.FIXED_BASE_MODES if state == "fixed_base" else _UPLIFTED
+            found |= {f"{state}.{q.name}": getattr(modes, q.name) for q in lists}
     return found
 
 
-def _pushover(structure: PodiumStructure) -> Results:
+_UPLIFTED = (*rq.UPLIFTED_MODES, *rq.UPLIFTED_RATIOS, *rq.FREQUENCY_PARAMETERS)
+
+
+def _pushover(structure: PodiumStructure) -> dict[str, Any]:
     result = pushover(structure)
-    found = result.results()
-    found["curve"] |= plain(result.curve_ratios())
+    curve = {q.name: getattr(result.curve, q.name) for q in rq.STOREY_CURVE} | result.curve_ratios()
+    scalars = {q.name: getattr(result, q.name) for q in rq.PUSHOVER}
+    return scalars | {f"curve.{name}": values for name, values in curve.items()}
+
+
+def stacked(values: Sequence[Any]) -> Array:
+    """Numbers, or arrays of as many dimensions, as (points, ...): NaN where one has no number.
+
+    >>> stacked([[1.0, 2.0], None, [3.0]]).tolist()
+    [[1.0, 2.0], [nan, nan], [3.0, nan]]
+    """
+    arrays = [None if value is None else np.asarray(value, np.float64) for value in values]
+    shapes = [array.shape for array in arrays if array is not None]
+    found = np.full((len(arrays), *map(max, zip(*shapes, strict=True))), np.nan)
+    for row, array in enumerate(arrays):
+        if array is not None:
+            place: Any = (row, *_up_to(array.shape))
+            found[place] = array + 0.0  # no -0.0
+    found[~np.isfinite(found)] = np.nan
     return found
 
 
-def value_at(results: Results, path: str) -> Any:
-    """The value at a dotted path; None where there is none (a mode that does not exist).
+def split(path: str) -> tuple[str, tuple[int, ...]]:
+    """The name of a column and the place in its rows that a dotted path stands for.
 
-    >>> value_at({"rolling": {"frequency_ratio": [1.7, 1.2]}}, "rolling.frequency_ratio.0")
-    1.7
+    >>> split("rolling.frequency_ratio.0"), split("max_rotation")
+    (('rolling.frequency_ratio', (0,)), ('max_rotation', ()))
     """
-    value: Any = results
-    if "." not in path:
-        return value.get(path)
-    for part in path.split("."):
-        if isinstance(value, list):
-            index = int(part) if part.isdecimal() else len(value)
-            value = value[index] if index < len(value) else None
-        else:
-            value = value.get(part) if isinstance(value, dict) else None
-    return value
+    parts, places = path.split("."), []
+    while len(parts) > 1 and parts[-1].isdecimal():
+        places.append(int(parts.pop()))
+    return ".".join(parts), tuple(reversed(places))
+
+
+def at_path(columns: Mapping[str, Array], path: str) -> Array | None:
+    """What the points have at a dotted path; None where none can have it."""
+    name, places = split(path)
+    column = columns.get(name)
+    if column is None or len(places) > column.ndim - 1:
+        return None
+    if any(place >= size for place, size in zip(places, column.shape[1:], strict=False)):
+        return None
+    inner: tuple[int | slice, ...] = (slice(None), *places)
+    return column[inner]

@@ -16,7 +16,7 @@ from rpscli.case.study.reports import ReportOptions, ReportRequest
 from rpscli.case.study.schema import Keys
 from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import hint, listed
-from rpscli.sweep.evaluation.results import FAILED, KNOWN, quantity, value_at
+from rpscli.sweep.evaluation.results import KNOWN, quantity
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import fractiles
 from rpscli.sweep.statistics.grouping import (
@@ -124,9 +124,7 @@ class LinesReport:
         return (*self.options.y, *self.options.dashed)
 
 
-def lines_report(
-    table: Table, stored: Iterable[Stored | None], options: LinesOptions
-) -> LinesReport:
+def lines_report(table: Table, stored: Stored, options: LinesOptions) -> LinesReport:
     """The lines of every series of every panel.
 
     Where several points share an abscissa (the records of a study) the line is the statistic that
@@ -141,7 +139,7 @@ def lines_report(
             series = apart(layout, series)
     names = (*options.y, *options.dashed)
     varied = bool(_together(table, options.x))
-    values = _collected(stored, names if varied else (*names, options.x))
+    values = _collected(table, stored, names if varied else (*names, options.x))
     found = []
     for panel in groups(layout, panels):
         lines = [
@@ -172,13 +170,28 @@ def _together(table: Table, key: str) -> tuple[str, ...]:
     return next((keys for keys in axes if key in keys), ())
 
 
-def _collected(stored: Iterable[Stored | None], names: Iterable[str]) -> Values:
-    values: Values = {name: [] for name in names}
-    for row in stored:
-        for name, column in values.items():
-            usable = row is not None and row.outcome != FAILED
-            column.append(value_at(row.results, name) if row and usable else None)
+def _collected(table: Table, stored: Stored, names: Iterable[str]) -> Values:
+    """Results of all points: numbers, lists, or None."""
+    wanted = tuple(names)
+    columns, analysis = stored(wanted).columns, table.layout.plan.analysis
+    values: Values = {}
+    for name in wanted:
+        column, of = columns.get(name), quantity(analysis, name)
+        rows = [None] * len(table) if column is None else column.tolist()
+        values[name] = [_value(row, whole=of is not None and of.whole) for row in rows]
     return values
+
+
+def _value(value: Any, *, whole: bool) -> Any:
+    """A number, a list without what is NaN behind its end, or None."""
+    if isinstance(value, list):
+        found = [_value(item, whole=whole) for item in value]
+        while found and found[-1] is None:
+            found.pop()
+        return found or None
+    if value is None or math.isnan(value):
+        return None
+    return int(value) if whole else value
 
 
 def _lines(

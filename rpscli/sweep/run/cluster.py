@@ -15,11 +15,12 @@ from threading import Lock
 from typing import Any
 
 from rpscli.errors import RpsError, UsageError
-from rpscli.sweep.evaluation.batch import Row, run_batch
+from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Plan, Point
-from rpscli.sweep.evaluation.results import FAILED
+from rpscli.sweep.evaluation.results import PointResults, failures
 from rpscli.sweep.evaluation.solver import solver_version
+from rpscli.sweep.run.engine import Computed
 
 WAITING = 2
 """Batches that are kept ready for each thread of the cluster."""
@@ -31,8 +32,8 @@ _contexts: dict[str, StudyContext] = {}
 _lock = Lock()
 
 
-def compute(digest: str, plan: Plan, points: list[Point]) -> list[Row]:
-    """Rows of a batch; runs on a worker, which keeps what it has read for the next one.
+def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
+    """Results of a batch; runs on a worker, which keeps what it has read for the next one.
 
     Raises
     ------
@@ -85,8 +86,8 @@ class Cluster:
             ) from None
         self.jobs = max(1, sum(self._client.nthreads().values()))
 
-    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[list[Row]]:
-        """Rows of the batches, as they come.
+    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
+        """The batches with their results, as they come.
 
         A batch whose worker dies is computed by another one; points that take every worker with
         them come back as failed.
@@ -102,7 +103,7 @@ class Cluster:
                 if not given:
                     return
                 future, result = next(finished)
-                yield self._rows(future, result, given, finished)
+                yield from self._computed(future, result, given, finished)
         finally:
             self._client.close()
 
@@ -123,18 +124,18 @@ class Cluster:
         given[future] = points
         finished.add(future)
 
-    def _rows(
+    def _computed(
         self, future: Any, result: Any, given: dict[Any, list[Point]], finished: Any
-    ) -> list[Row]:
-        """Rows of a finished batch; points of a deadly one are tried one by one."""
+    ) -> list[Computed]:
+        """A finished batch; points of a deadly one are tried one by one."""
         points = given.pop(future)
         if future.status == "finished":
-            return list(result)
+            return [(points, result)]
         error = result[1] if isinstance(result, tuple) else result
         if isinstance(error, self._dask.KilledWorker):
             if len(points) == 1:
                 message = "the workers that computed this point died, one after the other"
-                return [Row(points[0].number, FAILED, message, {})]
+                return [(points, failures([message]))]
             for point in points:
                 self._submit([point], given, finished)
             return []

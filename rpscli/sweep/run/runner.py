@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from types import FrameType
 
 from rpscli.sweep.evaluation.points import Point
-from rpscli.sweep.evaluation.results import FAILED
-from rpscli.sweep.points.described import described
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.run.engine import Engine
 from rpscli.sweep.run.resume import Resume
 from rpscli.sweep.run.schedule import batches
-from rpscli.sweep.store import Entry, Store
+from rpscli.sweep.store import Store
 
 
 @dataclass(frozen=True)
@@ -88,19 +86,10 @@ def run(
     first: tuple[int, float] | None = None
     with first_interrupt(announce) as interrupted:
         work = batches(layout, start.pending, engine.jobs)
-        for rows in engine.outcomes(_until(interrupted, work)):
-            store.add(
-                Entry(
-                    start.keys[row.number],
-                    described(layout, layout[row.number]),
-                    row.outcome,
-                    row.message,
-                    row.results,
-                )
-                for row in rows
-            )
-            computed += len(rows)
-            failed += sum(row.outcome == FAILED for row in rows)
+        for points, results in engine.outcomes(_until(interrupted, work)):
+            store.add([start.keys[point.number] for point in points], results)
+            computed += len(points)
+            failed += results.failed()
             seconds = time.monotonic() - began
             total = start.kept + len(start.pending)
             first = first or (computed, seconds)

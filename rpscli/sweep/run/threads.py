@@ -12,9 +12,10 @@ from contextlib import suppress
 from queue import Empty, SimpleQueue
 from threading import Lock, Thread
 
-from rpscli.sweep.evaluation.batch import Row, run_batch
+from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
+from rpscli.sweep.run.engine import Computed
 
 HEARING = 0.2
 """Seconds after which who waits for a batch looks up.
@@ -49,41 +50,34 @@ class Threads:
     def __init__(self, context: StudyContext, jobs: int) -> None:
         self._context = context
         self.jobs = jobs
-        self._done: SimpleQueue[list[Row] | _End] = SimpleQueue()
+        self._done: SimpleQueue[Computed | _End] = SimpleQueue()
         self._taking = Lock()
 
-    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[list[Row]]:
-        """Rows of the batches, as they come."""
+    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
+        """The batches with their results, as they come."""
         source = iter(batches)
         for _ in range(self.jobs):
             Thread(target=self._compute, args=(source,), daemon=True).start()
         computing = self.jobs
         while computing:
-            rows: list[Row] = []
-            for item in self._waiting():
-                if isinstance(item, _End):
-                    if item.error is not None:
-                        raise item.error
-                    computing -= 1
-                else:
-                    rows += item
-            if rows:
-                yield rows
+            item = self._said()
+            if not isinstance(item, _End):
+                yield item
+            elif item.error is not None:
+                raise item.error
+            else:
+                computing -= 1
 
-    def _waiting(self) -> list[list[Row] | _End]:
-        """Everything that has been said: if the writer is slow it gets more at a time."""
-        said: list[list[Row] | _End] = []
-        while not said:
+    def _said(self) -> Computed | _End:
+        """What a thread says next."""
+        while True:
             with suppress(Empty):
-                said.append(self._done.get(timeout=HEARING))
-        while not self._done.empty():
-            said.append(self._done.get())
-        return said
+                return self._done.get(timeout=HEARING)
 
     def _compute(self, source: Iterator[list[Point]]) -> None:
         try:
             while (batch := self._next(source)) is not None:
-                self._done.put(run_batch(self._context, batch))
+                self._done.put((batch, run_batch(self._context, batch)))
         except BaseException as error:  # noqa: BLE001 -- raised again where it can be told
             self._done.put(_End(error))
         else:

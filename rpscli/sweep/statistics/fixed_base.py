@@ -11,8 +11,6 @@ from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
-import numpy as np
-
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
@@ -42,7 +40,7 @@ def fixed_base_references(
 
     Systems without a building have none, nor have records that cannot be read.
     """
-    known = {key: np.array(shears) for key, shears in store.fixed_base().items()}
+    known = store.fixed_base()
     keys: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, Run] = {}
     structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
@@ -62,7 +60,7 @@ def fixed_base_references(
                 continue
             keys[system, request] = key
     new = _computed(runs.values(), jobs)
-    store.add_fixed_base({key: shears.tolist() for key, shears in new.items()})
+    store.add_fixed_base(new)
     known |= new
     return {place: known[key] for place, key in keys.items()}
 
