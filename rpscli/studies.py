@@ -51,7 +51,7 @@ from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.points_csv import units_of_columns
 from rpscli.sweep.run.runner import Progress
 from rpscli.sweep.statistics.summary import Summary
-from rpscli.sweep.statistics.verdicts import StudyVerdict
+from rpscli.sweep.statistics.verdicts import Verdict
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import Table
 
@@ -400,7 +400,7 @@ class StudyResult(Shown):
         return found
 
     @cached_property
-    def _verdicts(self) -> list[StudyVerdict]:
+    def _verdicts(self) -> list[Verdict]:
         with self._run.reopened():
             return self._run.verdicts
 

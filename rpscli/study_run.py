@@ -37,7 +37,7 @@ from rpscli.sweep.run.runner import Finish, Progress, run
 from rpscli.sweep.run.threads import Threads, available_cores
 from rpscli.sweep.statistics.scales import scale_notes
 from rpscli.sweep.statistics.summary import Summary, summary
-from rpscli.sweep.statistics.verdicts import StudyVerdict, judged
+from rpscli.sweep.statistics.verdicts import Verdict, judged
 from rpscli.sweep.store import Store
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Table, tabulate
@@ -187,7 +187,7 @@ class StudyRun:
         return summary(self.table, self.results.fixed_base)
 
     @cached_property
-    def verdicts(self) -> list[StudyVerdict]:
+    def verdicts(self) -> list[Verdict]:
         """On every limit of each system at each intensity."""
         return judged(self.table, self.summary, self.conditions) if self.summary else []
 

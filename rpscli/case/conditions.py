@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import LIMITED
+from rpscli.errors import UsageError, hint
 
 if TYPE_CHECKING:
     from rpscli.case.schema.limits import LimitsSection
@@ -53,13 +55,49 @@ class Condition:
         return self.name in LIMITS and LIMITS[self.name].from_below
 
     @property
+    def sign(self) -> float:
+        """By which larger values are the worse ones."""
+        return -1.0 if self.from_below else 1.0
+
+    @property
     def bound(self) -> str:
         """The limit in words."""
         return f"at {'least' if self.from_below else 'most'} {self.limit:g}"
 
-    def kept_by(self, values: Any) -> Any:
-        """Whether a value keeps the limit, or for an array each of its values; NaN does not."""
-        return values >= self.limit if self.from_below else values <= self.limit
+
+def parse_condition(text: str) -> Condition:
+    """A condition as `--fail-on` gives it: ``overturning``, ``uplift`` or ``NAME=VALUE``.
+
+    An event may have the share of the records of a study that is admissible: ``overturning=0.1``.
+
+    Raises
+    ------
+    UsageError
+        If the name is not known, or the value is missing or no number.
+
+    Examples
+    --------
+    >>> parse_condition("rotation_ratio=0.5")
+    Condition(name='rotation_ratio', limit=0.5, source='--fail-on', share=0.0, fractile=None)
+    """
+    name, sign, value = (part.strip() for part in text.partition("="))
+    if name in EVENTS and not sign:
+        return Condition(name, 0.0, "--fail-on")
+    if name not in LIMITS and name not in EVENTS:
+        known = [*EVENTS, *(f"{limited}=VALUE" for limited in LIMITS)]
+        meant = hint(name, [*EVENTS, *LIMITS], f"known are {', '.join(known)}", 0.6)
+        raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")
+    try:
+        limit = float(value)
+    except ValueError:
+        limit = math.nan
+    if name in EVENTS:
+        if not 0.0 <= limit < 1.0:
+            raise UsageError(f"--fail-on {text}: write {name}=SHARE from 0 to 1, as in {name}=0.1")
+        return Condition(name, 0.0, "--fail-on", share=limit)
+    if not math.isfinite(limit):
+        raise UsageError(f"--fail-on {text}: write {name}=NUMBER, as in {name}=0.5")
+    return Condition(name, limit, "--fail-on")
 
 
 def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
@@ -75,6 +113,14 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
         else:
             found.append(Condition(name, given, source))
     return tuple(found)
+
+
+def case_conditions(limits: LimitsSection, *, overturning: bool = False) -> list[Condition]:
+    """The limits that a case sets; if asked for, that it does not overturn is said besides."""
+    found = conditions_of(limits, "limits of the case")
+    if not overturning or not found or any(each.name == "overturning" for each in found):
+        return list(found)
+    return [Condition("overturning", 0.0, "limits of the case"), *found]
 
 
 def with_friction(

@@ -12,7 +12,7 @@ from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
     from rpscli.sweep.design.answer import Answer
-    from rpscli.sweep.statistics.verdicts import StudyVerdict
+    from rpscli.sweep.statistics.verdicts import Verdict
 
 DIGITS = 4
 RECORDS_SHOWN = 3
@@ -21,7 +21,7 @@ RECORDS_SHOWN = 3
 def answer_tables(
     document: dict[str, Any],
     answer: Answer,
-    confirmation: Mapping[str, Sequence[StudyVerdict]],
+    confirmation: Mapping[str, Sequence[Verdict]],
 ) -> Iterator[Part]:
     """Best design, requirements, what the records do to it, and what confirms which design."""
     from rpscli.report.study.statistics import verdict_text

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rpscli.analyses.result_quantities import ResultQuantity
     from rpscli.sweep.statistics.fractiles import Spread
     from rpscli.sweep.statistics.summary import Summary
-    from rpscli.sweep.statistics.verdicts import StudyVerdict
+    from rpscli.sweep.statistics.verdicts import Verdict
 
 MOST_ROWS = 40
 """The CSV files have them all."""
@@ -83,7 +83,7 @@ def _spread(spread: Spread, quantity: ResultQuantity) -> str:
     return " / ".join(shown(value, DIGITS) for value in values)
 
 
-def verdict_table(summary: Summary, verdicts: Sequence[StudyVerdict]) -> Table:
+def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
     """Every limit of each system and intensity; those that are exceeded first."""
     from rpscli.report.study.statistics import verdict_text
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.commands.acceptance import parse_condition
+from rpscli.case.conditions import parse_condition
 from rpscli.commands.case_input import RESULTS, write
 from rpscli.commands.shell.completions import FILE, condition_names
 from rpscli.commands.shell.failure import concluded, leave

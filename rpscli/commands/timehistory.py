@@ -10,8 +10,7 @@ from typing import Any
 import click
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.conditions import Condition
-from rpscli.commands.acceptance import parse_condition
+from rpscli.case.conditions import Condition, parse_condition
 from rpscli.commands.case_input import read_cases, write
 from rpscli.commands.motion import FACTOR, MotionRequest, single_motions
 from rpscli.commands.shell.completions import FILE, condition_names

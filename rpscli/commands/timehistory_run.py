@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rpscli.case.conditions import Condition, with_friction
-from rpscli.commands.acceptance import (
-    Verdict,
-    case_conditions,
-    exceeded,
-    judge,
-)
+from rpscli.analyses.result_quantities import LIMITED
+from rpscli.case.conditions import EVENTS, LIMITS, Condition, case_conditions, with_friction
 from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, case_heading
 from rpscli.commands.motion import MotionRequest, load_motion, motion_inputs, motion_source
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import patience
-from rpscli.errors import AnalysisError, RecordError, RpsError
+from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
 from rpscli.report.documents import ONE_DIRECTION, heading, timehistory_document
 from rpscli.report.figures.drawing import Artists
 from rpscli.report.figures.look import Look
@@ -29,6 +25,7 @@ from rpscli.report.files.output_folder import OutputFolder
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.records.ground_motion import MotionComponents
+    from rpscli.sweep.statistics.verdicts import Verdict
 
 COMMAND = "timehistory"
 
@@ -46,9 +43,10 @@ class HistoryRequest:
 
 
 class HistoryResult(NamedTuple):
-    """What is known of a history that is over."""
+    """What is known of a history that is over; its demands by name, NaN for what it has not."""
 
     document: dict[str, Any]
+    demands: dict[str, float]
     verdicts: list[Verdict]
     error: RpsError | None
 
@@ -126,6 +124,9 @@ def compute(
     """Run a history, judge it, and collect its files; the caller writes them."""
     from rpscli.analyses.timehistory import time_history
     from rpscli.report.bundles import floor_spectra_files, timehistory_files
+    from rpscli.report.study.statistics import verdict_document
+    from rpscli.sweep.statistics.summary import Records
+    from rpscli.sweep.statistics.verdicts import judged_records
 
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):
@@ -137,16 +138,39 @@ def compute(
     if request.floor_spectra:
         for name, content in floor_spectra_files(result, case.title, look):
             request.folder.add(name, content)
+    found = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
+    demands = {name: math.nan if each is None else float(each) for name, each in found.items()}
+    document = _document(request, result)
     verdicts: list[Verdict] = []
-    error: RpsError | None
-    if result.failure:
-        error = AnalysisError(result.failure)
-    else:
-        limits = with_friction(case_conditions(case.limits), case.structure)
-        verdicts = judge(result, [*limits, *conditions])
-        error = exceeded(verdicts)
-    document = concluded(_document(request, result, verdicts), error)
-    return HistoryResult(document, verdicts, error), result
+    error: RpsError | None = AnalysisError(result.failure) if result.failure else None
+    if error is None:
+        limits = case_conditions(case.limits, overturning=True)
+        limits = [*with_friction(limits, case.structure), *conditions]
+        for limit in limits:
+            if limit.name in found and found[limit.name] is None:
+                raise UsageError(f"{limit.source}: {limit.name} needs {LIMITS[limit.name].needs}")
+        records = Records.of([result.outcome], [demands])
+        verdicts = judged_records(records, [request.label], limits)
+        error = _exceeded(verdicts)
+    document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]
+    return HistoryResult(concluded(document, error), demands, verdicts, error), result
+
+
+def _exceeded(verdicts: Iterable[Verdict]) -> LimitExceeded | None:
+    """The error that names all limits that a history does not keep; None if there are none."""
+    lines = [f"limit exceeded: {_found(verdict)}" for verdict in verdicts if verdict.exceeded]
+    return LimitExceeded("\n".join(lines)) if lines else None
+
+
+def _found(verdict: Verdict) -> str:
+    condition = verdict.condition
+    if condition.name in EVENTS:
+        return f"{condition.name} ({condition.source})"
+    if verdict.overturned:
+        return f"{condition.name}: overturned ({condition.source})"
+    beyond = "is below" if condition.from_below else "exceeds"
+    value = f"{verdict.value:.4g} {beyond} {condition.limit:g}"
+    return f"{condition.name} = {value} ({condition.source})"
 
 
 def add_summary(request: HistoryRequest, done: HistoryResult) -> None:
@@ -156,9 +180,7 @@ def add_summary(request: HistoryRequest, done: HistoryResult) -> None:
     folder.add("summary.json", json_text(done.document))
 
 
-def _document(
-    request: HistoryRequest, result: TimeHistoryResult, verdicts: list[Verdict]
-) -> dict[str, Any]:
+def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, Any]:
     given, ground = request.given, request.ground
     document = {
         **heading(),
@@ -166,7 +188,6 @@ def _document(
         "note": ONE_DIRECTION,
         "case": case_heading(given),
         **timehistory_document(result),
-        "verdicts": [asdict(verdict) for verdict in verdicts],
     }
     document["record"] |= {"scale": ground.scale}
     of_motion = (*(ground.vertical.warnings if ground.vertical else ()), *ground.scale_warnings)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rpscli.case.conditions import (
     EVENTS,
     Condition,
+    case_conditions,
     condition_text,
-    conditions_of,
     with_friction,
 )
 from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, write
@@ -33,14 +33,17 @@ from rpscli.report.figures.look import Look
 from rpscli.report.files.json_text import json_text
 from rpscli.report.files.output_folder import OutputFolder
 from rpscli.report.numbers import large, shown
-from rpscli.report.study.record_set import (
-    record_columns,
-    record_set_document,
-    set_verdict_document,
-    statistics_columns,
+from rpscli.report.study.statistics import (
+    demand_columns,
+    records_columns,
+    summary_document,
+    verdict_document,
+    verdict_lines,
 )
 from rpscli.report.table import Heading, Part, Table, csv_text
-from rpscli.sweep.statistics.record_set import RecordSet, SetVerdict, record_set, set_verdicts
+from rpscli.sweep.statistics.fractiles import Spread
+from rpscli.sweep.statistics.summary import Records, Summary, summary_of_records
+from rpscli.sweep.statistics.verdicts import Verdict, judged_records
 
 if TYPE_CHECKING:
     from rpscli.analyses.result_quantities import ResultQuantity
@@ -60,8 +63,8 @@ class Computed(NamedTuple):
 
     requests: list[HistoryRequest]
     histories: list[HistoryResult]
-    together: RecordSet
-    verdicts: tuple[SetVerdict, ...]
+    together: Summary
+    verdicts: list[Verdict]
     folder: OutputFolder | None
 
     @property
@@ -94,11 +97,12 @@ def run_all(
     computed = []
     for group, folder in zip(cases, folders, strict=True):
         histories = [_written(request, conditions, look, drawing, terminal) for request in group]
-        scalars = [history.document for history in histories]
+        outcomes = [history.document["outcome"] for history in histories]
+        records = Records.of(outcomes, [history.demands for history in histories])
         judged = group[0].given.case
-        limits = conditions_of(judged.limits, "limits of the case")
-        found = set_verdicts(scalars, [*with_friction(limits, judged.structure), *conditions])
-        computed.append(Computed(group, histories, record_set(scalars), found, folder))
+        limits = with_friction(case_conditions(judged.limits), judged.structure)
+        found = judged_records(records, [each.label for each in group], [*limits, *conditions])
+        computed.append(Computed(group, histories, summary_of_records(records), found, folder))
     error = _error(computed)
     document = _document(computed, error)
     for case in computed:
@@ -146,8 +150,8 @@ def _set_folder(
 def _add_set(case: Computed) -> None:
     assert case.folder is not None, "the case has several records"
     scalars = [history.document for history in case.histories]
-    case.folder.add("records.csv", csv_text(record_columns(case.labels, scalars)))
-    case.folder.add("statistics.csv", csv_text(statistics_columns(case.together)))
+    case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
+    case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
     case.folder.add("summary.json", json_text({**heading(), **_set_document(case)}))
 
 
@@ -162,11 +166,9 @@ def _error(computed: Sequence[Computed]) -> RpsError | None:
     if lines:
         return AnalysisError("\n".join(lines))
     lines = [
-        f"limit exceeded: {case.label}: {verdict.condition.name}:"
-        f" {condition_text(verdict.condition)}; {verdict.beyond}, {verdict.condition.source}"
+        f"limit exceeded: {case.label}: {line}"
         for case in computed
-        for verdict in case.verdicts
-        if verdict.exceeded
+        for line in verdict_lines((), case.verdicts)
     ]
     return LimitExceeded("\n".join(lines)) if lines else None
 
@@ -202,25 +204,27 @@ def _set_document(case: Computed) -> dict[str, Any]:
     return {
         "case": case.histories[0].document["case"],
         "records": case.labels,
-        **record_set_document(case.together),
-        "verdicts": [set_verdict_document(verdict, case.labels) for verdict in case.verdicts],
+        **summary_document(case.together)[0],
+        "verdicts": [verdict_document((), verdict) for verdict in case.verdicts],
     }
 
 
 def _tables(computed: Sequence[Computed]) -> Iterator[Part]:
     for case in computed:
         yield Heading(case.given.case.title)
-        main = [quantity for quantity in case.together.demands if quantity.demand]
+        (row,) = case.together.rows
+        found = zip(case.together.quantities, row.spreads, strict=True)
+        main = [(quantity, spread) for quantity, spread in found if quantity.demand]
         for first in range(0, len(main), A_TABLE):
-            yield _records_table(case, main[first : first + A_TABLE])
+            yield _records_table(case, dict(main[first : first + A_TABLE]))
         if len(case.requests) > 1:
-            yield f"overturned: {case.together.overturned}; {CODES}"
+            yield f"overturned: {row.overturned}; {CODES}"
     if any(case.verdicts for case in computed):
         yield _verdict_table(computed)
     yield ONE_DIRECTION
 
 
-def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> Table:
+def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:
     rows = [
         [label, _word(history.document["outcome"])]
         + [shown(large(history.document[q.name], q.unit)[0], DIGITS) for q in quantities]
@@ -229,7 +233,7 @@ def _records_table(case: Computed, quantities: Sequence[ResultQuantity]) -> Tabl
     if len(case.requests) > 1:
         words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
         for name, label in words.items():
-            values = [large(getattr(case.together.demands[q], name), q.unit)[0] for q in quantities]
+            values = [large(getattr(each, name), q.unit)[0] for q, each in quantities.items()]
             rows.append([label, "", *(shown(value, DIGITS) for value in values)])
     heads = [f"{q.label} {large(None, q.unit)[1]}".strip() for q in quantities]
     return Table.of_texts(["record", "", *heads], rows, words=2)
@@ -246,10 +250,9 @@ def _verdict_table(computed: Sequence[Computed]) -> Table:
     for case in computed:
         for verdict in case.verdicts:
             event = verdict.condition.name in EVENTS
-            worst = case.labels[verdict.worst]
             which = "least" if verdict.condition.from_below else "largest"
             value = shown(verdict.value) if math.isfinite(verdict.value) else "overturned"
-            largest = "" if event else f", {which} {value} ({worst})"
+            largest = "" if event else f", {which} {value} ({verdict.record})"
             rows.append(
                 [
                     case.label,

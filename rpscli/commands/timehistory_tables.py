@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
-from rpscli.case.conditions import EVENTS, Condition
-from rpscli.commands.acceptance import Verdict
+from rpscli.case.conditions import EVENTS
 from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.numbers import measured, percent, shown
 from rpscli.report.table import Heading, Part, Table
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rpscli.analyses.results import TimeHistoryResult
+    from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
     "at_rest": "stays in full contact",
@@ -174,17 +174,12 @@ def devices_table(result: TimeHistoryResult) -> Table:
 
 def limits_table(verdicts: Sequence[Verdict]) -> Table:
     """Every limit with its value."""
-    rows = [
-        (
-            v.name,
-            "EXCEEDED" if v.exceeded else "met",
-            v.source,
-            *(
-                ("", "")
-                if v.name in EVENTS
-                else (shown(v.value), Condition(v.name, v.limit, "").bound)
-            ),
-        )
-        for v in verdicts
-    ]
+    rows = []
+    for verdict in verdicts:
+        condition, value = verdict.condition, shown(verdict.value)
+        row = (condition.name, "EXCEEDED" if verdict.exceeded else "met", condition.source)
+        if condition.name in EVENTS:
+            rows.append((*row, "", ""))
+        else:
+            rows.append((*row, "overturned" if verdict.overturned else value, condition.bound))
     return Table.of_texts(["limit", "", "from", "value", "asked for"], rows, words=3)

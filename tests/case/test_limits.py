@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
@@ -45,14 +43,8 @@ def test_a_least_force_is_limited_from_below(building: str) -> None:
     assert condition_text(found[0]) == "at least 100000 but for 10 % of the records"
     (plain,) = limited(building, "{min_column_force: 0}")  # no tension
     assert condition_text(plain) == "at least 0 in every record"
-    assert [plain.kept_by(force) for force in (1.0, 0.0, -1.0, math.nan)] == [
-        True,
-        True,
-        False,
-        False,
-    ]
     (above,) = limited(building, "{max_column_force: 100 kN}")
-    assert [above.kept_by(force) for force in (1e5, 2e5, math.nan)] == [True, False, False]
+    assert (plain.sign, above.sign) == (-1.0, 1.0)
 
 
 @pytest.mark.parametrize("name", [quantity.name for quantity in LIMITED])

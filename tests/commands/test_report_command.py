@@ -189,9 +189,8 @@ def test_titles_with_tags_are_harmless(rps: Invoke) -> None:
 def test_a_study_that_is_stopped_goes_on(
     rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    name = "rpscli.commands.report.study_page.compute"
     with monkeypatch.context() as patch:
-        patch.setattr(name, lambda *_: Finish(1, 0, 1.0, interrupted=True))
+        patch.setattr("rpscli.study_run.run", lambda *_: Finish(1, 0, 1.0, interrupted=True))
         result = rps("report", study, "-o", "out.html")
     assert result.exit_code == 130
     assert "the same command goes on" in result.stderr

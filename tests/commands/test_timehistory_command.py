@@ -150,7 +150,7 @@ def test_overturning_is_a_result(rps_json: InvokeJson) -> None:
         (["overturning"], 10),
         (["uplift"], 10),
         (["rotation_ratio=0.5"], 10),
-        (["rotation_ratio=5"], 0),
+        (["rotation_ratio=5"], 10),  # what overturns exceeds every limit
         (["rotation_ratio=5", "uplifts=0"], 10),
     ],
 )
@@ -187,12 +187,23 @@ def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
     assert "at least 1e+09" in result.stdout
 
 
-def test_what_falls_meets_no_limit(rps: Invoke) -> None:
+def test_what_falls_meets_no_limit(rps: Invoke, rps_json: InvokeJson) -> None:
     # Its drifts were small as long as it stood.
-    limit = ("--set", "limits.drift_ratio=0.9")
-    result = rps("timehistory", "small.yaml", "--record", STRONG, *limit)
+    words = ("timehistory", "small.yaml", "--record", STRONG, "--set", "limits.drift_ratio=0.9")
+    result = rps(*words)
     assert result.exit_code == 10
     assert "limit exceeded: overturning" in result.stderr
+    assert "limit exceeded: drift_ratio: overturned (limits of the case)" in result.stderr
+    alone = rps_json(*words, exit_code=10)["verdicts"]
+    twice = ("--record", STRONG.replace("0.9g", "0.91g"))
+    (together,) = rps_json(*words, *twice, exit_code=10)["sets"]
+    (of_set,) = together["verdicts"]
+    assert (of_set["value"], of_set["exceeded"], of_set["counted"]) == (None, True, 2)
+    assert [list(each) for each in alone] == [list(of_set)] * 2  # one form of verdicts
+    assert [(each["name"], each["value"], each["exceeded"]) for each in alone] == [
+        ("overturning", 1.0, True),
+        ("drift_ratio", None, True),
+    ]
 
 
 def test_a_limit_that_does_not_exist_here(rps: Invoke) -> None:

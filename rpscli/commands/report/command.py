@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from rpscli.commands.acceptance import parse_condition
+from rpscli.case.conditions import parse_condition
 from rpscli.commands.case_input import RESULTS, read_case
 from rpscli.commands.motion import FACTOR, MotionRequest
 from rpscli.commands.report.case_page import PageDone, case_page

@@ -20,7 +20,7 @@ from rpscli.report.study.panels import MOST_TICKS
 from rpscli.sweep.design.answer import NONE, ROBUST, Answer
 from rpscli.sweep.design.judgement import Requirement
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.statistics.share import share
+from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.table import Array
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from rpscli.sweep.reports.comparison import (
     uncomparable,
 )
 from rpscli.sweep.statistics.agreement import Agreement, Maxima
-from rpscli.sweep.statistics.share import CONFIDENCE
+from rpscli.sweep.statistics.fractiles import CONFIDENCE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -28,7 +28,7 @@ from rpscli.sweep.reports.fragility import (
     fragility_report,
     limit_states,
 )
-from rpscli.sweep.statistics.share import share
+from rpscli.sweep.statistics.fractiles import share
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

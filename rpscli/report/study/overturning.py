@@ -15,7 +15,7 @@ from rpscli.sweep.reports.overturning import (
     OverturningTable,
     overturning_table,
 )
-from rpscli.sweep.statistics.share import share
+from rpscli.sweep.statistics.fractiles import share
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
+from rpscli.analyses.result_quantities import HISTORY
 from rpscli.case.conditions import LIMITS, Condition, condition_text
 from rpscli.report.numbers import shown
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.table import Column
-from rpscli.sweep.statistics.share import Share
+from rpscli.sweep.statistics.fractiles import Share
 from rpscli.sweep.statistics.summary import Summary
-from rpscli.sweep.statistics.verdicts import StudyVerdict
+from rpscli.sweep.statistics.verdicts import Verdict
 
 SPREAD = {"median": "median", "84": "high", "largest": "largest"}
 """What follows the name of a quantity in a column, and the attribute of its spread."""
+OF_RECORDS = {
+    "mean_of_maxima": "mean", "median": "median", "fractile_84": "high", "largest": "largest"
+}  # fmt: skip
 FROM_BELOW = {"84": "16", "largest": "least"}
 """What follows the names of those of which small values are bad."""
 
@@ -49,12 +53,43 @@ def summary_columns(summary: Summary) -> list[Column]:
     return columns
 
 
+def records_columns(labels: Sequence[str], histories: Sequence[Mapping[str, Any]]) -> list[Column]:
+    """`records.csv`: one row a record."""
+    return [
+        Column("record", "-", labels),
+        Column("scale", "-", [history["record"]["scale"] for history in histories]),
+        Column("outcome", "-", [history["outcome"] for history in histories]),
+        *(
+            Column(quantity.name, quantity.unit, [history[quantity.name] for history in histories])
+            for quantity in HISTORY
+        ),
+    ]
+
+
+def demand_columns(summary: Summary) -> list[Column]:
+    """`statistics.csv` of one structure: one row a demand; ``inf`` where so many overturned."""
+    (row,) = summary.rows
+    found = [
+        (quantity, spread)
+        for quantity, spread in zip(summary.quantities, row.spreads, strict=True)
+        if not quantity.from_below
+    ]
+    return [
+        Column("quantity", "-", [quantity.name for quantity, _ in found]),
+        Column("unit", "-", [quantity.unit for quantity, _ in found]),
+        *(
+            Column(name, "SI", [reached(getattr(spread, attribute)) for _, spread in found])
+            for name, attribute in OF_RECORDS.items()
+        ),
+    ]
+
+
 def reached(value: float) -> float | str:
     """A demand for a cell of a CSV file: ``inf`` or ``-inf`` for that of an overturned history."""
     return str(value) if math.isinf(value) else value
 
 
-def verdict_columns(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[Column]:
+def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Column]:
     """`verdicts.csv`: one row a limit of each system and intensity."""
     conditions = [verdict.condition for verdict in verdicts]
     fractiles = [None if v.fractile is None else reached(v.fractile) for v in verdicts]
@@ -93,6 +128,7 @@ def summary_document(summary: Summary) -> list[dict[str, Any]]:
             "overturned": share_document(row.overturned),
             "demands": {
                 quantity.name: {
+                    "mean_of_maxima": spread.mean,
                     "median": spread.median,
                     "fractile_16" if quantity.from_below else "fractile_84": spread.high,
                     "least" if quantity.from_below else "largest": spread.largest,
@@ -109,21 +145,22 @@ def share_document(share: Share) -> dict[str, Any]:
     return {"count": share.number, "share": share.fraction, "low": share.low, "high": share.high}
 
 
-def verdict_document(keys: Sequence[str], verdict: StudyVerdict) -> dict[str, Any]:
-    """A verdict in JSON."""
-    condition = asdict(verdict.condition)
+def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
+    """A verdict in JSON; a value is null where the history overturned."""
     return {
         "system": dict(zip(keys, verdict.values, strict=True)),
-        **condition,
+        **asdict(verdict.condition),
         "counted": verdict.beyond.of,
         "beyond": share_document(verdict.beyond),
         "overturned_among_them": verdict.overturned,
+        "value": verdict.value,
+        "record": verdict.record,
         "value_at_fractile": verdict.fractile,
         "exceeded": verdict.exceeded,
     }
 
 
-def verdict_text(verdict: StudyVerdict) -> str:
+def verdict_text(verdict: Verdict) -> str:
     """What a verdict rests on, in words."""
     if verdict.fractile is not None:
         demand = "overturned" if math.isinf(verdict.fractile) else shown(verdict.fractile)
@@ -132,7 +169,7 @@ def verdict_text(verdict: StudyVerdict) -> str:
     return f"{verdict.beyond}{fallen}"
 
 
-def verdict_lines(keys: Sequence[str], verdicts: Sequence[StudyVerdict]) -> list[str]:
+def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[str]:
     """Each exceeded limit in a line."""
     lines = []
     for verdict in verdicts:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rpscli.case.design import DesignTask
 from rpscli.sweep.design.judgement import Judged
-from rpscli.sweep.statistics.share import CONFIDENCE
+from rpscli.sweep.statistics.fractiles import CONFIDENCE, fractiles
 from rpscli.sweep.table import Array, Indices
 
 LARGE = 1e300
@@ -183,8 +183,7 @@ def interval_of(values: Array) -> Interval:
     if not len(values):
         return Interval(np.nan, np.nan)
     tail = 0.5 * (1.0 - CONFIDENCE)
-    low, high = np.quantile(values, (tail, 1.0 - tail), method="inverted_cdf").tolist()
-    return Interval(low, high)
+    return Interval(*fractiles(values, (tail, 1.0 - tail)).tolist())
 
 
 def _distance(judged: Judged) -> Array:
@@ -192,6 +191,6 @@ def _distance(judged: Judged) -> Array:
     bounds = np.array([requirement.bound for requirement in judged.requirements])
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = judged.values[:, 0] / bounds[:, None]
-        below = np.array([requirement.sign < 0.0 for requirement in judged.requirements])
+        below = np.array([requirement.condition.from_below for requirement in judged.requirements])
         ratios = np.where(below[:, None], 1.0 / ratios, ratios)
     return np.asarray(np.nan_to_num(ratios, nan=np.inf).max(axis=0))

@@ -8,19 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rpscli.case.conditions import EVENTS, LIMITS, Condition
+from rpscli.case.conditions import EVENTS, Condition
 from rpscli.case.design import Aim, DesignTask
-from rpscli.sweep.statistics.verdicts import exceeds
+from rpscli.sweep.statistics.verdicts import decisive, judge, worse
 from rpscli.sweep.table import Array, Table
 
-ROUNDING = 1e-9
-"""Of shares times numbers of records, which are meant as whole numbers."""
-
 Demands = Mapping[str, Array]
-"""(designs, records, intensities) of each result by name; events count 1 where they happened.
+"""(designs, records, intensities) of each limit by name, larger ones the worse: see `worse`.
 
-Of results of which small values are bad, the negative ones. Infinite where a history overturned,
-NaN where it failed or the design is no valid case."""
+NaN where a history failed or the design is not a valid case."""
 
 
 class Requirement(NamedTuple):
@@ -38,11 +34,6 @@ class Requirement(NamedTuple):
     def bound(self) -> float:
         """What the value must keep: an admissible share of an event, or a limit."""
         return self.condition.share if self.condition.name in EVENTS else self.condition.limit
-
-    @property
-    def sign(self) -> float:
-        """By which larger demands are worse ones."""
-        return -1.0 if self.condition.from_below else 1.0
 
 
 class Weights(NamedTuple):
@@ -66,20 +57,11 @@ def weights_of(records: int, resamples: int, seed: int) -> Weights:
     return Weights(np.concatenate([ones, drawn, 1.0 - np.eye(records)]), resamples)
 
 
-def demands_of(table: Table, names: Sequence[str]) -> dict[str, Array]:
-    """Demands of the designs of a study, whose points are designs x records x intensities."""
+def demands_of(table: Table, name: str) -> Array:
+    """(designs, records, intensities) demands of the designs of a study on a limit."""
     layout = table.layout
     shape = len(layout.properties), len(layout.records), len(layout.scales)
-    found = {}
-    for name in names:
-        if name in EVENTS:
-            values = exceeds(table, name, 0.0).astype(float)
-        else:
-            column = table.columns[name]
-            sign = -1.0 if name in LIMITS and LIMITS[name].from_below else 1.0
-            values = np.where(table.overturned | np.isnan(column), np.inf, sign * column)
-        found[name] = np.where(table.failed, np.nan, values).reshape(shape)
-    return found
+    return worse(table, name).reshape(shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,84 +96,32 @@ class Judged:
         return np.asarray(self.met.all(axis=0))
 
 
-def judge(
+def judged_designs(
     task: DesignTask,
     requirements: Sequence[Requirement],
     values: Array,
     demands: Demands,
     weights: Array,
 ) -> Judged:
-    """Judge designs.
+    """Judge designs with values (designs, keys) in weightings (weightings, records) of the records.
 
-    Parameters
-    ----------
-    task
-        What is to be least.
-    requirements
-        What must be kept.
-    values
-        (designs, keys) of the keys that change.
-    demands
-        Of the names in requirements and aims.
-    weights
-        (weightings, records)
+    `demands` are those of the names in requirements and aims.
     """
-    found = np.array([_value(r, demands[r.condition.name], weights) for r in requirements])
-    bounds = np.array([requirement.sign * requirement.bound for requirement in requirements])
-    signs = np.array([requirement.sign for requirement in requirements])
-    return Judged(
-        requirements=tuple(requirements),
-        values=signs[:, None, None] * found,
-        excess=np.array([_excess(r, demands[r.condition.name]) for r in requirements]),
-        met=np.asarray(found <= bounds[:, None, None]),
-        aims=np.array(
-            [_aim(aim, dict(zip(task.keys, values.T, strict=True)), demands, weights)
-             for aim in task.file.least]
-        ),
-    )  # fmt: skip
-
-
-def _value(requirement: Requirement, demands: Array, weights: Array) -> Array:
-    """(weightings, designs) in which larger is worse; NaN without any history."""
-    condition, at = requirement.condition, demands[:, :, requirement.intensity]
-    if condition.name in EVENTS:
-        known = ~np.isnan(at)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(weights @ (np.nan_to_num(at) * known).T / (weights @ known.T))
-    return _reached(at, weights, condition)
-
-
-def _excess(requirement: Requirement, demands: Array) -> Array:
-    """(designs,) records too many beyond the limit, over all; infinite without any history."""
-    condition, at = requirement.condition, demands[:, :, requirement.intensity]
-    total = (~np.isnan(at)).sum(axis=1).astype(float)
-    limit = 0.0 if condition.name in EVENTS else requirement.sign * condition.limit
-    beyond = (at > limit).sum(axis=1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(total > 0.0, (beyond - admissible(condition, total)) / total, np.inf)
-
-
-def admissible(condition: Condition, total: Array) -> Array:
-    """How many of so many records may be beyond the limit, as studies are judged."""
-    if condition.fractile is not None:
-        up_to = np.ceil(condition.fractile * total - ROUNDING)
-        return np.asarray(up_to - 1.0 if condition.from_below else total - up_to)
-    return np.asarray(np.floor(condition.share * total + ROUNDING))
-
-
-def _reached(demands: Array, weights: Array, condition: Condition) -> Array:
-    """(weightings, designs) least demand that no more than the admissible records exceed."""
-    found = np.full((len(weights), len(demands)), np.nan)
-    for place, row in enumerate(demands):
-        order = np.argsort(row, kind="stable")[: int((~np.isnan(row)).sum())]
-        if not len(order):
-            continue
-        counted = np.cumsum(weights[:, order], axis=1)
-        total = counted[:, -1]
-        needed = np.maximum(total - admissible(condition, total), 1.0)
-        first = (counted >= needed[:, None] - ROUNDING).argmax(axis=1)
-        found[:, place] = np.where(total > 0.0, row[order][first], np.nan)
-    return found
+    found, excess, met = [], [], []
+    for requirement in requirements:
+        condition = requirement.condition
+        at = demands[condition.name][:, :, requirement.intensity]
+        counted = judge(at, weights, condition)
+        excess.append(counted.excess[0])
+        met.append(counted.met)
+        if condition.name in EVENTS:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                found.append(counted.beyond / counted.total)
+        else:
+            found.append(condition.sign * decisive(at, weights, condition))
+    keys = dict(zip(task.keys, values.T, strict=True))
+    aims = [_aim(aim, keys, demands, weights) for aim in task.file.least]
+    return Judged(tuple(requirements), *map(np.array, (found, excess, met, aims)))
 
 
 def _aim(aim: Aim, keys: Mapping[str, Array], demands: Demands, weights: Array) -> Array:
@@ -202,6 +132,6 @@ def _aim(aim: Aim, keys: Mapping[str, Array], demands: Demands, weights: Array) 
             total += term.times * keys[name]
             continue
         condition = Condition(name, 0.0, "", fractile=term.fractile)
-        of_each = [_reached(at, weights, condition) for at in np.moveaxis(demands[name], 2, 0)]
+        of_each = [decisive(at, weights, condition) for at in np.moveaxis(demands[name], 2, 0)]
         total += term.times * np.max(of_each, axis=0)
     return total

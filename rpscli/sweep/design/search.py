@@ -10,7 +10,7 @@ from rpscli.case.design import DesignTask
 from rpscli.case.text.document import Fault
 from rpscli.errors import CaseError
 from rpscli.sweep.design.answer import Answer
-from rpscli.sweep.design.judgement import Requirement, demands_of, judge, weights_of
+from rpscli.sweep.design.judgement import Requirement, demands_of, judged_designs, weights_of
 from rpscli.sweep.design.space import Flags, first_places, next_places, usual_count
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.layout import StudyPoints
@@ -113,7 +113,7 @@ class Search:
         for name in self.names:
             found = np.full(shape, np.nan)
             if table is not None:
-                found[valid] = demands_of(table, [name])[name]
+                found[valid] = demands_of(table, name)
             known = self._demands.get(name, found[:0])
             self._demands[name] = np.concatenate([known, found])
         self.places = np.concatenate([self.places, places])
@@ -126,7 +126,9 @@ class Search:
 
     def answer(self) -> Answer:
         """What is known so far."""
-        judged = judge(self.task, self.requirements, self.values, self._demands, self.weights.rows)
+        judged = judged_designs(
+            self.task, self.requirements, self.values, self._demands, self.weights.rows
+        )
         return Answer(
             self.task, self.places, self.values, self.valid, judged, self.weights.resamples
         )

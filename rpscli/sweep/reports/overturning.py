@@ -9,8 +9,8 @@ from pydantic import Field
 
 from rpscli.case.study.reports import ReportOptions
 from rpscli.case.study.schema import Keys
+from rpscli.sweep.statistics.fractiles import Share, share
 from rpscli.sweep.statistics.grouping import INTENSITY, apart, pooled, pooling_note, shown_keys
-from rpscli.sweep.statistics.share import Share, share
 from rpscli.sweep.table import Indices, Table, groups, leading_keys
 
 

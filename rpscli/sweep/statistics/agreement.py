@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.sweep.statistics.share import Share, share
+from rpscli.sweep.statistics.fractiles import Share, share
 from rpscli.sweep.table import Array
 
 Flags = NDArray[np.bool_]

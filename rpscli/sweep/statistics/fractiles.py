@@ -1,71 +1,136 @@
-"""Fractiles of results in which an overturned history is worse than any result."""
+"""Shares of histories with their intervals; fractiles in which an overturned one is the worst."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from functools import lru_cache
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rpscli.sweep.table import Array, Table
+from rpscli.sweep.table import Array
 
+CONFIDENCE = 0.95
 LOW, HIGH = 0.16, 0.84
+ROUNDING = 1e-9
+"""Of shares times numbers of histories, which are meant as whole numbers."""
+
+
+class Outcomes(Protocol):
+    """Results of histories as columns, as a `Table` has them."""
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """(points,) of each result; NaN where there is none."""
+
+    @property
+    def failed(self) -> NDArray[np.bool_]:
+        """(points,) which have no result."""
+
+    @property
+    def overturned(self) -> NDArray[np.bool_]:
+        """(points,) which overturned."""
+
+
+class Share(NamedTuple):
+    """A number of so many histories, and the interval of the probability; NaN without any.
+
+    The interval is that of Clopper and Pearson, exact for independent histories. Where none or all
+    are counted it has one end only, which then has the whole confidence.
+    """
+
+    number: int
+    of: int
+    low: float
+    high: float
+
+    @property
+    def fraction(self) -> float | None:
+        """The share; None without histories."""
+        return self.number / self.of if self.of else None
+
+    @property
+    def interval(self) -> str:
+        """The interval in words.
+
+        >>> share(0, 22).interval, share(3, 22).interval, share(5, 5).interval, share(0, 0).interval
+        ('below 0.13', '0.029 to 0.35', 'above 0.55', '-')
+        """
+        if not self.of:
+            return "-"
+        if self.number in {0, self.of}:
+            return f"above {self.low:#.2g}" if self.number else f"below {self.high:#.2g}"
+        return f"{self.low:#.2g} to {self.high:#.2g}"
+
+    def __str__(self) -> str:
+        """Counts and interval.
+
+        >>> str(share(0, 22))
+        '0 of 22 (95 %: below 0.13)'
+        """
+        return f"{self.number} of {self.of} ({100.0 * CONFIDENCE:g} %: {self.interval})"
+
+
+@lru_cache(maxsize=65_536)
+def share(number: int, of: int) -> Share:
+    """The share of histories in which something happened, of those that did not fail."""
+    # Not `scipy.stats.binomtest`, whose import takes as long as a thousand histories.
+    from scipy.special import betaincinv
+
+    if not of:
+        return Share(0, 0, float("nan"), float("nan"))
+    beyond = 1.0 - CONFIDENCE
+    end = beyond if number in {0, of} else 0.5 * beyond
+    low = betaincinv(number, of - number + 1, end) if number else 0.0
+    high = betaincinv(number + 1, of - number, 1.0 - end) if number < of else 1.0
+    return Share(number, of, float(low), float(high))
 
 
 class Spread(NamedTuple):
-    """Median, 84 % fractile and largest value; infinite where so many overturned.
+    """Median, 84 % fractile, largest value and mean; infinite where so many overturned.
 
-    Of a result of which small values are bad: median, 16 % fractile and least value.
+    Of a result of which small values are bad: median, 16 % fractile, least value and mean.
     """
 
     median: float
     high: float
     largest: float
+    mean: float
 
 
-def demand(table: Table, values: Array, *, from_below: bool = False) -> Array:
-    """(points,) values; infinite where the structure overturned, NaN where the point failed.
+def demand(table: Outcomes, values: Array, *, from_below: bool = False) -> Array:
+    """(points,) values of a result; infinite where overturned, NaN where the point failed.
 
-    Parameters
-    ----------
-    values
-        (points,) of a result.
-    from_below
-        Whether small values are bad, so that an overturned history has minus infinity.
+    Where small values are bad an overturned history has minus infinity.
     """
     reached = np.where(table.overturned, -np.inf if from_below else np.inf, values)
     return np.where(table.failed, np.nan, reached)
 
 
+def rank(fractile: float | Array, total: Any) -> Any:
+    """How many of so many ordered values, the fractile itself among them, do not exceed it."""
+    return np.maximum(np.ceil(fractile * total - ROUNDING), 1.0)
+
+
 def fractiles(demands: Array, shares: Sequence[float]) -> Array:
-    """The least demands that so large shares of the demands do not exceed.
+    """The least demands that so large shares of the demands do not exceed; NaN is left out.
 
     They are demands of the sample themselves, so that infinite ones may stand.
 
-    Parameters
-    ----------
-    demands
-        (points,) infinite where overturned; NaN is left out.
-    shares
-        From 0 to 1.
-
-    Examples
-    --------
     >>> fractiles(np.array([3.0, np.inf, 1.0, 2.0]), [0.5, 0.75, 0.76]).tolist()
     [2.0, 3.0, inf]
     """
     known = np.sort(demands[~np.isnan(demands)])
     if not len(known):
         return np.full(len(shares), np.nan)
-    return np.asarray(np.quantile(known, shares, method="inverted_cdf"))
+    return np.asarray(known[rank(np.asarray(shares), len(known)).astype(int) - 1])
 
 
 def spread(demands: Array, *, from_below: bool = False) -> Spread:
-    """Median, 84 % fractile and largest demand, or from below the 16 % fractile and the least.
-
-    They are NaN where a history that stood has none.
-    """
-    if np.isnan(demands).any():
-        return Spread(np.nan, np.nan, np.nan)
+    """Median, fractile, worst and mean of demands; NaN where a history that stood has none."""
+    if np.isnan(demands).any() or not len(demands):
+        return Spread(np.nan, np.nan, np.nan, np.nan)
     shares = (0.5, LOW, 0.0) if from_below else (0.5, HIGH, 1.0)
-    return Spread(*fractiles(demands, shares).tolist())
+    median, high, largest = fractiles(demands, shares).tolist()
+    return Spread(median, high, largest, float(np.mean(demands)))

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import demand, fractiles
-from rpscli.sweep.statistics.share import Share, share
+from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 INTENSITY = "scale"

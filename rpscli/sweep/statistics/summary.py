@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.sweep.evaluation.results import FAILED
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
-from rpscli.sweep.statistics.fractiles import Spread, demand, spread
+from rpscli.sweep.statistics.fractiles import Outcomes, Share, Spread, demand, share, spread
 from rpscli.sweep.statistics.grouping import grouping
-from rpscli.sweep.statistics.share import Share
 from rpscli.sweep.table import Array, Indices, Table
 
 REDUCTION = next(quantity for quantity in LIMITED if quantity.name == "fixed_base_ratio")
@@ -41,37 +43,71 @@ class Summary:
     rows: tuple[SummaryRow, ...]
 
 
-def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
-    """Count and order the histories of each system at each intensity.
+@dataclass(frozen=True, eq=False)
+class Records:
+    """Histories of one structure under several records, as a table of a study has them.
 
-    Parameters
-    ----------
-    table
-        Of time histories.
-    fixed
-        Storey shears on a fixed base, as a reference.
+    `outcomes` and `columns` of results by name are (records,), NaN where there is no such result.
     """
-    columns = {quantity: table.columns[quantity.name] for quantity in LIMITED}
-    columns[REDUCTION] = shear_over_fixed_base(table, fixed)
-    known = {
-        q: demand(table, v, from_below=q.from_below)
-        for q, v in columns.items()
-        if not np.isnan(v).all()
-    }
+
+    outcomes: NDArray[np.str_]
+    columns: dict[str, Array]
+
+    @classmethod
+    def of(cls, outcomes: Sequence[str], demands: Sequence[Mapping[str, float]]) -> Records:
+        """From the outcome and the demands of each history."""
+        columns = {name: np.array([each[name] for each in demands]) for name in demands[0]}
+        return cls(np.array(outcomes), columns)
+
+    @property
+    def failed(self) -> NDArray[np.bool_]:
+        """(records,) which have no result."""
+        return np.asarray(self.outcomes == FAILED)
+
+    @property
+    def overturned(self) -> NDArray[np.bool_]:
+        """(records,) which overturned."""
+        return np.char.startswith(self.outcomes, "overturned")
+
+
+def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
+    """Of histories of a study, with storey shears on a fixed base as a reference."""
     found = grouping(table)
-    rows = (
-        SummaryRow(
-            values=group.values,
-            points=group.points,
-            failed=group.failed,
-            overturned=group.overturned,
-            spreads=tuple(
-                spread(column[group.points], from_below=q.from_below) for q, column in known.items()
-            ),
-        )
-        for group in found.groups
-    )
+    known = _demands(table, {REDUCTION: shear_over_fixed_base(table, fixed)})
+    rows = (_row(table, known, each.points, each.failed, each.values) for each in found.groups)
     return Summary(found.keys, found.pooled, found.notes, tuple(known), tuple(rows))
+
+
+def summary_of_records(records: Records) -> Summary:
+    """One row."""
+    known, failed = _demands(records, {}), records.failed
+    row = _row(records, known, np.nonzero(~failed)[0], int(failed.sum()), ())
+    return Summary((), (), (), tuple(known), (row,))
+
+
+def _demands(table: Outcomes, others: dict[ResultQuantity, Array]) -> dict[ResultQuantity, Array]:
+    """(points,) demands of all quantities that there are, some of them from elsewhere."""
+    columns = {quantity: table.columns[quantity.name] for quantity in LIMITED} | others
+    return {
+        quantity: demand(table, values, from_below=quantity.from_below)
+        for quantity, values in columns.items()
+        if not np.isnan(values).all()
+    }
+
+
+def _row(
+    table: Outcomes,
+    demands: dict[ResultQuantity, Array],
+    points: Indices,
+    failed: int,
+    values: tuple[object, ...],
+) -> SummaryRow:
+    overturned = share(int(table.overturned[points].sum()), len(points))
+    spreads = (
+        spread(column[points], from_below=quantity.from_below)
+        for quantity, column in demands.items()
+    )
+    return SummaryRow(values, points, failed, overturned, tuple(spreads))
 
 
 def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:

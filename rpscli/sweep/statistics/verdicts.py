@@ -1,103 +1,166 @@
-"""A study against its limits: each system at each intensity is judged by itself."""
+"""Histories against limits: of one record, of several, of a study, and of designs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.conditions import EVENTS, Condition
-from rpscli.sweep.statistics.fractiles import demand, fractiles
-from rpscli.sweep.statistics.share import Share, share
-from rpscli.sweep.statistics.summary import Summary, SummaryRow
-from rpscli.sweep.table import Table
+from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, rank, share
+from rpscli.sweep.statistics.summary import Records, Summary
+from rpscli.sweep.table import Array, Indices, Table
 
 
 @dataclass(frozen=True)
-class StudyVerdict:
-    """What became of a condition for one system at one intensity.
+class Verdict:
+    """What became of a condition on some histories.
 
-    Parameters
-    ----------
-    values
-        Of the keys of the summary.
-    condition
-        What was asked for.
-    beyond
-        Histories that exceed it; every overturned one does.
-    overturned
-        Those of them that overturned, where the condition is on a result: it is exceeded for no
-        other reason, perhaps.
-    fractile
-        The demand at the fractile of the condition, infinite if so many overturned; None where
-        the condition has a share.
-    exceeded
-        Whether the condition is not kept; without any history it is not.
+    `values` are those of the keys of a summary. `beyond` are histories that exceed the limit: every
+    overturned one does, `overturned` of them where the condition is on a result. `value` is the
+    worst demand, infinite where it overturned, and `record` had it. `fractile` is the demand at the
+    fractile of the condition, if it has one. Without any history nothing is exceeded.
     """
 
-    values: tuple[object, ...]
     condition: Condition
+    values: tuple[object, ...]
     beyond: Share
     overturned: int
+    value: float
+    record: str
     fractile: float | None
     exceeded: bool
 
 
-def judged(
-    table: Table, summary: Summary, conditions: Iterable[Condition] = ()
-) -> list[StudyVerdict]:
-    """Verdicts in the order of the summary's rows.
+class Judgement(NamedTuple):
+    """(weightings, rows) histories that are counted, that exceed a limit, and that may."""
 
-    Parameters
-    ----------
-    table
-        Of time histories.
-    summary
-        Whose rows are judged.
-    conditions
-        Besides the limits of study and cases.
+    total: Array
+    beyond: Array
+    admissible: Array
+
+    @property
+    def met(self) -> NDArray[np.bool_]:
+        """(weightings, rows) whether no more exceed it than may; never without any history."""
+        return (self.total > 0.0) & (self.beyond <= self.admissible)
+
+    @property
+    def excess(self) -> Array:
+        """(weightings, rows) histories too many over all; infinite without any."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            excess = (self.beyond - self.admissible) / self.total
+        return np.where(self.total > 0.0, excess, np.inf)
+
+
+def judge(demands: Array, weights: Array, condition: Condition) -> Judgement:
+    """Rows of demands (rows, histories) against a condition, in each weighting of the histories.
+
+    Larger demands are worse: see `worse`. `weights` (weightings, histories) say how often each
+    history counts.
     """
-    further = tuple(conditions)
-    layout = table.layout
-    found = []
-    for row in summary.rows:
-        if len(row.points):
-            system = int(row.points[0]) // layout.points_of_system
-            limits = layout.properties[system].limits
-            found += [_verdict(table, row, condition) for condition in (*limits, *further)]
+    total = weights @ (~np.isnan(demands)).T
+    beyond = weights @ (demands > condition.sign * condition.limit).T
+    return Judgement(total, beyond, _admissible(condition, total))
+
+
+def decisive(demands: Array, weights: Array, condition: Condition) -> Array:
+    """(weightings, rows) least demands that no more than the admissible histories exceed."""
+    found = np.full((len(weights), len(demands)), np.nan)
+    for place, row in enumerate(demands):
+        order = np.argsort(row, kind="stable")[: int((~np.isnan(row)).sum())]
+        if not len(order):
+            continue
+        counted = np.cumsum(weights[:, order], axis=1)
+        total = counted[:, -1]
+        needed = np.maximum(total - _admissible(condition, total), 1.0)
+        first = (counted >= needed[:, None] - ROUNDING).argmax(axis=1)
+        found[:, place] = np.where(total > 0.0, row[order][first], np.nan)
     return found
 
 
-def exceeds(table: Table, name: str, limit: float) -> NDArray[np.bool_]:
-    """(points,) in which a result is beyond a limit; overturned ones exceed every limit.
+def _admissible(condition: Condition, total: Array) -> Array:
+    """How many of so many histories may be beyond the limit."""
+    if condition.fractile is not None:
+        up_to = rank(condition.fractile, total)
+        return np.asarray(up_to - 1.0 if condition.from_below else total - up_to)
+    return np.asarray(np.floor(condition.share * total + ROUNDING))
 
-    A history that has no such result does not keep the limit either.
 
-    Parameters
-    ----------
-    name
-        Of a result, ``overturning`` or ``uplift``.
-    limit
-        In SI units; of no meaning for an event.
+def worse(table: Outcomes, name: str) -> Array:
+    """(points,) demands on a limit, larger ones the worse; NaN where the point failed.
+
+    Of results of which small values are bad the negative ones. An overturned history exceeds every
+    limit, and so does one without such a result. An event counts how often it happened.
     """
+    condition = Condition(name, 0.0, "")
     if name == "overturning":
-        return table.overturned
-    if name == "uplift":
-        return np.asarray(table.overturned | (table.columns["uplifts"] > 0.0))
-    kept = Condition(name, limit, "").kept_by(table.columns[name])
-    return np.asarray(table.overturned | ~kept)
+        found = table.overturned.astype(float)
+    elif name in EVENTS:
+        found = np.maximum(table.columns["uplifts"], table.overturned)
+    else:
+        found = condition.sign * table.columns[name]
+        found = np.where(table.overturned | np.isnan(found), np.inf, found)
+    return np.where(table.failed, np.nan, found)
 
 
-def _verdict(table: Table, row: SummaryRow, condition: Condition) -> StudyVerdict:
-    count = int(exceeds(table, condition.name, condition.limit)[row.points].sum())
-    beyond = share(count, len(row.points))
-    fallen = 0 if condition.name in EVENTS else row.overturned.number
-    if condition.fractile is None:
-        exceeded = count / len(row.points) > condition.share
-        return StudyVerdict(row.values, condition, beyond, fallen, None, exceeded)
-    column = table.columns[condition.name]
-    demands = demand(table, column, from_below=condition.from_below)[row.points]
-    (at,) = fractiles(demands, [condition.fractile]).tolist()
-    return StudyVerdict(row.values, condition, beyond, fallen, at, not condition.kept_by(at))
+def exceeds(table: Outcomes, name: str, limit: float) -> NDArray[np.bool_]:
+    """(points,) in which a result is beyond a limit [SI]; overturned ones exceed every limit."""
+    return np.asarray(worse(table, name) > Condition(name, 0.0, "").sign * limit)
+
+
+def verdicts(
+    table: Outcomes,
+    points: Indices,
+    conditions: Iterable[Condition],
+    record_of: Callable[[int], str],
+    values: tuple[object, ...] = (),
+) -> list[Verdict]:
+    """On histories that did not fail, by their points; `record_of` names the record of a point."""
+    found = []
+    for condition in conditions:
+        demands = worse(table, condition.name)[points]
+        every = np.ones((1, len(points)))
+        counted = judge(demands[None], every, condition)
+        at, worst = None, int(np.argmax(demands))
+        if condition.fractile is not None:
+            at = condition.sign * float(decisive(demands[None], every, condition)[0, 0])
+        of_result = condition.name not in EVENTS
+        found.append(
+            Verdict(
+                condition=condition,
+                values=values,
+                beyond=share(int(counted.beyond[0, 0]), len(points)),
+                overturned=int(table.overturned[points].sum()) if of_result else 0,
+                value=condition.sign * float(demands[worst]),
+                record=record_of(int(points[worst])),
+                fractile=at,
+                exceeded=not counted.met[0, 0],
+            )
+        )
+    return found
+
+
+def judged_records(
+    records: Records, labels: Sequence[str], conditions: Iterable[Condition]
+) -> list[Verdict]:
+    """Of one structure under records of these names."""
+    points = np.nonzero(~records.failed)[0]
+    return verdicts(records, points, conditions, labels.__getitem__) if len(points) else []
+
+
+def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ()) -> list[Verdict]:
+    """Of each row of a summary, on the limits of study and cases and on further conditions."""
+    layout, further, found = table.layout, tuple(conditions), []
+
+    def record_of(number: int) -> str:
+        record = layout[number].record
+        return "" if record is None else record.source
+
+    for row in summary.rows:
+        if len(row.points):
+            limits = layout.properties[int(row.points[0]) // layout.points_of_system].limits
+            found += verdicts(table, row.points, (*limits, *further), record_of, row.values)
+    return found
