@@ -21,7 +21,7 @@ COMMANDS = {
     "sweep": Member("rpscli.commands.sweep", "all points of a study, stored as they end; reports"),
     "design": Member(
         "rpscli.commands.design",
-        "the values of a case that meet limits and make an aim least",
+        "the values of a case that meet limits and minimise an objective",
     ),
     "report": Member(
         "rpscli.commands.report.command", "one page to check, print and keep, from all of these"

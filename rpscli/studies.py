@@ -159,8 +159,9 @@ class Study(Shown):
 
     @property
     def warnings(self) -> list[str]:
-        """What is unusual about its systems, each kind once."""
-        return doubts_of_many([properties.doubts for properties in self.layout.properties])
+        """What is to be said of its file, and what is unusual about its systems, each kind once."""
+        doubts = doubts_of_many([properties.doubts for properties in self.layout.properties])
+        return [*self.layout.study.notes, *doubts]
 
     def facts(self) -> dict[str, Any]:
         """How many of what."""

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeGuard
+from typing import Annotated, NamedTuple, Self, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PlainValidator, ValidationError, WithJsonSchema
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.overrides import apply_overrides
+from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.fields import (
     LARGEST,
     Quantity,
     Section,
     Whole,
-    first_fault,
     is_finite,
+    must_be,
     refuse,
 )
 from rpscli.case.schema.keys import is_whole, unit
@@ -29,13 +31,13 @@ from rpscli.case.study.axes import Axis, clashes, sources_of
 from rpscli.case.study.rules import (
     fixed_faults,
     record_rules,
-    scale_faults,
     unknown_keys,
     varied_paths,
 )
-from rpscli.case.study.schema import Seed, StudyParts
-from rpscli.case.study.study import Study, shared_out, single_key_faults, study_of
-from rpscli.case.text.document import Document, Fault, is_case, is_design, shown
+from rpscli.case.study.schema import Seed, Sources, StudyParts
+from rpscli.case.study.study import Study, shared_out, study_of
+from rpscli.case.text.document import Document, Fault, is_case, is_design
+from rpscli.case.text.document import Path as KeyPath
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, hint, listed
@@ -45,69 +47,119 @@ PLUS = "plus"
 """What is added to a linear sum."""
 
 
+OLD_WORDS = {
+    "find": "variables",
+    "ties": "linked",
+    "least": "minimise",
+    "confirm": "validate",
+}
+"""Keys of designs that had other names; understood, with a note, in this version only."""
+
+Array = NDArray[np.float64]
+
+DIGITS = 6
+"""Of the values of a design: nobody builds more, and files stay readable."""
+
+
 class Term(Section):
-    """One term of what is to be least."""
+    """One term of what is minimised."""
 
     times: Annotated[float, Quantity()] = Field(1.0, description="factor, in SI units")
     fractile: Fractile = Field(
         0.5, description="of a result over the records; its median by default"
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _factor_alone(cls, value: object) -> object:
+        return value if isinstance(value, dict | Term) else {"times": value}
 
-Aim = dict[str, Term]
+
+Objective = dict[str, Term]
 """A linear sum of results and keys, by their names."""
 
 
-def _aims(value: object) -> tuple[Aim, ...]:
-    """One sum, or two whose front is looked for."""
-    several = value if isinstance(value, list) else [value]
-    if not 1 <= len(several) <= 2:
-        refuse("must be one aim, or a list of two")
-    return tuple(_aim(item) for item in several)
-
-
-def _aim(value: object) -> Aim:
+def _sum(value: object) -> object:
     """A name alone, or a sum."""
     if isinstance(value, str) and value.strip():
-        return {value: Term.model_validate({})}
+        return {value: {}}
     if not isinstance(value, dict) or not value:
         refuse(
-            f"has {shown(value)}, which must be a key or a result, or a sum such as"
+            "must be a key or a result, or a sum such as"
             " {max_base_shear: 1e-6, podium.bearing.dimensions.width: 0.5}"
         )
-    return {str(name): _term(name, given) for name, given in value.items()}
+    return value
 
 
-def _term(name: object, given: object) -> Term:
-    written = given if isinstance(given, dict) else {"times": given}
-    if isinstance(given, Term):
-        return given
-    try:
-        return Term.model_validate(written)
-    except ValidationError as error:
-        refuse(f"has {name}: {shown(given)}, whose {first_fault(error)}")
+def _one_or_two(value: object) -> object:
+    several = value if isinstance(value, list | tuple) else [value]
+    if not 1 <= len(several) <= 2:
+        refuse("must be one objective, or a list of two")
+    return several
 
 
 _SUM = {"type": "object", "minProperties": 1}
-_ONE_AIM = {
+_ONE = {
     "anyOf": [
         {"type": "string", "minLength": 1},
         _SUM | {"additionalProperties": {"anyOf": [{"type": "number"}, Term.model_json_schema()]}},
     ]
 }
-_BOUND = {"type": ["number", "string"]}
-
-Bounds = Annotated[
-    Any, WithJsonSchema({"type": "array", "items": _BOUND, "minItems": 2, "maxItems": 2})
+Objectives = Annotated[
+    tuple[Annotated[Objective, BeforeValidator(_sum)], ...],
+    BeforeValidator(_one_or_two),
+    WithJsonSchema({"anyOf": [*_ONE["anyOf"], {"type": "array", "items": _ONE, "maxItems": 2}]}),
 ]
-"""Two values, which the task reads in the unit of their key."""
-Aims = Annotated[
-    tuple[Aim, ...],
-    PlainValidator(_aims),
-    WithJsonSchema(
-        {"anyOf": [*_ONE_AIM["anyOf"], {"type": "array", "items": _ONE_AIM, "maxItems": 2}]}
+
+
+class Unknown(NamedTuple):
+    """A key that may change, and its range in SI units."""
+
+    key: str
+    low: float
+    high: float
+
+
+def _is_number(value: object) -> TypeGuard[float]:
+    """A number whose sums and products with others stay finite."""
+    return is_finite(value) and abs(value) <= LARGEST
+
+
+def _with_keys(value: dict[str, object]) -> dict[str, object]:
+    return {key: (key, bounds) for key, bounds in value.items()}
+
+
+def _unknown(given: tuple[str, object]) -> Unknown:
+    """The range of a key, in SI units."""
+    key, bounds = given
+    si = in_si(bounds, unit(key))
+    if not isinstance(si, list) or len(si) != 2 or not all(map(_is_number, si)):
+        words = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
+        refuse(f"must be two {words}, [least, largest], up to {LARGEST:g}")
+    if not si[0] < si[1]:
+        refuse(
+            "must rise from the least value to the largest; exchange them, or leave the key to the"
+            " case"
+        )
+    return Unknown(key, float(si[0]), float(si[1]))
+
+
+def _linear(terms: object) -> dict[str, float]:
+    if not isinstance(terms, dict) or not all(map(_is_number, terms.values())):
+        refuse(f"must be a linear sum, {{key: factor, plus: number}}, of numbers up to {LARGEST:g}")
+    return terms
+
+
+_BOUNDS = {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
+Variables = Annotated[
+    dict[str, Annotated[Unknown, PlainValidator(_unknown), WithJsonSchema(_BOUNDS)]],
+    BeforeValidator(_with_keys),
+    must_be(
+        dict, "keys with their ranges, as in {podium.bearing.slenderness: [0.1, 0.3]}", filled=True
     ),
 ]
+_TERMS = {"type": "object", "additionalProperties": {"type": "number"}}
+Sums = dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]]
 
 
 class SearchSection(Section):
@@ -128,44 +180,39 @@ class SearchSection(Section):
     seed: Seed = Field(1, description="of the sample and the bootstrap")
 
 
-class ConfirmSection(Section):
+class ValidateSection(Section):
     """Motions that the search does not see."""
 
-    records: tuple[Any, ...] | None = Field(None, description="record sources, as in a study")
+    records: Sources | None = Field(None, description="record sources, as in a study")
     share: Annotated[float, Quantity(above=0, below=1)] | None = Field(
         None, description="share of the design's own records that is held out, in place of them"
     )
     seed: Seed = Field(1, description="of the draw of what is held out")
 
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        if (self.records is None) == (self.share is None):
+            refuse("must have records or a share of the design's own, and not both")
+        return self
+
 
 class DesignFile(StudyParts):
-    """A design: the values of some keys of a case that meet the limits and make an aim least."""
+    """A design: the values of some keys of a case that meet the limits and minimise something."""
 
-    find: dict[str, Bounds] = Field(
+    variables: Variables = Field(
         description="dotted case keys with [least, largest]: what may change"
     )
-    ties: dict[str, dict[str, float]] = Field(
+    linked: Sums = Field(
         {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
     )
-    least: Aims = Field(
-        description="what is to be least: a result, a key, or a sum of them; two for their front"
+    minimise: Objectives = Field(
+        description="what is minimised: a result, a key, or a sum of them; two for their front"
     )
-    confirm: ConfirmSection | None = Field(None, description="motions to confirm the design with")
+    # pydantic's models have a method validate.
+    validation: ValidateSection | None = Field(
+        None, alias="validate", description="motions to validate the design with"
+    )
     search: SearchSection = Field(SearchSection(), description="how many designs are looked at")
-
-
-Array = NDArray[np.float64]
-
-DIGITS = 6
-"""Of the values of a design: nobody builds more, and files stay readable."""
-
-
-class Unknown(NamedTuple):
-    """A key that may change, and its range in SI units."""
-
-    key: str
-    low: float
-    high: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,21 +225,23 @@ class DesignTask:
         Case, records and limits; its axes are empty, and its document is that of the design.
     file
         The validated file.
-    unknowns
-        What may change.
     confirming
         Single sources of motions that the search does not see.
     """
 
     study: Study
     file: DesignFile
-    unknowns: tuple[Unknown, ...]
     confirming: tuple[str, ...]
 
     @property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """What may change."""
+        return tuple(self.file.variables.values())
+
+    @property
     def keys(self) -> tuple[str, ...]:
-        """Keys that change: the unknowns, and what is tied to them."""
-        return (*(unknown.key for unknown in self.unknowns), *self.file.ties)
+        """Keys that change: the unknowns, and what is linked to them."""
+        return (*(unknown.key for unknown in self.unknowns), *self.file.linked)
 
     def values(self, places: Array) -> Array:
         """(designs, keys) values in SI units.
@@ -208,7 +257,7 @@ class DesignTask:
             unknown.key: _rounded(unknown.key, column)
             for unknown, column in zip(self.unknowns, (low + (high - low) * places).T, strict=True)
         }
-        for key, terms in self.file.ties.items():
+        for key, terms in self.file.linked.items():
             sums = (terms[name] * found[name] for name in terms if name != PLUS)
             found[key] = _rounded(key, sum(sums, np.full(len(places), terms.get(PLUS, 0.0))))
         return np.column_stack(list(found.values()))
@@ -230,7 +279,7 @@ class DesignTask:
 
     def path(self, key: str) -> tuple[str, str]:
         """Where a key stands in the file."""
-        return "ties" if key in self.file.ties else "find", key
+        return "linked" if key in self.file.linked else "variables", key
 
 
 def _rounded(key: str, values: Array) -> Array:
@@ -274,140 +323,141 @@ def parse_design(
     if not is_design(document):
         kind = "case" if is_case(document) else "study" if "base" in document.content else "file"
         raise CaseError(
-            f"{name}: this is a {kind} without `find`, but a design is wanted here: a base case,"
-            " find, records, limits and least; see `rps explain find`"
+            f"{name}: this is a {kind} without `variables`, but a design is wanted here: a base"
+            " case, variables, records, limits and minimise; see `rps explain variables`"
         )
+    document, notes = _in_new_words(document)
+    overrides, more = _overrides_in_new_words(overrides)
     of_design, of_base = shared_out(overrides, DesignFile)
     document = apply_overrides(document, of_design, model=DesignFile)
-    confirming, confirm_faults = _confirming(document, folder)
-    unknowns, find_faults = _unknowns(document)
-    faults = [*single_key_faults(document, DesignFile), *scale_faults(document)]
-    faults += [*find_faults, *unknown_keys(document), *clashes(varied_paths(document))]
-    faults += [*record_rules(document), *fixed_faults(document, of_base), *confirm_faults]
-    document.refuse([*faults, *_tie_faults(document), *sources_of(document, folder)[1]])
-    file = DesignFile.model_validate(document.content)
-    document.refuse(_aim_faults(file))
+    check = schema_check(DesignFile, document)
+    confirming, source_faults = _confirming(document, folder)
+    faults = [*check.faults, *source_faults, *sources_of(document, folder)[1]]
+    faults += [*_fixed_properties(document), *unknown_keys(document), *_link_faults(document)]
+    faults += [*clashes(varied_paths(document)), *record_rules(document)]
+    document.refuse([*faults, *fixed_faults(document, of_base)])
+    file = check.read
+    assert file is not None, "without faults the file is read"
+    document.refuse(_objective_faults(file))
+    shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
     study = study_of(
-        _study_document(document),
+        replace(document, content=shared),
         of_base,
         kinds={},
         folder=folder,
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
-    study = replace(study, document=document)
     used, held_out = _used_and_held_out(document, file, study.sources, confirming)
-    return DesignTask(replace(study, sources=used), file, unknowns, held_out)
+    study = replace(study, document=document, sources=used, notes=(*notes, *more))
+    return DesignTask(study, file, held_out)
+
+
+def _in_new_words(document: Document) -> tuple[Document, list[str]]:
+    """The document with the keys of today, and what to say of older ones."""
+    old = [word for word in OLD_WORDS if word in document.content]
+    document.refuse(
+        Fault(
+            (word,),
+            f"{word} is the old word for {OLD_WORDS[word]}, which stands here as well"
+            f"{document.where((OLD_WORDS[word],))}; take one of them out",
+            at_key=True,
+        )
+        for word in old
+        if OLD_WORDS[word] in document.content
+    )
+
+    def path(old: KeyPath) -> KeyPath:
+        return (OLD_WORDS.get(str(old[0]), old[0]), *old[1:]) if old else old
+
+    notes = [f"{document.key_place((word,))}: {_note(word)}" for word in old]
+    renamed = replace(
+        document,
+        content={OLD_WORDS.get(key, key): value for key, value in document.content.items()},
+        keys={path(old): place for old, place in document.keys.items()},
+        values={path(old): place for old, place in document.values.items()},
+        faults=tuple(replace(fault, path=path(fault.path)) for fault in document.faults),
+    )
+    return renamed, notes
+
+
+def _overrides_in_new_words(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
+    renamed, notes = [], []
+    for text in overrides:
+        word, rest = re.split(r"(?=[.=])|$", text.strip(), maxsplit=1)
+        if word in OLD_WORDS:
+            notes.append(f"--set {text}: {_note(word)}")
+        renamed.append(OLD_WORDS.get(word, word) + rest)
+    return renamed, notes
+
+
+def _note(word: str) -> str:
+    return f"{word} is an old word; write {OLD_WORDS[word]}, the next version knows that alone"
 
 
 def _used_and_held_out(
     document: Document, file: DesignFile, sources: Sequence[str], confirming: Sequence[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Records of the search, and those that the design is confirmed on."""
-    used, held_out = tuple(sources), tuple(confirming)
-    if file.confirm is not None and file.confirm.share is not None:
-        used, held_out = _shared(used, file.confirm.share, file.confirm.seed)
+    """Records of the search, and those that the design is validated on."""
+    used, held_out, section = tuple(sources), tuple(confirming), file.validation
+    if section is not None and section.share is not None:
+        used, held_out = _shared(used, section.share, section.seed)
     elif both := sorted(set(used) & set(held_out)):
-        text = f"confirm.records has {listed(both[:3], 'and')}, which the search uses already"
-        document.refuse([Fault(("confirm", "records"), f"{text}; name other motions")])
-    if file.confirm is not None and not (used and held_out):
-        text = f"confirm.share = {file.confirm.share} of {len(sources)} records leaves none"
-        document.refuse([Fault(("confirm",), f"{text} on one side; give more records")])
+        text = f"validate.records has {listed(both[:3], 'and')}, which the search uses already"
+        document.refuse([Fault(("validate", "records"), f"{text}; name other motions")])
+    if section is not None and not (used and held_out):
+        text = f"validate.share = {section.share} of {len(sources)} records leaves none"
+        document.refuse([Fault(("validate",), f"{text} on one side; give more records")])
     return used, held_out
 
 
-def _study_document(document: Document) -> Document:
-    """What the design says as a study would."""
-    shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
-    return replace(document, content=shared)
-
-
-def _unknowns(document: Document) -> tuple[tuple[Unknown, ...], list[Fault]]:
-    """The ranges under `find`, in SI units."""
-    unknowns: list[Unknown] = []
-    faults: list[Fault] = []
-    if (written := document.content["find"]) == {}:
-        text = "find is empty; name a key, as in {podium.bearing.slenderness: [0.1, 0.3]}"
-        faults.append(Fault(("find",), text))
-    for key, bounds in written.items() if isinstance(written, dict) else ():
-        si = in_si(bounds, unit(key))
-        if not isinstance(si, list) or len(si) != 2 or not all(map(_is_number, si)):
-            words = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
-            text = f"find.{key} = {shown(bounds)} must be two {words}, [least, largest]"
-            text += f", up to {LARGEST:g}"
-            faults.append(Fault(("find", key), text))
-        elif not si[0] < si[1]:
-            text = f"find.{key} = {shown(bounds)} must rise from the least value to the largest"
-            faults.append(
-                Fault(("find", key), f"{text}; exchange them, or leave the key to the case")
-            )
-        else:
-            unknowns.append(Unknown(key, float(si[0]), float(si[1])))
+def _fixed_properties(document: Document) -> Iterator[Fault]:
+    """Keys that are no property of the structure."""
     for key, place in varied_paths(document).items():
         if key.split(".")[0] in {"limits", "analysis", "rps", "title", "record"}:
             text = f"{key} must not change in a design; it is no property of the structure"
-            faults.append(Fault(place, text, at_key=True))
-    return tuple(unknowns), faults
+            yield Fault(place, text, at_key=True)
 
 
-def _is_number(value: object) -> TypeGuard[float]:
-    """A number whose sums and products with others stay finite."""
-    return is_finite(value) and abs(value) <= LARGEST
-
-
-def _tie_faults(document: Document) -> Iterator[Fault]:
-    found, ties = document.content["find"], document.content.get("ties", {})
-    known = [*(found if isinstance(found, dict) else ()), PLUS]
-    for key, terms in ties.items() if isinstance(ties, dict) else ():
+def _link_faults(document: Document) -> Iterator[Fault]:
+    """Linked keys that vary by themselves, and sums of keys that do not vary."""
+    variables, linked = (document.content.get(key) for key in ("variables", "linked"))
+    known = [*(variables if isinstance(variables, dict) else ()), PLUS]
+    for key, terms in linked.items() if isinstance(linked, dict) else ():
         if key in known:
-            text = f"{key} varies under find already; take one of them out"
-            yield Fault(("ties", key), text, at_key=True)
-        elif not isinstance(terms, dict) or not all(map(_is_number, terms.values())):
-            text = (
-                f"ties.{key} = {shown(terms)} must be a linear sum, {{key: factor, plus: number}},"
-                f" of numbers up to {LARGEST:g}"
-            )
-            yield Fault(("ties", key), text)
-        else:
-            for name in terms:
-                if name not in known:
-                    text = f"ties.{key} needs {name}, which is not under find"
-                    yield Fault(("ties", key), f"{text}; use {listed(known)}")
+            text = f"{key} varies under variables already; take one of them out"
+            yield Fault(("linked", key), text, at_key=True)
+        for name in terms if isinstance(terms, dict) else ():
+            if name not in known:
+                text = f"linked.{key} needs {name}, which is not under variables"
+                yield Fault(("linked", key), f"{text}; use {listed(known)}")
 
 
-def _aim_faults(file: DesignFile) -> Iterator[Fault]:
+def _objective_faults(file: DesignFile) -> Iterator[Fault]:
     """Names that are neither keys that change nor results."""
-    keys = [*file.find, *file.ties]
+    keys = [*file.variables, *file.linked]
     sampled = {quantity.name for quantity in SAMPLED}
     results = {quantity.name for quantity in DEMANDS}
-    for name in dict.fromkeys(name for aim in file.least for name in aim):
+    terms = [term for objective in file.minimise for term in objective.items()]
+    for name in dict.fromkeys(name for name, _ in terms):
         if name in sampled and not file.whole_histories:
-            yield Fault(("least",), f"least: {name} needs `whole_histories: true`; add it")
+            text = f"{name} needs `whole_histories: true`; add it"
         elif name not in keys and name not in results:
             meant = hint(name, [*keys, *results], f"use {listed(keys)}, or a result")
-            yield Fault(
-                ("least",),
-                f"least: {name} is neither a result nor a key that `find` changes; {meant}",
-            )
-        elif name in keys and "fractile" in _given(file.least, name):
-            yield Fault(("least",), f"least: {name} is a key, without fractiles; take it out")
-
-
-def _given(aims: Sequence[Aim], name: str) -> set[str]:
-    """What the file says of a term."""
-    return set().union(*(aim[name].model_fields_set for aim in aims if name in aim))
+            text = f"{name} is neither a result nor a key that `variables` changes; {meant}"
+        elif name in keys and any(n == name and "fractile" in t.model_fields_set for n, t in terms):
+            text = f"{name} is a key, without fractiles; take it out"
+        else:
+            continue
+        yield Fault(("minimise",), f"minimise: {text}")
 
 
 def _confirming(document: Document, folder: Path) -> tuple[tuple[str, ...], list[Fault]]:
-    """Sources under `confirm.records`, or what is wrong with the section."""
-    section = document.content.get("confirm")
-    if not isinstance(section, Mapping):
+    """Sources under `validate.records`, and what is wrong with them."""
+    if not isinstance(document.content.get("validate"), dict):
         return (), []
-    if ("records" in section) == ("share" in section):
-        text = "confirm must have records or a share of the design's own, and not both"
-        return (), [Fault(("confirm",), text, at_key=True)]
-    sources, faults = sources_of(document.part("confirm"), folder)
+    sources, faults = sources_of(document.part("validate"), folder)
     return sources, [
-        Fault(("confirm", *fault.path), f"confirm.{fault.text}", fault.at_key) for fault in faults
+        Fault(("validate", *fault.path), f"validate.{fault.text}", fault.at_key) for fault in faults
     ]
 
 

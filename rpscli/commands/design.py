@@ -1,4 +1,4 @@
-"""`rps design`: the values of a case that meet its requirements and make an objective least."""
+"""`rps design`: the values of a case that meet its requirements and minimise an objective."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ def command(
     look: Look,
     **choices: Any,
 ) -> None:
-    """Find the values of DESIGN that meet its limits and make what is `least` least.
+    """Find the values of DESIGN that meet its limits and minimise its objective.
 
-    The file has a base case, `find` with ranges, records and `limits` as a study, and `least`. An
+    The file has a base case, `variables`, records and `limits` as a study, and `minimise`. An
     even sample comes first, then designs where the verdict changes. The answer has the best design,
     the region that passes, what binds, and how far the choice of records moves it.
 

@@ -82,7 +82,9 @@ def _formats() -> Iterator[KeyReference]:
 
 def _keys(word: str) -> list[KeyReference]:
     """Keys that are called so: in full, else by their end, else by their symbol."""
-    found = list(_formats())
+    from rpscli.case.design import OLD_WORDS
+
+    found, word = list(_formats()), OLD_WORDS.get(word, word)
     for called in (
         lambda key: key.key == word,
         lambda key: key.key.endswith(f".{word}"),

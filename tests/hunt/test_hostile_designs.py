@@ -26,13 +26,13 @@ pytestmark = pytest.mark.posix  # trials are timed by its signals
 
 DESIGN = f"""rps: 1
 base: {CASES}/six_storey.yaml
-find: {{podium.bearing.semi_diagonal: [0.8, 2.0], podium.bearing.slenderness: [0.1, 0.2]}}
-ties: {{podium.bearing.wedge_slenderness: {{podium.bearing.slenderness: 2, plus: 0.01}}}}
+variables: {{podium.bearing.semi_diagonal: [0.8, 2.0], podium.bearing.slenderness: [0.1, 0.2]}}
+linked: {{podium.bearing.wedge_slenderness: {{podium.bearing.slenderness: 2, plus: 0.01}}}}
 records: ["pulse:sine?amplitude=0.3g&period=0.8", "pulse:sine?amplitude=0.2g&period=1"]
 limits: {{rotation_ratio: 0.5, min_column_force: {{at_least: 50 kN}}}}
 whole_histories: true
-least: [podium.bearing.semi_diagonal, {{max_base_shear: {{times: 1e-6, fractile: 0.84}}}}]
-confirm: {{share: 0.5}}
+minimise: [podium.bearing.semi_diagonal, {{max_base_shear: {{times: 1e-6, fractile: 0.84}}}}]
+validate: {{share: 0.5}}
 search: {{first: 4, most: 8, resamples: 0}}
 """
 DESIGN_KEYS = [".".join(map(str, path)) for path in known_paths(DesignFile)]
@@ -74,14 +74,17 @@ def test_values_of_designs(long: bool) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        (f"find: {{podium.bearing.semi_diagonal: [0.8, {HUGE}]}}", "must be two numbers"),
-        (f"ties: {{superstructure.storeys: {{plus: {HUGE}}}}}", "must be a linear sum"),
-        ("ties: {superstructure.storeys: {podium.bearing.slenderness: 1e308}}", "up to 1e+15"),
-        (f"scale: [{HUGE}]", "must be finite numbers"),
-        ("find: {podium.bearing.semi_diagonal: [1, 1]}", "or leave the key to the case"),
-        ("scale: {factor: [1, 2]}", "low is missing"),
-        ("confirm: {records: 3}", "must be a list"),
-        ("least: {max_rotation: {times: 1, x: 2}}", "x is not a key that it has"),
+        (f"variables: {{podium.bearing.semi_diagonal: [0.8, {HUGE}]}}", "must be two numbers"),
+        (f"linked: {{superstructure.storeys: {{plus: {HUGE}}}}}", "must be a linear sum"),
+        ("linked: {superstructure.storeys: {podium.bearing.slenderness: 1e308}}", "up to 1e+15"),
+        (f"scale: [{HUGE}]", "must be a finite number"),
+        ("variables: {podium.bearing.semi_diagonal: [1, 1]}", "or leave the key to the case"),
+        ("scale: {factor: [1, 2]}", "scale.factor is not a key"),
+        ("validate: {records: 3}", "must be a list"),
+        (
+            "minimise: {max_rotation: {times: 1, x: 2}}",
+            "max_rotation.x is not a key",
+        ),
     ],
 )
 def test_slips_in_designs_are_told(line: str, said: str) -> None:

@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner, Result
 from paper_structures import needs_compiled_kernels
 
-from rpscli.case.design import parse_design
+from rpscli.case.design import OLD_WORDS, parse_design
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program
@@ -37,6 +37,8 @@ SIZE = "podium.bearing.semi_diagonal"
 PEAKS = (0.12, 0.17, 0.18, 0.21, 0.23, 0.26, 0.29)
 """Of half sines [g]: a rigid frame lifts where its slenderness is below one of them, exactly."""
 
+MINIMISED = f"minimise: {SLENDERNESS}"
+
 FRAME = f"""\
 rps: 1
 title: Least slenderness without uplift
@@ -48,27 +50,27 @@ base:
     cap_beam_mass_ratio: 10
     cap_beam_mass: 100 t
   analysis: {{free_vibration: 0.1}}
-find:
+variables:
   {SLENDERNESS}: [0.05, 0.35]
-ties:
+linked:
   {WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}
 records:
   - source: "pulse:half_sine?period=0.5"
     amplitude: [{", ".join(f"{peak} g" for peak in PEAKS)}]
 limits: {{uplift: 0.3}}
-least: {SLENDERNESS}
+{MINIMISED}
 search: {{first: 8, most: 64, resolution: 0.001, resamples: 400}}
 """
 
 TWO = FRAME.replace(
     f"{SLENDERNESS}: [0.05, 0.35]\n", f"{SLENDERNESS}: [0.05, 0.35]\n  {SIZE}: [800 mm, 2 m]\n"
-).replace(f"least: {SLENDERNESS}", f"least: {{{SLENDERNESS}: 10, {SIZE}: 1}}")
+).replace(MINIMISED, f"minimise: {{{SLENDERNESS}: 10, {SIZE}: 1}}")
 
 BUILDING = f"""\
 rps: 1
 base: base.yaml
-find: {{{SLENDERNESS}: [0.1, 0.25], podium.bearing.curvature_ratio: [0.2, 0.6]}}
-ties: {{{WEDGE}: {{{SLENDERNESS}: 2}}}}
+variables: {{{SLENDERNESS}: [0.1, 0.25], podium.bearing.curvature_ratio: [0.2, 0.6]}}
+linked: {{{WEDGE}: {{{SLENDERNESS}: 2}}}}
 records:
   - {{source: "synthetic:?pga=0.8g&duration=4&dt=0.02", seed: [1, 2, 3, 4, 5]}}
 scale: [1.0, 1.5]
@@ -77,7 +79,7 @@ limits:
   rotation_ratio: {{at_most: 0.5, share: 0.3}}
   drift_ratio: {{at_most: 0.004, fractile: 0.6}}
   base_shear_ratio: 3.0
-least: [max_base_shear, max_cap_beam_displacement: {{fractile: 0.84}}]
+minimise: [max_base_shear, max_cap_beam_displacement: {{fractile: 0.84}}]
 search: {{first: 8, most: 20, resamples: 50}}
 """
 
@@ -161,7 +163,9 @@ def test_two_unknowns_against_the_exact_answer(design_json: DesignJson) -> None:
 def test_a_number_of_columns_stays_whole(design_json: DesignJson, workplace: Path) -> None:
     text = FRAME.replace(f"{SLENDERNESS}: [0.05, 0.35]", "podium.columns: [4, 9]")
     text = text.replace(f"  {WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}\n", "")
-    text = text.replace("ties:\n", "").replace(f"least: {SLENDERNESS}", "least: podium.columns")
+    text = text.replace("linked:\n", "").replace(
+        f"minimise: {SLENDERNESS}", "minimise: podium.columns"
+    )
     found = design_json(text, "-o", "out")
     assert found["best"]["values"]["podium.columns"] == 4
     rows = rows_of(workplace / "out/designs.csv")
@@ -235,7 +239,7 @@ def test_interrupted_and_resumed_ends_in_the_same_bytes(workplace: Path) -> None
 
 
 def test_confirmation(design_json: DesignJson, workplace: Path) -> None:
-    unseen = 'confirm: {records: [{source: "pulse:half_sine?period=0.4", amplitude: [%s]}]}\n'
+    unseen = 'validate: {records: [{source: "pulse:half_sine?period=0.4", amplitude: [%s]}]}\n'
     found = design_json(FRAME + unseen % "0.1 g, 0.2 g")
     assert found["confirmed"] is True
     found = design_json(FRAME + unseen % "0.1 g, 0.4 g")
@@ -247,10 +251,10 @@ def test_confirmation(design_json: DesignJson, workplace: Path) -> None:
     (verdict,) = found["confirmation"]["robust"]
     assert verdict["beyond"]["count"] == 1
     (workplace / "broken.at2").write_text("no record")
-    found = design_json(FRAME + "confirm: {records: [broken.at2]}\n", exit_code=5)
+    found = design_json(FRAME + "validate: {records: [broken.at2]}\n", exit_code=5)
     assert found["confirmed"] is False
     assert "broken.at2" in found["error"]["message"]
-    task = parse_design(FRAME + "confirm: {share: 0.3}\n", "design.yaml")
+    task = parse_design(FRAME + "validate: {share: 0.3}\n", "design.yaml")
     assert len(task.study.sources) == 5
     assert len(task.confirming) == 2
     assert not set(task.confirming) & set(task.study.sources)
@@ -279,26 +283,46 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         ("[0.05, 0.35]", "[low, high]", "12:31", "must be two numbers"),
         (f"{SLENDERNESS}: [0.05", "podium.bearing.slendernes: [0.05", "12:3", "did you mean"),
         (f"{WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}", f"{WEDGE}: 2", "14:", "must be a linear sum"),
-        ("[0.05, 0.35]", "", "12:3", "must be two numbers"),
-        ("least:", "records: 3\nleast:", "19:1", "twice"),
-        ("2, plus", "2, pluss", "14:", "needs pluss, which is not under find"),
-        (f"least: {SLENDERNESS}", "least: max_rotatoin", "19:8", "did you mean max_rotation?"),
-        (f"least: {SLENDERNESS}", "least: {max_rotation: {fractil: 1}}", "19:8", "fractil"),
+        ("[0.05, 0.35]", "", "12:3", "has no value; write one"),
+        ("minimise:", "records: 3\nminimise:", "19:1", "twice"),
+        ("2, plus", "2, pluss", "14:", "needs pluss, which is not under variables"),
         (
-            f"least: {SLENDERNESS}",
-            "least: drift_ratio",
-            "19:8",
+            MINIMISED,
+            "minimise: max_rotatoin",
+            "19:11",
+            "did you mean max_rotation?",
+        ),
+        (MINIMISED, "minimise: {max_rotation: {fractil: 1}}", "19:27", "fractile?"),
+        (
+            MINIMISED,
+            "minimise: drift_ratio",
+            "19:11",
             "drift_ratio needs superstr",
         ),
-        (f"least: {SLENDERNESS}", "least: max_roof_displacement", "19:8", "whole_histories: true"),
-        (f"least: {SLENDERNESS}", f"least: {{{SLENDERNESS}: {{fractile: 0.5}}}}", "19:8", "a key"),
+        (
+            MINIMISED,
+            "minimise: max_roof_displacement",
+            "19:11",
+            "whole_histories: true",
+        ),
+        (
+            MINIMISED,
+            f"minimise: {{{SLENDERNESS}: {{fractile: 0.5}}}}",
+            "19:11",
+            "a key",
+        ),
         ("limits: {uplift: 0.3}\n", "", "", "limits is missing"),
-        (f"least: {SLENDERNESS}", "", "", "least is missing"),
+        (MINIMISED, "", "", "minimise is missing"),
         ("search: {first: 8", "search: {first: 2", "20:", "must be a whole number from 4 to"),
-        ("search:", "confirm: {}\nsearch:", "20:", "must have records or a share"),
-        ("search:", "confirm: {share: 0.01}\nsearch:", "20:", "leaves none"),
+        ("search:", "validate: {}\nsearch:", "20:", "must have records or a share"),
+        ("search:", "validate: {share: 0.01}\nsearch:", "20:", "leaves none"),
         ("search:", "vary: []\nsearch:", "20:", "vary is not a key of the format"),
-        ("find:", "find:\n  limits.uplift: [0, 1]", "12:3", "must not change in a design"),
+        (
+            "variables:",
+            "variables:\n  limits.uplift: [0, 1]",
+            "12:3",
+            "must not change in a design",
+        ),
         (f"{WEDGE}: {{", f"{SLENDERNESS}: {{", "14:", "varies"),
     ],
 )
@@ -310,8 +334,31 @@ def test_refusals(design: StudyPoints, old: str, new: str, place: str, said: str
     assert said in result.stderr
 
 
+def test_old_words_are_understood_and_noted(design: StudyPoints) -> None:
+    new = f"{FRAME}validate: {{share: 0.3}}\n"
+    old = new
+    for word, today in OLD_WORDS.items():
+        old = old.replace(f"\n{today}:", f"\n{word}:")
+    task, of_old = parse_design(new, "d.yaml"), parse_design(old, "d.yaml")
+    assert task.file == of_old.file
+    assert task.study.sources == of_old.study.sources
+    assert task.study.notes == ()
+    assert len(of_old.study.notes) == len(OLD_WORDS)
+    assert "d.yaml:11:1: find is an old word; write variables" in of_old.study.notes[0]
+    changed = parse_design(new, "d.yaml", overrides=["confirm.share=0.5", "scale=[2]"])
+    assert changed.file.validation is not None
+    assert changed.file.validation.share == 0.5
+    assert changed.study.notes == (
+        f"--set confirm.share=0.5: {of_old.study.notes[3].split(': ', 1)[1]}",
+    )
+    assert "find is an old word" in design(old).stderr
+    faults = design(f"{new}find: {{}}\n", "--dry-run")
+    assert faults.exit_code == 3
+    assert "find is the old word for variables, which stands here as well" in faults.stderr
+
+
 def test_cases_studies_and_designs_are_told_apart(design: StudyPoints, workplace: Path) -> None:
-    assert "is a case without `find`" in design(BASE).stderr
+    assert "is a case without `variables`" in design(BASE).stderr
     (workplace / "task.yaml").write_text(FRAME, encoding="utf-8")
     for command, said in (("sweep", "is a design"), ("timehistory", "`rps design task.yaml`")):
         result = CliRunner().invoke(program, [command, "task.yaml"])

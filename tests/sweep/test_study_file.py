@@ -43,7 +43,7 @@ def test_a_study_reads_its_case_axes_and_records(study_of: Make) -> None:
         ("[0.20, 0.30]", "[0.20]", ("study.yaml:6:5", "has 1 values", "line 5", "2")),
         ("critical, 0.5, 0]", "critical, null]", ("study.yaml:7:48", "no value")),
         ("[critical, 0.5, 0]", "0.5", ("study.yaml:7:37", "list of values")),
-        ("[critical, 0.5, 0]", "{low: 0, hgh: 1, count: 2}", ("did you mean high?",)),
+        ("[critical, 0.5, 0]", "{low: 0, hgh: 1, count: 2}", ("curvature_ratio.high?",)),
         ("curvature_ratio:", "curvature_ration:", ("study.yaml:7:5", "curvature_ratio?")),
         ("[critical, 0.5, 0]", "[0.5, -0.2]", ("study.yaml:7:43", "-0.2", ">= 0", "flat ends")),
         ("0.20, 0.30]", "0.20, 0.12]", ("study.yaml:6:", "0.12")),

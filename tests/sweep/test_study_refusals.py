@@ -31,9 +31,9 @@ def sampled(distribution: str) -> tuple[str, str]:
         ),
         (BASE, "base: study.yaml", ("study.yaml:3:7", "is a study, and a base is a case")),
         # vary
-        ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary must be a list of axes")),
+        ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary = 3 must be a list of axes")),
         ("  - podium.bearing.curv", "  - 3\n  - podium.bearing.curv", ("vary.1 = 3", "mapping")),
-        ("[critical, 0.5, 0]", "[]", ("study.yaml:7:37", "list of values", "{low, high, count}")),
+        ("[critical, 0.5, 0]", "[]", ("study.yaml:7:37", "must not be an empty list")),
         (
             "[critical, 0.5, 0]",
             "{low: 0, high: 1, count: 3, spacing: log}",
@@ -61,7 +61,11 @@ def sampled(distribution: str) -> tuple[str, str]:
             ("max_floor_velocity needs `whole_histories: true`", "study.yaml:10"),
         ),
         # scale
-        (SCALE, "scale: {measure: PGV, values: [one]}", ("a number in m/s", "one")),
+        (
+            SCALE,
+            "scale: {measure: PGV, values: [one]}",
+            ("study.yaml:10:32", "number in m/s", "one"),
+        ),
         (SCALE, "scale: {low: 1, high: 2, cnt: 3}", ("study.yaml:10", "cnt")),
         (SCALE, "scale: {low: 0, high: 2, count: 3, spacing: log}", ("equal ratios",)),
         # reports
@@ -73,17 +77,21 @@ def sampled(distribution: str) -> tuple[str, str]:
         (SCALE, f"reports: [demand: 3]\n{SCALE}", ("demand = 3", "mapping of options")),
         (SCALE, f"reports: [demand: {{panels: [3]}}]\n{SCALE}", ("a key or a list of keys",)),
         # sample
-        (*sampled("7"), ("cap_beam_mass_ratio must be [low, high]", "distribution")),
+        (*sampled("7"), ("cap_beam_mass_ratio = 7 must be [low, high]", "distribution")),
         (*sampled("[5]"), ("must be [low, high]",)),
         (*sampled("{low: 5, mean: 6, cov: 0.1}"), ("low and high alone",)),
         (*sampled("{distribution: lognormal, mean: -1, cov: 0.1}"), ("> 0 for a lognormal",)),
         (*sampled("{distribution: normal, mean: 0, cov: 0.1}"), ("mean = 0", "cov is relative")),
-        (SCALE, "sample: {size: 4, ranges: {}}\n" + SCALE, ("sample.ranges is empty",)),
+        (
+            SCALE,
+            "sample: {size: 4, ranges: {}}\n" + SCALE,
+            ("sample.ranges = {}", "keys with their ranges"),
+        ),
         # records
         ("records:\n", "records: 3\nrecord_:\n", ("study.yaml:8:10", "must be a list of sources")),
         (RECORD, "  - 3\n" + RECORD, ("study.yaml:9:5", "records.0 = 3", "must be a source")),
-        (SEEDS, "seed: []", ("records.0.seed = []", "a value or a list of values")),
-        (SEEDS, "seed: {low: 1, high: 3}", ("records.0.seed", "is no range")),
+        (SEEDS, "seed: []", ("records.0.seed = []", "must not be an empty list")),
+        (SEEDS, "seed: {low: 1, high: 3}", ("records.0.seed.count is missing",)),
         # base
         (BASE, "base: broken.yaml", ("broken.yaml:3:1", "line 2, column 16")),
     ],

@@ -9,7 +9,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from rpscli.case.schema.keys import field_at, section_at, unknown_key
+from rpscli.case.schema.fields import CHECKED_BY_ITSELF
+from rpscli.case.schema.keys import annotation_at, field_at, fields_of, section_at, unknown_key
 from rpscli.case.text.document import MOST_FAULTS, Document, Fault, Path, dotted, shown
 from rpscli.errors import listed, nearest
 
@@ -40,7 +41,9 @@ class SchemaCheck(NamedTuple, Generic[Model]):
 
 def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     """Faults of a document in the eyes of a model, key by key."""
-    empty = dict.fromkeys(_nulls(document.content, ()))
+    later = {key for key, f in fields_of(model).items() if CHECKED_BY_ITSELF in f.metadata}
+    content = {key: value for key, value in document.content.items() if key not in later}
+    empty = dict.fromkeys(_nulls(content, ()))
     told = {fault.path for fault in document.faults}
     check: SchemaCheck[Model] = SchemaCheck([*document.faults], set(), {}, None)
     for path in empty:
@@ -55,6 +58,8 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
         path = _path(error, document)
         if error["type"] == "too_short" and document.at(path):
             continue  # its values are refused one by one
+        if any(path == inner[: len(path)] for inner in empty if path != inner):
+            continue  # it may be faulty because of what it lacks, which is told
         if error["type"] == "extra_forbidden":
             _unknown(check, model, path)
         elif error["type"] != "missing":
@@ -66,7 +71,8 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
             check.faults.append(Fault(path, text, at_key=True, needs=(path,)))
             continue
         bad.append(path)
-    return check._replace(sound=document.pruned(bad))
+    faults = [fault for fault in check.faults if not check.meant.intersection(fault.needs)]
+    return check._replace(faults=faults, sound=document.pruned(bad))
 
 
 def _unknown(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
@@ -83,7 +89,9 @@ def _unknown(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> Non
 def _empty_value(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
     """A key with nothing behind it; its name may be wrong besides."""
     named = tuple(part for part in path if isinstance(part, str))
-    known = [field_at(model, named[:length]) is not None for length in range(1, len(named) + 1)]
+    known = [
+        annotation_at(model, named[:length]) is not None for length in range(1, len(named) + 1)
+    ]
     if all(known):
         text = f"{dotted(path)} has no value; write one, or take the key out"
         check.faults.append(Fault(path, text, at_key=isinstance(path[-1], str)))
@@ -127,7 +135,7 @@ def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
         return f"must be {listed(words)}" + (f"; did you mean {guess}?" if guess else "")
     if kind in {"model_type", "model_attributes_type"}:
         section = section_at(model, path)
-        names = listed(section.model_fields, "and") if section else ""
+        names = listed(fields_of(section), "and") if section else ""
         return f"must be a mapping with keys among {names}"
     if kind == "dict_type":
         return "must be a mapping, `key: value`"

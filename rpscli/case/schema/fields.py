@@ -9,9 +9,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import Annotated, Any, NoReturn, TypeGuard
+from typing import Annotated, Any, Literal, NoReturn, Self, TypeGuard
 
-from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    PlainValidator,
+    ValidationError,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rpscli.errors import listed, nearest
@@ -28,6 +38,8 @@ SMALLEST, LARGEST = 1e-15, 1e15
 """Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""
 PLAIN = "1"
 """Unit of a plain number."""
+CHECKED_BY_ITSELF = "checked by itself"
+"""Marks a field whose inside is checked against another model."""
 
 
 def refuse(reason: str) -> NoReturn:
@@ -238,3 +250,79 @@ def _text(value: object) -> str:
 
 Text = Annotated[str, PlainValidator(_text), WithJsonSchema({"type": "string", "minLength": 1})]
 """Text that says something."""
+
+
+def must_be(kinds: type | tuple[type, ...], text: str, *, filled: bool = False) -> BeforeValidator:
+    """A value of some kinds; `text` says what it is if not."""
+
+    def check(value: object) -> object:
+        if not isinstance(value, kinds) or (filled and not value):
+            refuse(f"must be {text}")
+        return value
+
+    return BeforeValidator(check)
+
+
+class ValueRange(Section):
+    """Equally spaced values in place of a list."""
+
+    low: Annotated[float, Quantity()] = Field(description="first value")
+    high: Annotated[float, Quantity()] = Field(description="last value")
+    count: Annotated[int, Whole(2, 1_000_000)] = Field(description="how many, both ends included")
+    spacing: Literal["linear", "log"] = Field("linear", description="equal steps or equal ratios")
+
+    @model_validator(mode="after")
+    def _has_ratios(self) -> Self:
+        if self.spacing == "log" and not (self.low > 0.0 and self.high > 0.0):
+            refuse("must have low and high > 0 for equal ratios; use spacing: linear")
+        return self
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Twelve digits, so that 0.1 to 0.3 in three steps has 0.2 in it.
+
+        >>> ValueRange(low=0.1, high=0.3, count=3).values
+        (0.1, 0.2, 0.3)
+        >>> ValueRange(low=0.1, high=10.0, count=3, spacing="log").values
+        (0.1, 1.0, 10.0)
+        """
+        low, high, last = self.low, self.high, self.count - 1
+        if self.spacing == "linear":
+            values = [low + (high - low) * i / last for i in range(self.count)]
+        else:
+            values = [low * (high / low) ** (i / last) for i in range(self.count)]
+        return tuple(float(f"{value:.12g}") for value in values)
+
+
+@dataclass(frozen=True)
+class Several:
+    """One value, a list of them, or numbers at equal spaces; in each case a tuple of values."""
+
+    item: Any
+    alone: bool = True
+    spaced: bool = True
+
+    def _form(self, value: object) -> str:
+        if isinstance(value, list | tuple):
+            return "a list"
+        return "a range" if self.spaced and isinstance(value, dict) else "a value"
+
+    def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """The check, for pydantic."""
+        item = handler.generate_schema(self.item)
+        each = core_schema.tuple_schema([item], variadic_item_index=0, min_length=1)
+        one = core_schema.no_info_after_validator_function(lambda value: (value,), item)
+        spaced = core_schema.no_info_after_validator_function(
+            lambda section: section.values, handler.generate_schema(ValueRange)
+        )
+        forms: dict[Any, CoreSchema] = {"a list": each}
+        if self.alone:
+            forms["a value"] = one
+        if self.spaced:
+            forms["a range"] = core_schema.chain_schema([spaced, each])
+        return core_schema.tagged_union_schema(
+            forms,
+            discriminator=self._form,
+            custom_error_type="rps",
+            custom_error_message="must be a list of values, or {low, high, count}",
+        )

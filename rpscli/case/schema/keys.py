@@ -10,33 +10,72 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.fields import PLAIN, Quantity, Whole
+from rpscli.case.schema.fields import PLAIN, Quantity, Several, ValueRange, Whole
 from rpscli.case.text.document import Fault, Path, dotted
 from rpscli.errors import listed, nearest
 
 
-def section_of(annotation: Any) -> type[BaseModel] | None:
-    """The model inside a field's annotation (``Model | None``), if it holds one."""
+def fields_of(section: type[BaseModel]) -> dict[str, FieldInfo]:
+    """What the format says of each key of a section."""
+    return {field.alias or name: field for name, field in section.model_fields.items()}
+
+
+def sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
+    """The models inside an annotation (``Model | None``) or a field."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    found = (section_of(part) for part in get_args(annotation))
-    return next((model for model in found if model), None)
+        yield annotation
+    elif isinstance(annotation, Several):
+        yield ValueRange
+    else:
+        for part in _parts(annotation):
+            yield from sections_of(part)
+
+
+def section_of(annotation: Any) -> type[BaseModel] | None:
+    """The first model inside an annotation or a field, if it holds one."""
+    return next(sections_of(annotation), None)
+
+
+def _chosen_by_user(annotation: Any) -> Any:
+    """What stands at keys that the user chooses, if the annotation holds such a mapping."""
+    if get_origin(annotation) is dict:
+        return get_args(annotation)[1]
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        # Further options, which may be equally spaced numbers.
+        return ValueRange if annotation.model_config.get("extra") == "allow" else None
+    found = (_chosen_by_user(part) for part in _parts(annotation))
+    return next((values for values in found if values is not None), None)
+
+
+def _parts(annotation: Any) -> tuple[Any, ...]:
+    if isinstance(annotation, FieldInfo):
+        return (annotation.annotation, *annotation.metadata)
+    return get_args(annotation)
+
+
+def annotation_at(model: type[BaseModel], path: Path) -> Any:
+    """What the format says of the value at a path, or None if nothing may stand there.
+
+    An index stands for any element of its list, and any word for a key that the user chooses.
+    """
+    below: Any = model
+    for part in path:
+        if not isinstance(part, int):
+            below = _chosen_by_user(below) or _keys_in(below).get(part)
+    return below
+
+
+def _keys_in(annotation: Any) -> dict[str, FieldInfo]:
+    """The keys of a mapping, of any of its forms."""
+    fields: dict[str, FieldInfo] = {}
+    for section in sections_of(annotation):
+        fields = fields_of(section) | fields
+    return fields
 
 
 def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:
-    """The model of the mapping at a path, or None if there is no mapping in the format.
-
-    An index stands for any element of its list.
-    """
-    for part in path:
-        if isinstance(part, int):
-            continue
-        field = model.model_fields.get(str(part))
-        inner = section_of(field.annotation) if field else None
-        if inner is None:
-            return None
-        model = inner
-    return model
+    """The model of the mapping at a path, or None if there is no mapping in the format."""
+    return section_of(annotation_at(model, path))
 
 
 def marks_of(field: FieldInfo) -> list[object]:
@@ -52,8 +91,7 @@ def marks_of(field: FieldInfo) -> list[object]:
 
 def field_at(model: type[BaseModel], path: Path) -> FieldInfo | None:
     """What the format says of the key at a path, or None if it does not know the key."""
-    parent = section_at(model, path[:-1])
-    return parent.model_fields.get(str(path[-1])) if parent and path else None
+    return _keys_in(annotation_at(model, path[:-1])).get(str(path[-1])) if path else None
 
 
 @cache
@@ -61,7 +99,7 @@ def known_paths(model: type[BaseModel]) -> tuple[Path, ...]:
     """Every key of the format, parents before their children."""
 
     def below(section: type[BaseModel], path: Path) -> Iterator[Path]:
-        for name, field in section.model_fields.items():
+        for name, field in fields_of(section).items():
             yield (*path, name)
             inner = section_of(field.annotation)
             if inner:
@@ -77,10 +115,8 @@ def meant(model: type[BaseModel], path: Path) -> Path | None:
     then a similar word anywhere.
     """
     *parent, key = path
-    known = known_paths(model)
-    named = tuple(part for part in parent if not isinstance(part, int))
-    siblings = {str(p[-1]): (*parent, p[-1]) for p in known if p[:-1] == named}
-    anywhere = {str(p[-1]): p for p in reversed(known)}
+    siblings = {name: (*parent, name) for name in _keys_in(annotation_at(model, tuple(parent)))}
+    anywhere = {str(p[-1]): p for p in reversed(known_paths(model))}
     if str(key) in anywhere:
         return anywhere[str(key)]
     for names in (siblings, anywhere):
@@ -96,7 +132,7 @@ def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]
     text = f"{dotted(path)} is not a key of the format"
     if guess is None:
         section = section_at(model, path[:-1])
-        names = listed(section.model_fields, "and") if section else ""
+        names = listed(fields_of(section), "and") if section else ""
         return Fault(path, f"{text}; known here: {names}", at_key=True), None
     if guess[-1] == path[-1]:
         parent = dotted(guess[:-1])
@@ -198,7 +234,7 @@ def key_references(model: type[BaseModel]) -> Iterator[KeyReference]:
     for path in known_paths(model):
         parent = section_at(model, path[:-1])
         assert parent is not None, "a known key has a section"
-        yield _reference(".".join(map(str, path)), parent.model_fields[str(path[-1])])
+        yield _reference(".".join(map(str, path)), fields_of(parent)[str(path[-1])])
 
 
 def _reference(key: str, field: FieldInfo) -> KeyReference:
@@ -217,7 +253,7 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
         words=tuple(dict.fromkeys([*(quantity.words if quantity else ()), *_words(field)])),
         default=default if isinstance(default, str | int | float) else None,
         required=field.is_required(),
-        keys=tuple(section.model_fields) if section else (),
+        keys=tuple(fields_of(section)) if section else (),
         sections=_sections(key),
     )
 

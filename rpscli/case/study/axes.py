@@ -7,15 +7,19 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path as Folder
-from typing import Any, NamedTuple
+from typing import Any
 
-from rpscli.case.schema.check import schema_check
-from rpscli.case.study.schema import ValueRange, spaced
-from rpscli.case.text.document import Document, Fault, Path, Place, dotted, shown
+from pydantic import TypeAdapter, ValidationError
+
+from rpscli.case.study.schema import Axes, RecordPattern, Source
+from rpscli.case.text.document import Document, Fault, Path, Place, dotted
 from rpscli.errors import RecordError, listed
 from rpscli.records.source import expand_sources
 
 Values = tuple[Any, ...]
+
+_AXES: TypeAdapter[tuple[dict[str, Values], ...]] = TypeAdapter(Axes)
+_SOURCE: TypeAdapter[str | RecordPattern] = TypeAdapter(Source)
 
 MOST_SOURCES = 100_000
 """Ground motions that the options of one pattern may stand for."""
@@ -45,64 +49,20 @@ class Axis:
         return places[row] if len(places) == len(self.rows) else places[0]
 
 
-class AxisCheck(NamedTuple):
-    """The axes as far as they can be read, and what is wrong with them."""
-
-    axes: list[Axis]
-    faults: list[Fault]
-
-
-def axes_of(document: Document) -> AxisCheck:
-    """Axes under the key `vary` of a study."""
-    written = document.content.get("vary", [])
-    check = AxisCheck([], [])
-    if not isinstance(written, list):
-        text = "vary must be a list of axes, each a mapping: `- dotted.key: [value, value]`"
-        return check._replace(faults=[Fault(("vary",), text)])
-    for index, item in enumerate(written):
+def axes_of(document: Document) -> tuple[list[Axis], list[Fault]]:
+    """Axes under the key `vary` of a study as far as they can be read, and what is unequal."""
+    try:
+        read = _AXES.validate_python(document.content.get("vary", []))
+    except ValidationError:
+        return [], []  # told key by key
+    axes: list[Axis] = []
+    faults: list[Fault] = []
+    for index, values in enumerate(read):
         path: Path = ("vary", index)
-        if not isinstance(item, dict) or not item:
-            text = f"{dotted(path)} = {shown(item)} must be a mapping `dotted.key: [value, value]`"
-            check.faults.append(Fault(path, text))
-            continue
-        values = {}
-        for key, row in item.items():
-            found = _values(document, (*path, key), row)
-            check.faults.extend(fault for fault in found if isinstance(fault, Fault))
-            values[key] = tuple(value for value in found if not isinstance(value, Fault))
-        if not any(fault.path[:2] == path for fault in check.faults):
-            check.faults.extend(_unequal(document, path, values))
-            if len({len(column) for column in values.values()}) == 1:
-                check.axes.append(_axis(document, path, values))
-    return check
-
-
-def _values(document: Document, path: Path, written: object) -> list[Any]:
-    """The values of one key, or the faults among them."""
-    key = dotted(path)
-    if isinstance(written, dict):
-        faults = part_faults(document, path)
-        if faults:
-            return list(faults)
-        try:
-            return list(spaced(ValueRange.model_validate(written)))
-        except ValueError as error:
-            return [Fault(path, f"{key}: {error}")]
-    if not isinstance(written, list) or not written:
-        text = f"{key} = {shown(written)} must be a list of values, or {{low, high, count}}"
-        return [Fault(path, text)]
-    empty = [i for i, value in enumerate(written) if value is None]
-    if empty:
-        return [Fault((*path, i), f"{key}.{i} has no value; write one") for i in empty]
-    return list(written)
-
-
-def part_faults(document: Document, path: Path) -> list[Fault]:
-    """Faults of a mapping that must be a range of values, with their whole paths."""
-    return [
-        Fault((*path, *f.path), f"{dotted(path)}.{f.text}", f.at_key)
-        for f in schema_check(ValueRange, document.part(*path)).faults
-    ]
+        faults += _unequal(document, path, values)
+        if len({len(column) for column in values.values()}) == 1:
+            axes.append(_axis(document, path, values))
+    return axes, faults
 
 
 def _unequal(document: Document, path: Path, values: Mapping[str, Values]) -> Iterator[Fault]:
@@ -148,36 +108,25 @@ def sources_of(document: Document, folder: Folder) -> tuple[tuple[str, ...], lis
     Whether a source exists is seen here; whether it can be read is seen when it is.
     """
     written = document.content.get("records")
-    if written is None:
-        return (), []
-    if not isinstance(written, list) or not written:
-        text = f"records = {shown(written)} must be a list of sources, as in [fema_p695:*]"
-        return (), [Fault(("records",), text)]
     sources: list[str] = []
     faults: list[Fault] = []
-    for index, item in enumerate(written):
+    for index, item in enumerate(written if isinstance(written, list) else ()):
         path: Path = ("records", index)
         try:
-            patterns = [item] if isinstance(item, str) else _product(item, path)
+            read = _SOURCE.validate_python(item)
+            patterns = [read] if isinstance(read, str) else _product(read, path)
             sources += expand_sources(patterns, folder=folder)
+        except ValidationError:
+            continue  # told key by key
         except (RecordError, ValueError) as error:
             faults.append(Fault(path, str(error)))
     return tuple(dict.fromkeys(sources)), faults
 
 
-def _product(item: object, path: Path) -> list[str]:
+def _product(pattern: RecordPattern, path: Path) -> list[str]:
     """Sources of a mapping: every option may have several values, the first varies slowest."""
-    source = item.get("source") if isinstance(item, dict) else None
-    if not isinstance(item, dict) or not isinstance(source, str):
-        raise ValueError(  # noqa: TRY004 -- a fault of the file, not of the program
-            f"{dotted(path)} = {shown(item)} must be a source, or a mapping with a source and"
-            " options: {source: 'pulse:sine?amplitude=1 g', period: [0.5, 1]}"
-        )
-    options = [
-        [f"{key}={_text(value)}" for value in _several(value, (*path, key))]
-        for key, value in item.items()
-        if key != "source"
-    ]
+    source, extra = pattern.source, pattern.model_extra or {}
+    options = [[f"{key}={_text(value)}" for value in values] for key, values in extra.items()]
     if (count := math.prod(map(len, options))) > MOST_SOURCES:
         raise ValueError(
             f"{dotted(path)} stands for {count} ground motions, which must not be more than"
@@ -188,20 +137,6 @@ def _product(item: object, path: Path) -> list[str]:
         f"{source}{mark if chosen else ''}{'&'.join(chosen)}"
         for chosen in itertools.product(*options)
     ]
-
-
-def _several(value: object, path: Path) -> list[object]:
-    if isinstance(value, dict):
-        try:
-            return list(spaced(ValueRange.model_validate(value)))
-        except ValueError:
-            raise ValueError(
-                f"{dotted(path)} = {shown(value)} is no range {{low, high, count, spacing}}"
-            ) from None
-    values = value if isinstance(value, list) else [value]
-    if not values or not all(isinstance(v, int | float | str) for v in values):
-        raise ValueError(f"{dotted(path)} = {shown(value)} must be a value or a list of values")
-    return list(values)
 
 
 def _text(value: object) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -78,47 +78,37 @@ def requests_of(
 ) -> tuple[tuple[ReportRequest, ...], list[Fault]]:
     """Reports under the key `reports`, and what is wrong with them."""
     written = document.content.get("reports", [])
-    if not isinstance(written, list):
-        text = f"reports = {shown(written)} must be a list, as in [overturning, fragility]"
-        return (), [Fault(("reports",), text)]
     requests: list[ReportRequest] = []
     faults: list[Fault] = []
-    for index, item in enumerate(written):
+    for index, item in enumerate(written if isinstance(written, list) else ()):
         path: Path = ("reports", index)
-        found = list(_faults(document, path, item, kinds))
-        faults += found
-        if not found:
-            kind = item if isinstance(item, str) else next(iter(item))
-            given = {} if isinstance(item, str) else item[kind] or {}
-            options = kinds[kind].options.model_validate(given)
+        if isinstance(item, str):
+            kind, given = item, None
+        elif isinstance(item, dict) and len(item) == 1:
+            ((kind, given),) = item.items()
+            path = (*path, kind)
+        else:
+            continue  # told with the other keys
+        if kind not in kinds:
+            meant = hint(kind, kinds, f"known are {listed(kinds, 'and')}")
+            text = f"reports.{index}: there is no report {shown(kind)}; {meant}"
+            faults.append(Fault(path, text))
+            continue
+        if given is not None and not isinstance(given, dict):
+            text = f"{dotted(path)} = {shown(given)} must be a mapping of options"
+            faults.append(Fault(path, text))
+            continue
+        part = document.part(*path) if given else Document(document.name, {})
+        check = schema_check(kinds[kind].options, part)
+        faults += (
+            Fault((*path, *fault.path), f"{dotted(path)}.{fault.text}", fault.at_key)
+            for fault in check.faults
+        )
+        if check.read is not None:
             taken = {*OF_THE_STUDY, *(request.stem for request in requests)}
-            stem = _stem(options.name or kind, taken)
-            requests.append(ReportRequest(kind, stem, options, path))
+            stem = _stem(check.read.name or kind, taken)
+            requests.append(ReportRequest(kind, stem, check.read, ("reports", index)))
     return tuple(requests), faults
-
-
-def _faults(document: Document, path: Path, item: object, kinds: ReportKinds) -> Iterator[Fault]:
-    if isinstance(item, dict) and len(item) == 1:
-        (kind, given), options_path = next(iter(item.items())), (*path, *item)
-    elif isinstance(item, str):
-        kind, given, options_path = item, None, path
-    else:
-        text = f"{dotted(path)} = {shown(item)} must be a name, or one `name: {{option: value}}`"
-        yield Fault(path, text)
-        return
-    if kind not in kinds:
-        meant = hint(kind, kinds, f"known are {listed(kinds, 'and')}")
-        yield Fault(options_path, f"{dotted(path)}: there is no report {shown(kind)}; {meant}")
-    elif isinstance(given, dict):
-        for fault in schema_check(kinds[kind].options, document.part(*options_path)).faults:
-            text = f"{dotted(options_path)}.{fault.text}"
-            yield Fault((*options_path, *fault.path), text, fault.at_key)
-    elif given is None:
-        for fault in schema_check(kinds[kind].options, Document(document.name, {})).faults:
-            yield Fault(options_path, f"{dotted(options_path)}.{fault.text}")
-    else:
-        text = f"{dotted(options_path)} = {shown(given)} must be a mapping of options"
-        yield Fault(options_path, text)
 
 
 def _stem(wanted: str, taken: set[str]) -> str:

@@ -6,12 +6,11 @@ import math
 from collections.abc import Iterator, Sequence
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.keys import field_at, unknown_key
 from rpscli.case.study.axes import Axis, clashes
 from rpscli.case.study.reports import ReportKinds, ReportOptions, ReportRequest
-from rpscli.case.study.schema import MeasureScale, RangeSection, StudyFile
-from rpscli.case.text.document import MISSING, Document, Fault, Path, dotted, shown
+from rpscli.case.study.schema import MeasureScale, StudyFile
+from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import listed
 
 OF_HISTORIES = ("records", "scale", "perturb", "observed")
@@ -31,7 +30,7 @@ def varied_paths(document: Document) -> dict[str, Path]:
             paths[key] = ("vary", index, key)
     for key in ranges if isinstance(ranges, dict) else ():
         paths[key] = ("sample", "ranges", key)
-    for part in ("find", "ties"):  # of a design
+    for part in ("variables", "linked"):  # of a design
         written = document.content.get(part)
         paths |= {key: (part, key) for key in (written if isinstance(written, dict) else ())}
     return paths
@@ -73,66 +72,6 @@ def fixed_faults(document: Document, overrides: Sequence[str]) -> Iterator[Fault
             if key == varied or key.startswith(f"{varied}.") or varied.startswith(f"{key}."):
                 message = f"{varied} varies in the study; --set {text} cannot fix it"
                 yield Fault(path, message, at_key=True)
-
-
-def scale_faults(document: Document) -> Iterator[Fault]:
-    """`scale` with a measure; factors alone are checked with the schema."""
-    if not isinstance(scale := document.content.get("scale"), dict) or "measure" not in scale:
-        return
-    found = schema_check(MeasureScale, document.part("scale")).faults
-    for fault in found:
-        yield Fault(("scale", *fault.path), f"scale.{fault.text}", fault.at_key)
-    if "period" in scale and scale["measure"] != "Sa" and not found:
-        text = f"scale.period belongs to the measure Sa; {scale['measure']} has none, take it out"
-        yield Fault(("scale", "period"), text, at_key=True)
-
-
-def range_faults(document: Document) -> Iterator[Fault]:
-    """The ranges of a sample, one by one."""
-    ranges = document.at(("sample", "ranges"))
-    if not isinstance(ranges, dict):
-        if ranges is not MISSING:
-            text = f"sample.ranges = {shown(ranges)} must be keys with their ranges"
-            yield Fault(("sample", "ranges"), f"{text}, as in {{podium.impact.factor: [0.9, 1]}}")
-        return
-    if not ranges:
-        yield Fault(("sample", "ranges"), "sample.ranges is empty; name a key to be sampled")
-    for key, given in ranges.items():
-        yield from _range_faults(document, ("sample", "ranges", key), given)
-
-
-def _range_faults(document: Document, path: Path, given: object) -> Iterator[Fault]:
-    name = dotted(path)
-    if isinstance(given, list):
-        given = dict(zip(("low", "high"), given, strict=False)) if len(given) == 2 else None
-        part = Document(document.name, given or {})
-    else:
-        part = document.part(*path) if isinstance(given, dict) else Document(document.name, {})
-    if not isinstance(given, dict):
-        text = f"{name} must be [low, high], or {{distribution: normal, mean: ..., cov: ...}}"
-        yield Fault(path, text)
-        return
-    found = schema_check(RangeSection, part).faults
-    yield from (Fault((*path, *f.path), f"{name}.{f.text}", f.at_key) for f in found)
-    if not found:
-        reason = _incomplete(RangeSection.model_validate(given))
-        if reason:
-            yield Fault(path, f"{name} {reason}")
-
-
-def _incomplete(section: RangeSection) -> str | None:
-    """What keeps a range from being a distribution."""
-    bounds = (section.low, section.high)
-    moments = (section.mean, section.cov)
-    if None not in bounds and moments == (None, None) and section.distribution == "uniform":
-        low, high = bounds
-        ordered = low is not None and high is not None and low < high
-        return None if ordered else f"has low = {shown(low)}, which must be < high = {shown(high)}"
-    if None in moments or bounds != (None, None):
-        return "must have low and high alone (uniform), or distribution, mean and cov"
-    if section.distribution == "lognormal" and not (section.mean or 0.0) > 0.0:
-        return f"has mean = {shown(section.mean)}, which must be > 0 for a lognormal distribution"
-    return "has mean = 0, and cov is relative to it" if section.mean == 0.0 else None
 
 
 def analysis_rules(

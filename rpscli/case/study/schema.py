@@ -6,24 +6,34 @@ that join several keys stand in `rules`.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
+    AfterValidator,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
     PlainValidator,
     Tag,
-    ValidationError,
     ValidationInfo,
     WithJsonSchema,
+    model_validator,
 )
-from pydantic_core import PydanticCustomError
 
 from rpscli.case.schema.case_file import FORMAT_VERSION, PositiveRatio, Time
-from rpscli.case.schema.fields import Quantity, Section, Text, Whole, first_fault, is_finite, refuse
+from rpscli.case.schema.fields import (
+    CHECKED_BY_ITSELF,
+    Quantity,
+    Section,
+    Several,
+    Text,
+    Whole,
+    must_be,
+    refuse,
+)
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.schema.scale_to import measured_value
+from rpscli.case.schema.scale_to import MeasuredValue, measured_value
 from rpscli.case.text.document import shown
 from rpscli.records.measures import Measure
 
@@ -37,143 +47,63 @@ Share = Annotated[
     float,
     Quantity(symbol="share of the value", at_least=0, below=1, remedy="1 % is 0.01"),
 ]
+PositiveNumber = Annotated[float, Quantity(above=0)]
 
 
-class ValueRange(Section):
-    """Equally spaced values in place of a list."""
-
-    low: Number = Field(description="first value")
-    high: Number = Field(description="last value")
-    count: Annotated[int, Whole(2, 1_000_000)] = Field(description="how many, both ends included")
-    spacing: Literal["linear", "log"] = Field("linear", description="equal steps or equal ratios")
-
-
-def spaced(section: ValueRange) -> tuple[float, ...]:
-    """The values of a range; twelve digits, so that 0.1 to 0.3 in three steps has 0.2 in it.
-
-    Raises
-    ------
-    ValueError
-        If a logarithmic range has a bound that is not positive.
-
-    Examples
-    --------
-    >>> spaced(ValueRange(low=0.1, high=0.3, count=3))
-    (0.1, 0.2, 0.3)
-    >>> spaced(ValueRange(low=0.1, high=10.0, count=3, spacing="log"))
-    (0.1, 1.0, 10.0)
-    """
-    low, high, last = section.low, section.high, section.count - 1
-    if section.spacing == "linear":
-        values = [low + (high - low) * i / last for i in range(section.count)]
-    elif low > 0.0 and high > 0.0:
-        values = [low * (high / low) ** (i / last) for i in range(section.count)]
-    else:
-        raise ValueError("equal ratios need low and high > 0; use spacing: linear")
-    return tuple(float(f"{value:.12g}") for value in values)
-
-
-def _numbers(value: object, *, above: float | None = None) -> tuple[float, ...]:
-    """One number, a list of them, or a range."""
-    if isinstance(value, dict):
-        return _of_range(value, above)
-    listed = list(value) if isinstance(value, list | tuple) else [value]
-    if not listed:
-        refuse("must not be an empty list")
-    return tuple(_number(item, above) for item in listed)
-
-
-def _of_range(value: dict[str, Any], above: float | None) -> tuple[float, ...]:
-    try:
-        values = spaced(ValueRange.model_validate(value))
-    except ValidationError as error:
-        refuse(f"is no range {{low, high, count, spacing}}: {first_fault(error)}")
-    except ValueError as error:
-        refuse(str(error))
-    return tuple(_number(item, above) for item in values)
-
-
-def _number(item: object, above: float | None) -> float:
-    if not is_finite(item):
-        refuse(f"must be finite numbers, or {{low, high, count}}; {shown(item)} is none")
-    if above is not None and not float(item) > above:
-        refuse(f"must hold values > {above:g}; {shown(item)} is not")
-    return float(item)
-
-
-def _positive_numbers(value: object) -> tuple[float, ...]:
-    return _numbers(value, above=0.0)
-
-
-def _measured_values(value: object, info: ValidationInfo) -> tuple[float, ...]:
-    """Values of the measure that stands before them, in SI: numbers, or texts with a unit."""
-
-    def in_si(item: object) -> object:
-        try:
-            return measured_value(item, info) if isinstance(item, str) else item
-        except PydanticCustomError as error:
-            refuse(f"has {shown(item)}, which {error}")
-
-    if isinstance(value, dict):
-        ends = {key: in_si(item) for key, item in value.items() if key in {"low", "high"}}
-        return _positive_numbers(value | ends)
-    listed = list(value) if isinstance(value, list | tuple) else [value]
-    return _positive_numbers([in_si(item) for item in listed])
-
-
-def _keys(value: object) -> tuple[str, ...]:
-    listed = list(value) if isinstance(value, list | tuple) else [value]
-    if not all(isinstance(item, str) and item.strip() for item in listed):
+def _key(value: object) -> str:
+    if not isinstance(value, str) or not value.strip():
         refuse("must be a key or a list of keys, as text")
-    return tuple(str(item) for item in listed)
+    return value
 
 
-def _schema(one: str) -> WithJsonSchema:
-    several = {"type": "array", "items": {"type": one}, "minItems": 1}
-    return WithJsonSchema({"anyOf": [{"type": one}, several]})
+def _option(value: object) -> object:
+    if not isinstance(value, int | float | str):
+        refuse("must be a value or a list of values")
+    return value
 
 
-_SPACED = {
-    "type": "object",
-    "required": ["low", "high", "count"],
-    "properties": {
-        "low": {"type": "number"},
-        "high": {"type": "number"},
-        "count": {"type": "integer", "minimum": 2},
-        "spacing": {"enum": ["linear", "log"]},
-    },
-    "additionalProperties": False,
-}
-_NUMBERS = WithJsonSchema(
-    {"anyOf": [{"type": "number"}, {"type": "array", "items": {"type": "number"}}, _SPACED]}
-)
+def _ends_in_si(value: object, info: ValidationInfo) -> object:
+    """Ends of a range with the unit of the measure that stands before it."""
+    if not isinstance(value, dict):
+        return value
+    ends = {key: value[key] for key in ("low", "high") if isinstance(value.get(key), str)}
+    return value | {key: measured_value(end, info) for key, end in ends.items()}
 
-Numbers = Annotated[tuple[float, ...], PlainValidator(_numbers), _NUMBERS]
+
+Option = Annotated[Any, PlainValidator(_option), WithJsonSchema({"type": ["number", "string"]})]
+Key = Annotated[str, PlainValidator(_key), WithJsonSchema({"type": "string"})]
+Keys = Annotated[tuple[str, ...], Several(Key, spaced=False)]
+"""One key or several."""
+
+Numbers = Annotated[tuple[float, ...], Several(Number)]
 """One number, several, or a range of them."""
 
-PositiveNumbers = Annotated[tuple[float, ...], PlainValidator(_positive_numbers), _NUMBERS]
+PositiveNumbers = Annotated[tuple[float, ...], Several(PositiveNumber)]
 """The same, each above zero."""
 
-MeasuredValues = Annotated[
-    tuple[float, ...],
-    PlainValidator(_measured_values),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": ["number", "string"]},
-                {"type": "array", "items": {"type": ["number", "string"]}},
-                _SPACED,
-            ]
-        }
-    ),
-]
+MeasuredValues = Annotated[tuple[float, ...], Several(MeasuredValue), BeforeValidator(_ends_in_si)]
 """The same, of an intensity measure, with or without a unit."""
 
-Keys = Annotated[tuple[str, ...], PlainValidator(_keys), _schema("string")]
-"""One key or several."""
+Axes = Annotated[
+    tuple[
+        Annotated[
+            dict[str, Annotated[tuple[Any, ...], Several(Any, alone=False)]],
+            must_be(dict, "a mapping `dotted.key: [value, value]`", filled=True),
+        ],
+        ...,
+    ],
+    must_be(list, "a list of axes, each a mapping: `- dotted.key: [value, value]`"),
+]
+"""Values of keys that vary together, axis by axis."""
 
 
 Analysis = Literal["timehistory", "modal", "pushover"]
+
+
+def _of_sa(period: float | None, info: ValidationInfo) -> float | None:
+    if info.data.get("measure", "Sa") != "Sa":
+        refuse(f"belongs to the measure Sa; {info.data['measure']} has none, take it out")
+    return period
 
 
 class MeasureScale(Section):
@@ -183,7 +113,7 @@ class MeasureScale(Section):
         description="PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"
     )
     values: MeasuredValues = Field(description="values to scale to, SI or with a unit")
-    period: Time | None = Field(
+    period: Annotated[Time | None, AfterValidator(_of_sa)] = Field(
         None, description="of Sa; left out: the fixed-base first period of each system"
     )
     damping: DampingRatio = Field(0.05, description="of Sa")
@@ -191,11 +121,11 @@ class MeasureScale(Section):
 
 def _kind_of_scale(value: object) -> str:
     measured = isinstance(value, dict) and "measure" in value
-    return "measure" if measured or isinstance(value, MeasureScale) else "factors"
+    return "to a measure" if measured or isinstance(value, MeasureScale) else "by factors"
 
 
 Scale = Annotated[
-    Annotated[MeasureScale, Tag("measure")] | Annotated[Numbers, Tag("factors")],
+    Annotated[MeasureScale, Tag("to a measure")] | Annotated[Numbers, Tag("by factors")],
     Discriminator(_kind_of_scale),
 ]
 """Factors on the records, or what to scale them to."""
@@ -212,6 +142,38 @@ class RangeSection(Section):
     mean: Number | None = Field(None, description="mean value")
     cov: PositiveRatio | None = Field(None, description="standard deviation over mean")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_bounds(cls, value: object) -> object:
+        if isinstance(value, list | tuple) and len(value) == 2:
+            return {"low": value[0], "high": value[1]}
+        if not isinstance(value, dict):
+            refuse("must be [low, high], or {distribution: normal, mean: ..., cov: ...}")
+        return value
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        low, high = self.low, self.high
+        moments = (self.mean, self.cov)
+        if low is not None and high is not None and moments == (None, None):
+            if self.distribution != "uniform":
+                refuse("must have low and high alone (uniform), or distribution, mean and cov")
+            if low >= high:
+                refuse(f"has low = {shown(low)}, which must be < high = {shown(high)}")
+        elif None in moments or (low, high) != (None, None):
+            refuse("must have low and high alone (uniform), or distribution, mean and cov")
+        elif self.distribution == "lognormal" and not (self.mean or 0.0) > 0.0:
+            refuse(f"has mean = {shown(self.mean)}, which must be > 0 for a lognormal distribution")
+        elif self.mean == 0.0:
+            refuse("has mean = 0, and cov is relative to it")
+        return self
+
+
+Ranges = Annotated[
+    dict[str, RangeSection],
+    must_be(dict, "keys with their ranges, as in {podium.impact.factor: [0.9, 1]}", filled=True),
+]
+
 
 class SampleSection(Section):
     """A sample of uncertain parameters, by a low-discrepancy or stratified sequence."""
@@ -219,9 +181,12 @@ class SampleSection(Section):
     method: Literal["sobol", "latin_hypercube"] = Field("sobol", description="kind of sequence")
     size: Annotated[int, Whole(1)] = Field(description="number of sampled systems")
     seed: Seed = Field(1, description="of the scrambling; the same seed gives the same sample")
-    ranges: dict[str, tuple[Number, Number] | RangeSection] = Field(
-        description="dotted case keys with [low, high] or a distribution"
-    )
+    ranges: Annotated[
+        dict[str, RangeSection],
+        must_be(
+            dict, "keys with their ranges, as in {podium.impact.factor: [0.9, 1]}", filled=True
+        ),
+    ] = Field(description="dotted case keys with [low, high] or a distribution")
 
 
 class PerturbSection(Section):
@@ -239,8 +204,44 @@ class RecordPattern(Section):
     """One source with options that take several values: the product of all of them."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
+    __pydantic_extra__: dict[str, Annotated[tuple[Any, ...], Several(Option)]]
 
     source: Text = Field(description="a pulse or a synthetic motion, without the varied options")
+
+
+Source = Annotated[
+    Annotated[Text, Tag("text")] | Annotated[RecordPattern, Tag("pattern")],
+    Discriminator(lambda value: "text" if isinstance(value, str) else "pattern"),
+    must_be(
+        (str, dict),
+        "a source, or a mapping with a source and options:"
+        " {source: 'pulse:sine?amplitude=1 g', period: [0.5, 1]}",
+    ),
+]
+Sources = Annotated[
+    tuple[Source, ...], must_be(list, "a list of sources, as in [fema_p695:*]", filled=True)
+]
+
+
+def _base(value: object) -> object:
+    if not isinstance(value, dict) and not (isinstance(value, str) and value.strip()):
+        refuse("must be a file, as text, or a case, as a mapping")
+    return value
+
+
+def _report(value: object) -> object:
+    if not isinstance(value, str) and not (isinstance(value, dict) and len(value) == 1):
+        refuse("must be a name, or one `name: {option: value}`")
+    return value
+
+
+WrittenOrNamed = str | dict[str, Any]
+Base = Annotated[WrittenOrNamed, PlainValidator(_base), WithJsonSchema({}), CHECKED_BY_ITSELF]
+Reports = Annotated[
+    tuple[Annotated[WrittenOrNamed, PlainValidator(_report), WithJsonSchema({})], ...],
+    must_be(list, "a list, as in [overturning, fragility]"),
+    CHECKED_BY_ITSELF,
+]
 
 
 class StudyParts(Section):
@@ -250,10 +251,8 @@ class StudyParts(Section):
         int, Whole(FORMAT_VERSION, FORMAT_VERSION, "this program reads version 1 of the format")
     ] = Field(description="version of the format; write `rps: 1`")
     title: Text | None = Field(None, description="heading of reports and plots")
-    base: Text | dict[str, Any] = Field(
-        description="a case file, seen from the study's folder, or the case itself"
-    )
-    records: tuple[Text | RecordPattern, ...] | None = Field(
+    base: Base = Field(description="a case file, seen from the study's folder, or the case itself")
+    records: Sources | None = Field(
         None, description="record sources, folders, globs; left out: the record of the case"
     )
     scale: Scale | None = Field(
@@ -273,9 +272,7 @@ class StudyFile(StudyParts):
     """A study of rps: many points from one case."""
 
     analysis: Analysis = Field("timehistory", description="what is done at every point")
-    vary: tuple[dict[str, tuple[Any, ...] | ValueRange], ...] = Field(
-        (), description="axes of a product; the keys of one axis go together"
-    )
+    vary: Axes = Field((), description="axes of a product; the keys of one axis go together")
     sample: SampleSection | None = Field(None, description="uncertain parameters; one more axis")
     perturb: PerturbSection | None = Field(
         None, description="small perturbations around every point"
@@ -283,6 +280,4 @@ class StudyFile(StudyParts):
     observed: Text | None = Field(
         None, description="CSV file of what was observed under records; for the report comparison"
     )
-    reports: tuple[str | dict[str, Any], ...] = Field(
-        (), description="names of reports, or `name: {option: value}`"
-    )
+    reports: Reports = Field((), description="names of reports, or `name: {option: value}`")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
+from rpscli.case.schema.keys import fields_of
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Axis, axes_of, sources_of
 from rpscli.case.study.observed import Observed, observed_of
@@ -18,16 +19,14 @@ from rpscli.case.study.reports import ReportKinds, ReportRequest, requests_of
 from rpscli.case.study.rules import (
     analysis_rules,
     fixed_faults,
-    range_faults,
     record_rules,
     report_rules,
-    scale_faults,
     size_faults,
     twice,
     unknown_keys,
 )
 from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
-from rpscli.case.text.document import Document, Fault, is_case, is_design, is_study, shown
+from rpscli.case.text.document import Document, is_case, is_design, is_study, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
@@ -65,6 +64,8 @@ class Study:
         What is drawn at the end.
     digest
         SHA-256 of the text.
+    notes
+        What the user should know about the file.
     """
 
     name: str
@@ -81,6 +82,7 @@ class Study:
     observed: Observed | None
     reports: tuple[ReportRequest, ...]
     digest: str
+    notes: tuple[str, ...] = ()
 
     @property
     def scale(self) -> MeasureScale | tuple[float, ...] | None:
@@ -207,7 +209,7 @@ def shared_out(overrides: Sequence[str], model: type[StudyParts]) -> tuple[list[
     of_base: list[str] = []
     for override in overrides:
         key = override.partition("=")[0].strip()
-        known = key.split(".")[0] in model.model_fields and not key.startswith("analysis.")
+        known = key.split(".")[0] in fields_of(model) and not key.startswith("analysis.")
         (own if known else of_base).append(override)
     return own, of_base
 
@@ -221,13 +223,11 @@ def _checked(
     observed, observed_faults = observed_of(document, folder, axes)
     requests, request_faults = requests_of(document, kinds)
     faults = [
-        *single_key_faults(document, StudyFile),
+        *schema_check(StudyFile, document).faults,
         *axis_faults,
         *source_faults,
         *observed_faults,
         *request_faults,
-        *scale_faults(document),
-        *range_faults(document),
         *unknown_keys(document),
         *twice(document, axes),
         *record_rules(document),
@@ -237,26 +237,6 @@ def _checked(
         faults += report_rules(document, axes, requests, kinds)
     document.refuse(faults)
     return tuple(axes), sources, observed, requests
-
-
-def single_key_faults(document: Document, model: type[StudyParts]) -> Iterator[Fault]:
-    """Faults of the keys that stand alone; those with a structure of their own are left out."""
-    structured = set(_STRUCTURED) & set(model.model_fields)
-    content = {key: value for key, value in document.content.items() if key not in structured}
-    if "base" in content and isinstance(content["base"], dict):
-        content["base"] = "written here"
-    if isinstance(content.get("scale"), dict) and "measure" in content["scale"]:
-        content["scale"] = 1.0
-    if isinstance(sample := content.get("sample"), dict) and "ranges" in sample:
-        content["sample"] = sample | {"ranges": {}}
-    for key in ("find", "ties"):  # of a design
-        if isinstance(content.get(key), dict):
-            content[key] = {}
-    plain = Document(document.name, content, document.keys, document.values, document.faults)
-    yield from schema_check(model, plain).faults
-
-
-_STRUCTURED = ("vary", "records", "reports")
 
 
 def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:

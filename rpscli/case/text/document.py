@@ -222,7 +222,7 @@ def is_study(document: Document) -> bool:
 
 def is_design(document: Document) -> bool:
     """Whether a document is a design rather than a study."""
-    return "base" in document.content and "find" in document.content
+    return "base" in document.content and bool({"variables", "find"} & document.content.keys())
 
 
 def is_case(document: Document) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.case.conditions import EVENTS, LIMITS
-from rpscli.case.design import Aim
+from rpscli.case.design import Objective
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
@@ -31,7 +31,7 @@ def requirement_unit(requirement: Requirement) -> str:
     return "-" if name in EVENTS else LIMITS[name].unit
 
 
-def aim_label(aim: Aim) -> str:
+def aim_label(aim: Objective) -> str:
     """A sum in words.
 
     >>> from rpscli.case.design import Term
@@ -47,7 +47,7 @@ def aim_label(aim: Aim) -> str:
     return " + ".join(terms)
 
 
-def aim_unit(aim: Aim) -> str:
+def aim_unit(aim: Objective) -> str:
     """SI unit of an aim of one term; ``-`` for a sum, which may be of anything."""
     if len(aim) != 1:
         return "-"
@@ -66,7 +66,9 @@ def answer_document(answer: Answer) -> dict[str, Any]:
             "valid": int(answer.valid.sum()),
             "passing": int(answer.passes.sum()),
         },
-        "least": [{"aim": aim_label(aim), "unit": aim_unit(aim)} for aim in answer.task.file.least],
+        "least": [
+            {"aim": aim_label(aim), "unit": aim_unit(aim)} for aim in answer.task.file.minimise
+        ],
         "best": None if found is None else _design(answer, found),
         "robust": None if answer.robust == NONE else _design(answer, answer.robust),
         "closest": _design(answer, answer.closest),
@@ -85,7 +87,9 @@ def answer_document(answer: Answer) -> dict[str, Any]:
 
 
 def _design(answer: Answer, place: int) -> dict[str, Any]:
-    aims = zip(map(aim_label, answer.task.file.least), answer.judged.aims[:, 0, place], strict=True)
+    aims = zip(
+        map(aim_label, answer.task.file.minimise), answer.judged.aims[:, 0, place], strict=True
+    )
     return {
         "design": place + 1,
         "values": dict(zip(answer.task.keys, answer.values[place].tolist(), strict=True)),
@@ -95,7 +99,7 @@ def _design(answer: Answer, place: int) -> dict[str, Any]:
 
 def _intervals(answer: Answer) -> list[tuple[str, Interval]]:
     keys = [(key, answer.interval(place)) for place, key in enumerate(answer.task.keys)]
-    return [*keys, (aim_label(answer.task.file.least[0]), answer.aim_interval)]
+    return [*keys, (aim_label(answer.task.file.minimise[0]), answer.aim_interval)]
 
 
 def _without_one(answer: Answer) -> list[dict[str, Any]]:
@@ -148,7 +152,7 @@ def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Colu
     for name, flags in (("valid", answer.valid), ("passes", answer.passes)):
         columns.append(Column(name, "-", [str(bool(flags[place])).lower() for place in places]))
     columns.append(column("passing_share", "-", passing))
-    for row, aim in enumerate(answer.task.file.least):
+    for row, aim in enumerate(answer.task.file.minimise):
         name = aim_label(aim).replace(",", "")
         columns.append(column(f"least {name}", aim_unit(aim), judged.aims[row, 0]))
     for row, requirement in enumerate(judged.requirements):

@@ -171,7 +171,7 @@ def _draw_designs(axes: Axes, answer: Answer, x: int, y: int) -> None:
 def front_figure(answer: Answer, title: str) -> bytes:
     """Both aims: no passing design lies left of and below the front."""
     aims, labels = answer.judged.aims[:, 0].copy(), []
-    for place, aim in enumerate(answer.task.file.least):
+    for place, aim in enumerate(answer.task.file.minimise):
         unit = aim_unit(aim)
         largest = np.abs(aims[place][np.isfinite(aims[place])]).max(initial=0.0)
         factor, prefix = style.engineering(float(largest)) if unit == "N" else (1.0, "")

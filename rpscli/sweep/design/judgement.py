@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rpscli.case.conditions import EVENTS, Condition
-from rpscli.case.design import Aim, DesignTask
+from rpscli.case.design import DesignTask, Objective
 from rpscli.sweep.statistics.verdicts import decisive, judge, worse
 from rpscli.sweep.table import Array, Table
 
@@ -120,11 +120,11 @@ def judged_designs(
         else:
             found.append(condition.sign * decisive(at, weights, condition))
     keys = dict(zip(task.keys, values.T, strict=True))
-    aims = [_aim(aim, keys, demands, weights) for aim in task.file.least]
+    aims = [_aim(aim, keys, demands, weights) for aim in task.file.minimise]
     return Judged(tuple(requirements), *map(np.array, (found, excess, met, aims)))
 
 
-def _aim(aim: Aim, keys: Mapping[str, Array], demands: Demands, weights: Array) -> Array:
+def _aim(aim: Objective, keys: Mapping[str, Array], demands: Demands, weights: Array) -> Array:
     """(weightings, designs) a sum; of a result, the largest of all intensities."""
     total = np.zeros((len(weights), len(next(iter(keys.values())))))
     for name, term in aim.items():

@@ -46,7 +46,7 @@ class Search:
     @property
     def names(self) -> tuple[str, ...]:
         """Results that requirements and aims name."""
-        aims = (name for aim in self.task.file.least for name in aim)
+        aims = (name for aim in self.task.file.minimise for name in aim)
         named = [*(r.condition.name for r in self.requirements), *aims]
         return tuple(name for name in dict.fromkeys(named) if name not in self.task.keys)
 
@@ -75,7 +75,7 @@ class Search:
             given = dict(zip(self.task.keys, row, strict=True))
             try:
                 _ = case_from_mapping(
-                    study.base, study.base.name, study.base_folder, given, label="find"
+                    study.base, study.base.name, study.base_folder, given, label="variables"
                 ).structure
             except CaseError as error:
                 found[place] = False
@@ -104,7 +104,9 @@ class Search:
         lacking = frozenset.union(*(properties.lacking for properties in layout.properties))
         for name in self.names:
             if name in lacking and name not in EVENTS:
-                where = "least" if any(name in aim for aim in self.task.file.least) else "limits"
+                where = (
+                    "minimise" if any(name in aim for aim in self.task.file.minimise) else "limits"
+                )
                 document.refuse([Fault((where,), f"{where}: {needs_of(name)}")])
 
     def add(self, places: Array, values: Array, valid: Flags, table: Table | None) -> None:

@@ -34,7 +34,7 @@ def first_places(unknowns: int, count: int, seed: int) -> Array:
     if unknowns == 1:
         return np.linspace(0.0, 1.0, count)[:, None]
     corners = list(itertools.product((0.0, 1.0), repeat=unknowns)) * (unknowns <= MOST_CORNERS)
-    section = SampleSection.model_validate({"size": count, "seed": seed, "ranges": {}})
+    section = SampleSection.model_construct(size=count, seed=seed, ranges={})
     return np.array([*corners, *unit_cube(section, unknowns).tolist()])
 
 

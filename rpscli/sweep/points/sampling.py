@@ -48,11 +48,8 @@ def balance_note(section: SampleSection) -> str | None:
     return f"sample.size = {size} is no power of 2, where Sobol samples are even: {better} is"
 
 
-def _values(unit: Array, given: tuple[float, float] | RangeSection) -> Array:
+def _values(unit: Array, given: RangeSection) -> Array:
     """One parameter from its place in the unit interval."""
-    if isinstance(given, tuple):
-        low, high = given
-        return low + (high - low) * unit
     if given.low is not None and given.high is not None:
         return given.low + (given.high - given.low) * unit
     assert given.mean is not None, "the study's rules make sure that the moments are given"
