@@ -14,12 +14,14 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    GetJsonSchemaHandler,
     PlainValidator,
     Tag,
     ValidationInfo,
     WithJsonSchema,
     model_validator,
 )
+from pydantic_core import CoreSchema
 
 from rpscli.case.schema.case_file import FORMAT_VERSION, PositiveRatio, Time
 from rpscli.case.schema.fields import (
@@ -141,6 +143,14 @@ class RangeSection(Section):
     )
     mean: Number | None = Field(None, description="mean value")
     cov: PositiveRatio | None = Field(None, description="standard deviation over mean")
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """The JSON schema: the bounds alone may stand in place of the mapping."""
+        items = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+        return {"anyOf": [handler(schema), items]}
 
     @model_validator(mode="before")
     @classmethod
