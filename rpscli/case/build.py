@@ -39,17 +39,7 @@ class Shape(NamedTuple):
 
 
 class Podium(NamedTuple):
-    """Columns and cap beam, and what they carry.
-
-    Parameters
-    ----------
-    bearing
-        Shape of every column.
-    columns_mass, cap_beam_mass, building_mass
-        N m_c of all columns together, m_b and M_tot [kg].
-    impact_law
-        Restitution at theta = 0.
-    """
+    """Columns and cap beam, and what they carry."""
 
     bearing: Bearing
     columns_mass: float
@@ -92,13 +82,7 @@ def _shape_of_dimensions(sizes: DimensionsSection) -> Shape | None:
 
 
 def podium_of(file: CaseFile, shape: Shape) -> Podium:
-    """The podium that a validated case file describes, with columns of a given shape.
-
-    Raises
-    ------
-    ValueError
-        If a column cannot have this shape.
-    """
+    """The podium that a validated case file describes, with columns of a given shape."""
     total = building_mass(file.superstructure)
     columns, cap_beam = podium_masses(file.podium, total)
     impact = file.podium.impact
@@ -112,13 +96,7 @@ def podium_of(file: CaseFile, shape: Shape) -> Podium:
 
 
 def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
-    """The whole structure: the podium with the building on it.
-
-    Raises
-    ------
-    ValueError
-        If the structure is outside the model (restitution <= 0, numbers that overflow).
-    """
+    """The whole structure: the podium with the building on it."""
     return PodiumStructure(
         bearing=podium.bearing,
         columns_mass=podium.columns_mass,

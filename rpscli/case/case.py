@@ -168,19 +168,7 @@ def load_case(source: str | Path, overrides: Overrides = ()) -> Case:
 def parse_case(
     text: str, *, name: str, folder: Path | None = None, overrides: Overrides = ()
 ) -> Case:
-    """A case from its text.
-
-    Parameters
-    ----------
-    text
-        YAML.
-    name
-        The source as it is named in messages; the stem of its last part names the case.
-    folder
-        Where relative file names start; the current folder by default.
-    overrides
-        See `apply_overrides`.
-    """
+    """A case from its text."""
     document = read_yaml(text, name)
     if is_study(document):
         kind, command = ("design", "design") if is_design(document) else ("study", "sweep")
@@ -199,17 +187,7 @@ def case_from_mapping(
     *,
     label: str = "--set",
 ) -> Case:
-    """A case from values in memory, or from a document (or part of one) with its positions.
-
-    Parameters
-    ----------
-    mapping
-        The case. It stays as it is.
-    name, folder, overrides
-        As in `parse_case`.
-    label
-        Heads the messages about overrides.
-    """
+    """A case from values in memory, or from a document (or part of one) with its positions."""
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
     file, partial = _checked(document)

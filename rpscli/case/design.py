@@ -217,17 +217,7 @@ class DesignFile(StudyParts):
 
 @dataclass(frozen=True, eq=False)
 class DesignTask:
-    """What is looked for.
-
-    Parameters
-    ----------
-    study
-        Case, records and limits; its axes are empty, and its document is that of the design.
-    file
-        The validated file.
-    confirming
-        Single sources of motions that the search does not see.
-    """
+    """What is looked for."""
 
     study: Study
     file: DesignFile
@@ -244,13 +234,7 @@ class DesignTask:
         return (*(unknown.key for unknown in self.unknowns), *self.file.linked)
 
     def values(self, places: Array) -> Array:
-        """(designs, keys) values in SI units.
-
-        Parameters
-        ----------
-        places
-            (designs, unknowns) in the unit cube.
-        """
+        """(designs, keys) values in SI units."""
         low = np.array([unknown.low for unknown in self.unknowns])
         high = np.array([unknown.high for unknown in self.unknowns])
         found = {
@@ -300,24 +284,7 @@ def read_design(source: str, overrides: Sequence[str] = ()) -> DesignTask:
 def parse_design(
     text: str, name: str, *, folder: Path | None = None, overrides: Sequence[str] = ()
 ) -> DesignTask:
-    """A design task from its text.
-
-    Parameters
-    ----------
-    text
-        YAML.
-    name
-        Of the file, for messages.
-    folder
-        Where relative file names start; the working folder by default.
-    overrides
-        Texts ``key=value`` for keys of the design (``search.most``) or of the case at its base.
-
-    Raises
-    ------
-    CaseError
-        If it is not valid: one line for each fault.
-    """
+    """A design task from its text."""
     folder = folder or Path()
     document = read_yaml(text, name)
     if not is_design(document):

@@ -33,31 +33,8 @@ def apply_overrides(
     label: str = "--set",
     model: type[BaseModel] = CaseFile,
 ) -> Document:
-    """A new document with values put over those that are written.
+    """A new document with values put over those that are written; null takes a key out.
 
-    Parameters
-    ----------
-    document
-        The document; it stays as it is.
-    overrides
-        Either texts ``dotted.key=value`` whose values are YAML (scalars, ``[1, 2]``,
-        ``{law: rigid}``), or `Override`s with the places where a study wrote them, or a mapping
-        from dotted keys to Python values. An element of a list is named by its index, counted
-        from 0. A null takes the key out of the document. Later ones go over earlier ones.
-    label
-        Heads the messages: ``--set podium.columns=0: ...``.
-    model
-        Knows the keys that exist; they need not be written in the document.
-
-    Raises
-    ------
-    CaseError
-        For a text without ``=``, an unreadable value, an unknown key (with the nearest known
-        one), or an index outside its list. Whether the value is admissible is seen when the
-        document is checked.
-
-    Examples
-    --------
     >>> document = Document("a.yaml", {"podium": {"bearing": {"slenderness": 0.15}}})
     >>> apply_overrides(document, ["podium.bearing.slenderness=0.2"]).content
     {'podium': {'bearing': {'slenderness': 0.2}}}

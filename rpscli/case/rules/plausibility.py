@@ -19,18 +19,7 @@ if TYPE_CHECKING:
 
 
 class Doubt(NamedTuple):
-    """Something unusual.
-
-    Parameters
-    ----------
-    sentence
-        What is unusual about it, the same for all cases, with ``{0}`` for the number and ``{1}``
-        for the detail.
-    value
-        The number; None where there is none.
-    detail
-        What a single case has more to say.
-    """
+    """Something unusual: a sentence, with ``{0}`` for its number and ``{1}`` for a detail."""
 
     sentence: str
     value: float | None = None

@@ -18,20 +18,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 class SchemaCheck(NamedTuple, Generic[Model]):
-    """What a model makes of a document.
-
-    Parameters
-    ----------
-    faults
-        Everything wrong with single keys and values.
-    meant
-        Known keys for which unknown ones were taken: they count as given, so that one slip is
-        not reported twice.
-    sound
-        The content without its faulty values.
-    read
-        The content as the model reads it; None if something is wrong with it.
-    """
+    """Faults of a document, known keys taken for unknown ones, sound content, and what was read."""
 
     faults: list[Fault]
     meant: set[Path]

@@ -66,23 +66,7 @@ def is_finite(value: object) -> TypeGuard[float]:
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number in SI, or text with a unit.
-
-    Parameters
-    ----------
-    unit
-        SI unit, a key of `units.KINDS`; "1" for a plain number.
-    symbol
-        What it is in the field's letters, for messages.
-    above, at_least, below, at_most
-        Bounds, the first and third exclusive.
-    remedy
-        What to write instead of an inadmissible value.
-    words
-        Words allowed in place of a number.
-    per_storey
-        Whether a list, from the bottom, may stand for the one value.
-    """
+    """A number in SI, or text with a unit."""
 
     unit: str = PLAIN
     symbol: str = ""

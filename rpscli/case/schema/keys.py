@@ -191,31 +191,7 @@ SECTIONS = {
 
 
 class KeyReference(NamedTuple):
-    """One key.
-
-    Parameters
-    ----------
-    key
-        Dotted.
-    meaning
-        In words.
-    symbol
-        Letter or formula, where there is one.
-    unit
-        SI unit of a bare number; empty for words and sections.
-    bounds
-        What a number must keep.
-    words
-        Words that may stand there.
-    default
-        What holds if the key is left out; None if nothing does.
-    required
-        Whether its section must have it.
-    keys
-        What a section holds.
-    sections
-        Of THEORY.md.
-    """
+    """One key."""
 
     key: str
     meaning: str

@@ -61,13 +61,6 @@ class ScaleToSection(Section):
 def scale_to_of(text: str) -> ScaleToSection:
     """What a text such as ``PGA=0.4g`` or ``Sa(0.6 s)=1 g`` asks for.
 
-    Raises
-    ------
-    ValueError
-        If it is not of this form; the message continues one that names the text.
-
-    Examples
-    --------
     >>> scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period
     (0.5, 0.6)
     """

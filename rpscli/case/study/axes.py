@@ -27,17 +27,7 @@ MOST_SOURCES = 100_000
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis of the product.
-
-    Parameters
-    ----------
-    keys
-        Dotted keys of the case that go together.
-    rows
-        Their values at each position along the axis, in the order of the keys.
-    places
-        Where the values of each key were written: one place for each row, or one for all.
-    """
+    """Keys that go together, a row of values for each position, and where each was written."""
 
     keys: tuple[str, ...]
     rows: tuple[Values, ...]

@@ -43,19 +43,7 @@ class Observation(NamedTuple):
 
 @dataclass(frozen=True)
 class Observed:
-    """The whole file.
-
-    Parameters
-    ----------
-    name
-        The file as the study names it.
-    keys
-        Varied keys, or ``scale``, whose values tell systems apart.
-    quantities
-        ``overturned`` and names of results, in the order of the columns.
-    rows
-        The lines.
-    """
+    """The whole file."""
 
     name: str
     keys: tuple[str, ...]
@@ -86,17 +74,7 @@ def comparable(key: str, value: object) -> str:
 def observed_of(
     document: Document, folder: Folder, axes: Sequence[Axis]
 ) -> tuple[Observed | None, list[Fault]]:
-    """The observations that a study names, and what is wrong with them.
-
-    Parameters
-    ----------
-    document
-        The study.
-    folder
-        Where relative names start.
-    axes
-        Whose keys may be columns.
-    """
+    """The observations that a study names, and what is wrong with them."""
     written = document.content.get("observed")
     if not isinstance(written, str):
         return None, []  # absent, or told with the other keys

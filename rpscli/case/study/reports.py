@@ -25,19 +25,7 @@ class ReportOptions(Section):
 
 @dataclass(frozen=True)
 class ReportRequest:
-    """One report.
-
-    Parameters
-    ----------
-    kind
-        Its name among the kinds.
-    stem
-        Name of its files without suffix, one of a kind within a study.
-    options
-        What the study says about it.
-    path
-        Where it stands in the study.
-    """
+    """One report."""
 
     kind: str
     stem: str

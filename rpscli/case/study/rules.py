@@ -142,17 +142,7 @@ MOST_POINTS = 5_000_000
 
 
 def size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) -> Iterator[Fault]:
-    """A study that is too large, at its largest part.
-
-    Parameters
-    ----------
-    file
-        The study.
-    axes
-        Its varied keys.
-    sources
-        Its single record sources.
-    """
+    """A study that is too large, at its largest part."""
     systems: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
     if file.sample is not None:
         systems["sample", "size"] = file.sample.size

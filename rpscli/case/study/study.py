@@ -34,39 +34,7 @@ from rpscli.errors import CaseError
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """Many points from one case.
-
-    Parameters
-    ----------
-    name
-        Stem of the file's name; names folders of results.
-    source
-        The file as the user named it.
-    document
-        What is written, with positions and overrides.
-    file
-        The validated file.
-    base
-        The case from which every system is made, as written, with overrides.
-    base_file
-        Its file; None if the case stands in the study.
-    base_folder
-        Where relative file names inside the case start.
-    base_overrides
-        What was put over the case, as the user wrote it.
-    axes
-        The varied keys.
-    sources
-        Single record sources, seen from the study's folder; empty: the record of the case.
-    observed
-        What was observed; None if the study names no file.
-    reports
-        What is drawn at the end.
-    digest
-        SHA-256 of the text.
-    notes
-        What the user should know about the file.
-    """
+    """Many points from one case."""
 
     name: str
     source: str
@@ -125,28 +93,7 @@ def parse_study(
     folder: Path | None = None,
     overrides: Sequence[str] = (),
 ) -> Study:
-    """A study from its text.
-
-    Parameters
-    ----------
-    text
-        YAML.
-    name
-        Of the file, for messages.
-    kinds
-        Of report.
-    folder
-        Where relative file names start; the working folder by default.
-    overrides
-        Texts ``key=value``. Keys of a study (``scale``, ``sample.size``) change the study; others
-        (``podium.bearing.slenderness``) the case at its base.
-
-    Raises
-    ------
-    CaseError
-        If the study is not valid: one line for each fault. Whether each of its systems is a valid
-        case is seen when its points are laid out.
-    """
+    """A study from its text."""
     document = read_yaml(text, name)
     if is_case(document):
         raise CaseError(
@@ -171,15 +118,7 @@ def study_of(
     folder: Path,
     digest: str,
 ) -> Study:
-    """A study from its document, as `parse_study` says.
-
-    Parameters
-    ----------
-    base_overrides
-        Those for the case at its base.
-    digest
-        Of its text.
-    """
+    """A study from its document, as `parse_study` says."""
     axes, sources, observed, reports = _checked(document, folder, kinds)
     file = StudyFile.model_validate(document.content)
     document.refuse(fixed_faults(document, base_overrides))

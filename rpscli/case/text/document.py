@@ -20,17 +20,7 @@ def _cut(override: str) -> str:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a key or a value was written.
-
-    Parameters
-    ----------
-    source
-        The file as the user named it, or the ``--set`` that brought the value in.
-    line, column
-        Counted from 1; 0 where there is no text to point at.
-    rank
-        Order among sources: 0 is the file, overrides follow in the order given.
-    """
+    """Where a key or a value was written; files have rank 0, overrides follow in their order."""
 
     source: str
     line: int = 0
@@ -48,22 +38,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that is wrong.
-
-    Parameters
-    ----------
-    path
-        What it is about; it is reported at this path's place, or its nearest parent's.
-    text
-        Value, rule and remedy, complete.
-    at_key
-        Point at the key rather than at the value.
-    needs
-        Paths any of which would cure the fault. If a misspelled key was meant to be one of
-        them, the misspelling is the fault and this one is not reported.
-    place
-        Where, if the path alone cannot tell (the second of two equal keys).
-    """
+    """What is wrong at a path, told there unless a word taken for one of `needs` is the fault."""
 
     path: Path
     text: str
@@ -107,20 +82,7 @@ MISSING = object()
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """Mappings, lists and scalars with their positions.
-
-    Parameters
-    ----------
-    name
-        The source as the user named it; heads every message without a better place.
-    content
-        The values. Treated as unchangeable: an override makes a new document.
-    keys, values
-        Places of the keys and of the values, by path. Both may be empty, for a document made
-        in memory: messages then carry the name and the dotted path alone.
-    faults
-        What was found wrong while reading although reading could go on (duplicate keys).
-    """
+    """Mappings, lists and scalars, with places by path, and what was wrong while reading them."""
 
     name: str
     content: dict[str, Any]
@@ -192,13 +154,7 @@ class Document:
         return content
 
     def refuse(self, faults: Iterable[Fault]) -> None:
-        """Raise all faults together, one a line, in the order of their places.
-
-        Raises
-        ------
-        CaseError
-            If there is any.
-        """
+        """Raise all faults together, one a line, in the order of their places."""
         placed = [(self._fault_place(fault), fault.text) for fault in faults]
         placed.sort(key=lambda item: (item[0].rank, item[0].line, item[0].column))
         if placed:

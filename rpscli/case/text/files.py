@@ -20,14 +20,7 @@ _PATIENCE = 10.0
 
 
 def read_text(source: str | Path) -> str:
-    """Text of a case or study file; ``-`` reads the standard input.
-
-    Raises
-    ------
-    CaseError
-        If there is no such file, it is a folder or a device, it cannot be read, it is too large,
-        or it is not UTF-8.
-    """
+    """Text of a case or study file; ``-`` reads the standard input."""
     if str(source) == STDIN:
         if sys.stdin is None:
             raise CaseError("<stdin>: the standard input is closed; name a file, or pipe a case in")
@@ -73,13 +66,7 @@ def _bounded(file: BinaryIO, name: str) -> bytes:
 
 
 def decoded(data: bytes, name: str) -> str:
-    """UTF-8 bytes as text, with or without a byte order mark.
-
-    Raises
-    ------
-    CaseError
-        If the bytes are not UTF-8; names the first line and column that are not.
-    """
+    """UTF-8 bytes as text, with or without a byte order mark."""
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

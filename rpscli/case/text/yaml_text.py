@@ -116,21 +116,6 @@ for _tag, _pattern in PATTERNS.items():
 def read_yaml(text: str, name: str) -> Document:
     r"""Read one YAML document whose root is a mapping.
 
-    Parameters
-    ----------
-    text
-        The whole file.
-    name
-        The source as the user named it, for messages.
-
-    Raises
-    ------
-    CaseError
-        If the text is not one YAML document, is empty, or is no mapping. Duplicate keys and
-        the like do not end the reading; they are in the document's `faults`.
-
-    Examples
-    --------
     >>> document = read_yaml("analysis:\n  recontact_tolerance: 1e-6\n", "a.yaml")
     >>> document.content, str(document.value_place(("analysis", "recontact_tolerance")))
     ({'analysis': {'recontact_tolerance': 1e-06}}, 'a.yaml:2:24')
@@ -283,13 +268,7 @@ def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
 
 
 def _scalar(tag: str, text: str) -> Scalar:
-    """Value of a scalar whose tag (``int``, ``float``, ...) is known.
-
-    Raises
-    ------
-    ValueError
-        If the text does not have the form of the tag (an explicit ``!!int abc``).
-    """
+    """Value of a scalar whose tag (``int``, ``float``, ...) is known."""
     if tag == "str":
         return text
     if not PATTERNS[tag].match(text):
