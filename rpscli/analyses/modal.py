@@ -209,7 +209,7 @@ def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> Uplifte
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
     values, vectors = values[order].astype(complex), vectors[:size, order]
     if kappa == coefficient == 0.0:
-        # A defective double zero: rounding splits it into +-sqrt(eps), which is no frequency.
+        # A defective double zero: rounding splits it into +-sqrt(eps), which is not a frequency.
         values[:2], vectors[:, :2] = 0.0, 1.0
     pairs = _pairs(values[2:])
     frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])

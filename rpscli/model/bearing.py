@@ -199,25 +199,25 @@ class Bearing:
 
     def tendon_elongation(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
         """How much a tendon in the axis is longer at |theta| [m] (Theory, section 11)."""
-        across, upwards, _ = self._opening(rotation)
+        across, upwards, _ = self._end_displacement(rotation)
         return 2.0 * np.hypot(across, upwards)
 
     def tendon_lever(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
         """de/dx, the arm of a tendon's tension about the contacts at |theta| [m]."""
-        _, _, reach = self._opening(rotation)
-        _, rise = self.tendon_direction(rotation)
-        return 2.0 * rise * reach
+        _, _, reach = self._end_displacement(rotation)
+        _, cos_psi = self.tendon_direction(rotation)
+        return 2.0 * cos_psi * reach
 
     def tendon_direction(
         self, rotation: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Sine and cosine of the angle psi of the opening with the vertical at |theta|."""
-        across, upwards, _ = self._opening(rotation)
+        """Sine and cosine of the angle psi between tendon and vertical at |theta|."""
+        across, upwards, _ = self._end_displacement(rotation)
         distance = np.hypot(across, upwards)
         some = np.where(distance > 0.0, distance, 1.0)
         return across / some, np.where(distance > 0.0, upwards / some, 1.0)
 
-    def _opening(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    def _end_displacement(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
         """How far the middle of an end moves across and upwards, and the contact from there [m]."""
         x = np.abs(np.asarray(rotation, dtype=float))
         rolled = np.minimum(x, self.beta)

@@ -133,7 +133,7 @@ class Superstructure(Shown):
     storey_heights: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        """Take any sequence; refuse what is no building."""
+        """Take any sequence; refuse what is not a building."""
         for name in ("masses", "stiffnesses", "storey_heights"):
             if (value := getattr(self, name)) is not None:
                 object.__setattr__(self, name, _positive(name, value))

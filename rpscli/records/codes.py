@@ -183,7 +183,7 @@ def load_target(source: str) -> TargetSpectrum:
         return table_spectrum(path, options, source)
     if colon and len(scheme) > 1:
         raise RecordError(
-            f"{source}: {scheme!r} is no code that is known; {hint(scheme, [*_CODES])}, or a file"
+            f"{source}: {scheme!r} is not a known code; {hint(scheme, [*_CODES])}, or a file"
         )
     raise RecordError(
         f"{source}: there is no file {path}; give a CSV file or a code: {', '.join(_CODES)}"

@@ -232,7 +232,7 @@ class GroundMotion(Shown):
 
         if measure not in MEASURE_UNITS:
             known = ", ".join(MEASURE_UNITS)
-            raise RecordError(f"{self.source}: {measure} is no measure; there are {known}")
+            raise RecordError(f"{self.source}: {measure} is not a measure; there are {known}")
         if measure == "Sa" and period is None:
             raise RecordError(f"{self.source}: Sa is scaled to at a period; give period=... in s")
         if not value > 0.0:

@@ -125,7 +125,7 @@ def _read(
     if path.is_dir():
         raise RecordError(f"{path}: a folder; name one of its files")
     _require_file(path, source)
-    from rpscli.records.formats import read_record  # sets and pulses are no files
+    from rpscli.records.formats import read_record  # sets and pulses are not files
 
     return read_record(
         path,
@@ -215,7 +215,7 @@ def _listed(place: str, source: str, folder: Path | None) -> list[str]:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise RecordError(f"{source}: is no text; name a list with one source a line") from None
+        raise RecordError(f"{source}: is not text; name a list with one source a line") from None
     found = []
     for line in filter(None, (line.partition("#")[0].strip() for line in lines)):
         scheme, _ = _split_scheme(_split_factor(line)[0], path.parent)
@@ -228,14 +228,14 @@ def _listed(place: str, source: str, folder: Path | None) -> list[str]:
 
 
 def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
-    """Scheme and rest of a source that is no file; an empty scheme means a file."""
+    """Scheme and rest of a source that is not a file; an empty scheme means a file."""
     match = _SCHEME.fullmatch(source)
     if not match or _located(_split_options(source)[0], folder).exists():
         return "", source
     kinds = [*_MAKERS, LIST]
     if match[1] not in kinds:
         raise RecordError(
-            f"{source}: {match[1]!r} is no kind of record source; {hint(match[1], kinds)}"
+            f"{source}: {match[1]!r} is not a kind of record source; {hint(match[1], kinds)}"
         )
     return match[1], match[2]
 
@@ -264,5 +264,5 @@ def _require_file(path: Path, source: str) -> None:
         raise RecordError(f"{source}: there is no folder {path.parent}")
     names = sorted(entry.name for entry in path.parent.iterdir())
     close = nearest(path.name, names, LIKENESS)
-    meant = f"; did you mean {path.parent / close}?" if close else ""
-    raise RecordError(f"{source}: there is no file {path}{meant}")
+    suggestion = f"; did you mean {path.parent / close}?" if close else ""
+    raise RecordError(f"{source}: there is no file {path}{suggestion}")

@@ -93,7 +93,7 @@ def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("PGX", 1.0), "PGX is no measure; there are PGA"),
+        (("PGX", 1.0), "PGX is not a measure; there are PGA"),
         (("Sa", 1.0), "give period="),
         (("PGA", 0.0), "must be > 0"),
         (("PGA", float("nan")), "must be > 0"),

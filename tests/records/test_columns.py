@@ -60,7 +60,7 @@ def test_units_have_to_be_known(tmp_path: Path) -> None:
         ("# units: g\n", "?units=m/s2", "units = m/s2 contradicts the file, which says g"),
         ("# units: g\n# units: gal\n", "", "states different units: g, gal"),
         ("# dt: 0.02\n# dt = 0.01\n", "?units=g", "dt = 0.01 contradicts dt = 0.02 of line 1"),
-        ("# units: parsec\n", "", "no unit of acceleration"),
+        ("# units: parsec\n", "", "not a unit of acceleration"),
         ("# dt: 0.01\n", "?units=g", r"says dt = 0.01 s and the times advance by 0.02 s"),
         ("# npts: 5\n", "?units=g", r"announces 5 values and the file holds 4"),
         ("", "?units=furlong", "units = 'furlong' is not known"),

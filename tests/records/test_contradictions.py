@@ -150,10 +150,10 @@ def test_what_is_said_twice_alike_is_said_once(tmp_path: Path) -> None:
         ("units: g\n0 .1\n1E300 .2\n", "cannot be the time step"),
         (
             "units: g\n0,00 0,1\n0,02 0,2\n",
-            ":2: '0,00 0,1' is no row of numbers .decimal commas: write points",
+            ":2: '0,00 0,1' is not a row of numbers .decimal commas: write points",
         ),
         ("units: g\n0.00; 0.1\n0.02; 0.2\n", "semicolons: separate by commas or blanks"),
-        (AT2.replace(".1 .2 -.1 0", "1E300 1 2 3"), "which is no acceleration of the ground"),
+        (AT2.replace(".1 .2 -.1 0", "1E300 1 2 3"), "which is not a ground acceleration"),
         (AT2.replace(".1 .2 -.1 0", "0,1 0,2 -0,1 0"), "decimal commas: write points"),
     ],
 )

@@ -45,7 +45,10 @@ def test_wildcards() -> None:
         ("fema_p695:farfield/1?angle=north", "angle = 'north' is not a number"),
         ("fema_p695:farfield/*", "load one component at a time"),
         ("fema_p695:farfield/1/a?scaled", "option 'scaled' is not known; did you mean normalised"),
-        ("fema_p659:farfield/1/a", "'fema_p659' is no kind of record source; did you mean fema_p6"),
+        (
+            "fema_p659:farfield/1/a",
+            "'fema_p659' is not a kind of record source; did you mean fema",
+        ),
     ],
 )
 def test_refuses(source: str, message: str) -> None:

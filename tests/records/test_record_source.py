@@ -54,7 +54,10 @@ def test_the_home_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ("a.txt?unit=g", "'unit' is not known; did you mean units"),
         ("a.txt?channel=2", "holds one channel"),
         ("c.txt?units=g&dt=fast", "dt = 'fast' is not a number"),
-        ("puls:sine?amplitude=1&period=1", "'puls' is no kind of record source; did you mean pul"),
+        (
+            "puls:sine?amplitude=1&period=1",
+            "'puls' is not a kind of record source; did you mean",
+        ),
     ],
 )
 def test_refuses(folder: Path, source: str, message: str) -> None:

@@ -93,7 +93,7 @@ def test_the_spectrum_of_a_record_is_a_table(tmp_path: Path) -> None:
         ("asce7:?sds=1g&sd1=0.6g&tl=8&level=mce", "did you mean mcer"),
         ("sp14:?acceleration=4&soil=V", "soil = 'V' is not known"),
         ("sp14:?acceleration=0", "acceleration must be > 0"),
-        ("en1989:?ag=0.3g", "'en1989' is no code that is known; did you mean en1998"),
+        ("en1989:?ag=0.3g", "'en1989' is not a known code; did you mean en1998"),
         ("nothing.csv", "there is no file nothing.csv; give a CSV file or a code"),
     ],
 )

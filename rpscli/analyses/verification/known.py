@@ -49,7 +49,7 @@ class Comparison:
 
     @property
     def holds(self) -> bool:
-        """Whether the computed value is close enough; one that is no number never is."""
+        """Whether the computed value is close enough; one that is not a number never is."""
         return abs(self.computed - self.expected) <= self.tolerance
 
 

@@ -74,8 +74,8 @@ def read_record(
     motion = (_by_content(text) or _by_extension(text)).read(text)
     if motion.pga > _NONSENSE * STANDARD_GRAVITY:
         raise text.fault(
-            f"the largest value is {motion.pga / STANDARD_GRAVITY:.3g} g, which is no acceleration"
-            " of the ground; the file is damaged, fetch it again"
+            f"the largest value is {motion.pga / STANDARD_GRAVITY:.3g} g, which is not a"
+            " ground acceleration; the file is damaged, fetch it again"
         )
     return replace(motion, warnings=(*motion.warnings, *_implausible(motion)))
 

@@ -250,9 +250,9 @@ def _step(text: RecordText, statement: Statement) -> tuple[float, tuple[str, ...
     if abs(rate * dt - 1.0) < 1e-9 or abs(1.0 / rate - dt) > 0.5 * resolution:
         return dt, ()
     note = (
-        f"DT = {printed:g} s is no whole number of samples a second and may be rounded; taken as "
-        f"printed, times may be off by {50.0 * resolution / printed:.1g} %; if it is 1/{rate} s, "
-        f"say ?dt={1.0 / rate:.9g}"
+        f"DT = {printed:g} s is not a whole number of samples a second and may be rounded; taken"
+        f" as printed, times may be off by {50.0 * resolution / printed:.1g} %; if it is 1/{rate} s,"
+        f" say ?dt={1.0 / rate:.9g}"
     )
     return dt, (note,)
 

@@ -116,7 +116,7 @@ def _table(text: RecordText) -> _Table:
 def _refuse_punctuation(text: RecordText) -> None:
     for index, line in enumerate(text.heads):
         if why := why_no_numbers(line):
-            raise text.fault(f"{line.strip()[:40]!r} is no row of numbers{why}", index)
+            raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", index)
 
 
 def _check_count(text: RecordText, table: _Table) -> None:
@@ -172,7 +172,7 @@ def _sequence(text: RecordText, table: _Table, *warnings: str) -> GroundMotion:
     values = table.values
     _refuse_leading_header(text, table, values)
     if values[0] == dt:
-        warnings = (*warnings, f"the first value, {dt:g}, equals dt: see that it is no header")
+        warnings = (*warnings, f"the first value, {dt:g}, equals dt: see that it is not a header")
     return GroundMotion(
         values * factor,
         dt,
@@ -272,8 +272,8 @@ def _unit_after_key(text: RecordText, statement: str, spelling: str, line: int) 
     unit = canonical_unit(word[1]) if word else None
     if unit is None:
         raise text.fault(
-            f"the header says {statement.strip()[:60]!r}, which is no unit of acceleration that is "
-            f"known ({KNOWN_UNITS}); correct the header",
+            f"the header says {statement.strip()[:60]!r}, which is not a unit of acceleration that"
+            f" is known ({KNOWN_UNITS}); correct the header",
             line,
         )
     return unit

@@ -57,7 +57,7 @@ def read_esm(text: RecordText) -> GroundMotion:
     stated_unit = canonical_unit(header["UNITS"])
     if stated_unit is None:
         raise text.fault(
-            f"UNITS: {header['UNITS'][:40]} is no unit of acceleration that is known"
+            f"UNITS: {header['UNITS'][:40]} is not a unit of acceleration that is known"
             f" ({KNOWN_UNITS}); give the acceleration (.ACC.) file",
             lines["UNITS"],
         )
