@@ -251,8 +251,8 @@ def _step(text: RecordText, statement: Statement) -> tuple[float, tuple[str, ...
         return dt, ()
     note = (
         f"DT = {printed:g} s is not a whole number of samples a second and may be rounded; taken"
-        f" as printed, times may be off by {50.0 * resolution / printed:.1g} %; if it is 1/{rate} s,"
-        f" say ?dt={1.0 / rate:.9g}"
+        f" as printed, times may be off by {50.0 * resolution / printed:.1g} %; if it is"
+        f" 1/{rate} s, say ?dt={1.0 / rate:.9g}"
     )
     return dt, (note,)
 
