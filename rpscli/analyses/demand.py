@@ -25,13 +25,12 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """One history to run: a structure under a record, both of its components times `scale`."""
+    """One history to run: a structure under a motion, all of its components times `scale`."""
 
     structure: PodiumStructure
-    record: GroundMotion
+    motion: MotionComponents
     settings: TimeHistorySettings = field(default_factory=TimeHistorySettings)
     scale: float = 1.0
-    vertical: GroundMotion | None = None
 
 
 WORTH_LANES = 8
@@ -87,7 +86,7 @@ def demand(
         Vertical ground acceleration with the same time step, positive upwards.
     """
     chosen = settings or TimeHistorySettings()
-    return demands([Request(structure, record, chosen, vertical=vertical)])[0]
+    return demands([Request(structure, MotionComponents(record, vertical), chosen)])[0]
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
@@ -95,21 +94,17 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
 
     structures = _Distinct[PodiumStructure]()
     systems = _Distinct[tuple[PodiumStructure, TimeHistorySettings]]()
-    motions = _Distinct[GroundMotion]()
+    motions = _Distinct[MotionComponents]()
     given, of_structure = [], []
     for r in requests:
-        record, vertical = MotionComponents(r.record, r.vertical).of_one_length
         of_structure.append(structures.number(id(r.structure), r.structure))
         system = systems.number((id(r.structure), r.settings), (r.structure, r.settings))
-        along = motions.number((id(r.record), id(r.vertical)), record)
-        above = None
-        if vertical is not None:
-            above = motions.number((id(r.vertical), id(r.record), "up"), vertical)
-        given.append(HistoryRequest(system, along, above, r.scale))
+        motion = motions.number(tuple(map(id, r.motion.named.values())), r.motion)
+        given.append(HistoryRequest(system, motion, r.scale))
     stacked = stacked_systems(systems.items)
     rates = stacked["uplifted_rate"].tolist()
     for r, history in zip(requests, given, strict=True):
-        refuse_steps(longest_time(r.settings, r.record.duration) * rates[history.system])
+        refuse_steps(longest_time(r.settings, r.motion.duration) * rates[history.system])
     run = run_of(stacked, motions.items, given)
     lanes = LANES if len(requests) >= worth_lanes else 1
     with compiled(equipped=any(r.structure.devices for r in requests)):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rpscli.analyses.events import event_list
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.kernels.history import sampled_history
@@ -9,12 +11,12 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.trace import trace_of
 from rpscli.model.podium import PodiumStructure
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 
 def time_history(
     structure: PodiumStructure,
-    record: GroundMotion,
+    record: GroundMotion | MotionComponents,
     settings: TimeHistorySettings | None = None,
     *,
     vertical: GroundMotion | None = None,
@@ -27,7 +29,7 @@ def time_history(
     structure
         Podium, bearings and building.
     record
-        Horizontal ground acceleration; zero after its last sample.
+        Horizontal ground acceleration, or all components; zero after its last sample.
     settings
         Accuracy, tolerance, limits; the defaults keep maxima within 1e-4 of the converged values
         where the motion is not near overturning.
@@ -47,17 +49,20 @@ def time_history(
         If the two components have different time steps.
     """
     settings = settings or TimeHistorySettings()
-    run = sampled_history(structure, record, vertical, settings)
+    motion = MotionComponents(record) if isinstance(record, GroundMotion) else record
+    if vertical is not None:
+        motion = replace(motion, vertical=vertical)
+    run = sampled_history(structure, motion, settings)
     fixed = None
     if with_fixed_base and structure.superstructure is not None:
-        intervals = max(int(run.history.intervals), record.npts - 1)
-        fixed = fixed_base_response(structure, record, intervals)
+        intervals = max(int(run.history.intervals), motion.horizontal.npts - 1)
+        fixed = fixed_base_response(structure, motion.horizontal, intervals)
     return TimeHistoryResult(
         structure=structure,
         history=run.history,
-        record=record,
+        record=motion.horizontal,
         settings=settings,
-        trace=trace_of(structure, record.dt, run),
+        trace=trace_of(structure, run),
         events=event_list(run.log),
         fixed_base=fixed,
     )

@@ -85,13 +85,13 @@ class Trace(Shown):
         return Trace(**{name: of[rows] for name, of in values.items()}, devices=devices)
 
 
-def trace_of(structure: PodiumStructure, dt: float, run: SampledHistory) -> Trace:
-    """Histories from what the kernel stored at samples every `dt` [s]."""
+def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
+    """Histories from what the kernel stored at samples."""
     samples = run.samples
     devices = DeviceTrace(*np.moveaxis(run.devices, 1, 0))
     return Trace(
-        time=np.arange(len(samples), dtype=np.float64) * dt,
-        ground_acceleration=prolonged(run.ground, len(samples)),
+        time=np.arange(len(samples), dtype=np.float64) * run.motion.dt,
+        ground_acceleration=prolonged(run.motion.samples[0], len(samples)),
         rotation=samples.theta,
         rotation_rate=samples.theta_dot,
         phase=samples.phase.astype(np.int8),
@@ -127,7 +127,8 @@ def _derived(
     b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
     base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
-    a_g = prolonged(run.ground[rows], len(samples))
+    up = run.motion.row("vertical")
+    a_g = prolonged(run.motion.samples[0, rows], len(samples))
     drifts = np.diff(u, axis=1, prepend=base[:, None])
     shears, forces = np.zeros_like(u), np.zeros_like(u)
     if building is not None:
@@ -143,7 +144,7 @@ def _derived(
     V = forces.sum(axis=1)
     push, pull = cap_beam_forces(structure, devices, theta)
     across, upwards = base_accelerations(structure, samples, B, C)
-    a_v = 0.0 if run.vertical is None else prolonged(run.vertical[rows], len(samples))
+    a_v = 0.0 if up is None else prolonged(run.motion.samples[up, rows], len(samples))
     shear_top, shear_bottom, normal_top, normal_bottom = _contact_forces(
         structure, across, upwards, V + push, a_g, a_v, pull
     )

@@ -130,9 +130,7 @@ def compute(
 
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):
-        result = time_history(
-            case.structure, ground.horizontal, case.analysis, vertical=ground.vertical
-        )
+        result = time_history(case.structure, ground, case.analysis)
     for name, content in timehistory_files(result, case.title, look, drawing):
         request.folder.add(name, content)
     if request.floor_spectra:

@@ -268,14 +268,36 @@ class MotionComponents(Frozen):
         every = {"horizontal": self.horizontal, "vertical": self.vertical}
         return {name: motion for name, motion in every.items() if motion is not None}
 
+    @property
+    def dt(self) -> float:
+        """Sampling interval of all [s]."""
+        return self.horizontal.dt
+
+    @property
+    def npts(self) -> int:
+        """Samples of the longest."""
+        return max(motion.npts for motion in self.named.values())
+
+    @property
+    def duration(self) -> float:
+        """Time of its last sample [s]."""
+        return (self.npts - 1) * self.dt
+
     @cached_property
     def samples(self) -> NDArray[np.float64]:
-        """Accelerations (components, npts of the longest) [m/s2]; shorter ones go on as zero."""
+        """Accelerations (components, npts) [m/s2]; shorter ones go on as zero."""
         motions = self.named.values()
-        found = np.zeros((len(motions), max(motion.npts for motion in motions)))
+        if len(motions) == 1:
+            return self.horizontal.acceleration[None, :]
+        found = np.zeros((len(motions), self.npts))
         for row, motion in zip(found, motions, strict=True):
             row[: motion.npts] = motion.acceleration
         return frozen(found)
+
+    def row(self, name: str) -> int | None:
+        """Of a component among the samples; None if it is not known."""
+        names = list(self.named)
+        return names.index(name) if name in names else None
 
     @property
     def digest(self) -> bytes:
@@ -294,15 +316,6 @@ class MotionComponents(Frozen):
         if self.horizontal.format == "pulse" or is_usual(self.scale):
             return ()
         return (scale_warning(self.horizontal.name, self.scale),)
-
-    @property
-    def of_one_length(self) -> tuple[GroundMotion, GroundMotion | None]:
-        """Both with the same number of samples: the shorter one goes on as zero."""
-        along, up = self.horizontal, self.vertical
-        if up is None or up.npts == along.npts:
-            return along, up
-        one, other = self.samples
-        return replace(along, acceleration=one), replace(up, acceleration=other)
 
 
 def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:

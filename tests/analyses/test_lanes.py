@@ -27,7 +27,7 @@ from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import LANES
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import MotionComponents
 
 ALONE = 10**9
 """Worth lanes only for more histories than there ever are: all run one after the other."""
@@ -38,6 +38,10 @@ RECORDS = [waves(2.5, 0.02, 4.0, seed=41), waves(1.7, 0.01, 4.0, seed=42)]
 """Of different lengths and time steps."""
 
 UPWARDS = [waves(2.5, 0.02, 2.0, seed=43), waves(0.9, 0.01, 2.0, seed=44)]
+MOTIONS = [
+    *map(MotionComponents, RECORDS),
+    *(MotionComponents(one, up) for one, up in zip(RECORDS, UPWARDS, strict=True)),
+]
 
 LAWS = [ImpactLaw("rigid"), ImpactLaw("flexible"), ImpactLaw("value", 0.85)]
 
@@ -84,14 +88,13 @@ def ensemble(
     for storeys, modal in groups:
         choices = structures(storeys, modal)
         for i in range(each):
-            structure, motion = choices[int(rng.integers(len(choices)))], int(rng.integers(2))
+            structure, motion = choices[int(rng.integers(len(choices)))], int(rng.integers(4))
             requests.append(
                 Request(
                     structure,
-                    RECORDS[motion],
+                    MOTIONS[motion],
                     SETTINGS[i % len(SETTINGS)],
                     float(rng.choice(scales)),
-                    UPWARDS[motion] if rng.integers(2) else None,
                 )
             )
     # and one whose motion is soon no longer finite, which must not spread
@@ -158,7 +161,7 @@ def test_lanes_do_what_single_histories_do() -> None:
     short = [waves(0.5, 0.02, 6.0, seed=41), waves(0.3, 0.01, 6.0, seed=42)]
     settings = TimeHistorySettings(free_vibration=0.1, recontact_tolerance=1e-4)
     requests = [
-        replace(r, record=short[i % 2], vertical=None, settings=settings, scale=1.0)
+        replace(r, motion=MotionComponents(short[i % 2]), settings=settings, scale=1.0)
         for i, r in enumerate(ensemble(EVERY_HEIGHT, 3))
     ]
     check(requests)
@@ -179,10 +182,9 @@ def test_a_history_alone_is_that_of_the_scaled_record() -> None:
     together = all_bits(MIXED, ALONE)
     assert together[::-1] == all_bits(MIXED[::-1], ALONE)
     for request, found in zip(MIXED, together, strict=True):
-        upwards = None if request.vertical is None else request.vertical.scaled(request.scale)
-        record: GroundMotion = request.record.scaled(request.scale)
+        motion = request.motion.scaled(request.scale)
         with np.errstate(all="ignore"):
-            run = sampled_history(request.structure, record, upwards, request.settings)
+            run = sampled_history(request.structure, motion, request.settings)
         assert bits(Demand(request.structure, run.history)) == found
 
 
@@ -203,4 +205,4 @@ def test_histories_without_end_are_refused_before_they_begin() -> None:
     with pytest.raises(
         CaseError, match="which must not be more than 1e\\+10: the record is too long"
     ):
-        demands([Request(podium(0), record, TimeHistorySettings())])
+        demands([Request(podium(0), MotionComponents(record), TimeHistorySettings())])

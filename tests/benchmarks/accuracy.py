@@ -23,7 +23,7 @@ from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import LANES
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 RECORDS = 60
 STOREYS = (3, 6, 9)
@@ -59,7 +59,9 @@ def rps(
     buildings: Iterable[PodiumStructure], records: list[GroundMotion], accuracy: float
 ) -> Answer:
     """All histories of one number of storeys, in lanes of one core."""
-    requests = [Request(b, r, settings(accuracy)) for b in buildings for r in records]
+    requests = [
+        Request(b, MotionComponents(r), settings(accuracy)) for b in buildings for r in records
+    ]
     found: list[float] = []
 
     def work() -> None:
@@ -82,7 +84,7 @@ def heyoka(buildings: Iterable[PodiumStructure], records: list[GroundMotion], to
 def steps(ensemble: Ensemble, records: list[GroundMotion], accuracy: float) -> float:
     """Steps a sample, over the whole histories."""
     histories = [
-        sampled_history(b, r, None, settings(accuracy)).history
+        sampled_history(b, MotionComponents(r), settings(accuracy)).history
         for buildings in ensemble.values()
         for b in buildings
         for r in records[:COUNTED]

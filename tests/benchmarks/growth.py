@@ -20,7 +20,7 @@ from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import LANES
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 SEEDS = range(1, 5)
 STOREYS = (1, 2, 3, 5, 10, 20, 50, 100)
@@ -55,9 +55,9 @@ class Work(NamedTuple):
 
 def work_of(building: PodiumStructure, records: Sequence[GroundMotion]) -> Work:
     """Time [ms a record], steps [a sample] and impacts, one history at a time."""
-    requests = [Request(building, r, SETTINGS) for r in records]
+    requests = [Request(building, MotionComponents(r), SETTINGS) for r in records]
     spent = 1e3 * seconds(lambda: demands(requests, worth_lanes=ALONE))
-    found = [sampled_history(building, r, None, SETTINGS).history for r in records]
+    found = [sampled_history(building, MotionComponents(r), SETTINGS).history for r in records]
     samples = sum(h.intervals for h in found)
     whole = samples / (records[0].npts - 1)
     impacts = sum(d.impacts for d in demands(requests, worth_lanes=ALONE))
@@ -118,7 +118,7 @@ def study(points: int) -> list[Request]:
     """A study's points: sixteen records, scaled differently each time."""
     building, records = structure(3), [motion(seed) for seed in range(1, 17)]
     return [
-        Request(building, records[i % 16], SETTINGS, scale=0.8 + 0.4 * i / points)
+        Request(building, MotionComponents(records[i % 16]), SETTINGS, scale=0.8 + 0.4 * i / points)
         for i in range(points)
     ]
 

@@ -28,7 +28,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import LANES
 from rpscli.physics.planar.state import IMPACT
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 RECORDS = 64
 FEW = 8
@@ -52,18 +52,20 @@ def many(
     building: PodiumStructure, records: Sequence[GroundMotion], settings: TimeHistorySettings
 ) -> list[Demand]:
     """All records in lanes of one core."""
-    return demands([Request(building, r, settings) for r in records], worth_lanes=1)
+    return demands(
+        [Request(building, MotionComponents(r), settings) for r in records], worth_lanes=1
+    )
 
 
 def rps_alone(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
     """One history by itself, without its samples."""
-    found = demands([Request(building, record, SETTINGS)], worth_lanes=ALONE)[0]
+    found = demands([Request(building, MotionComponents(record), SETTINGS)], worth_lanes=ALONE)[0]
     return PeerHistory(found.max_rotation, found.impacts)
 
 
 def rps_sampled(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
     """One history with all of its samples and its log of events."""
-    history = sampled_history(building, record, None, SETTINGS).history
+    history = sampled_history(building, MotionComponents(record), SETTINGS).history
     return PeerHistory(float(history.max_theta), int(history.events[IMPACT]))
 
 

@@ -24,10 +24,17 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.physics.core.records import LANES
 from rpscli.physics.planar.driver import integrate
 from rpscli.physics.planar.run import Run
+from rpscli.records.ground_motion import MotionComponents
 
 STOREYS = 2
 DT = 0.02
-RECORDS = [waves(0.7, DT, 4.0, seed=5), waves(0.7, DT, 3.0, seed=8)]
+ONE, TWO = waves(0.7, DT, 4.0, seed=5), waves(0.7, DT, 3.0, seed=8)
+MOTIONS = [
+    MotionComponents(ONE),
+    MotionComponents(TWO),
+    MotionComponents(ONE, TWO),
+    MotionComponents(TWO, ONE),
+]
 SETTINGS = TimeHistorySettings(free_vibration=0.3, recontact_tolerance=1e-3)
 STRUCTURES = [
     podium(STOREYS, 0.10, 0.5, R=0.4),
@@ -47,10 +54,10 @@ STRUCTURES = [
 REQUESTS = [
     Request(2, 0),
     Request(0, 0),
-    Request(0, 0, vertical=1),
+    Request(0, 2),
     Request(1, 0, scale=0.25),
     Request(0, 1, scale=0.35),
-    Request(1, 1, vertical=0, scale=0.3),
+    Request(1, 3, scale=0.3),
     Request(1, 1, scale=0.01),
 ]
 ROWS = 256
@@ -59,7 +66,7 @@ ROWS = 256
 def integrated(requests: list[Request], lanes: int, rows: int = 0) -> Run:
     """Follow histories."""
     systems = stacked_systems([(structure, SETTINGS) for structure in STRUCTURES])
-    run = run_of(systems, RECORDS, requests, rows=rows, events=rows)
+    run = run_of(systems, MOTIONS, requests, rows=rows, events=rows)
     # lanes without a history make empty steps, of zeros
     with np.errstate(all="ignore"):
         integrate(run, lanes)

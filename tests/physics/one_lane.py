@@ -27,6 +27,7 @@ from rpscli.physics.planar.equation_of_motion import (
 from rpscli.physics.planar.run import empty_state
 from rpscli.physics.planar.steps import take_steps
 from rpscli.physics.planar.transitions import change_edge, enter_phase, lock
+from rpscli.records.ground_motion import MotionComponents
 
 LEAST_DT = 0.01
 
@@ -66,7 +67,7 @@ class OneLane:
         self.storeys = structure.storeys
         self.structure = structure
         systems = stacked_systems([(structure, settings or TimeHistorySettings())])
-        self.run = run_of(systems, [stillness(LEAST_DT)], [Request(0, 0)])
+        self.run = run_of(systems, [MotionComponents(stillness(LEAST_DT))], [Request(0, 0)])
         self.system = systems[0]
         self.state = empty_state(self.storeys, lanes=1, equipped=bool(structure.devices))
         self.s = self.state[0]

@@ -12,6 +12,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.planar.geometry import path_along
 from rpscli.physics.planar.state import FULL_CONTACT, IMPACT
+from rpscli.records.ground_motion import MotionComponents
 
 DT = 0.005
 RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
@@ -20,7 +21,7 @@ RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
 def stored_samples(structure: PodiumStructure) -> SampledHistory:
     """The kernel's samples under both components, and its demands."""
     settings = TimeHistorySettings(free_vibration=0.0)
-    run = sampled_history(structure, RECORD, VERTICAL, settings)
+    run = sampled_history(structure, MotionComponents(RECORD, VERTICAL), settings)
     assert run.history.events[IMPACT] > 0
     return run
 

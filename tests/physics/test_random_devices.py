@@ -22,7 +22,7 @@ from rpscli.model.devices import (
 )
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 RESIDUAL = 1e-6
 """Of the energy that was supplied; without devices it is no smaller."""
@@ -124,7 +124,7 @@ def test_lanes_give_the_bits_of_one_alone() -> None:
             structure = replace(structure, devices=())
         start = float(rng.choice([0.0, 0.3])) * structure.critical_rotation
         settings = TimeHistorySettings(free_vibration=0.5, initial_rotation=start)
-        requests.append(Request(structure, motion(rng, structure), settings))
+        requests.append(Request(structure, MotionComponents(motion(rng, structure)), settings))
     together, alone = demands(requests, worth_lanes=1), demands(requests, worth_lanes=10**9)
     for one, other in zip(together, alone, strict=True):
         assert kept(one) == kept(other)

@@ -72,20 +72,21 @@ def test_components_are_made_equally_long() -> None:
     long = motion([1.0, -2.0, 3.0, 4.0])
     short = motion([5.0, 6.0])
     for along, up in ((long, short), (short, long)):
-        first, second = MotionComponents(along, up).of_one_length
-        assert second is not None
-        for given, found in ((along, first), (up, second)):
-            assert found.npts == 4
-            assert found.source == given.source
-            assert found.acceleration[: given.npts].tolist() == given.acceleration.tolist()
-            assert not found.acceleration[given.npts :].any()
+        both = MotionComponents(along, up)
+        assert (both.npts, both.duration, both.dt) == (4, 1.5, 0.5)
+        assert both.samples.shape == (2, 4)
+        assert not both.samples.flags.writeable
+        for given, name in ((along, "horizontal"), (up, "vertical")):
+            found = both.samples[both.row(name)]
+            assert found[: given.npts].tolist() == given.acceleration.tolist()
+            assert not found[given.npts :].any()
 
 
-def test_components_that_need_no_zeros_stay_as_they_are() -> None:
+def test_one_component_is_not_copied() -> None:
     along = motion([1.0, -2.0])
-    up = motion([5.0, 6.0])
-    assert MotionComponents(along, up).of_one_length == (along, up)
-    assert MotionComponents(along).of_one_length == (along, None)
+    alone = MotionComponents(along)
+    assert np.shares_memory(alone.samples, along.acceleration)
+    assert alone.row("vertical") is None
 
 
 def test_components_have_one_time_step() -> None:

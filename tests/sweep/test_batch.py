@@ -77,7 +77,7 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
         (row,) = rows(run_batch(more, [whole[number]]))
         assert {name: row[name] for name in without} == without
         history = context.history(brief[number])
-        motion = history.record.scaled(history.scale)
+        motion = history.motion.scaled(history.scale)
         single = time_history(history.structure, motion, history.settings)
         told = {quantity.name: getattr(single, quantity.name) for quantity in SAMPLED}
         assert {name: row.get(name) for name in told} == told

@@ -20,7 +20,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
 from rpscli.physics.planar.run import Output, Run, empty_block
 from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.ground_motion import MotionComponents
 
 MOST_NUMBERS = 1e9
 """Of one history and what follows from it: 8 GB, of which those that are reached are taken."""
@@ -33,17 +33,16 @@ FIRST_LOG = 4096
 
 
 class Request(NamedTuple):
-    """A history to run: numbers of its structure and its two components among all, and a factor."""
+    """A history to run: numbers of its structure and its motion among all, and a factor."""
 
     system: int
-    record: int
-    vertical: int | None = None
+    motion: int
     scale: float = 1.0
 
 
 def run_of(
     systems: Record,
-    motions: Sequence[GroundMotion],
+    motions: Sequence[MotionComponents],
     requests: Sequence[Request],
     *,
     rows: int = 0,
@@ -51,19 +50,19 @@ def run_of(
 ) -> Run:
     """What the kernel needs to run histories, and room for their results.
 
-    Components of a motion are equally long; `rows` samples and `events` of the first history are
-    kept.
+    `rows` samples and `events` of the first history are kept.
     """
     n = int(systems["n"][0])
-    lengths = [motion.npts for motion in motions]
-    starts = [0, *accumulate(lengths)]
+    starts = [0, *accumulate(motion.samples.size for motion in motions)]
     given = records(REQUEST, count=len(requests))
     plain = given.view(record_type(REQUEST), np.ndarray)
-    for row, (system, record, vertical, scale) in zip(plain, requests, strict=True):
-        above = NO_RECORD if vertical is None else starts[vertical]
-        row["system"], row["record"], row["vertical"] = system, starts[record], above
-        row["npts"], row["dt"], row["scale"] = lengths[record], motions[record].dt, scale
-    along = [motion.acceleration for motion in motions]
+    for row, (system, number, scale) in zip(plain, requests, strict=True):
+        motion, start = motions[number], starts[number]
+        up = motion.row("vertical")
+        row["system"], row["record"], row["npts"] = system, start, motion.npts
+        row["vertical"] = NO_RECORD if up is None else start + up * motion.npts
+        row["dt"], row["scale"] = motion.dt, scale
+    along = [motion.samples.ravel() for motion in motions]
     return Run(
         systems=systems,
         requests=given,
@@ -87,8 +86,8 @@ class SampledHistory:
     ----------
     history
         A `state.RESULT`: what is left behind at the end.
-    ground, vertical
-        Horizontal and vertical acceleration, as long as the longer component [m/s2].
+    motion
+        Of the ground.
     samples
         (intervals + 1,).
     floors
@@ -100,27 +99,18 @@ class SampledHistory:
     """
 
     history: Record
-    ground: NDArray[np.float64]
-    vertical: NDArray[np.float64] | None
+    motion: MotionComponents
     samples: Record
     floors: NDArray[np.float64]
     log: Record
     devices: NDArray[np.float64]
 
 
-def longest_history(settings: TimeHistorySettings, record: GroundMotion) -> int:
-    """Samples of a history that never comes to rest.
-
-    Parameters
-    ----------
-    settings
-        Of these the free vibration.
-    record
-        Horizontal ground acceleration.
-    """
+def longest_history(settings: TimeHistorySettings, motion: MotionComponents) -> int:
+    """Samples of a history that never comes to rest."""
     free = settings.free_vibration
     longest = LONGEST_FREE_VIBRATION if free is None else free
-    return record.npts + math.ceil(longest / record.dt) + 1
+    return motion.npts + math.ceil(longest / motion.dt) + 1
 
 
 def numbers_of_a_sample(structure: PodiumStructure) -> int:
@@ -137,34 +127,19 @@ def numbers_of_a_sample(structure: PodiumStructure) -> int:
 
 
 def refuse_endless(
-    structure: PodiumStructure, settings: TimeHistorySettings, record: GroundMotion
+    structure: PodiumStructure, settings: TimeHistorySettings, motion: MotionComponents
 ) -> None:
-    """Refuse a history that may take more memory or time than anybody has.
-
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    settings
-        Of these the accuracy and the free vibration.
-    record
-        Horizontal ground acceleration.
-
-    Raises
-    ------
-    CaseError
-        If it may have more than `MOST_NUMBERS` or `MOST_STEPS`.
-    """
+    """Refuse a history that may take more memory or time than anybody has."""
     remedy = "give a shorter analysis.free_vibration"
-    numbers = float(longest_history(settings, record)) * numbers_of_a_sample(structure)
+    numbers = float(longest_history(settings, motion)) * numbers_of_a_sample(structure)
     if numbers > MOST_NUMBERS:
         raise CaseError(
-            f"the history may have {longest_history(settings, record)} samples of"
+            f"the history may have {longest_history(settings, motion)} samples of"
             f" {structure.storeys} storeys, {8e-9 * numbers:.3g} GB, which must not be more than"
             f" {8e-9 * MOST_NUMBERS:.3g} GB; {remedy}, or resample the record, whose dt is"
-            f" {record.dt:g} s"
+            f" {motion.dt:g} s"
         )
-    refuse_steps(most_steps(structure, settings, record.duration))
+    refuse_steps(most_steps(structure, settings, motion.duration))
 
 
 def refuse_steps(steps: float) -> None:
@@ -179,37 +154,18 @@ def refuse_steps(steps: float) -> None:
 
 
 def sampled_history(
-    structure: PodiumStructure,
-    record: GroundMotion,
-    vertical: GroundMotion | None,
-    settings: TimeHistorySettings,
+    structure: PodiumStructure, motion: MotionComponents, settings: TimeHistorySettings
 ) -> SampledHistory:
-    """Run one history and keep everything.
-
-    Parameters
-    ----------
-    structure, settings
-        What is followed, and how.
-    record, vertical
-        Components of the ground acceleration, with the same time step.
-
-    Raises
-    ------
-    RecordError
-        If the time steps differ.
-    """
+    """Run one history and keep everything."""
     # Imported here: compiling or loading kernels costs time that other commands need not pay.
     from rpscli.physics.planar.driver import integrate
 
-    along, upwards = MotionComponents(record, vertical).of_one_length
-    motions = [along] if upwards is None else [along, upwards]
-    request = Request(0, 0, None if upwards is None else 1)
     systems = stacked_systems([(structure, settings)])
-    refuse_endless(structure, settings, along)
-    rows = longest_history(settings, along)
+    refuse_endless(structure, settings, motion)
+    rows = longest_history(settings, motion)
     events = FIRST_LOG
     while True:
-        run = run_of(systems, motions, [request], rows=rows, events=events)
+        run = run_of(systems, [motion], [Request(0, 0)], rows=rows, events=events)
         with compiled(equipped=bool(structure.devices)):
             integrate(run, lanes=1)
         history = run.results[0]
@@ -223,8 +179,7 @@ def sampled_history(
         array.resize((kept, *array.shape[1:]), refcheck=False)
     return SampledHistory(
         history,
-        along.acceleration,
-        None if upwards is None else upwards.acceleration,
+        motion,
         output.samples[:kept].copy(),
         output.floors,
         output.log[:seen],

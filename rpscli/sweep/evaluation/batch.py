@@ -110,13 +110,8 @@ def _whole(requests: list[Request]) -> Iterator[Run]:
 
 
 def _whole_history(request: Request) -> TimeHistoryResult:
-    vertical, scale = request.vertical, request.scale
-    return time_history(
-        request.structure,
-        request.record.scaled(scale),
-        request.settings,
-        vertical=None if vertical is None else vertical.scaled(scale),
-    )
+    motion = request.motion.scaled(request.scale)
+    return time_history(request.structure, motion, request.settings)
 
 
 def _parametric(context: StudyContext, points: Sequence[Point]) -> PointResults:

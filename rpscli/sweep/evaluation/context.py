@@ -49,10 +49,9 @@ class StudyContext:
         system, motion = self.systems[point], self.records.motion(point.record)
         return Request(
             structure=system.perturbed(point.restitution_change),
-            record=motion.horizontal,
+            motion=motion,
             settings=system.settings,
             scale=self.factor(point),
-            vertical=motion.vertical,
         )
 
     def intensities(self, points: Sequence[Point], factors: Array) -> dict[str, Array]:

@@ -99,10 +99,7 @@ def _spectra(study: StudyResults, number: int, damping: float) -> NDArray[np.flo
     from rpscli.analyses.timehistory import time_history
 
     given = study.context.history(study.table.layout[number])
-    up = given.vertical and given.vertical.scaled(given.scale)
-    result = time_history(
-        given.structure, given.record.scaled(given.scale), given.settings, vertical=up
-    )
+    result = time_history(given.structure, given.motion.scaled(given.scale), given.settings)
     fixed = fixed_base_floor_spectra(result, damping=damping)
     assert fixed is not None, "every system has a building"
     both = isolated_floor_spectra(result, damping=damping), fixed
