@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
@@ -19,7 +20,7 @@ from rpscli.case.schema.case_file import (
 )
 from rpscli.case.schema.check import SchemaCheck
 from rpscli.case.schema.fields import Section
-from rpscli.case.text.document import MISSING, Document, Path
+from rpscli.case.text.document import MISSING, Document, Fault, Path, dotted
 
 SectionT = TypeVar("SectionT", bound=Section)
 
@@ -58,6 +59,12 @@ class PartialCase:
     def written(self, parent: Path, *names: str) -> list[str]:
         """Those of the keys below a parent that are written under their very names."""
         return [name for name in names if self.document.has((*parent, name))]
+
+    def missing(self, path: Path, meaning: str) -> Iterator[Fault]:
+        """A fault if a key is not written."""
+        if not self.has(path):
+            text = f"{dotted(path)} is missing: {meaning}"
+            yield Fault(path, text, at_key=True, needs=(path,))
 
     def where(self, path: Path) -> str:
         """Place of a key for a message, in brackets."""

@@ -57,21 +57,16 @@ def bearing_rules(case: PartialCase) -> Iterator[Fault]:
 
 def _missing_ratios(case: PartialCase) -> Iterator[Fault]:
     for name, meaning in MEANINGS.items():
-        path = (*BEARING, name)
-        if not case.has(path):
-            text = f"podium.bearing.{name} is missing: {meaning}"
-            yield Fault(path, text, at_key=True, needs=(path,))
+        yield from case.missing((*BEARING, name), meaning)
 
 
 def _missing_wedge(case: PartialCase, bearing: BearingSection) -> Iterator[Fault]:
     sizes = bearing.dimensions
     curved = sizes.radius if sizes else bearing.curvature_ratio
     path = (*DIMENSIONS, "wedge_width") if sizes else (*BEARING, "wedge_slenderness")
-    if curved and not case.has(path):
+    if curved:
         meaning = "2B', across the outer edges of the arcs" if sizes else "tan(alpha') = B'/H"
-        name = f"podium.bearing.{'dimensions.wedge_width' if sizes else 'wedge_slenderness'}"
-        text = f"{name} is missing: {meaning}; only flat ends do without"
-        yield Fault(path, text, at_key=True, needs=(path,))
+        yield from case.missing(path, f"{meaning}; only flat ends do without")
 
 
 def _arc(case: PartialCase, shape: Shape) -> Iterator[Fault]:
@@ -122,9 +117,7 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
     """The law `value` has a restitution; the other laws give one, of which `loss` takes a part."""
     law, path = case.document.at((*IMPACT, "law")), (*IMPACT, "restitution")
     if law == "value" or case.document.at(IMPACT) == "value":
-        if not case.has(path):
-            text = "podium.impact.restitution is missing: law value needs one, as in 0.92"
-            yield Fault(path, text, at_key=True, needs=(path,))
+        yield from case.missing(path, "law value needs one, as in 0.92")
         if case.document.has((*IMPACT, "loss")) and case.document.at((*IMPACT, "loss")) != 1.0:
             text = (
                 "podium.impact.loss does not go with law value: a measured restitution holds what"
@@ -264,10 +257,7 @@ def _keys_of(case: PartialCase, path: Path, kind: str) -> Iterator[Fault]:
     needed, optional = DEVICE_KEYS[kind]
     name = ".".join(map(str, path))
     for key in needed:
-        if not case.has((*path, key)):
-            meaning = DeviceSection.model_fields[key].description
-            text = f"{name}.{key} is missing: {meaning}"
-            yield Fault((*path, key), text, at_key=True, needs=((*path, key),))
+        yield from case.missing((*path, key), DeviceSection.model_fields[key].description or "")
     for key in case.written(path, *DeviceSection.model_fields):
         if key not in ("kind", *needed, *optional):
             known = listed((*needed, *optional), "and")

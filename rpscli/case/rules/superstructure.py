@@ -30,15 +30,10 @@ def ignored_keys(case: PartialCase) -> list[str]:
 
 
 def _masses_and_damping(case: PartialCase) -> Iterator[Fault]:
-    needed = {
-        "storey_mass": "floor mass, one value or a list from the bottom, as in '200 t'",
-        "damping": "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every mode)",
-    }
-    for name, meaning in needed.items():
-        path = (*SUPERSTRUCTURE, name)
-        if not case.has(path):
-            text = f"superstructure.{name} is missing: {meaning}"
-            yield Fault(path, text, at_key=True, needs=(path,))
+    meaning = "floor mass, one value or a list from the bottom, as in '200 t'"
+    yield from case.missing((*SUPERSTRUCTURE, "storey_mass"), meaning)
+    meaning = "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every mode)"
+    yield from case.missing((*SUPERSTRUCTURE, "damping"), meaning)
 
 
 def _stiffness(case: PartialCase) -> Iterator[Fault]:
@@ -155,9 +150,8 @@ def _twice(case: PartialCase, what: str, given: list[str]) -> Fault:
 
 
 def _number_of_columns(case: PartialCase) -> Iterator[Fault]:
-    if case.has(_path(COLUMN)) and not case.has(_path(COLUMNS)):
-        text = "podium.columns is missing: the number of columns, each of column_mass"
-        yield Fault(_path(COLUMNS), text, at_key=True, needs=(_path(COLUMNS),))
+    if case.has(_path(COLUMN)):
+        yield from case.missing(_path(COLUMNS), "the number of columns, each of column_mass")
 
 
 def _beam_under_building(case: PartialCase) -> Iterator[Fault]:
@@ -212,9 +206,8 @@ def _free_standing(case: PartialCase, masses: PodiumMasses) -> Iterator[Fault]:
             f"podium.{BEAM} and podium.{GAMMA}{case.where(_path(GAMMA))} contradict each other:"
             " one says that there is no cap beam; give column_mass instead of one of them",
         )
-    elif not case.has(_path(COLUMN)):
-        text = "podium.column_mass is missing: without a cap beam it is the only mass"
-        yield Fault(_path(COLUMN), text, at_key=True, needs=(_path(COLUMN),))
+    else:
+        yield from case.missing(_path(COLUMN), "without a cap beam it is the only mass")
 
 
 SCALE: Path = ("record", "scale")

@@ -45,10 +45,10 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
         path = _path(error, document)
         if error["type"] == "too_short" and document.at(path):
             continue  # its values are refused one by one
-        if any(path == inner[: len(path)] for inner in empty if path != inner):
-            continue  # it may be faulty because of what it lacks, which is told
         if error["type"] == "extra_forbidden":
             _unknown(check, model, path)
+        elif any(path == inner[: len(path)] for inner in empty if path != inner):
+            continue  # it may be faulty because of what it lacks, which is told
         elif error["type"] != "missing":
             text = f"{dotted(path)} = {shown(document.at(path))} {_rule(error, path, model)}"
             check.faults.append(Fault(path, text))

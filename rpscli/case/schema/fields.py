@@ -18,7 +18,6 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     PlainValidator,
-    ValidationError,
     WithJsonSchema,
     model_validator,
 )
@@ -45,13 +44,6 @@ CHECKED_BY_ITSELF = "checked by itself"
 def refuse(reason: str) -> NoReturn:
     """Refuse a value; `reason` continues `path = value ...`."""
     raise PydanticCustomError("rps", "{reason}", {"reason": reason})
-
-
-def first_fault(error: ValidationError) -> str:
-    """What is wrong with a part of a value, to stand after what the value is."""
-    first = error.errors(include_url=False)[0]
-    words = {"missing": "is missing", "extra_forbidden": "is not a key that it has"}
-    return f"{'.'.join(map(str, first['loc']))} {words.get(first['type'], first['msg'])}"
 
 
 def is_finite(value: object) -> TypeGuard[float]:

@@ -191,12 +191,7 @@ class SampleSection(Section):
     method: Literal["sobol", "latin_hypercube"] = Field("sobol", description="kind of sequence")
     size: Annotated[int, Whole(1)] = Field(description="number of sampled systems")
     seed: Seed = Field(1, description="of the scrambling; the same seed gives the same sample")
-    ranges: Annotated[
-        dict[str, RangeSection],
-        must_be(
-            dict, "keys with their ranges, as in {podium.impact.factor: [0.9, 1]}", filled=True
-        ),
-    ] = Field(description="dotted case keys with [low, high] or a distribution")
+    ranges: Ranges = Field(description="dotted case keys with [low, high] or a distribution")
 
 
 class PerturbSection(Section):

@@ -75,14 +75,8 @@ def _scale_of_base(base: Document) -> MeasureScale | None:
         found = ScaleToSection.model_validate(target)
     except ValidationError:
         return None  # told with the other faults of the systems
-    return MeasureScale.model_validate(
-        {
-            "measure": found.measure,
-            "values": [found.value],
-            "period": found.period,
-            "damping": found.damping,
-        }
-    )
+    given = found.model_dump(exclude={"value"})
+    return MeasureScale.model_validate(given | {"values": found.value})
 
 
 def parse_study(
@@ -119,8 +113,20 @@ def study_of(
     digest: str,
 ) -> Study:
     """A study from its document, as `parse_study` says."""
-    axes, sources, observed, reports = _checked(document, folder, kinds)
-    file = StudyFile.model_validate(document.content)
+    check = schema_check(StudyFile, document)
+    axes, axis_faults = axes_of(document)
+    sources, source_faults = sources_of(document, folder)
+    reports, report_faults = requests_of(document, kinds)
+    faults = [*check.faults, *axis_faults, *source_faults, *report_faults]
+    faults += [*unknown_keys(document), *twice(document, axes), *record_rules(document)]
+    faults += analysis_rules(document, reports, kinds)
+    observed = None
+    if not axis_faults and (axes or not document.content.get("vary")):
+        observed, observed_faults = observed_of(document, folder, axes)
+        faults += [*observed_faults, *report_rules(document, axes, reports, kinds)]
+    document.refuse(faults)
+    file = check.read
+    assert file is not None, "without faults the file is read"
     document.refuse(fixed_faults(document, base_overrides))
     document.refuse(size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
@@ -134,7 +140,7 @@ def study_of(
         base_file=base_file,
         base_folder=base_file.parent if base_file else folder,
         base_overrides=tuple(base_overrides),
-        axes=axes,
+        axes=tuple(axes),
         sources=sources,
         observed=observed,
         reports=reports,
@@ -151,31 +157,6 @@ def shared_out(overrides: Sequence[str], model: type[StudyParts]) -> tuple[list[
         known = key.split(".")[0] in fields_of(model) and not key.startswith("analysis.")
         (own if known else of_base).append(override)
     return own, of_base
-
-
-def _checked(
-    document: Document, folder: Path, kinds: ReportKinds
-) -> tuple[tuple[Axis, ...], tuple[str, ...], Observed | None, tuple[ReportRequest, ...]]:
-    """Axes, sources, observations and reports; all faults of the study are raised together."""
-    axes, axis_faults = axes_of(document)
-    sources, source_faults = sources_of(document, folder)
-    observed, observed_faults = observed_of(document, folder, axes)
-    requests, request_faults = requests_of(document, kinds)
-    faults = [
-        *schema_check(StudyFile, document).faults,
-        *axis_faults,
-        *source_faults,
-        *observed_faults,
-        *request_faults,
-        *unknown_keys(document),
-        *twice(document, axes),
-        *record_rules(document),
-        *analysis_rules(document, requests, kinds),
-    ]
-    if not axis_faults:
-        faults += report_rules(document, axes, requests, kinds)
-    document.refuse(faults)
-    return tuple(axes), sources, observed, requests
 
 
 def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:
