@@ -14,7 +14,9 @@ COMMANDS = {
     "init": Member("rpscli.commands.init", "write a commented case or study to start from"),
     "check": Member("rpscli.commands.check", "what follows from a case, and what is wrong in it"),
     "explain": Member("rpscli.commands.explain", "what a key, a result, a report or a word means"),
-    "schema": Member("rpscli.commands.schema", "the formats of case and study as JSON schemas"),
+    "schema": Member(
+        "rpscli.commands.init", "the formats of case and study as JSON schemas", "schema"
+    ),
     "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
     "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
     "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
@@ -24,9 +26,9 @@ COMMANDS = {
         "the values of a case that meet limits and minimise an objective",
     ),
     "report": Member(
-        "rpscli.commands.report.command", "one page to check, print and keep, from all of these"
+        "rpscli.commands.report", "one page to check, print and keep, from all of these"
     ),
-    "record": Member("rpscli.commands.record.group", "look at ground motions, convert, make them"),
+    "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
     "completion": Member("rpscli.commands.completion", "let your shell complete what you type"),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
 }

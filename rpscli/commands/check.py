@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.case.conditions import conditions_of
-from rpscli.commands.case_input import CaseInput, case_folder, case_heading, read_case, write
-from rpscli.commands.check_device_tables import device_tables
-from rpscli.commands.check_tables import check_tables
-from rpscli.commands.motion import MotionRequest, load_motion
+from rpscli.case.conditions import Condition, condition_text, conditions_of
+from rpscli.commands.inputs import (
+    CaseInput,
+    MotionRequest,
+    case_folder,
+    case_heading,
+    load_motion,
+    read_case,
+    write,
+)
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     CaseRequest,
@@ -25,9 +31,13 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import USUAL, Look
+from rpscli.report.numbers import large, shown
+from rpscli.report.table import Heading, Part, Table
+from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
+    from rpscli.model.podium import PodiumStructure
 
 
 @click.command("check")
@@ -108,3 +118,68 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RecordError | None]:
         "scale": motion.scale,
         "warnings": [*found.warnings, *motion.scale_warnings],
     }, None
+
+
+def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> Iterator[Part]:
+    """Geometry; masses, statics and periods; the record; the limits."""
+    heads = ("", "symbol", "value", "unit")
+    yield Heading(document["case"]["title"])
+    for rows in (GEOMETRY, (*DYNAMICS, FIRST_PERIOD)):
+        texts = []
+        for row in rows:
+            value, unit = large(document[row.name], row.unit)
+            texts.append((row.label, row.symbol, shown(value), unit))
+        yield Table.of_texts(heads, texts, words=2)
+    if record := document["record"]:
+        yield _record_table(record)
+    if limits:
+        yield Table.of_texts(("limit", ""), [(c.name, condition_text(c)) for c in limits], words=2)
+
+
+def _record_table(record: Mapping[str, Any]) -> Table:
+    rows = [
+        ("record", record["name"]),
+        ("", record["description"]),
+        ("format", record["format"]),
+        ("samples", f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s"),
+        ("peak acceleration", f"{shown(record['pga'])} m/s2"),
+        ("scale", f"{record['scale']:g}"),
+    ]
+    return Table.listing(row for row in rows if row[1])
+
+
+def device_tables(structure: PodiumStructure) -> Iterator[Part]:
+    """Each device's numbers, uplift with all of them, and from where the storey re-centres."""
+    if not structure.devices:
+        return
+    from rpscli.model.statics import returns, uplift_acceleration, uplift_force
+
+    found = [
+        (f"{index} {device.kind}", item.label, item.value, item.unit)
+        for index, device in enumerate(structure.devices)
+        for item in device.consequences(structure)
+    ]
+    found.append(("all", "uplift force at the cap beam", uplift_force(structure), "N"))
+    found.append(
+        ("all", "uplift acceleration, quasi-static", uplift_acceleration(structure), "m/s2")
+    )
+    rows = []
+    for device, label, value, unit in found:
+        number, name = large(value, unit)
+        rows.append((device, label, "never" if number is None else shown(number), name))
+    yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
+    if back := returns(structure):
+        yield Table.of_texts(
+            ("from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"),
+            [
+                (
+                    shown(row.rotation),
+                    shown(row.rotation / structure.critical_rotation, 2),
+                    shown(row.displacement),
+                    shown(1e-3 * row.friction),
+                    shown(1e-3 * row.largest_friction),
+                    "yes" if row.recentres else "no",
+                )
+                for row in back
+            ],
+        )

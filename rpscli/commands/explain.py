@@ -11,8 +11,7 @@ import click
 
 from rpscli.analyses import result_quantities
 from rpscli.analyses.result_quantities import ResultQuantity
-from rpscli.commands.shell.completions import case_keys
-from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.options import case_keys, terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, nearest
 from rpscli.report.documents import heading

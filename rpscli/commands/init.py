@@ -1,13 +1,13 @@
-"""`rps init`: a case or a study to start from."""
+"""`rps init` and `rps schema`: the formats of files, to start from and for programs."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
-from rpscli.commands.schema import schema_of
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
 from rpscli.errors import Refused, UsageError
@@ -54,3 +54,32 @@ def command(
     terminal.note(f"written to {file}; next: {check}")
     if terminal.as_json:
         terminal.result({**heading(), "command": "init", "files": [str(each) for each in files]})
+
+
+@click.command("schema")
+@click.option("--study", is_flag=True, help="Of a study file, with the options of all reports.")
+@click.option("--design", is_flag=True, help="Of a design file.")
+@terminal_options
+def schema(*, study: bool, design: bool, terminal: Terminal) -> None:
+    """Print the JSON schema of a case file, with or without --json.
+
+    Editors that know YAML check and complete a case by it: `rps init --editor`.
+    """
+    del terminal
+    if study and design:
+        raise UsageError("--study and --design are two formats; take one of them")
+    emit(json_text(schema_of(study=study, design=design)), sys.stdout)
+
+
+def schema_of(*, study: bool, design: bool = False) -> dict[str, Any]:
+    """The schema of cases, of studies or of designs."""
+    # pydantic is slow.
+    if not (study or design):
+        from rpscli.case.json_schema import case_json_schema
+
+        return case_json_schema()
+    from rpscli.case.design import DesignFile
+    from rpscli.case.json_schema import study_json_schema
+    from rpscli.report.study.registry import REPORTS
+
+    return study_json_schema({}, DesignFile) if design else study_json_schema(REPORTS)

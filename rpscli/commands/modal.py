@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.case_input import case_folder, case_heading, read_case, write
+from rpscli.commands.inputs import case_folder, case_heading, read_case, write
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,

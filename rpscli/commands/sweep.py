@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.case.conditions import parse_condition
-from rpscli.commands.case_input import RESULTS, write
-from rpscli.commands.shell.completions import FILE, condition_names
+from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
+    FILE,
     CaseRequest,
     OutputRequest,
+    condition_names,
     figure_options,
     output_options,
     overrides_option,
@@ -28,9 +29,10 @@ from rpscli.commands.study import (
     read,
     show_dry_run,
     study_heading,
+    summary_tables,
+    verdict_table,
     warn,
 )
-from rpscli.commands.study_tables import summary_tables, verdict_table
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table

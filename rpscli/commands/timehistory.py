@@ -11,13 +11,13 @@ import click
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition, parse_condition
-from rpscli.commands.case_input import read_cases, write
-from rpscli.commands.motion import FACTOR, MotionRequest, single_motions
-from rpscli.commands.shell.completions import FILE, condition_names
+from rpscli.commands.inputs import FACTOR, MotionRequest, read_cases, single_motions, write
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
+    FILE,
     CaseRequest,
     OutputRequest,
+    condition_names,
     figure_options,
     film_options,
     film_part_options,

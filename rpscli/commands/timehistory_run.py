@@ -9,8 +9,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import EVENTS, LIMITS, Condition, case_conditions, with_friction
-from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, case_heading
-from rpscli.commands.motion import MotionRequest, load_motion, motion_inputs, motion_source
+from rpscli.commands.inputs import (
+    RESULTS,
+    CaseInput,
+    MotionRequest,
+    case_folder,
+    case_heading,
+    load_motion,
+    motion_inputs,
+    motion_source,
+)
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal

@@ -15,7 +15,7 @@ from rpscli.case.conditions import (
     condition_text,
     with_friction,
 )
-from rpscli.commands.case_input import RESULTS, CaseInput, case_folder, write
+from rpscli.commands.inputs import RESULTS, CaseInput, case_folder, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal

@@ -13,7 +13,7 @@ import pytest
 from click.testing import Result
 
 from rpscli.cli import COMMANDS
-from rpscli.commands.record.group import MEMBERS
+from rpscli.commands.record import MEMBERS
 from rpscli.commands.shell.terminal import rendered
 from rpscli.report.table import Table
 

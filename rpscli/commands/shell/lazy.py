@@ -12,10 +12,11 @@ from rpscli.errors import hint
 
 
 class Member(NamedTuple):
-    """A subcommand: the module whose `command` it is, and its line in the group's help."""
+    """A subcommand: its module, its line in the group's help, and its name in the module."""
 
     module: str
     summary: str
+    command: str = "command"
 
 
 class LazyGroup(click.Group):
@@ -35,7 +36,8 @@ class LazyGroup(click.Group):
         del ctx
         if cmd_name not in self.members:
             return None
-        command: click.Command = import_module(self.members[cmd_name].module).command
+        member = self.members[cmd_name]
+        command: click.Command = getattr(import_module(member.module), member.command)
         return command
 
     def resolve_command(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from rpscli.commands.case_input import RESULTS, write
+from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.options import (
     OutputRequest,
     figure_options,
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from rpscli.records.selection import Selection
     from rpscli.records.target import TargetSpectrum
+
 
 WHY_PGV = (
     "Sa(T1) is the wrong aim for rocking: once lifted the structure has no period of its own, and"

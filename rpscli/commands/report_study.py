@@ -8,14 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rpscli.commands.case_input import RESULTS
-from rpscli.commands.report.case_page import PageDone, notices, programs
-from rpscli.commands.report.subject import Earlier
+from rpscli.commands.inputs import RESULTS
+from rpscli.commands.report_case import Earlier, PageDone, notices, programs
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.study import begin, compute, read, study_heading
-from rpscli.commands.study_tables import summary_tables, verdict_table
+from rpscli.commands.study import begin, compute, read, study_heading, summary_tables, verdict_table
 from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
@@ -33,6 +31,7 @@ if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.studies import Study
     from rpscli.study_run import Collected, StudyRun
+
 
 FAILURES_SHOWN = 20
 

@@ -11,10 +11,15 @@ from typing import Any
 import click
 
 from rpscli.case.conditions import parse_condition
-from rpscli.commands.case_input import RESULTS, read_case
-from rpscli.commands.motion import FACTOR, MotionRequest
-from rpscli.commands.report.case_page import PageDone, case_page
-from rpscli.commands.report.subject import HISTORY, earlier_case, earlier_results, is_study
+from rpscli.commands.inputs import FACTOR, RESULTS, MotionRequest, read_case
+from rpscli.commands.report_case import (
+    HISTORY,
+    PageDone,
+    case_page,
+    earlier_case,
+    earlier_results,
+    is_study,
+)
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     CaseRequest,
@@ -82,7 +87,7 @@ def command(
     name: str
     make: Callable[[], PageDone]
     if study:
-        from rpscli.commands.report.study_page import read_subject, study_page
+        from rpscli.commands.report_study import read_subject, study_page
 
         made = read_subject(request, earlier, conditions, terminal)
         folder = None if earlier is None else earlier.folder

@@ -1,0 +1,252 @@
+"""`rps record`: ground motions by themselves."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.commands.inputs import RESULTS, write
+from rpscli.commands.shell.lazy import LazyGroup, Member
+from rpscli.commands.shell.options import (
+    FILE,
+    Command,
+    OutputRequest,
+    figure_options,
+    output_options,
+    terminal_options,
+)
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import Refused, UsageError
+from rpscli.report.documents import heading
+from rpscli.report.figures.look import Look
+from rpscli.report.files.output_folder import OutputFolder, Run
+from rpscli.report.files.whole_files import write_whole
+from rpscli.report.numbers import shown
+from rpscli.report.table import Part, Table
+
+if TYPE_CHECKING:
+    from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.measures import IntensityMeasures
+
+
+DAMPING = 0.05
+MADE = ("synthetic", "pulse")
+"""What may be made of a description."""
+FORMATS = {"at2": ".at2", "text": ".txt"}
+"""Formats that can be written, and how their files are called."""
+ENDINGS = {ending: form for form, ending in FORMATS.items()}
+
+
+def source_options(function: Command) -> Command:
+    """SRC, --dt, --units and --scale, as `motion`; the record's warnings go to the terminal."""
+
+    @click.argument("source", metavar="SRC", type=FILE)
+    @click.option("--dt", type=float, metavar="S", help="Time step of a file that states none [s].")
+    @click.option(
+        "--units", metavar="UNIT", help="Unit of the values of a file that states none, such as g."
+    )
+    @click.option(
+        "--scale", type=float, default=1.0, metavar="FACTOR", help="Factor on the values."
+    )
+    @functools.wraps(function)
+    def command(
+        *,
+        source: str,
+        dt: float | None,
+        units: str | None,
+        scale: float,
+        terminal: Terminal,
+        **rest: Any,
+    ) -> None:
+        from rpscli.records.source import load_record
+
+        motion = load_record(source, dt=dt, units=units)
+        if scale != 1.0:
+            motion = motion.scaled(scale)
+        terminal.warn(motion.warnings)
+        function(motion=motion, terminal=terminal, **rest)
+
+    return command
+
+
+def record_folder(
+    motion: GroundMotion, output: OutputRequest, command: str, **inputs: Any
+) -> OutputFolder:
+    """The folder of a command's results; a record that is no file is known by its samples."""
+    place = Path(motion.source.partition("?")[0])
+    run = Run(
+        f"record {command}",
+        motion.name,
+        place if place.is_file() else None,
+        motion.digest,
+        {"source": motion.source, **inputs},
+    )
+    folder = output.place or RESULTS / motion.name / f"record_{command}"
+    return OutputFolder(folder, run, force=output.force)
+
+
+def _result(
+    command: str, motion: GroundMotion, terminal: Terminal, files: Sequence[str] | None = None
+) -> None:
+    """What was read and how strong it is, as document or table."""
+    from rpscli.records.measures import intensity_measures
+    from rpscli.report.tables.record import record_document
+
+    measures = intensity_measures(motion)
+    document = {
+        **heading(), "command": f"record {command}", **record_document(motion, measures),
+    }  # fmt: skip
+    if files is not None:
+        document["files"] = files
+    terminal.result(document, record_tables(motion, measures))
+
+
+def record_tables(motion: GroundMotion, measures: IntensityMeasures) -> Iterator[Part]:
+    """What was read, and how strong it is."""
+    rows = [
+        ("source", motion.source),
+        ("format", motion.format),
+        ("understood", motion.description or "-"),
+        ("samples", f"{motion.npts} at {motion.dt:g} s"),
+        ("duration", f"{shown(motion.duration)} s"),
+        ("PGA", f"{shown(measures.pga)} m/s2 = {measures.pga / STANDARD_GRAVITY:.4f} g"),
+        ("PGV", f"{shown(measures.pgv)} m/s"),
+        ("PGD", f"{shown(measures.pgd)} m"),
+        ("Arias intensity", f"{shown(measures.arias)} m/s"),
+        ("CAV", f"{shown(measures.cav)} m/s"),
+        ("significant duration, 5-95 %", f"{shown(measures.d5_95)} s"),
+    ]
+    yield Table.listing([("name", motion.name), *rows])
+
+
+@click.command("info")
+@terminal_options
+@source_options
+def info(motion: GroundMotion, terminal: Terminal) -> None:
+    """What was understood of SRC, and its intensity measures in SI units."""
+    _result("info", motion, terminal)
+
+
+@click.command("plot")
+@terminal_options
+@source_options
+@figure_options
+@output_options
+def plot(motion: GroundMotion, output: OutputRequest, terminal: Terminal, look: Look) -> None:
+    """Draw SRC: acceleration, velocity, displacement and its response spectrum at 5 % damping.
+
+    Writes record.csv, spectrum.csv and the figure record.
+    """
+    import numpy as np
+
+    from rpscli.records.spectrum import response_spectrum
+    from rpscli.report.bundles import record_files
+
+    folder = record_folder(motion, output, "plot")
+    periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
+    spectrum = response_spectrum(motion, periods, DAMPING)
+    folder.add_all(record_files(motion, spectrum, look))
+    write(folder, terminal)
+    _result("plot", motion, terminal, folder.files)
+
+
+def write_record(
+    command: str, motion: GroundMotion, output: OutputRequest, terminal: Terminal, form: str | None
+) -> None:
+    """Write the motion into the folder, or the file, that the command line names."""
+    from rpscli.records.formats.at2 import at2_text
+    from rpscli.report.tables.record import two_column_text
+
+    place = output.place
+    named = None if place is None or place.is_dir() else ENDINGS.get(place.suffix.lower())
+    if named and form not in {None, named}:
+        raise UsageError(f"--to {form}: contradicts the file name {place}")
+    wanted = named or form or "at2"
+    content = at2_text(motion) if wanted == "at2" else two_column_text(motion)
+    if named and place is not None:
+        if place.exists() and not output.force:
+            raise Refused(f"{place} exists; name another file, or overwrite it with --force")
+        write_whole({place: content.encode()})
+        terminal.note(f"written to {place}")
+        files = [str(place)]
+    else:
+        folder = record_folder(motion, output, command, format=wanted)
+        folder.add(f"{motion.name}{FORMATS[wanted]}", content)
+        write(folder, terminal)
+        files = folder.files
+    _result(command, motion, terminal, files)
+
+
+@click.command("convert")
+@terminal_options
+@source_options
+@click.option(
+    "--to",
+    "form",
+    type=click.Choice(tuple(FORMATS)),
+    help="at2: PEER AT2, in g. text: two columns, s and m/s2. By default what the name after -o"
+    " says, else at2.",
+)
+@click.option(
+    "--resample", type=float, metavar="S", help="Time step to sample it at, linear between [s]."
+)
+@output_options
+def convert(
+    motion: GroundMotion,
+    output: OutputRequest,
+    terminal: Terminal,
+    form: str | None,
+    resample: float | None,
+) -> None:
+    """Write SRC as a PEER AT2 file or as two columns of text, with another time step if asked.
+
+    The name after -o may also be that of a file: -o motion.at2, -o motion.txt.
+    """
+    if resample is not None:
+        known = motion.warnings
+        motion = motion.resampled(resample)
+        terminal.warn(text for text in motion.warnings if text not in known)
+    write_record("convert", motion, output, terminal, form)
+
+
+@click.command("synth")
+@terminal_options
+@source_options
+@output_options
+def synth(motion: GroundMotion, output: OutputRequest, terminal: Terminal) -> None:
+    """Make the motion that SRC describes, and write it as an AT2 file that says so.
+
+    SRC is synthetic:?pga=0.4g&seed=1 (also duration, dt, ground_frequency, ground_damping,
+    cut_frequency, cut_damping, pulse_velocity, pulse_period, pulse_cycles) or a pulse such as
+    pulse:ricker?amplitude=0.4g&period=1. The same seed gives the same motion.
+    """
+    if motion.format not in MADE:
+        raise UsageError(
+            f"{motion.source}: is {motion.format}, not made here; use `rps record convert`"
+        )
+    write_record("synth", motion, output, terminal, "at2")
+
+
+MEMBERS = {
+    "info": Member("rpscli.commands.record", "what was read, and its intensity measures", "info"),
+    "plot": Member("rpscli.commands.record", "time histories and response spectrum", "plot"),
+    "select": Member("rpscli.commands.record_select", "motions and factors that fit a spectrum"),
+    "convert": Member("rpscli.commands.record", "write it as AT2 or as two columns", "convert"),
+    "synth": Member("rpscli.commands.record", "make a pulse or a synthetic motion", "synth"),
+}
+
+
+@click.command("record", cls=LazyGroup, members=MEMBERS)
+def command() -> None:
+    """Look at ground motions, choose them, convert them, make them.
+
+    SRC is a file (PEER AT2, columns of numbers, and more; options as in rec.txt?dt=0.01&units=g),
+    a member of a set (fema_p695:farfield/1/b), two components at an angle in degrees
+    (fema_p695:farfield/1?angle=30, x.at2?second=y.at2&angle=30), a pulse
+    (pulse:sine?amplitude=0.4g&period=1.2) or a synthetic motion (synthetic:?pga=0.4g&seed=1).
+    """

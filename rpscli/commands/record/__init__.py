@@ -1,1 +1,0 @@
-"""`rps record`: one module a subcommand."""
