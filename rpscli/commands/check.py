@@ -116,7 +116,7 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RecordError | None]:
         "duration": found.duration,
         "pga": found.pga,
         "scale": motion.scale,
-        "warnings": [*found.warnings, *motion.scale_warnings],
+        "warnings": [*found.warnings, *motion.warnings],
     }, None
 
 

@@ -196,6 +196,5 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
         **timehistory_document(result),
     }
     document["record"] |= {"scale": ground.scale}
-    of_motion = (*(ground.vertical.warnings if ground.vertical else ()), *ground.scale_warnings)
-    document["warnings"] = [*given.case.warnings, *document["warnings"], *of_motion]
+    document["warnings"] = [*given.case.warnings, *document["warnings"], *ground.warnings]
     return document

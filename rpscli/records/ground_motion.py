@@ -311,11 +311,13 @@ class MotionComponents(Frozen):
         return MotionComponents(**named, scale=self.scale * factor)
 
     @property
-    def scale_warnings(self) -> tuple[str, ...]:
-        """What to say of the factor; a pulse is made for any."""
-        if self.horizontal.format == "pulse" or is_usual(self.scale):
-            return ()
-        return (scale_warning(self.horizontal.name, self.scale),)
+    def warnings(self) -> tuple[str, ...]:
+        """What to say besides of the horizontal one: of the others, and of the factor."""
+        others = [motion for name, motion in self.named.items() if name != "horizontal"]
+        found = [warning for motion in others for warning in motion.warnings]
+        if self.horizontal.format != "pulse" and not is_usual(self.scale):
+            found.append(scale_warning(self.horizontal.name, self.scale))
+        return tuple(found)
 
 
 def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:

@@ -109,8 +109,8 @@ def _samples(found: MotionComponents | str) -> float:
 
 def _load(request: RecordRequest) -> MotionComponents | str:
     """The motion, or why there is none."""
-    source, folder, vertical, dt, units = request
+    source, folder, above, dt, units = request
     try:
-        return load_components(source, vertical, folder=Path(folder), dt=dt, units=units)
+        return load_components(source, above, folder=Path(folder), dt=dt, units=units)
     except (RecordError, OSError) as error:
         return str(error)
