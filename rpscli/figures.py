@@ -26,28 +26,32 @@ After the axes come
 
 from __future__ import annotations
 
-from rpscli.report.figures.arguments import examined
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
+
+from rpscli.errors import UsageError
 from rpscli.report.figures.bearing import draw_bearing as bearing
 from rpscli.report.figures.bearing import draw_end as bearing_end
-from rpscli.report.figures.capacity import draw_capacity as capacity
 from rpscli.report.figures.devices import draw_device as device
-from rpscli.report.figures.displacement import draw_displacements as displacements
-from rpscli.report.figures.displacement import draw_drifts as elastic_displacements
-from rpscli.report.figures.energy import draw_energy as energy
-from rpscli.report.figures.floor_spectra import draw_floor_spectrum as floor_spectrum
+from rpscli.report.figures.floors import draw_accelerations as floor_accelerations
+from rpscli.report.figures.floors import draw_floor_spectrum as floor_spectrum
+from rpscli.report.figures.floors import draw_shears as storey_shears
+from rpscli.report.figures.floors import draw_storey_drifts as storey_drifts
+from rpscli.report.figures.history import draw_displacements as displacements
+from rpscli.report.figures.history import draw_drifts as elastic_displacements
+from rpscli.report.figures.history import draw_energy as energy
+from rpscli.report.figures.history import draw_events as events
+from rpscli.report.figures.history import draw_ground as ground_acceleration
+from rpscli.report.figures.history import draw_moment as moment
+from rpscli.report.figures.history import draw_rotation as rotation
 from rpscli.report.figures.modes import draw_mode as mode
-from rpscli.report.figures.moment import draw_moment as moment
-from rpscli.report.figures.profile import draw_accelerations as floor_accelerations
-from rpscli.report.figures.profile import draw_shears as storey_shears
-from rpscli.report.figures.profile import draw_storey_drifts as storey_drifts
-from rpscli.report.figures.record import draw_motion as motion
-from rpscli.report.figures.record import draw_spectrum as spectrum
-from rpscli.report.figures.rotation import draw_events as events
-from rpscli.report.figures.rotation import draw_ground as ground_acceleration
-from rpscli.report.figures.rotation import draw_rotation as rotation
-from rpscli.report.figures.spectra import draw_spectra as spectra
-from rpscli.report.figures.storey_curve import draw_force as storey_curve
-from rpscli.report.figures.storey_curve import draw_lift as lift
+from rpscli.report.figures.motions import draw_motion as motion
+from rpscli.report.figures.motions import draw_spectra as spectra
+from rpscli.report.figures.motions import draw_spectrum as spectrum
+from rpscli.report.figures.pushover import draw_capacity as capacity
+from rpscli.report.figures.pushover import draw_force as storey_curve
+from rpscli.report.figures.pushover import draw_lift as lift
 from rpscli.report.figures.structure import draw_structure as structure
 from rpscli.report.figures.style import in_style as style
 
@@ -77,5 +81,25 @@ __all__ = [
     "style",
 ]
 
+
+def _examined(draw: Callable[..., None]) -> Callable[..., None]:
+    """A panel that refuses other axes and another result than it is annotated with."""
+    axes_name, drawn_name, *_ = (*draw.__annotations__.values(), "")
+
+    @wraps(draw)
+    def panel(axes: Any, drawn: Any, *arguments: Any, **named: Any) -> None:
+        for value, kind in ((axes, axes_name), (drawn, drawn_name)):
+            known = {parent.__name__ for parent in type(value).__mro__}
+            if kind.isidentifier() and kind not in known:
+                home = "matplotlib" if kind == "Axes" else "rpscli"
+                raise UsageError(
+                    f"{draw.__name__.replace('draw_', 'a panel of ')}: needs {kind} of {home}"
+                    f" where a {type(value).__name__} was given; see help(rpscli.figures)"
+                )
+        draw(axes, drawn, *arguments, **named)
+
+    return panel
+
+
 for _name in __all__[: __all__.index("style")]:
-    globals()[_name] = examined(globals()[_name])
+    globals()[_name] = _examined(globals()[_name])

@@ -64,7 +64,7 @@ def command(
     from rpscli.case.design import read_design
     from rpscli.report.design.answer import answer_document, design_columns
     from rpscli.report.design.figures import figures
-    from rpscli.report.figures.drawing import figure_files
+    from rpscli.report.figures.look import figure_files
     from rpscli.report.study.statistics import verdict_columns, verdict_document
     from rpscli.sweep.design.search import Search
     from rpscli.sweep.store import Store

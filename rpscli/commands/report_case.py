@@ -18,7 +18,6 @@ from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.commands.timehistory_run import HistoryRequest, HistoryResult, compute, history_requests
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading
-from rpscli.report.figures.drawing import artists
 from rpscli.report.figures.look import Look
 from rpscli.report.files.output_folder import RUN_FILE
 from rpscli.report.files.versions import versions
@@ -123,9 +122,6 @@ def _shortened(path: Path) -> Path:
     return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
 
 
-FIGURES = 10
-"""Of a history, in two formats each."""
-
 CAPTIONS = {
     "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
     " the events.",
@@ -167,9 +163,8 @@ def case_page(
 
     # A place for the files, which are not written there.
     (request,) = history_requests([given], [motion], OutputRequest(Path(), force=True))
-    with artists(FIGURES) as drawing:
-        announce_compilation(terminal, moving=True)
-        done, result = compute(request, conditions, page_look(look), drawing, terminal)
+    announce_compilation(terminal, moving=True)
+    done, result = compute(request, conditions, page_look(look), terminal)
     terminal.warn(done.document["warnings"])
     stored = () if earlier is None else _stored(earlier, request, done)
     sections = _sections(given, motion, (request, done, result), look, stored)

@@ -34,12 +34,8 @@ from rpscli.commands.timehistory_run import (
     history_requests,
 )
 from rpscli.errors import UsageError
-from rpscli.report.figures.drawing import Artists, artists
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
-
-FIGURES = 5
-"""Figures of a history, at most."""
 
 
 @click.command("timehistory")
@@ -98,40 +94,35 @@ def command(
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
     conditions = [parse_condition(text) for text in fail_on]
-    several = len(requests) > 1 or len(records) > 1
-    wanted = replace(look, formats=()) if several and look.formats is None else look
-    # At once: they load matplotlib while this process loads the rest.
-    with artists(FIGURES * len(wanted.endings)) as drawing:
-        motions = list(single_motions(records, MotionRequest(**motion)))
-        cases = read_cases(requests, terminal)
-        histories = [
-            replace(history, floor_spectra=floor_spectra)
-            for history in history_requests(cases, motions, output)
-        ]
-        announce_compilation(terminal, moving=True)
-        if len(histories) == 1:
-            _one(histories[0], conditions, look, drawing, film, terminal)
-            return
-        if film is not None:
-            raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
-        from rpscli.commands.timehistory_set import run_all
+    motions = list(single_motions(records, MotionRequest(**motion)))
+    cases = read_cases(requests, terminal)
+    histories = [
+        replace(history, floor_spectra=floor_spectra)
+        for history in history_requests(cases, motions, output)
+    ]
+    announce_compilation(terminal, moving=True)
+    if len(histories) == 1:
+        _one(histories[0], conditions, look, film, terminal)
+        return
+    if film is not None:
+        raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
+    from rpscli.commands.timehistory_set import run_all
 
-        chosen = look if look.formats is not None else replace(look, formats=())
-        run_all(histories, conditions, chosen, drawing, output, terminal)
+    chosen = look if look.formats is not None else replace(look, formats=())
+    run_all(histories, conditions, chosen, output, terminal)
 
 
 def _one(
     request: HistoryRequest,
     conditions: Sequence[Condition],
     look: Look,
-    drawing: Artists,
     film: FilmRequest | None,
     terminal: Terminal,
 ) -> None:
     from rpscli.commands.timehistory_tables import timehistory_tables
 
     title = request.given.case.title
-    done, result = compute(request, conditions, look, drawing, terminal)
+    done, result = compute(request, conditions, look, terminal)
     if film is not None:
         from rpscli.report.figures.animation import history_film
 

@@ -25,7 +25,6 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
 from rpscli.report.documents import ONE_DIRECTION, heading, timehistory_document
-from rpscli.report.figures.drawing import Artists
 from rpscli.report.figures.look import Look
 from rpscli.report.files.json_text import json_text
 from rpscli.report.files.output_folder import OutputFolder
@@ -126,7 +125,6 @@ def compute(
     request: HistoryRequest,
     conditions: Sequence[Condition],
     look: Look,
-    drawing: Artists,
     terminal: Terminal,
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
@@ -139,7 +137,7 @@ def compute(
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):
         result = time_history(case.structure, ground, case.analysis)
-    for name, content in timehistory_files(result, case.title, look, drawing):
+    for name, content in timehistory_files(result, case.title, look):
         request.folder.add(name, content)
     if request.floor_spectra:
         for name, content in floor_spectra_files(result, case.title, look):

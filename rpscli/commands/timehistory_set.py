@@ -28,7 +28,6 @@ from rpscli.commands.timehistory_run import (
 )
 from rpscli.errors import AnalysisError, LimitExceeded, RpsError
 from rpscli.report.documents import ONE_DIRECTION, heading
-from rpscli.report.figures.drawing import Artists
 from rpscli.report.figures.look import Look
 from rpscli.report.files.json_text import json_text
 from rpscli.report.files.output_folder import OutputFolder
@@ -87,7 +86,6 @@ def run_all(
     requests: Sequence[HistoryRequest],
     conditions: Sequence[Condition],
     look: Look,
-    drawing: Artists,
     output: OutputRequest,
     terminal: Terminal,
 ) -> None:
@@ -96,7 +94,7 @@ def run_all(
     folders = [_set_folder(group, output, alone=len(cases) == 1) for group in cases]
     computed = []
     for group, folder in zip(cases, folders, strict=True):
-        histories = [_written(request, conditions, look, drawing, terminal) for request in group]
+        histories = [_written(request, conditions, look, terminal) for request in group]
         outcomes = [history.document["outcome"] for history in histories]
         records = Records.of(outcomes, [history.demands for history in histories])
         judged = group[0].given.case
@@ -123,10 +121,9 @@ def _written(
     request: HistoryRequest,
     conditions: Sequence[Condition],
     look: Look,
-    drawing: Artists,
     terminal: Terminal,
 ) -> HistoryResult:
-    done, _ = compute(request, conditions, look, drawing, terminal)
+    done, _ = compute(request, conditions, look, terminal)
     add_summary(request, done)
     request.folder.write()
     return done

@@ -15,21 +15,19 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.selection import Selection
 from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.figures.bearing import bearing_figure
-from rpscli.report.figures.capacity import capacity_figure
 from rpscli.report.figures.devices import devices_figure
-from rpscli.report.figures.displacement import displacement_figure
-from rpscli.report.figures.drawing import Artists, Draw, figure_files
-from rpscli.report.figures.energy import energy_figure
-from rpscli.report.figures.floor_spectra import floor_spectra_figure
-from rpscli.report.figures.look import USUAL, Look
+from rpscli.report.figures.floors import floor_spectra_figure, profile_figure
+from rpscli.report.figures.history import (
+    displacement_figure,
+    energy_figure,
+    moment_figure,
+    rotation_figure,
+    thinned,
+)
+from rpscli.report.figures.look import USUAL, Draw, Look, figure_files
 from rpscli.report.figures.modes import modes_figure
-from rpscli.report.figures.moment import moment_figure
-from rpscli.report.figures.profile import profile_figure
-from rpscli.report.figures.record import record_figure
-from rpscli.report.figures.rotation import rotation_figure
-from rpscli.report.figures.selection import selection_figure
-from rpscli.report.figures.storey_curve import storey_curve_figure
-from rpscli.report.figures.thinned import thinned
+from rpscli.report.figures.motions import record_figure, selection_figure
+from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
 from rpscli.report.files.whole_files import Content
 from rpscli.report.table import csv_lines, csv_text
 from rpscli.report.tables.floor_spectra import floor_spectra_columns
@@ -71,14 +69,11 @@ def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Fi
     yield from figure_files(figures, look).items()
 
 
-def timehistory_files(
-    result: TimeHistoryResult, title: str, look: Look = USUAL, artists: Artists = ()
-) -> Files:
+def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:
     """Files of a time history."""
     yield "timehistory.csv", csv_lines(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
-    # What takes longest comes first, so that no process draws on alone at the end.
     figures: dict[str, Callable[..., bytes]] = {
         **({"storey_shears": profile_figure} if result.structure.storeys else {}),
         **({"devices": devices_figure} if result.structure.devices else {}),
@@ -89,7 +84,7 @@ def timehistory_files(
     }
     few = thinned(result)
     draws = {stem: partial(draw, few, title) for stem, draw in figures.items()}
-    yield from figure_files(draws, look, artists).items()
+    yield from figure_files(draws, look).items()
 
 
 def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:

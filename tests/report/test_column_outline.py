@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
-from rpscli.report.figures import column_outline
-from rpscli.report.figures.column_outline import leaning_outline, upright_outline
+from rpscli.report.figures.bearing import ARC_POINTS, leaning_outline, upright_outline
 
 slendernesses = st.floats(0.05, 0.4)
 curvatures = st.sampled_from([0.0, 0.25, 0.5, 1.5, 4.0])
@@ -26,7 +25,7 @@ def test_it_touches_ground_and_cap_beam(slenderness: float, curvature: float, le
     displacement, lift = float(np.copysign(u[0], rotation)), float(v[0])
     outline = leaning_outline(bearing, rotation, displacement, lift)
     # A chord of the arc, one of eleven, runs this much above the arc it stands for.
-    step = bearing.beta / (column_outline.ARC_POINTS - 1)
+    step = bearing.beta / (ARC_POINTS - 1)
     sagitta = bearing.radius * (1.0 - np.cos(0.5 * step)) + 1e-12
     assert outline[:, 1].min() == pytest.approx(0.0, abs=sagitta)
     assert outline[:, 1].max() == pytest.approx(2.0 * bearing.half_height + lift, abs=sagitta)

@@ -21,9 +21,8 @@ from rpscli.model.bearing import Bearing
 from rpscli.report.bundles import modal_files, pushover_files, timehistory_files
 from rpscli.report.figures import style
 from rpscli.report.figures.animation import frame_plan, modes_film
-from rpscli.report.figures.displacement import shown_floors
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.rotation import rotation_figure
+from rpscli.report.figures.history import rotation_figure, shown_floors
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -40,20 +40,20 @@ from rpscli.model.podium import Device
 from rpscli.records import measures
 from rpscli.records.source import load_record
 from rpscli.records.spectrum import response_spectrum
-from rpscli.report.figures.animation import frame_plan, history_film, modes_film
-from rpscli.report.figures.capacity import capacity_figure
+from rpscli.report.figures.animation import Scene, frame_plan, history_film, modes_film
 from rpscli.report.figures.devices import devices_figure
-from rpscli.report.figures.displacement import displacement_figure
-from rpscli.report.figures.energy import energy_figure
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.levels import level_heights
+from rpscli.report.figures.floors import profile_figure
+from rpscli.report.figures.history import (
+    displacement_figure,
+    energy_figure,
+    moment_figure,
+    rotation_figure,
+)
 from rpscli.report.figures.modes import modes_figure
-from rpscli.report.figures.moment import moment_figure
-from rpscli.report.figures.profile import profile_figure
-from rpscli.report.figures.record import record_figure
-from rpscli.report.figures.rotation import rotation_figure
-from rpscli.report.figures.scene import Scene
-from rpscli.report.figures.storey_curve import storey_curve_figure
+from rpscli.report.figures.motions import record_figure
+from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
+from rpscli.report.figures.structure import level_heights
 
 Drawn = Callable[..., Figure]
 

@@ -14,9 +14,8 @@ from PIL import Image
 from report.small_results import KINDS
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.drawing import figure_files
-from rpscli.report.figures.look import Look, put_in_force, read_style
-from rpscli.report.figures.rotation import rotation_figure
+from rpscli.report.figures.history import rotation_figure
+from rpscli.report.figures.look import Look, figure_files, put_in_force, read_style
 
 
 def drawn_as(ending: str, look: Look | None = None, title: str = "title") -> bytes:

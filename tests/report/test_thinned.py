@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from report.small_results import KINDS
-from rpscli.report.figures import thinned
+from rpscli.report.figures import history
 from rpscli.report.table import Column, csv_lines, csv_text
 
 
 def test_extremes_of_every_stretch_stay(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(thinned, "MOST", 100)
-    monkeypatch.setattr(thinned, "STRETCHES", 10)
+    monkeypatch.setattr(history, "MOST", 100)
+    monkeypatch.setattr(history, "STRETCHES", 10)
     values = np.random.default_rng(1).normal(size=1003)
-    kept = thinned.extremes(values)
+    kept = history.extremes(values)
     assert kept[0] == 0
     assert kept[-1] == 1002
     assert len(kept) <= 22
@@ -28,10 +28,10 @@ def test_extremes_of_every_stretch_stay(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_thinned_histories_keep_their_peaks(monkeypatch: pytest.MonkeyPatch) -> None:
     result = KINDS["rolls"]()
-    assert thinned.thinned(result) is result
-    monkeypatch.setattr(thinned, "MOST", 50)
-    monkeypatch.setattr(thinned, "STRETCHES", 10)
-    few = thinned.thinned(result)
+    assert history.thinned(result) is result
+    monkeypatch.setattr(history, "MOST", 50)
+    monkeypatch.setattr(history, "STRETCHES", 10)
+    few = history.thinned(result)
     assert len(few.trace.time) < len(result.trace.time)
     for name in ("rotation", "ground_acceleration", "driving_moment", "time"):
         all_of_it, kept = getattr(result.trace, name), getattr(few.trace, name)

@@ -13,8 +13,7 @@ import numpy as np
 from rpscli.case.conditions import EVENTS, LIMITS
 from rpscli.report.design.answer import aim_label, aim_unit, requirement_label
 from rpscli.report.figures import style
-from rpscli.report.figures.drawing import Draw
-from rpscli.report.figures.look import in_force
+from rpscli.report.figures.look import Draw, in_force
 from rpscli.report.study.labels import symbol
 from rpscli.report.study.panels import MOST_TICKS
 from rpscli.sweep.design.answer import NONE, ROBUST, Answer

@@ -1,7 +1,4 @@
-"""The bearing with its dimensions: at rest, where rolling ends, and at the critical rotation.
-
-Beside these, which have one scale, an end of the column enlarged, and the restoring force.
-"""
+"""The bearing with its dimensions: at rest, where rolling ends, and at the critical rotation."""
 
 from __future__ import annotations
 
@@ -9,12 +6,13 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.errors import UsageError
+from rpscli.model.bearing import Bearing
 from rpscli.report.figures import style
-from rpscli.report.figures.column_outline import contact_points, leaning_outline
 from rpscli.report.figures.devices import SceneDevices
-from rpscli.report.figures.storey_curve import draw_force
+from rpscli.report.figures.pushover import draw_force
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -24,6 +22,59 @@ if TYPE_CHECKING:
     from rpscli.analyses.pushover import PushoverResult
     from rpscli.model.bearing import Bearing
     from rpscli.model.podium import PodiumStructure
+
+
+Array = NDArray[np.float64]
+
+ARC_POINTS = 12
+
+
+def upright_outline(bearing: Bearing) -> Array:
+    """Corners of the upright column about its centre, (points, 2) [m], counter-clockwise.
+
+    ::
+
+        .---.      flat part up to B, an arc of radius r up to B', straight sides
+       (     )
+        |   |
+       (     )
+        '---'
+    """
+    H, B, r = bearing.half_height, bearing.half_width, bearing.radius
+    turn = np.linspace(0.0, bearing.beta, ARC_POINTS if bearing.beta > 0.0 else 1)
+    x = B + r * np.sin(turn)
+    y = -H + r * (1.0 - np.cos(turn))
+    corner = np.column_stack([x, y])  # bottom right, outwards
+    upper = corner[::-1] * (1.0, -1.0)
+    right = np.vstack([corner, upper])
+    return np.vstack([right, -right])
+
+
+def leaning_outline(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
+    """Corners of the column at a rotation, (points, 2) [m]; upright it stands on the origin.
+
+    Parameters
+    ----------
+    rotation
+        theta [rad], positive about the right edge: clockwise.
+    displacement, lift
+        u_b and v_b of the cap beam [m]; the column's centre makes half of both.
+    """
+    cosine, sine = math.cos(rotation), math.sin(rotation)
+    turn = np.array([[cosine, -sine], [sine, cosine]])
+    centre = (0.5 * displacement, bearing.half_height + 0.5 * lift)
+    return np.asarray(upright_outline(bearing) @ turn + centre)
+
+
+def contact_points(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
+    """Where a leaning column touches ground and cap beam, (2, 2) [m]; arguments as above.
+
+    It has rolled the arc's length r |theta| beyond the edge of the flat part, up to r beta.
+    """
+    side = math.copysign(1.0, rotation)
+    reach = side * (bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta))
+    return np.array([[reach, 0.0], [displacement - reach, 2.0 * bearing.half_height + lift]])
+
 
 COLUMN, BEAM = "#DDDDDD", "#CCE3F0"
 

@@ -17,7 +17,6 @@ from rpscli.model.devices import (
 )
 from rpscli.model.podium import Device
 from rpscli.report.figures import style
-from rpscli.report.figures.arguments import require
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,7 +70,7 @@ def draw_device(axes: Axes, result: TimeHistoryResult, index: int) -> None:
 
     A loop that dissipates runs clockwise and its area is the energy.
     """
-    require("devices", index, range(len(result.structure.devices)))
+    style.require("devices", index, range(len(result.structure.devices)))
     trace, device = result.trace.devices, result.structure.devices[index]
     drawn = DRAWN[type(device)]
     force = drawn.sign * trace.force[:, index]

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeAlias, cast
 
 from rpscli.errors import UsageError
 from rpscli.user_cache import user_cache
@@ -74,6 +74,9 @@ class Look:
         return {**sizes, **self.style}
 
 
+Draw: TypeAlias = Callable[[], bytes]
+"""Makes the file of a figure."""
+
 USUAL = Look()
 """What a user gets who asks for nothing."""
 
@@ -104,10 +107,19 @@ def put_in_force(look: Look, ending: str) -> Iterator[None]:
         _in_force.reset(token)
 
 
-def drawn_with(look: Look, ending: str, draw: Callable[[], bytes]) -> bytes:
+def drawn_with(look: Look, ending: str, draw: Draw) -> bytes:
     """The file of a figure with a look, in the format of an ending."""
     with put_in_force(look, ending):
         return draw()
+
+
+def figure_files(figures: Mapping[str, Draw], look: Look) -> dict[str, bytes]:
+    """The files of figures, given by their names without ending, in each format that is wanted."""
+    return {
+        f"{stem}.{ending}": drawn_with(look, ending, draw)
+        for stem, draw in figures.items()
+        for ending in look.endings
+    }
 
 
 def quiet_matplotlib() -> None:
@@ -153,7 +165,7 @@ def read_style(path: Path) -> dict[str, Any]:
     if complaints.texts:
         reasons = "; ".join(" ".join(text.split()) for text in complaints.texts)
         raise UsageError(f"--style {path}: {reasons}")
-    return dict(found)  # can be sent to another process
+    return dict(found)
 
 
 def _regular(path: Path) -> Path:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rpscli.report.figures import style
-from rpscli.report.figures.arguments import require
-from rpscli.report.figures.levels import level_heights
+from rpscli.report.figures.structure import level_heights
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,8 +53,8 @@ def draw_modes(figure: Figure, result: ModalResult, title: str) -> None:
 
 def draw_mode(axes: Axes, result: ModalResult, state: str, mode: int) -> None:
     """A mode, counted from 1, or 0 for the storey's own, `rolling` or `rocking`."""
-    require("phases", state, result.uplifted)
-    require("modes", mode, range(result.structure.storeys + 1))
+    style.require("phases", state, result.uplifted)
+    style.require("modes", mode, range(result.structure.storeys + 1))
     modes = result.uplifted[state]
     levels = np.concatenate([[0.0], level_heights(result.structure)])
     shape = modes.shapes[:, mode]

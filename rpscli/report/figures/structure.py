@@ -5,17 +5,33 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
-from rpscli.report.figures.bearing import BEAM, COLUMN, measure
-from rpscli.report.figures.column_outline import leaning_outline
-from rpscli.report.figures.levels import level_heights
+from rpscli.report.figures.bearing import BEAM, COLUMN, leaning_outline, measure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from rpscli.model.podium import PodiumStructure
+
+
+STOREY_HEIGHT = 3.0
+"""Where the case gives none [m]."""
+
+
+def level_heights(structure: PodiumStructure) -> NDArray[np.float64]:
+    """Heights of the cap beam and of the floors above it at rest, (n + 1,) [m]."""
+    column = 2.0 * structure.bearing.half_height
+    building = structure.superstructure
+    if building is None:
+        return np.array([column])
+    heights = building.storey_heights
+    storeys = np.full(building.storeys, STOREY_HEIGHT) if heights is None else heights
+    return column + np.concatenate([[0.0], np.cumsum(storeys)])
+
 
 COLUMNS = 3
 """Columns under a cap beam: their number and distances are not drawn to scale."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -289,3 +289,13 @@ def engineering(largest: float) -> tuple[float, str]:
         if largest * factor >= 1.0:
             return factor, prefix
     return 1.0, ""
+
+
+def require(what: str, value: object, known: Iterable[object]) -> None:
+    """Refuse what is not there: an index from the end would draw another panel than is wanted."""
+    there = list(known)
+    if value not in there:
+        names = ", ".join(map(str, there[:3])) + (f" to {there[-1]}" if len(there) > 3 else "")
+        raise UsageError(
+            f"{str(value)[:60]!r} is none of the {what}; there are {names or 'none to be drawn'}"
+        )

@@ -10,10 +10,8 @@ import numpy as np
 from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import ResponseSpectrum, response_spectrum
 from rpscli.report.figures import style
-from rpscli.report.figures.drawing import figure_files
-from rpscli.report.figures.look import Look
-from rpscli.report.figures.record import record_figure
-from rpscli.report.figures.spectra import spectra_figure
+from rpscli.report.figures.look import Look, figure_files
+from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.html.page import Block, Section
 from rpscli.report.html.pictures import Picture, page_look
 from rpscli.report.table import Table

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rpscli.case.schema.keys import unit
 from rpscli.report.bundles import bearing_files
-from rpscli.report.figures.drawing import figure_files
-from rpscli.report.figures.look import Look
+from rpscli.report.figures.look import Look, figure_files
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Section
 from rpscli.report.html.pictures import Picture, page_look, pictures

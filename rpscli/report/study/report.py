@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rpscli.case.study.reports import Check, ReportOptions
 from rpscli.case.study.schema import Analysis
-from rpscli.report.figures.drawing import figure_files
-from rpscli.report.figures.look import USUAL, Look
+from rpscli.report.figures.look import USUAL, Look, figure_files
 from rpscli.report.figures.style import Target, kept_figure
 from rpscli.report.table import Column, csv_text
 from rpscli.sweep.points.layout import StudyPoints

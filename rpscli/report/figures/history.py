@@ -1,0 +1,324 @@
+"""Rotation, events, displacements, moments and energy of a time history."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.report.figures import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rpscli.analyses.results import TimeHistoryResult
+
+
+MOST = 50_000
+"""Samples that are drawn as they are."""
+
+STRETCHES = 2_000
+"""More than a figure has points across."""
+
+
+def extremes(*curves: NDArray[Any]) -> NDArray[np.intp]:
+    """Samples to draw, in order: the first, the last, and the least and largest of each stretch.
+
+    Parameters
+    ----------
+    *curves
+        (samples,) each; all samples where they are few.
+    """
+    count = len(curves[0])
+    if count <= MOST:
+        return np.arange(count)
+    length = -(-count // STRETCHES)
+    ends = np.array([0, count - 1])
+    found = [ends]
+    for curve in curves:
+        rows = np.pad(curve, (0, -count % length), mode="edge").reshape(-1, length)
+        starts = np.arange(len(rows)) * length
+        found += [starts + rows.argmin(axis=1), starts + rows.argmax(axis=1)]
+    return np.unique(np.minimum(np.concatenate(found), count - 1))
+
+
+def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
+    """The history with the samples that its figures need; maxima and events stay what they are.
+
+    But for those of velocities, which are of all samples, and are not drawn: these are no numbers.
+    """
+    trace = result.trace
+    if len(trace.time) <= MOST:
+        return result
+    floors = [floor - 1 for floor in shown_floors(result.structure.storeys)]
+    kept = extremes(
+        trace.ground_acceleration, trace.rotation, trace.phase, trace.cap_beam_displacement,
+        trace.driving_moment, trace.energy_input, trace.energy_stored,
+        *trace.floor_displacements.T[floors], *trace.devices.force.T, *trace.devices.displacement.T,
+    )  # fmt: skip
+    few = trace.at(kept)
+    few = replace(few, floor_velocities=np.full_like(few.floor_velocities, np.nan))
+    return replace(result, trace=few, fixed_base=_without_histories(result))
+
+
+def _without_histories(result: TimeHistoryResult) -> Any:
+    fixed = result.fixed_base
+    if fixed is None:
+        return None
+    none = np.empty((0, result.structure.storeys))
+    return replace(fixed, floor_displacements=none, acceleration_histories=none)
+
+
+FLOOR_COLOURS = (style.RED, style.ORANGE, style.GREEN)
+
+
+def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
+    """Roof, floors at mid-height and cap beam over the ground; below, floors over the cap beam."""
+    rows = 2 if result.structure.storeys else 1
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, result.record.name)
+        panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
+        draw_displacements(panels[0], result)
+        if rows > 1:
+            draw_drifts(panels[1], result)
+            panels[0].label_outer()
+        figure.align_ylabels()
+
+    return style.picture(draw, 4.8 if rows > 1 else 3.0)
+
+
+def draw_displacements(axes: Axes, result: TimeHistoryResult) -> None:
+    """Floors and cap beam, relative to the ground."""
+    trace = result.trace
+    _draw_floors(axes, result, trace.floor_displacements)
+    base = "cap beam" if result.structure.cap_beam_mass > 0.0 else "top of the columns"
+    line = "--" if result.structure.storeys else "-"
+    axes.plot(trace.time, trace.cap_beam_displacement, color=style.BLACK, ls=line, label=base)
+    axes.set_ylabel("displacement relative\nto the ground [m]")
+    style.legend_above(axes, 4)
+
+
+def draw_drifts(axes: Axes, result: TimeHistoryResult) -> None:
+    """Floors relative to the cap beam."""
+    trace = result.trace
+    drifts = trace.floor_displacements - trace.cap_beam_displacement[:, None]
+    _draw_floors(axes, result, drifts, lw=0.8)
+    axes.set_ylabel("displacement relative\nto the cap beam [m]")
+
+
+def _draw_floors(
+    axes: Axes, result: TimeHistoryResult, values: NDArray[np.float64], **look: Any
+) -> None:
+    """Some columns of (samples, n), with time below."""
+    time, storeys = result.trace.time, result.structure.storeys
+    for floor, colour in zip(shown_floors(storeys), FLOOR_COLOURS, strict=False):
+        name = floor_name(floor, storeys)
+        axes.plot(time, values[:, floor - 1], color=colour, label=name, **look)
+    axes.set_xlim(0.0, time[-1])
+    axes.set_xlabel("time [s]")
+
+
+def shown_floors(storeys: int) -> list[int]:
+    """The roof and at most two floors below it, counted from 1 at the bottom.
+
+    >>> shown_floors(0), shown_floors(2), shown_floors(9)
+    ([], [2, 1], [9, 6, 3])
+    """
+    third = storeys / 3.0
+    return sorted({round(third * k) for k in (1, 2, 3)} - {0}, reverse=True)
+
+
+def floor_name(floor: int, storeys: int) -> str:
+    """How a floor is called in a legend."""
+    return "roof" if floor == storeys else f"floor {floor}"
+
+
+EventRow = tuple[tuple[str, ...], str, str]
+
+EVENT_ROWS: tuple[EventRow, ...] = (
+    (("uplift",), "uplift", style.GREEN),
+    (("impact",), "impact", style.BLACK),
+    (("recontact",), "re-contact", style.GREY),
+    (("rolling_to_rocking", "rocking_to_rolling"), "rolling, rocking", style.PINK),
+    (("critical_rotation_passed", "overturning"), "critical", style.RED),
+)
+"""Kinds of event, their name in the figure, and its colour."""
+
+PHASES = ((1, "rolling", style.ROLLING_SHADE), (2, "rocking", style.ROCKING_SHADE))
+
+NEAR = 2.0
+"""A level up to so many times the largest rotation is brought into view."""
+
+
+def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
+    """Ground acceleration, rotation with its phases, and events of a time history."""
+    rows = _rows(result)
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, result.record.name)
+        ground, rotation, events = figure.subplots(
+            3, 1, sharex=True, height_ratios=[1.0, 2.4, 0.18 * max(len(rows), 1)]
+        )
+        draw_ground(ground, result)
+        draw_rotation(rotation, result)
+        draw_events(events, result)
+        events.set_xlim(0.0, result.trace.time[-1])
+        for axes in (ground, rotation):
+            axes.label_outer()
+        figure.align_ylabels()
+
+    return style.picture(draw, 4.6 + 0.15 * len(rows))
+
+
+def _rows(result: TimeHistoryResult) -> list[EventRow]:
+    """Kinds of event that there are."""
+    return [row for row in EVENT_ROWS if any(event.kind in row[0] for event in result.events)]
+
+
+def draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
+    """Ground acceleration, and what uplifts quasi-statically."""
+    limit = result.structure.uplift_acceleration
+    axes.plot(result.trace.time, result.trace.ground_acceleration, color=style.BLACK, lw=0.7)
+    for sign in (1.0, -1.0):
+        axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
+    axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
+    axes.set_ylabel("ground\nacceleration [m/s²]")
+    axes.set_xlabel("time [s]")
+    style.legend_above(axes, 1)
+
+
+def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
+    """Rotation with its phases, beta and theta_cr; over theta_cr on the right."""
+    trace, critical = result.trace, result.structure.critical_rotation
+    beta = result.structure.bearing.beta
+    levels = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
+    levels.append(("\\theta_{cr}", critical, "--", style.RED))
+    largest = max(result.max_rotation, 1e-3 * critical)
+    near = [value for _, value, *_ in levels if value < NEAR * largest]
+    top = 1.12 * max(largest, *near) if near else 1.12 * largest
+    axes.set_ylim(-top, top)
+    for code, name, shade in PHASES:
+        _shade(axes, trace.time, trace.phase == code, shade, name)
+    axes.plot(trace.time, trace.rotation, color=style.BLUE)
+    for symbol, value, line, colour in levels:
+        _level(axes, value, line, colour, symbol)
+    axes.set_ylabel("rotation $\\theta$ [rad]")
+    axes.set_xlabel("time [s]")
+    ratio = axes.secondary_yaxis("right", functions=style.over(critical))
+    ratio.set_ylabel("$\\theta/\\theta_{cr}$ [-]")
+    style.legend_above(axes, 4)
+
+
+def _shade(
+    axes: Axes, time: NDArray[np.float64], inside: NDArray[np.bool_], colour: str, name: str
+) -> None:
+    """Vertical bands where `inside` holds; one entry in the legend."""
+    if inside.any():
+        axes.fill_between(
+            time, 0.0, 1.0, where=inside, step="post", color=colour, lw=0.0, label=name,
+            transform=axes.get_xaxis_transform(),
+        )  # fmt: skip
+
+
+def _level(axes: Axes, value: float, line: str, colour: str, symbol: str) -> None:
+    """A pair of horizontal lines; outside the axes, their value in the legend alone."""
+    label = f"${symbol}$ = {value:.3f} rad"
+    if value > axes.get_ylim()[1]:
+        axes.plot([], [], color=colour, ls=line, label=f"{label} (outside)")
+        return
+    axes.axhline(value, color=colour, ls=line, label=label)
+    axes.axhline(-value, color=colour, ls=line)
+
+
+def draw_events(axes: Axes, result: TimeHistoryResult) -> None:
+    """Marks at the times of the events, one row a kind."""
+    rows = _rows(result)
+    axes.set_yticks(range(len(rows)), [name for _, name, _ in rows])
+    axes.tick_params(axis="y", length=0.0, labelsize=0.9 * style.small())
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.grid(visible=False)
+    for row, (kinds, _, colour) in enumerate(rows):
+        times = [event.time for event in result.events if event.kind in kinds]
+        axes.plot(times, [row] * len(times), "|", color=colour, ms=6.0, mew=0.7)
+    axes.set_xlabel("time [s]")
+
+
+def moment_figure(result: TimeHistoryResult, title: str) -> bytes:
+    """Moment against rotation."""
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, result.record.name)
+        draw_moment(figure.subplots(), result)
+
+    return style.picture(draw, 4.2, 6.0)
+
+
+def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
+    """Driving moment of ground and building against rotation, and 2 R W s B of the weight."""
+    trace, critical = result.trace, result.structure.critical_rotation
+    reach = 1.1 * max(result.max_rotation, 0.02 * critical)
+    factor, prefix = style.engineering(float(np.nanmax(np.abs(trace.driving_moment))))
+    axes.plot(
+        trace.rotation, factor * trace.driving_moment, color=style.BLUE, lw=0.7,
+        label="driving moment (ground and building)",
+    )  # fmt: skip
+    for k, side in enumerate((-1.0, 1.0)):
+        rotation = side * np.linspace(1e-9, reach, 300)
+        static = factor * result.restoring_moment(rotation)
+        label = "restoring moment of the weight" if k == 0 else None
+        axes.plot(rotation, static, color=style.RED, lw=2.5, zorder=1.5, label=label)
+    axes.axhline(0.0, color=style.BLACK, lw=0.5)
+    axes.axvline(0.0, color=style.BLACK, lw=0.5)
+    axes.set_xlim(-reach, reach)
+    axes.set_xlabel("rotation $\\theta$ [rad]")
+    axes.set_ylabel(f"moment about the contact points [{prefix}N m]")
+    style.legend_above(axes, 2)
+
+
+DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)
+"""Of what each device dissipates, from the first on."""
+
+
+def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
+    """Input and where it went."""
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, result.record.name)
+        draw_energy(figure.subplots(), result)
+
+    return style.picture(draw, 3.4)
+
+
+def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
+    """Input against what was damped, dissipated by each device, lost at impacts and is stored.
+
+    One stands on top of the other.
+    """
+    trace = result.trace
+    factor, prefix = style.engineering(
+        float(np.nanmax(np.abs([trace.energy_input, trace.energy_stored])))
+    )
+    parts = [
+        (trace.energy_impact, "lost at impacts (net)", style.ORANGE),
+        (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
+    ]
+    for index, device in enumerate(result.structure.devices):
+        energy = trace.devices.energy[:, index]
+        name = f"device {index}: {device.kind.replace('_', ' ')}"
+        parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
+    if result.structure.storeys:
+        parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))
+    below = np.zeros_like(trace.time)
+    for part, name, colour in parts:
+        above = below + factor * part
+        axes.fill_between(trace.time, below, above, color=colour, lw=0.0, label=name, alpha=0.8)
+        below = above
+    axes.plot(trace.time, factor * trace.energy_input, color=style.BLACK, label="input")
+    axes.set_xlim(0.0, trace.time[-1])
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(f"energy [{prefix}J]")
+    style.legend_above(axes, 3 if result.structure.devices else 4)

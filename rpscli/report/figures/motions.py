@@ -1,0 +1,171 @@
+"""Ground motions at a glance, spectra of several, and motions chosen for a target."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rpscli.errors import UsageError
+from rpscli.records.measures import displacement, velocity
+from rpscli.report.figures import style
+from rpscli.report.figures.history import extremes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.selection import Selection
+    from rpscli.records.spectrum import ResponseSpectrum
+
+
+Quantity = Literal["acceleration", "velocity", "displacement"]
+
+QUANTITIES: dict[Quantity, tuple[str, str]] = {
+    "acceleration": ("m/s²", style.BLACK),
+    "velocity": ("m/s", style.BLUE),
+    "displacement": ("m", style.GREEN),
+}
+
+
+def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
+    """Time histories on the left, the spectrum on the right."""
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, motion.name, motion.description[:90])
+        left, right = figure.subfigures(1, 2, width_ratios=[1.45, 1.0], squeeze=False)[0]
+        for axes, quantity in zip(left.subplots(3, 1, sharex=True), QUANTITIES, strict=True):
+            draw_motion(axes, motion, quantity)
+            axes.label_outer()
+        left.align_ylabels()
+        draw_spectrum(right.subplots(), spectrum)
+
+    return style.picture(draw, 4.2, 8.0)
+
+
+def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "acceleration") -> None:
+    """Acceleration, velocity or displacement of the ground against time, and the peak."""
+    style.require("quantities of a motion", quantity, QUANTITIES)
+    unit, colour = QUANTITIES[quantity]
+    values = motion.acceleration
+    if quantity != "acceleration":
+        integral = velocity if quantity == "velocity" else displacement
+        values = integral(values, motion.dt)
+    time, peak = motion.time, int(np.argmax(np.abs(values)))
+    kept = extremes(values)
+    axes.plot(time[kept], values[kept], color=colour, lw=0.7)
+    axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
+    axes.set_xlim(0.0, motion.duration)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel(f"{quantity}\n[{unit}]")
+    axes.set_title(
+        f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s", loc="right", fontsize=style.small()
+    )
+
+
+def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
+    """Pseudo-acceleration against period."""
+    axes.plot(spectrum.periods, spectrum.pseudo_acceleration, color=style.RED, lw=1.3)
+    axes.set_xlabel("period [s]")
+    axes.set_ylabel(f"pseudo-acceleration, {style.percent(spectrum.damping)} damping [m/s²]")
+    axes.set_xlim(0.0, spectrum.periods[-1])
+    axes.set_ylim(bottom=0.0)
+
+
+def spectra_figure(spectra: Sequence[ResponseSpectrum], title: str) -> bytes:
+    """Spectra of several records under a title."""
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title)
+        draw_spectra(figure.subplots(), spectra)
+
+    return style.picture(draw, 3.2)
+
+
+def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
+    """Pseudo-acceleration against period: each record thin, the median thick.
+
+    Parameters
+    ----------
+    spectra
+        At the same periods and damping.
+    """
+    if not spectra:
+        raise UsageError("no spectra to be drawn; give `response_spectrum` of a record at least")
+    periods, damping = spectra[0].periods, spectra[0].damping
+    values = np.array([spectrum.pseudo_acceleration for spectrum in spectra])
+    for place, each in enumerate(values):
+        label = f"{len(values)} records" if place == 0 else None
+        axes.plot(periods, each, color=style.GREY, lw=0.6, alpha=0.7, label=label)
+    axes.plot(periods, np.median(values, axis=0), color=style.RED, lw=1.6, label="median")
+    axes.set_xlabel("period [s]")
+    axes.set_ylabel(f"pseudo-acceleration, {style.percent(damping)} damping [m/s²]")
+    axes.set_xlim(0.0, periods[-1])
+    axes.set_ylim(bottom=0.0)
+    style.legend_above(axes, 2)
+
+
+def selection_figure(selection: Selection, title: str) -> bytes:
+    """Spectra on the left, PGV against PGD of the scaled motions on the right."""
+    count = len(selection.chosen)
+    note = f"{count} of {selection.candidates} motions, misfit of the mean {selection.misfit:.3f}"
+
+    def draw(figure: Figure) -> None:
+        style.heading(figure, title, note)
+        left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
+        _draw_spectra(left, selection)
+        _draw_peaks(right, selection)
+
+    return style.picture(draw, 3.6, 8.0)
+
+
+def _draw_spectra(axes: Axes, selection: Selection) -> None:
+    from matplotlib.ticker import FuncFormatter
+
+    for place, one in enumerate(selection.chosen):
+        axes.plot(
+            selection.periods, one.factor * one.acceleration, color=style.GREY, lw=0.6, alpha=0.7,
+            label="" if place else "motions",
+        )  # fmt: skip
+    axes.plot(selection.periods, selection.mean, color=style.BLUE, lw=2.0, label="mean")
+    axes.plot(
+        selection.periods, selection.wanted, color=style.RED, lw=1.8, ls="--",
+        label=selection.target.name,
+    )  # fmt: skip
+    axes.set(xscale="log", yscale="log", xlim=(selection.periods[0], selection.periods[-1]))
+    axes.set_xlabel("period [s]")
+    axes.set_ylabel(
+        f"pseudo-acceleration, {style.percent(selection.target.damping)} damping [m/s²]"
+    )
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(FuncFormatter(lambda value, _: _second_tick(value)))
+    axes.legend(loc="lower left")
+
+
+def _second_tick(value: float) -> str:
+    """Labels between powers of ten, as many as there is room for.
+
+    >>> _second_tick(0.2), _second_tick(0.4), _second_tick(50.0)
+    ('0.2', '', '50')
+    """
+    return f"{value:g}" if f"{value:e}"[0] in "235" else ""
+
+
+def _draw_peaks(axes: Axes, selection: Selection) -> None:
+    velocities = [one.factor * one.pgv for one in selection.chosen]
+    displacements = [one.factor * one.pgd for one in selection.chosen]
+    axes.plot(velocities, displacements, "o", ms=4.0, color=style.GREY, label="motions")
+    axes.plot(selection.mean_pgv, selection.mean_pgd, "D", ms=6.0, color=style.BLUE, label="mean")
+    dashed: dict[str, Any] = {"color": style.RED, "ls": "--", "lw": 1.4}
+    if selection.target.pgv is not None:
+        axes.axvline(selection.target.pgv, **dashed, label="target")
+    if selection.target.pgd is not None:
+        axes.axhline(selection.target.pgd, **dashed)
+    axes.set_xlim(0.0, 1.15 * max(*velocities, selection.target.pgv or 0.0))
+    axes.set_ylim(0.0, 1.15 * max(*displacements, selection.target.pgd or 0.0))
+    axes.set_xlabel("PGV [m/s]")
+    axes.set_ylabel("PGD [m]")
+    axes.legend()
