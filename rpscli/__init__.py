@@ -96,7 +96,7 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module  # not every import of rpscli needs it
 
     if name == "__version__":
-        return import_module("rpscli.report.files.versions").program_version()
+        return import_module("rpscli.report.documents").program_version()
     if name == "figures":
         return import_module("rpscli.figures")
     for module, names in _HOMES.items():

@@ -59,7 +59,7 @@ class Program(LazyGroup):
 def _show_version(ctx: click.Context, option: click.Parameter, value: object) -> None:
     del option
     if value and not ctx.resilient_parsing:
-        from rpscli.report.files.versions import program_version
+        from rpscli.report.documents import program_version
 
         click.echo(f"rps {program_version()}")
         ctx.exit()

@@ -58,7 +58,7 @@ from rpscli.sweep.table import Table
 if TYPE_CHECKING:
     from rpscli.case.study.reports import ReportRequest
     from rpscli.report.figures.style import Target
-    from rpscli.report.files.output_folder import OutputFolder
+    from rpscli.report.files import OutputFolder
 
 
 def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] = ()) -> Study:

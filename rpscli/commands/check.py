@@ -31,8 +31,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import USUAL, Look
-from rpscli.report.numbers import large, shown
-from rpscli.report.table import Heading, Part, Table
+from rpscli.report.table import Heading, Part, Table, large, shown
 from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 if TYPE_CHECKING:

@@ -24,8 +24,7 @@ from rpscli.commands.study import SweepChoices, compute, show_dry_run, study_hea
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
-from rpscli.report.numbers import large, measured, shown
-from rpscli.report.table import Heading, Part, Table, csv_text
+from rpscli.report.table import Heading, Part, Table, csv_text, large, measured, shown
 
 if TYPE_CHECKING:
     from rpscli.case.study.study import Study as CheckedStudy
@@ -62,8 +61,7 @@ def command(
     is 10 if no design passes.
     """
     from rpscli.case.design import read_design
-    from rpscli.report.design.answer import answer_document, design_columns
-    from rpscli.report.design.figures import figures
+    from rpscli.report.design import answer_document, design_columns, figures
     from rpscli.report.figures.look import figure_files
     from rpscli.report.study.statistics import verdict_columns, verdict_document
     from rpscli.sweep.design.search import Search
@@ -385,7 +383,7 @@ def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 def nothing_passes(answer: Answer) -> str:
     """Which requirement stands in the way least, if no design passes; else nothing."""
-    from rpscli.report.design.answer import requirement_label
+    from rpscli.report.design import requirement_label
     from rpscli.sweep.design.answer import NONE
 
     if answer.best != NONE:

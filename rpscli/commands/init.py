@@ -11,9 +11,8 @@ import click
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
 from rpscli.errors import Refused, UsageError
-from rpscli.report.documents import heading
-from rpscli.report.files.json_text import json_text
-from rpscli.report.files.whole_files import write_whole
+from rpscli.report.documents import heading, json_text
+from rpscli.report.files import write_whole
 
 
 @click.command("init")

@@ -13,7 +13,7 @@ import click
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import CaseError, UsageError
-from rpscli.report.files.output_folder import OutputFolder, Run
+from rpscli.report.files import OutputFolder, Run
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case

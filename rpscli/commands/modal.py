@@ -24,8 +24,7 @@ from rpscli.errors import listed
 from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
-from rpscli.report.numbers import shown
-from rpscli.report.table import Heading, Part, Table
+from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:
     from rpscli.analyses.modal import ModalResult

@@ -21,8 +21,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading, pushover_document
 from rpscli.report.figures.look import Look
-from rpscli.report.numbers import measured, shown
-from rpscli.report.table import Heading, Part, Table
+from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
     from rpscli.analyses.pushover import PatternName, PushoverResult

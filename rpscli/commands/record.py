@@ -24,10 +24,8 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
-from rpscli.report.files.output_folder import OutputFolder, Run
-from rpscli.report.files.whole_files import write_whole
-from rpscli.report.numbers import shown
-from rpscli.report.table import Part, Table
+from rpscli.report.files import OutputFolder, Run, write_whole
+from rpscli.report.table import Part, Table, shown
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
@@ -95,7 +93,7 @@ def _result(
 ) -> None:
     """What was read and how strong it is, as document or table."""
     from rpscli.records.measures import intensity_measures
-    from rpscli.report.tables.record import record_document
+    from rpscli.report.tables.motions import record_document
 
     measures = intensity_measures(motion)
     document = {
@@ -160,7 +158,7 @@ def write_record(
 ) -> None:
     """Write the motion into the folder, or the file, that the command line names."""
     from rpscli.records.formats.at2 import at2_text
-    from rpscli.report.tables.record import two_column_text
+    from rpscli.report.tables.motions import two_column_text
 
     place = output.place
     named = None if place is None or place.is_dir() else ENDINGS.get(place.suffix.lower())

@@ -19,9 +19,8 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
-from rpscli.report.files.output_folder import OutputFolder, Run
-from rpscli.report.numbers import shown
-from rpscli.report.table import Part, Table
+from rpscli.report.files import OutputFolder, Run
+from rpscli.report.table import Part, Table, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -111,7 +110,7 @@ def command(
     from rpscli.records.selection import SelectionRequest, select
     from rpscli.records.source import expand_sources, load_record
     from rpscli.report.bundles import selection_files
-    from rpscli.report.tables.selection import selection_document
+    from rpscli.report.tables.motions import selection_document
 
     spectrum = load_target(target)
     wanted_pgv = _pgv(scale_by, pgv, spectrum)

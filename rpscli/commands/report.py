@@ -29,9 +29,9 @@ from rpscli.commands.shell.options import (
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import Refused, UsageError
+from rpscli.report.documents import program_version
 from rpscli.report.figures.look import Look, read_style
-from rpscli.report.files.versions import program_version
-from rpscli.report.files.whole_files import require_writable, write_whole
+from rpscli.report.files import require_writable, write_whole
 
 
 @click.command("report")

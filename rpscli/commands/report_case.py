@@ -17,10 +17,9 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.commands.timehistory_run import HistoryRequest, HistoryResult, compute, history_requests
 from rpscli.errors import UsageError
-from rpscli.report.documents import heading
+from rpscli.report.documents import heading, versions
 from rpscli.report.figures.look import Look
-from rpscli.report.files.output_folder import RUN_FILE
-from rpscli.report.files.versions import versions
+from rpscli.report.files import RUN_FILE
 from rpscli.report.html.page import Block, Notice
 from rpscli.report.table import Table
 
@@ -159,7 +158,7 @@ def case_page(
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
         sections = _sections(given, motion, None, look, ())
         return PageDone(case.title, "Structure", sections, concluded(document, None), None)
-    from rpscli.report.html.pictures import page_look
+    from rpscli.report.html.page import page_look
 
     # A place for the files, which are not written there.
     (request,) = history_requests([given], [motion], OutputRequest(Path(), force=True))
@@ -181,8 +180,8 @@ def _sections(
     stored: Sequence[Block],
 ) -> list[Section]:
     from rpscli.report.html import sections as shared
-    from rpscli.report.html.motions import motion_pictures
     from rpscli.report.html.page import Section
+    from rpscli.report.html.sections import motion_pictures
 
     case = given.case
     made = [
@@ -236,7 +235,7 @@ def notices(texts: Sequence[str]) -> Iterator[Block]:
 
 def _response(request: HistoryRequest, result: TimeHistoryResult) -> list[Block]:
     from rpscli.commands.timehistory_tables import outcome_table, storeys_table
-    from rpscli.report.html.pictures import Picture, pictures
+    from rpscli.report.html.page import Picture, pictures
 
     tables = [outcome_table(result)]
     if result.structure.storeys:

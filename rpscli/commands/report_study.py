@@ -18,9 +18,8 @@ from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.html import sections as shared
-from rpscli.report.html.motions import motions_section
-from rpscli.report.html.page import Block, Code, Section
-from rpscli.report.html.pictures import Picture, page_look, pictures
+from rpscli.report.html.page import Block, Code, Picture, Section, page_look, pictures
+from rpscli.report.html.sections import motions_section
 from rpscli.report.study.labels import label
 from rpscli.report.table import Table
 from rpscli.sweep.evaluation.systems import resolved

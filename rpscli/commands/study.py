@@ -16,8 +16,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, duration, progress_report, watched
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
-from rpscli.report.numbers import large, shown
-from rpscli.report.table import Heading, Part, Table
+from rpscli.report.table import Heading, Part, Table, large, shown
 
 if TYPE_CHECKING:
     from rpscli.analyses.result_quantities import ResultQuantity

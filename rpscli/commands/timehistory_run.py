@@ -24,10 +24,9 @@ from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
-from rpscli.report.documents import ONE_DIRECTION, heading, timehistory_document
+from rpscli.report.documents import ONE_DIRECTION, heading, json_text, timehistory_document
 from rpscli.report.figures.look import Look
-from rpscli.report.files.json_text import json_text
-from rpscli.report.files.output_folder import OutputFolder
+from rpscli.report.files import OutputFolder
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult

@@ -27,11 +27,9 @@ from rpscli.commands.timehistory_run import (
     compute,
 )
 from rpscli.errors import AnalysisError, LimitExceeded, RpsError
-from rpscli.report.documents import ONE_DIRECTION, heading
+from rpscli.report.documents import ONE_DIRECTION, heading, json_text
 from rpscli.report.figures.look import Look
-from rpscli.report.files.json_text import json_text
-from rpscli.report.files.output_folder import OutputFolder
-from rpscli.report.numbers import large, shown
+from rpscli.report.files import OutputFolder
 from rpscli.report.study.statistics import (
     demand_columns,
     records_columns,
@@ -39,7 +37,7 @@ from rpscli.report.study.statistics import (
     verdict_document,
     verdict_lines,
 )
-from rpscli.report.table import Heading, Part, Table, csv_text
+from rpscli.report.table import Heading, Part, Table, csv_text, large, shown
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.summary import Records, Summary, summary_of_records
 from rpscli.sweep.statistics.verdicts import Verdict, judged_records

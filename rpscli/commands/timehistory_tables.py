@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import EVENTS
 from rpscli.report.documents import ONE_DIRECTION
-from rpscli.report.numbers import measured, percent, shown
-from rpscli.report.table import Heading, Part, Table
-from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands
+from rpscli.report.table import Heading, Part, Table, measured, percent, shown
+from rpscli.report.tables.analyses import fixed_base_demands, isolated_demands
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

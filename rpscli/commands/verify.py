@@ -15,8 +15,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import VerificationMismatch
 from rpscli.report.documents import heading
-from rpscli.report.numbers import shown
-from rpscli.report.table import Heading, Part, Table
+from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:
     from rpscli.analyses.verification.known import Comparison

@@ -28,15 +28,26 @@ from rpscli.report.figures.look import USUAL, Draw, Look, figure_files
 from rpscli.report.figures.modes import modes_figure
 from rpscli.report.figures.motions import record_figure, selection_figure
 from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
-from rpscli.report.files.whole_files import Content
+from rpscli.report.files import Content
 from rpscli.report.table import csv_lines, csv_text
-from rpscli.report.tables.floor_spectra import floor_spectra_columns
-from rpscli.report.tables.modal import eigenvalue_columns, mode_columns, shape_columns
-from rpscli.report.tables.pushover import capacity_columns, storey_curve_columns
-from rpscli.report.tables.record import motion_columns, spectrum_columns
-from rpscli.report.tables.selection import mean_columns, selection_columns, selection_list
-from rpscli.report.tables.storeys import storey_columns
-from rpscli.report.tables.timehistory import event_columns, history_columns
+from rpscli.report.tables.analyses import (
+    capacity_columns,
+    eigenvalue_columns,
+    event_columns,
+    floor_spectra_columns,
+    history_columns,
+    mode_columns,
+    shape_columns,
+    storey_columns,
+    storey_curve_columns,
+)
+from rpscli.report.tables.motions import (
+    mean_columns,
+    motion_columns,
+    selection_columns,
+    selection_list,
+    spectrum_columns,
+)
 
 Files = Iterator[tuple[str, str | Content]]
 """Names and contents."""

@@ -1,17 +1,62 @@
-"""What `--json` prints: the results of each analysis under their published names."""
+"""Results as JSON: numpy made plain, no NaN, under their published names, with what made them."""
 
 from __future__ import annotations
 
+import json
+import platform
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rpscli.analyses.result_quantities import SAMPLED, STOREYS, values_of
-from rpscli.report.files.json_text import SCHEMA_VERSION
-from rpscli.report.files.versions import program_version
+from rpscli.analyses.result_quantities import SAMPLED, STOREYS, plain, values_of
 
 if TYPE_CHECKING:
     from rpscli.analyses.pushover import PushoverResult
     from rpscli.analyses.results import TimeHistoryResult
+
+
+SCHEMA_VERSION = 1
+"""Version of every JSON document that rps writes."""
+
+
+def json_text(document: Mapping[str, Any]) -> str:
+    """The document, indented by two, with a newline at its end."""
+    return _text(plain(document), "") + "\n"
+
+
+def _text(value: Any, indent: str) -> str:
+    deeper = indent + "  "
+    if isinstance(value, dict) and value:
+        items = (f"{deeper}{json.dumps(key)}: {_text(item, deeper)}" for key, item in value.items())
+        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
+    if isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
+        return "[\n" + ",\n".join(deeper + _text(item, deeper) for item in value) + f"\n{indent}]"
+    return json.dumps(value, allow_nan=False)
+
+
+def program_version() -> str:
+    """Version of rps; ``0+unknown`` where it runs from a source tree that is not installed."""
+    return _installed("rpscli") or "0+unknown"
+
+
+def versions() -> dict[str, str | None]:
+    """Versions of rps, Python, numpy and numba, without importing any of them."""
+    return {
+        "rps": program_version(),
+        "python": platform.python_version(),
+        "numpy": _installed("numpy"),
+        "numba": _installed("numba"),
+    }
+
+
+def _installed(package: str) -> str | None:
+    from importlib import metadata
+
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return None
+
 
 Document = dict[str, Any]
 
@@ -46,7 +91,7 @@ def pushover_document(result: PushoverResult) -> Document:
 def timehistory_document(result: TimeHistoryResult) -> Document:
     """Scalar results, demands of each storey, energies [J], and what to be warned of."""
     # Every command begins a document, few need numpy for it.
-    from rpscli.report.tables.storeys import fixed_base_demands, isolated_demands
+    from rpscli.report.tables.analyses import fixed_base_demands, isolated_demands
 
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
     return {

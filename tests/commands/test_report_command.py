@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from click.testing import Result
 
-from rpscli.report.numbers import shown
+from rpscli.report.table import shown
 from rpscli.sweep.run.runner import Finish
 
 Invoke = Callable[..., Result]

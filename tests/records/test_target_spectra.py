@@ -13,7 +13,7 @@ from rpscli.records.codes import load_target
 from rpscli.records.source import load_record
 from rpscli.records.spectrum import response_spectrum
 from rpscli.report.table import csv_text
-from rpscli.report.tables.record import spectrum_columns
+from rpscli.report.tables.motions import spectrum_columns
 
 G = STANDARD_GRAVITY
 

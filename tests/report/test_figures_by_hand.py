@@ -26,7 +26,7 @@ from rpscli.case.study.observed import OVERTURNED
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.selection import Candidate, Selection
 from rpscli.records.target import TargetSpectrum
-from rpscli.report.design.figures import front_figure, region_figure, requirements_figure
+from rpscli.report.design import front_figure, region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
 from rpscli.report.study.registry import REPORTS

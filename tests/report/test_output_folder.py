@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from rpscli.errors import OutputError, Refused
-from rpscli.report.files.output_folder import OutputFolder, Run
-from rpscli.report.files.whole_files import write_whole
+from rpscli.report.files import OutputFolder, Run, write_whole
 
 
 def folder_of(
@@ -120,6 +119,6 @@ def test_a_folder_in_the_way(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rpscli.report.files.whole_files.os.access", lambda *_: False)
+    monkeypatch.setattr("rpscli.report.files.os.access", lambda *_: False)
     with pytest.raises(OutputError, match="no permission"):
         folder_of(tmp_path / "out")

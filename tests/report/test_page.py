@@ -15,11 +15,26 @@ from PIL import Image
 from report.small_results import KINDS, history, structure
 from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures.look import USUAL
-from rpscli.report.html.elements import element, written
-from rpscli.report.html.motions import motion_pictures
-from rpscli.report.html.page import MOST_BYTES, Block, Code, Notice, Section, is_about, page
-from rpscli.report.html.pictures import Picture, page_look, pictures
-from rpscli.report.html.sections import derived_section, hidden_section, structure_section
+from rpscli.report.html.page import (
+    MOST_BYTES,
+    Block,
+    Code,
+    Notice,
+    Picture,
+    Section,
+    element,
+    is_about,
+    page,
+    page_look,
+    pictures,
+    written,
+)
+from rpscli.report.html.sections import (
+    derived_section,
+    hidden_section,
+    motion_pictures,
+    structure_section,
+)
 from rpscli.report.table import Table
 
 HOSTILE = """<script>alert("x")</script> & 'quotes' "too" </style></title> \x00 $a_b$"""

@@ -14,8 +14,7 @@ import click
 
 from rpscli.commands.shell.terminal import emit
 from rpscli.errors import LimitExceeded, RpsError
-from rpscli.report.documents import failure_document
-from rpscli.report.files.json_text import json_text
+from rpscli.report.documents import failure_document, json_text
 
 INTERRUPTED = 130
 INTERNAL = 1

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rpscli.errors import OutputError
-from rpscli.report.files.json_text import json_text
+from rpscli.report.documents import json_text
 from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.errors import OutputError, UsageError
 from rpscli.report.figures import style
-from rpscli.report.files.whole_files import require_writable_file
+from rpscli.report.files import require_writable_file
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -15,7 +15,7 @@ from rpscli.analyses.result_quantities import (
     STOREY_SHEARS,
 )
 from rpscli.report.figures import style
-from rpscli.report.tables.storeys import StoreyDemands, fixed_base_demands, isolated_demands
+from rpscli.report.tables.analyses import StoreyDemands, fixed_base_demands, isolated_demands
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

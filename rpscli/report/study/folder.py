@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rpscli.report.files.output_folder import OutputFolder, Run
-from rpscli.report.files.whole_files import require_writable
+from rpscli.report.files import OutputFolder, Run, require_writable
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import FILE
 

@@ -9,9 +9,8 @@ from typing import Any
 
 from rpscli.analyses.result_quantities import HISTORY
 from rpscli.case.conditions import LIMITS, Condition, condition_text
-from rpscli.report.numbers import shown
 from rpscli.report.study.labels import key_columns, labels
-from rpscli.report.table import Column
+from rpscli.report.table import Column, shown
 from rpscli.sweep.statistics.fractiles import Share
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import Verdict

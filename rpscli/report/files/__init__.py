@@ -1,1 +1,0 @@
-"""How results are written: text formats, folders, versions."""

@@ -1,0 +1,217 @@
+"""Columns of the CSV files of modes, static characteristics, time histories, storeys and floors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.events import Event
+from rpscli.analyses.floor_spectra import FloorSpectra
+from rpscli.analyses.modal import ModalResult
+from rpscli.analyses.pushover import CapacityCurve, StoreyCurve
+from rpscli.analyses.result_quantities import STOREY_CURVE, STOREYS
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.report.table import Column, columns_of
+
+
+def mode_columns(result: ModalResult) -> list[Column]:
+    """`modes.csv`: one row a vibration mode of each state."""
+    heads = {"state": "-", "mode": "-", "frequency": "rad/s", "period": "s", "damping": "-"}
+    ratios = {"frequency_ratio": "-", "damping_ratio": "-"}
+    return columns_of(heads | ratios, _mode_rows(result))
+
+
+def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float, ...]]:
+    if (fixed := result.fixed_base) is not None:
+        for i, (w, xi) in enumerate(zip(fixed.frequencies, fixed.damping, strict=True)):
+            yield "full_contact", i + 1, float(w), 2.0 * math.pi / w, float(xi), 1.0, 1.0
+    for name, modes in result.uplifted.items():
+        for i, (w, xi) in enumerate(zip(modes.frequencies, modes.damping, strict=True)):
+            ratios = float(modes.frequency_ratio[i]), float(modes.damping_ratio[i])
+            yield name, i + 1, float(w), 2.0 * math.pi / w, float(xi), *ratios
+
+
+def shape_columns(result: ModalResult) -> list[Column]:
+    """`shapes.csv`: one row a level of each mode.
+
+    Mode 0 is the storey's own mode, level 0 the cap beam. `horizontal` is relative to the ground,
+    `elastic` to the cap beam.
+    """
+    heads = dict.fromkeys(("state", "mode", "level", "horizontal", "elastic"), "-")
+    return columns_of(heads, _shape_rows(result))
+
+
+def _shape_rows(result: ModalResult) -> Iterator[tuple[str, int, int, float, float]]:
+    fixed = result.fixed_base
+    if fixed is not None:
+        yield from _profile_rows("full_contact", 1, *2 * (fixed.profiles()["shapes"],))
+    for name, modes in result.uplifted.items():
+        yield from _profile_rows(name, 0, *modes.profiles().values())
+
+
+def _profile_rows(
+    state: str, first: int, shapes: NDArray[np.float64], elastic: NDArray[np.float64]
+) -> Iterator[tuple[str, int, int, float, float]]:
+    for mode, level in np.ndindex(*shapes.shape):
+        yield state, first + mode, level, float(shapes[mode, level]), float(elastic[mode, level])
+
+
+def eigenvalue_columns(result: ModalResult) -> list[Column]:
+    """`eigenvalues.csv`: two rows a mode of each uplifted state, mode 0 the storey's own."""
+    heads = {"state": "-", "mode": "-", "real": "1/s", "imaginary": "rad/s"}
+    rows = [
+        (name, index // 2, value.real, value.imag)
+        for name, modes in result.uplifted.items()
+        for index, value in enumerate(modes.eigenvalues.tolist())
+    ]
+    return columns_of(heads, rows)
+
+
+def storey_curve_columns(curve: StoreyCurve) -> list[Column]:
+    """`storey_curve.csv`: one row a point, from the uplift on."""
+    return [Column(q.name, q.unit, getattr(curve, q.name)) for q in STOREY_CURVE]
+
+
+def capacity_columns(curves: tuple[CapacityCurve, ...]) -> list[Column]:
+    """`capacity.csv`: the points of one load pattern after those of the other."""
+    names = [curve.pattern for curve in curves for _ in curve.sum_of_floor_forces]
+    return [
+        Column("pattern", "-", names),
+        Column("roof_displacement", "m", np.concatenate([c.roof_displacement for c in curves])),
+        Column(
+            "cap_beam_displacement", "m", np.concatenate([c.cap_beam_displacement for c in curves])
+        ),
+        Column("sum_of_floor_forces", "N", np.concatenate([c.sum_of_floor_forces for c in curves])),
+    ]
+
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class StoreyDemands:
+    """Largest absolute values in each storey from the bottom, arrays (n,): `STOREYS` of results.
+
+    Drift ratios are None where the case gives no storey heights.
+    """
+
+    storey_drifts: Array
+    storey_drift_ratios: Array | None
+    storey_shears: Array
+    floor_accelerations: Array
+    floor_velocities: Array
+
+
+def isolated_demands(result: TimeHistoryResult) -> StoreyDemands:
+    """Demands of the building on its bearings."""
+    floors = result.floor_accelerations, result.floor_velocities
+    return _demands(result, result.max_drifts, result.storey_shears, *floors)
+
+
+def fixed_base_demands(result: TimeHistoryResult) -> StoreyDemands | None:
+    """Demands of the same building on a fixed base; None without a building."""
+    fixed = result.fixed_base
+    if fixed is None:
+        return None
+    floors = fixed.floor_accelerations, fixed.floor_velocities
+    return _demands(result, fixed.drifts, fixed.storey_shears, *floors)
+
+
+def storey_columns(result: TimeHistoryResult) -> list[Column]:
+    """`storeys.csv`: one row a storey, from the bottom."""
+    count = result.structure.storeys
+    columns = [Column("storey", "-", range(1, count + 1))]
+    columns += _columns("", isolated_demands(result), count)
+    fixed = fixed_base_demands(result)
+    return [*columns, *(_columns("fixed_base_", fixed, count) if fixed else ())]
+
+
+def _demands(
+    result: TimeHistoryResult, drifts: Array, shears: Array, accelerations: Array, velocities: Array
+) -> StoreyDemands:
+    building = result.structure.superstructure
+    ratios = None if building is None else building.drift_ratios(drifts)
+    return StoreyDemands(drifts, ratios, shears, accelerations, velocities)
+
+
+def _columns(prefix: str, demands: StoreyDemands, count: int) -> Iterator[Column]:
+    for quantity in STOREYS:
+        values = getattr(demands, quantity.name)
+        known = [None] * count if values is None else values
+        yield Column(f"{prefix}{quantity.column}", quantity.unit, known)
+
+
+def history_columns(result: TimeHistoryResult) -> list[Column]:
+    """`timehistory.csv`: one row a sample; floors and storeys are counted from the bottom.
+
+    `phase` is 0 in full contact, 1 rolling, 2 rocking, 3 held by friction. Displacements are
+    relative to the ground, floor accelerations absolute. Forces are those of one column, F to the
+    right and N upwards on what is above; of all columns together where the case does not give
+    their number. Devices are counted from 0, as in `podium.devices`.
+    """
+    t, columns = result.trace, result.structure.columns
+    return [
+        Column("time", "s", t.time),
+        Column("ground_acceleration", "m/s2", t.ground_acceleration),
+        Column("rotation", "rad", t.rotation),
+        Column("rotation_rate", "rad/s", t.rotation_rate),
+        Column("cap_beam_displacement", "m", t.cap_beam_displacement),
+        Column("lift", "m", t.lift),
+        *_each("floor_{}_displacement", "m", t.floor_displacements),
+        *_each("storey_{}_drift", "m", t.drifts),
+        *_each("storey_{}_shear", "N", t.storey_shears),
+        *_each("floor_{}_acceleration", "m/s2", t.floor_accelerations),
+        Column("driving_moment", "N m", t.driving_moment),
+        Column("column_shear_top", "N", t.shear_top / columns),
+        Column("column_shear_bottom", "N", t.shear_bottom / columns),
+        Column("column_force_top", "N", t.normal_top / columns),
+        Column("column_force_bottom", "N", t.normal_bottom / columns),
+        Column("energy_input", "J", t.energy_input),
+        Column("energy_damped", "J", t.energy_damped),
+        Column("energy_impact", "J", t.energy_impact),
+        Column("energy_stored", "J", t.energy_stored),
+        *_devices(result),
+        Column("phase", "-", t.phase),
+    ]
+
+
+def _devices(result: TimeHistoryResult) -> Iterator[Column]:
+    """Force, displacement and energy of each device, named by its kind."""
+    trace = result.trace.devices
+    for index, device in enumerate(result.structure.devices):
+        name = f"device_{index}_{device.kind}"
+        yield Column(f"{name}_force", "N", trace.force[:, index])
+        yield Column(f"{name}_displacement", "m", trace.displacement[:, index])
+        yield Column(f"{name}_energy", "J", trace.energy[:, index])
+
+
+def event_columns(events: tuple[Event, ...]) -> list[Column]:
+    """`events.csv`: one row an event, in the order of time."""
+    heads = {"time": "s", "kind": "-", "rotation": "rad"}
+    heads |= {"rotation_rate_before": "rad/s", "rotation_rate_after": "rad/s", "energy_lost": "J"}
+    return columns_of(heads, [[getattr(event, name) for name in heads] for event in events])
+
+
+def _each(name: str, unit: str, values: NDArray[np.float64]) -> Iterator[Column]:
+    for index, column in enumerate(values.T, start=1):
+        yield Column(name.format(index), unit, column)
+
+
+def floor_spectra_columns(isolated: FloorSpectra, fixed: FloorSpectra | None) -> list[Column]:
+    """`floor_spectra.csv`: one row a floor, from the bottom, and period."""
+    floors, periods = isolated.displacement.shape
+    columns = [
+        Column("floor", "-", np.repeat(np.arange(1, floors + 1), periods)),
+        Column("period", "s", np.tile(isolated.periods, floors)),
+    ]
+    for prefix, spectra in (("", isolated), ("fixed_base_", fixed)):
+        if spectra is not None:
+            columns += [
+                Column(f"{prefix}pseudo_acceleration", "m/s2", spectra.pseudo_acceleration.ravel()),
+                Column(f"{prefix}displacement", "m", spectra.displacement.ravel()),
+            ]
+    return columns
