@@ -40,6 +40,7 @@ from rpscli.frozen import frozen
 from rpscli.report.figures.look import Look, read_style
 from rpscli.report.study.folder import study_folder
 from rpscli.report.study.registry import REPORTS
+from rpscli.report.study.report import Found
 from rpscli.report.study.statistics import summary_columns, verdict_columns
 from rpscli.report.table import Column
 from rpscli.shown import Shown
@@ -321,11 +322,14 @@ class StudyResult(Shown):
         with self._run.reopened():
             return self._run.collect(self.folder, Look(())).notes
 
-    def report(self, name: str) -> Any:
-        """The numbers of a report that the study asks for, by the name of its files."""
+    def report(self, name: str) -> Found:
+        """What a report finds that the study asks for, by the name of its files.
+
+        Its `tables` are the columns of its CSV files, by what follows the name.
+        """
         request = self._request(name)
         with self._run.reopened() as results:
-            return REPORTS[request.kind].numbers(results, request.options)
+            return REPORTS[request.kind].make(results, request.options)
 
     def draw(self, name: str, target: Any = None) -> Target:
         """The figure of a report.
@@ -338,11 +342,10 @@ class StudyResult(Shown):
             A figure, a part of one or axes of matplotlib to be drawn into; axes give their place to
             a part of their figure. A figure of its own by default.
         """
-        request, numbers = self._request(name), self.report(name)
-        report = REPORTS[request.kind]
-        if not report.drawable(numbers):
-            raise UsageError(f"{name}: {'; '.join(report.notes(numbers)) or 'nothing to draw'}")
-        return report.drawn(numbers, request.options.title or self.study.title, target)
+        request, found = self._request(name), self.report(name)
+        if found.figure is None:
+            raise UsageError(f"{name}: {'; '.join(found.notes) or 'nothing to draw'}")
+        return found.drawn(request.options.title or self.study.title, target)
 
     def write(
         self,

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rpscli.case.conditions import Condition
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError
 from rpscli.report.figures.look import Look
-from rpscli.report.study.registry import REPORTS
+from rpscli.report.study.registry import REPORTS, lacking, requirement_faults
 from rpscli.report.study.report import add_notes
-from rpscli.report.study.requirements import lacking, requirement_faults
 from rpscli.report.study.statistics import (
     summary_columns,
     summary_document,
@@ -218,12 +217,11 @@ class StudyRun:
         return found
 
     def _report(self, request: ReportRequest, look: Look, found: Collected) -> None:
-        report = REPORTS[request.kind]
-        numbers = report.numbers(self.results, request.options)
+        made = REPORTS[request.kind].make(self.results, request.options)
         title = request.options.title or self.layout.study.title
-        found.files |= dict(report.files(numbers, request.stem, title, look))
-        add_notes(found.notes, request.stem, report.notes(numbers))
-        if lines := list(report.findings(numbers)):
+        found.files |= dict(made.files(request.stem, title, look))
+        add_notes(found.notes, request.stem, made.notes)
+        if lines := list(made.findings):
             found.findings[request.stem] = lines
 
     def _failures(self, place: Path, found: Collected) -> Iterator[Failure]:

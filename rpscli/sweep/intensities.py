@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
-from pydantic import Field
 
-from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.keys import unit as key_unit
-from rpscli.case.study.reports import ReportOptions
-from rpscli.case.study.schema import DampingRatio
 from rpscli.errors import RecordError
 from rpscli.records.measures import MEASURE_UNITS, Measure
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.table import Array, Table
 
 
@@ -30,21 +24,20 @@ def unit_of(name: str) -> str:
     )
 
 
-class MeasureOptions(ReportOptions):
-    """Options of reports that need an intensity measure."""
+class Asked(Protocol):
+    """Which measure is asked for, as options of a report say it."""
 
-    measure: Measure | None = Field(
-        None, description="the one that the study scales to by default, else PGV"
-    )
-    period: Time | None = Field(None, description="of Sa; T1 of each system by default")
-    damping: DampingRatio = Field(0.05, description="of Sa")
+    @property
+    def measure(self) -> Measure | None:
+        """The one that the study scales to by default, else PGV."""
 
+    @property
+    def period(self) -> float | None:
+        """Of Sa; T1 of each system by default."""
 
-def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
-    """What keeps a report from having the measure that it asks for."""
-    at_first_period = options.measure == "Sa" and options.period is None
-    if at_first_period and any(system.period is None for system in layout.properties):
-        yield "Sa at T1 needs storeys; give the report a `period`"
+    @property
+    def damping(self) -> float:
+        """Of Sa."""
 
 
 class Intensity(NamedTuple):
@@ -60,7 +53,7 @@ class Intensity(NamedTuple):
     values: Array
 
 
-def intensity(table: Table, context: StudyContext, options: MeasureOptions) -> Intensity:
+def intensity(table: Table, context: StudyContext, options: Asked) -> Intensity:
     """The measure that a report asks for; by default the one that the study scales to, else PGV."""
     scaled = table.layout.plan.measure
     measure, period, damping = options.measure, options.period, options.damping

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.intensities import Intensity, MeasureOptions, intensity
+from rpscli.sweep.intensities import Asked, Intensity, intensity
+from rpscli.sweep.run.schedule import LARGEST_BATCH
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences, fixed_base_references
 from rpscli.sweep.store import Store, Stored
-from rpscli.sweep.table import Table
+from rpscli.sweep.table import Array, Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +36,37 @@ class StudyResults:
         """Storey shears on a fixed base; computed if they are not stored."""
         return fixed_base_references(self.table.layout, self.context, self.store, self.jobs)
 
-    def intensity(self, options: MeasureOptions) -> Intensity:
+    def intensity(self, options: Asked) -> Intensity:
         """The intensity of the ground motion at every point."""
         return intensity(self.table, self.context, options)
+
+    def floor_spectra(self, number: int, damping: float) -> Array:
+        """(2, 2, n, p) of a point: isolated and fixed base; pseudo-acceleration and displacement.
+
+        Samples are not stored, so that the history is run once more.
+        """
+        from rpscli.analyses import floor_spectra as spectra
+        from rpscli.analyses.timehistory import time_history
+
+        given = self.context.history(self.table.layout[number])
+        result = time_history(given.structure, given.motion.scaled(given.scale), given.settings)
+        fixed = spectra.fixed_base_floor_spectra(result, damping=damping)
+        assert fixed is not None, "every system has a building"
+        both = spectra.isolated_floor_spectra(result, damping=damping), fixed
+        return np.array([(each.pseudo_acceleration, each.displacement) for each in both])
+
+    def floor_demands(self, numbers: Sequence[int]) -> tuple[Array, Array]:
+        """(m, n) of points, run once more: largest accelerations of floors [m/s2], drift ratios."""
+        from rpscli.analyses.demand import demands
+
+        requests = [self.context.history(self.table.layout[number]) for number in numbers]
+        parts = [requests[f : f + LARGEST_BATCH] for f in range(0, len(requests), LARGEST_BATCH)]
+        with ThreadPoolExecutor(self.jobs) as pool:
+            found = [demand for part in pool.map(demands, parts) for demand in part]
+        ratios = []
+        for demand in found:
+            building = demand.structure.superstructure
+            assert building is not None, "every system has a drift ratio"
+            ratios.append(building.drift_ratios(demand.max_drifts))
+        accelerations = [demand.floor_accelerations for demand in found]
+        return np.array(accelerations), np.array(ratios, dtype=float)

@@ -29,24 +29,18 @@ from rpscli.records.target import TargetSpectrum
 from rpscli.report.design import front_figure, region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
-from rpscli.report.study.registry import REPORTS
+from rpscli.report.study import directions
+from rpscli.report.study.comparison import comparison_figure
+from rpscli.report.study.comparison_numbers import Compared, ComparisonReport, Curve, Outcomes
+from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
+from rpscli.report.study.heights import DemandSample, demand_sample_figure
+from rpscli.report.study.risk import Contributions, Risk, risk_figure
 from rpscli.sweep.design.answer import Answer
 from rpscli.sweep.design.judgement import Judged, Requirement
-from rpscli.sweep.fits.hazard import Hazard
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
 from rpscli.sweep.intensities import Intensity
-from rpscli.sweep.reports.comparison import Compared, ComparisonReport, Curve, Outcomes
-from rpscli.sweep.reports.demand_sample import DemandSample, DemandSampleReport
-from rpscli.sweep.reports.directions import (
-    DirectionsPanel,
-    DirectionsReport,
-    PairCurve,
-    PairResult,
-    PairSpread,
-)
-from rpscli.sweep.reports.fragility import Fragility, FragilityReport, LimitState, Observed
-from rpscli.sweep.reports.risk import Contributions, Risk, RiskReport
 from rpscli.sweep.statistics.agreement import Agreement, maxima
+from rpscli.sweep.statistics.grouping import Grouping
 from rpscli.sweep.statistics.observations import Pairs
 from rpscli.sweep.table import Table
 
@@ -57,8 +51,8 @@ NO_SAMPLES = (np.empty(0), np.empty(0))
 SIZE = "podium.bearing.semi_diagonal"
 
 
-def drawn(draw: Callable[..., bytes], of: object) -> Figure:
-    figure = kept_figure(partial(draw, of, "title"))
+def drawn(draw: Callable[..., bytes], *of: object) -> Figure:
+    figure = kept_figure(partial(draw, *of, "title"))
     assert isinstance(figure, Figure)
     return figure
 
@@ -85,20 +79,23 @@ def test_results_over_the_direction() -> None:
     )
     angles = np.array([0.0, 45.0, 90.0, 135.0])
 
-    def pair(values: Sequence[float], worst: float, angle: float) -> PairCurve:
-        results = PairResult(shear, 7.0, 0.0, 7.0), PairResult(way, worst, angle, 0.2)
-        return PairCurve("pair", angles, np.array(values), results, 0, 0)
+    def pair(values: Sequence[float], worst: float, angle: float) -> directions.Curve:
+        results = {
+            shear: directions.Worst(7.0, 0.0, 7.0),
+            way: directions.Worst(worst, angle, 0.2),
+        }
+        return directions.Curve("pair", angles, np.array(values), results, 0, 0)
 
-    def spread(worst: float, rotd50: float) -> tuple[PairSpread, ...]:
+    def spread(worst: float, rotd50: float) -> dict[Any, tuple[Array, Array]]:
         medians = ((shear, 7.0, 7.0), (way, worst, rotd50))
-        return tuple(PairSpread(q, np.array([w, INF]), np.array([r, INF])) for q, w, r in medians)
+        return {q: (np.array([w, INF]), np.array([r, INF])) for q, w, r in medians}
 
     one, two = pair([0.1, 0.4, 0.2, 0.3], 0.4, 45.0), pair([0.5, 0.5, INF, 0.6], INF, 90.0)
     shown = (
-        DirectionsPanel((0.5,), (one, two), spread(0.4, 0.25)),
-        DirectionsPanel((0,), (two,), spread(INF, 0.55)),
+        directions.Panel((0.5,), [one, two], spread(0.4, 0.25)),
+        directions.Panel((0,), [two], spread(INF, 0.55)),
     )
-    figure = drawn(REPORTS["directions"].figure, DirectionsReport((RHO,), way, shown, ()))
+    figure = drawn(directions.directions_figure, (RHO,), way, shown)
     labelled(figure, "angle from the first component [deg]", "cap beam displacement [m]")
     first, second = (panels(figure)[name] for name in ("ρ = 0.5", "flat ends"))
     wanted = (0.1, 0.4, 0.2, 0.3), (0.5, 0.5, NAN, 0.6)
@@ -145,17 +142,14 @@ def test_what_a_rate_comes_from() -> None:
         risk((0,), drift, [0.0, 0.004, 0.012, 0.004], 5.0),
         risk((0,), fall, [0.0, 0.0, 0.008, 0.002], 7.0),
     )
-    found = FragilityReport(
+    found = Fragilities(
         intensity=Intensity("PGA", "m/s2", None, nothing),
         confidence=0.9,
-        series_keys=(RHO,),
+        systems=Grouping((RHO,), (), ("3 records",), ()),
         limits=(drift, fall),
         curves=tuple(each.fragility for each in risks),
-        pooled=("3 records",),
-        pooling=(),
     )
-    report = RiskReport(found, Hazard(nothing, nothing), 50.0, risks)
-    figure = drawn(REPORTS["risk"].figure, report)
+    figure = drawn(risk_figure, found, risks, 50.0)
     labelled(figure, "PGA [m/s²]", "share of the annual rate [%]")
     # 1 - exp(-50 x 0.01) and 1 - exp(-50 x 0.02)
     first = panels(figure)["lift of the building > 0.02 m\nP = 0.39 to 0.63"]
@@ -185,15 +179,16 @@ def test_what_a_rate_comes_from() -> None:
 def test_accelerations_over_the_height() -> None:
     values = np.array([[1.0, 2.0, 3.0], [2.0, 3.0, 5.0], [3.0, 1.0, 4.0], [4.0, 8.0, 9.0]])
 
-    def sample(rho: object, factor: float, fallen: int, failed: int) -> DemandSample:
-        one, overturned = np.zeros(4), np.array([0, 0, 0, fallen], dtype=float)
+    def sample(rho: object, factor: float, fallen: int) -> DemandSample:
+        one, overturned = np.zeros(4), np.array([0, 0, 0, fallen], dtype=bool)
         points = np.arange(4)
-        return DemandSample(
-            (rho,), points, factor * values, values[:, 1:], one, one, overturned, failed
-        )
+        return DemandSample((rho,), points, factor * values, values[:, 1:], one, one, overturned)
 
-    samples = sample(0.5, 1.0, 0, 0), sample(0, 10.0, 1, 2)
-    figure = drawn(REPORTS["demand_sample"].figure, DemandSampleReport((RHO,), samples))
+    samples = sample(0.5, 1.0, 0), sample(0, 10.0, 1)
+    figure = kept_figure(
+        partial(demand_sample_figure, (RHO,), samples, "title", "2 failed points left out")
+    )
+    assert isinstance(figure, Figure)
     labelled(figure, "largest acceleration [m/s²]", "level (0 = ground)")
     first, second = (panels(figure)[name] for name in ("ρ = 0.5", "flat ends"))
     # The second of four, and the last.
@@ -204,8 +199,7 @@ def test_accelerations_over_the_height() -> None:
     assert first.get_xlim()[0] == 0.0
     assert all(height.is_integer() for height in first.get_yticks())
     assert legend(figure) == ["median", "84 % fractile"]
-    left_out = "fractiles that overturned are not drawn; 2 failed points left out"
-    assert left_out in figure.get_suptitle()
+    assert "2 failed points left out" in figure.get_suptitle()
 
 
 @pytest.fixture
@@ -243,7 +237,7 @@ def compared() -> dict[str, Axes]:
         candidates=(),
         pooling=(),
     )
-    figure = drawn(REPORTS["comparison"].figure, report)
+    figure = drawn(comparison_figure, report)
     assert "records: held out   |   bands: 90 %" in figure.get_suptitle()
     return panels(figure)
 

@@ -230,7 +230,8 @@ def test_maps_of_changes(histories: Open) -> None:
             if name:
                 wanted = numbers(cells, name)
             else:
-                wanted = 1.0 + numbers(cells, "overturned") - numbers(cells, "reference_overturned")
+                wanted = 1.0 + numbers(cells, "overturned_share")
+                wanted -= numbers(cells, "reference_overturned_share")
             array = maps[2 * line + place].images[0].get_array()
             assert array is not None
             change: NDArray[np.float64] = np.ma.filled(array, np.nan)

@@ -6,18 +6,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rpscli.analyses.floor_spectra import PERIODS
-from rpscli.report.study.floor_spectra import floor_spectra_figure
-from rpscli.sweep.reports.floor_spectra import FloorSpectraPanel, FloorSpectraReport, Spread
+from rpscli.report.study.heights import Floors, floor_spectra_figure
 
 
 def test_the_figure_has_a_panel_for_the_lowest_floor_and_the_roof(figures: list[Figure]) -> None:
     values = np.arange(1.0, 1.0 + 3 * 3 * len(PERIODS)).reshape(3, 3, -1)
     fallen = np.where(np.arange(3)[:, None, None] == 2, np.inf, values)
-    panels = tuple(
-        FloorSpectraPanel((scale,), Spread(fallen, values), Spread(values, values), 3, 1, 0)
-        for scale in (1.0, 2.0)
-    )
-    floor_spectra_figure(FloorSpectraReport(("scale",), PERIODS, panels, (), ()), "title")
+    states = np.array([fallen, values])
+    both = np.stack([states, states], axis=1)  # pseudo-accelerations and displacements
+    floors = [Floors((scale,), np.moveaxis(both, 2, 0)) for scale in (1.0, 2.0)]
+    floor_spectra_figure(("scale",), floors, "title", "")
     (figure,) = figures
     drawn = [axes for axes in figure.axes if axes.axison]
     assert [axes.get_title() for axes in drawn] == [

@@ -17,6 +17,7 @@ import rpscli.sweep
 from report.small_results import curve
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS
+from rpscli.report.study.report import Found
 from rpscli.sweep.store import Store
 
 ROOT = Path(__file__).parents[2]
@@ -163,10 +164,10 @@ def test_failed_points_leave_the_files_of_the_command(
 def test_a_report_that_fails_takes_no_file_with_it(
     result: rpscli.StudyResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def broken(*_: object) -> object:
+    def broken(*_: object) -> Found:
         raise ZeroDivisionError("no reason")
 
-    monkeypatch.setitem(REPORTS, "overturning", replace(REPORTS["overturning"], numbers=broken))
+    monkeypatch.setitem(REPORTS, "overturning", replace(REPORTS["overturning"], make=broken))
     with pytest.raises(rpscli.RpsError, match="the report overturning: ZeroDivisionError"):
         result.write(tmp_path / "left", figures=())
     names = {file.name for file in (tmp_path / "left").iterdir()}

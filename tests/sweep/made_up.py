@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from rpscli.report.study.report import Found
 from rpscli.sweep import table
+from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
+from rpscli.sweep.intensities import intensity
 from rpscli.sweep.points.layout import StudyPoints, lay_out
+from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Table
 from sweep.small_studies import STUDY, Make
 
@@ -65,3 +70,24 @@ def place(layout: StudyPoints, number: int) -> dict[str, object]:
     assert point.record is not None
     named = dict(zip(layout.plan.keys, point.values, strict=True))
     return {**named, "record": int(point.record.source[-1]), "scale": point.scale}
+
+
+def results_of(found: Table, rows: Iterable[Stored] = (), fixed: Any = None) -> StudyResults:
+    """Results of a study as reports take them; rows are what is stored of its points."""
+    context = StudyContext(found.layout.plan)
+    results = SimpleNamespace(
+        table=found,
+        context=context,
+        stored=lambda: reader(rows),
+        fixed_base=fixed,
+        intensity=lambda asked: intensity(found, context, asked),
+    )
+    return cast("StudyResults", results)
+
+
+def cells(found: Found, suffix: str = "") -> dict[str, list[Any]]:
+    """Values of the columns of a table of a report, by name."""
+    return {
+        column.name: np.asarray(column.values, dtype=object).tolist()
+        for column in found.tables[suffix]
+    }

@@ -7,7 +7,6 @@ import json
 import math
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -17,19 +16,16 @@ from click.testing import Result
 from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import CaseError
 from rpscli.report.study.comparison import REPORT, findings
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.intensities import MeasureOptions, intensity
-from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.reports.comparison import (
+from rpscli.report.study.comparison_numbers import (
     ComparisonOptions,
     ComparisonReport,
     Outcomes,
     comparison_report,
     uncomparable,
 )
+from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.statistics.agreement import Maxima, agreement, threshold
-from rpscli.sweep.study_results import StudyResults
-from sweep.made_up import ALPHA, place, stored, tabulate
+from sweep.made_up import ALPHA, place, results_of, stored, tabulate
 from sweep.small_studies import Make
 
 RECORDS = 8
@@ -56,14 +52,8 @@ def report(
     layout: StudyPoints, options: ComparisonOptions, answer: Callable[[dict[str, object]], Any]
 ) -> ComparisonReport:
     table = tabulate(layout, (answer(place(layout, n)) for n in range(len(layout))))
-    context = StudyContext(layout.plan)
-
-    def measured(asked: MeasureOptions) -> Any:
-        return intensity(table, context, asked)
-
-    results = SimpleNamespace(table=table, intensity=measured)
     assert not list(uncomparable(layout, options))
-    return comparison_report(cast("StudyResults", results), options)
+    return comparison_report(results_of(table), options)
 
 
 def overturns(at: dict[str, object]) -> Any:

@@ -5,22 +5,22 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import Result
 from paper_structures import needs_compiled_kernels
 
-from rpscli.report.study.directions import directions_figure, pair_columns, spread_columns
-from rpscli.report.study.registry import REPORTS
-from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.reports.directions import (
+from rpscli.report.study.directions import (
     NO_BOUND,
     DirectionsOptions,
-    directions_report,
+    directions,
     without_directions,
 )
-from sweep.made_up import RHO, Stored, stored, tabulate
+from rpscli.report.study.registry import REPORTS
+from rpscli.sweep.points.layout import lay_out
+from sweep.made_up import RHO, Stored, cells, results_of, stored, tabulate
 from sweep.small_studies import Make
 
 ANGLES = (0, 45, 90, 135)
@@ -67,39 +67,34 @@ def answer(source: str) -> Stored:
 def test_worst_direction_and_median(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY))
     table = tabulate(layout, (answer(point.record.source) for point in layout if point.record))
-    report = directions_report(table, DirectionsOptions())
-    assert [panel.values for panel in report.panels] == [(0.5,), (0,)]
-    one, two = report.panels[0].curves
-    assert one.pair == "one_x.txt?dt=0.01&units=g&second=one_y.txt"
-    assert one.angles.tolist() == list(ANGLES)
-    found = {c.pair[:3]: {r.quantity.name: r for r in c.results} for c in (one, two)}
-    rotation = found["one"]["rotation_ratio"]
-    assert rotation[1:] == (0.4, 45.0, 0.25)
-    rotation = found["two"]["rotation_ratio"]
-    assert rotation[1:3] == (np.inf, 90.0)
-    assert rotation.rotd50 == pytest.approx(0.55)
-    assert (two.overturned, one.overturned) == (1, 0)
-    spread = next(s for s in report.panels[0].spreads if s.quantity.name == "rotation_ratio")
-    assert spread.worst.tolist() == [0.4, np.inf]
-    assert spread.rotd50.tolist() == pytest.approx([0.25, 0.55])
+    report = directions(results_of(table), DirectionsOptions())
+    pairs, spread = cells(report, "_pairs"), cells(report)
+    one, two = [n for n, name in enumerate(pairs["result"]) if name == "rotation_ratio"][:2]
+    assert pairs["pair"][one] == "one_x.txt?dt=0.01&units=g&second=one_y.txt"
+    assert pairs["directions"][one] == len(ANGLES)
+    result = [pairs[name] for name in ("worst", "worst_angle", "rotd50", "overturned")]
+    assert [values[one] for values in result] == [0.4, 45.0, 0.25, 0]
+    assert [values[two] for values in result] == ["inf", 90.0, pytest.approx(0.55), 1]
+    at = spread["result"].index("rotation_ratio")
+    assert (spread["worst_median"][at], spread["worst_84"][at]) == (0.4, "inf")
+    assert [spread[f"rotd50_{end}"][at] for end in ("median", "84")] == pytest.approx([0.25, 0.55])
+    assert set(spread["overturned"]) == {1}
+    assert set(spread[RHO]) == {0.5, 0}
     assert report.notes == (NO_BOUND,)
-    cells = {column.name: list(column.values) for column in spread_columns(report)}
-    assert cells["worst_84"][cells["result"].index("rotation_ratio")] == "inf"
-    assert set(cells["overturned"]) == {1}
-    assert len(list(pair_columns(report)[0].values)) == sum(
-        len(c.results) for p in report.panels for c in p.curves
-    )
-    assert directions_figure(report, "title").startswith(b"\x89PNG")
+    drawn: Any = report.drawn("title")
+    assert len([axes for axes in drawn.axes if axes.axison]) == 2
 
 
 @pytest.mark.usefixtures("records")
 def test_directions_that_are_not_even_are_named(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY, (str(list(ANGLES)), "[0, 90, 180]")))
-    report = directions_report(tabulate(layout, [None] * len(layout)), DirectionsOptions())
+    missing = results_of(tabulate(layout, [None] * len(layout)))
+    report = directions(missing, DirectionsOptions())
     assert "one_x.txt" in report.notes[1]
     assert "not spread evenly over 180 deg" in report.notes[1]
-    assert not report.panels[0].spreads
-    assert report.failed == 12
+    assert not cells(report)["result"]
+    drawn: Any = report.drawn("title")
+    assert "12 failed points left out" in drawn.get_suptitle()
 
 
 @pytest.mark.usefixtures("records")

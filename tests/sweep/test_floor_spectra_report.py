@@ -19,8 +19,8 @@ from rpscli.analyses.floor_spectra import (
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.source import load_record
+from rpscli.report.study.heights import FloorSpectraOptions, without_floors
 from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.reports.floor_spectra import FloorSpectraOptions, without_floors
 from sweep.small_studies import STUDY, Make
 
 VARY = STUDY[STUDY.index("vary:") : STUDY.index("records:")]

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from rpscli.errors import CaseError
+from rpscli.report.study.fragility import FragilityOptions, LimitStates, fragilities
+from rpscli.report.study.scatter import (
+    PulseSection,
+    SpectrumOptions,
+    overturning_spectrum,
+    pulse_of,
+    records_without_period,
+)
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.fits.probit import probit_fit, separated
 from rpscli.sweep.intensities import intensity
 from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.reports.fragility import FragilityOptions, LimitStates, fragility_report
-from rpscli.sweep.reports.overturning_spectrum import (
-    PulseSection,
-    SpectrumOptions,
-    pulse_of,
-    records_without_period,
-    spectrum_report,
-)
-from sweep.made_up import Stored, tabulate
+from sweep.made_up import Stored, cells, results_of, tabulate
 from sweep.small_studies import STUDY, Make
 
 Array = NDArray[np.float64]
@@ -201,7 +202,7 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     options = FragilityOptions(
         limits=LimitStates(rotation_ratio=(0.5,), drift_ratio=(0.01,)), series=(), resamples=0
     )
-    report = fragility_report(table, intensity(table, StudyContext(layout.plan), options), options)
+    report = fragilities(results_of(table), options)
     assert [curve.limit.label for curve in report.curves] == [
         "rotation_ratio > 0.5",
         "drift_ratio > 0.01",
@@ -244,13 +245,15 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
         Stored("overturned_rocking" if p.scale > 0.3 else "survived", None, {"scale": p.scale})
         for p in layout
     ]
-    report = spectrum_report(tabulate(layout, rows), StudyContext(layout.plan), SpectrumOptions())
-    (panel,), properties = report.panels[0].series, layout.properties[0]
-    p = properties.frequency_parameter
-    assert panel.frequency_ratio[:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
+    found = overturning_spectrum(results_of(tabulate(layout, rows)), SpectrumOptions())
+    points, p = cells(found), layout.properties[0].frequency_parameter
+    assert points["frequency_over_p"][:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
     # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
-    assert panel.amplitude_ratio[:2] == pytest.approx([0.2 / 0.10, 0.4 / 0.10], rel=1e-9)
-    assert panel.boundary[:, 1] == pytest.approx([4.0, 4.0], rel=1e-9)
+    amplitudes = points["amplitude_over_g_tan_alpha"][:2]
+    assert amplitudes == pytest.approx([0.2 / 0.10, 0.4 / 0.10], rel=1e-9)
+    drawn: Any = found.drawn("title")
+    (least,) = [line for line in drawn.axes[0].lines if line.get_label() == "least that overturns"]
+    assert least.get_ydata() == pytest.approx([4.0, 4.0], rel=1e-9)
 
 
 def test_a_spectrum_of_earthquakes_is_refused() -> None:
@@ -278,15 +281,16 @@ def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of:
     # Rounding decides at the border of uplift: 1e-9 of the critical rotation is none in a figure.
     results = {"scale": 0.4, "rotation_ratio": 1e-9}
     table = tabulate(layout, [Stored("survived", None, results) for _ in layout])
-    report = spectrum_report(table, StudyContext(layout.plan), options)
-    assert report.series_keys == (rho,)
-    assert [[s.values for s in panel.series] for panel in report.panels] == [
-        [("critical",), (0.5,), (0,)]
-    ] * 2
-    series, properties = report.panels[0].series[0], layout.properties[0]
-    assert series.frequency_ratio[-1] == pytest.approx(
+    found = overturning_spectrum(results_of(table), options)
+    points, properties = cells(found), layout.properties[0]
+    assert set(points[rho]) == {"critical", 0.5, 0}
+    of_file = points[rho].index(0.5) - 1  # the last point of the first series
+    assert points["frequency_over_p"][of_file] == pytest.approx(
         2.0 * math.pi / 0.8 / properties.frequency_parameter, rel=1e-12
     )
-    assert series.amplitude_ratio[-1] == pytest.approx(0.4 / (9.80665 * 0.10), rel=1e-9)
-    assert set(series.outcomes) == {"survived"}
-    assert set(series.shown) == {"at_rest"}
+    amplitude = points["amplitude_over_g_tan_alpha"][of_file]
+    assert amplitude == pytest.approx(0.4 / (9.80665 * 0.10), rel=1e-9)
+    assert set(points["outcome"]) == {"survived"}
+    alone = overturning_spectrum(results_of(table), SpectrumOptions(pulses={"mine.txt": pulse}))
+    drawn: Any = alone.drawn("title")
+    assert [line.get_label() for line in drawn.axes[0].lines] == ["at rest", "least that overturns"]

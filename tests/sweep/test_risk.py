@@ -16,8 +16,8 @@ from scipy.integrate import quad
 from scipy.special import ndtr
 
 from rpscli.errors import CaseError
+from rpscli.report.study.risk import probability
 from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard
-from rpscli.sweep.reports.risk import probability
 from sweep.small_studies import STUDY
 
 KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5]))

@@ -9,23 +9,33 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy.stats import beta
 
-from rpscli.report.study.labels import label
+from rpscli.report.study.against import ContrastOptions, RotationOptions, contrast, rotation
+from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
+from rpscli.report.study.ida import IdaOptions, ida
+from rpscli.report.study.lines import LinesOptions, lines
+from rpscli.report.study.scatter import DemandOptions, ScatterOptions, demand, scatter
+from rpscli.report.study.table import (
+    OverturningOptions,
+    TableOptions,
+    overturning,
+    statistic_table,
+)
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.reports.contrast import ContrastOptions, contrast_report
-from rpscli.sweep.reports.demand import DemandOptions, demand_report
-from rpscli.sweep.reports.ida import IdaOptions, ida_report
-from rpscli.sweep.reports.lines import LinesOptions, lines_report
-from rpscli.sweep.reports.overturning import OverturningOptions, overturning_table
-from rpscli.sweep.reports.rotation import RotationOptions, rotation_report
-from rpscli.sweep.reports.storey_shear import (
-    StoreyShearOptions,
-    storey_shear_report,
-    unlike_buildings,
-)
 from rpscli.sweep.table import groups
-from sweep.made_up import ALPHA, RHO, Stored, place, reader, stored, table_of, tabulate
+from sweep.made_up import (
+    ALPHA,
+    RHO,
+    Stored,
+    cells,
+    place,
+    results_of,
+    stored,
+    table_of,
+    tabulate,
+)
 from sweep.small_studies import STUDY, Make
 
 
@@ -90,13 +100,11 @@ def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
     swap = "podium.bearing.curvature_ratio: [critical, 0.5, 0]"
     changes = (swap, f"podium.devices: [[], {friction}]")
     table = table_of(study_of, lambda _: stored(), changes)
-    found = overturning_table(table, OverturningOptions())
-    assert found.column_keys == ("podium.devices",)
-    assert [label("podium.devices", values[0]) for values in found.columns] == [
-        "no devices",
-        "friction 300 kN",
-    ]
-    assert all(cell is not None for row in found.cells for cell in row)
+    found = cells(overturning(results_of(table), OverturningOptions()))
+    assert found["podium.devices=none;counted"] == [3] * 4
+    assert [name for name in found if name.endswith(";number")] == [
+        "podium.devices=none;number", "podium.devices=friction 300 kN;number"
+    ]  # fmt: skip
 
 
 def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -> None:
@@ -108,21 +116,61 @@ def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -
             return Stored("failed", "why", {})
         return stored("overturned_rolling" if at[RHO] == 0 and at["scale"] == 1.0 else "survived")
 
-    apart = overturning_table(table_of(study_of, answer), OverturningOptions())
-    assert (apart.row_keys, apart.notes) == ((ALPHA, "scale"), ())
-    assert apart.rows == ((0.10, 0.5), (0.10, 1.0), (0.15, 0.5), (0.15, 1.0))
-    assert [row[2].overturned[:2] for row in apart.cells if row[2]] == [(0, 3), (2, 2)] * 2
-    table = overturning_table(table_of(study_of, answer), OverturningOptions(rows=(ALPHA,)))
-    assert table.rows == ((0.10,), (0.15,))
-    assert table.pooled == ("2 intensities",)
-    assert "pools 2 intensities" in table.notes[0]
-    assert table.columns == (("critical",), (0.5,), (0,))
-    for row in table.cells:
-        assert [cell.overturned.fraction for cell in row if cell] == [0.0, 0.0, 2 / 5]
-        assert [cell.failed for cell in row if cell] == [1, 1, 1]
-    turned = OverturningOptions(rows=(RHO,), columns=("scale",))
-    by_scale = overturning_table(table_of(study_of, answer), turned)
-    assert [cell.overturned.fraction for cell in by_scale.cells[2] if cell] == [0.0, 1.0]
+    results = results_of(table_of(study_of, answer))
+    apart = overturning(results, OverturningOptions())
+    found = cells(apart)
+    assert apart.notes == ()
+    assert (found[ALPHA], found["scale"]) == ([0.10, 0.10, 0.15, 0.15], [0.5, 1.0] * 2)
+    assert found[f"{RHO}=0;number"] == [0, 2, 0, 2]
+    assert found[f"{RHO}=0;counted"] == [3, 2, 3, 2]
+    pooled = overturning(results, OverturningOptions(rows=(ALPHA,)))
+    assert "pools 2 intensities" in pooled.notes[0]
+    found = cells(pooled)
+    assert found[ALPHA] == [0.10, 0.15]
+    for rho, share in (("critical", 0.0), ("0.5", 0.0), ("0", 2 / 5)):
+        assert found[f"{RHO}={rho}"] == [share] * 2
+    assert (found["counted"], found["failed"]) == ([15, 15], [3, 3])
+    turned = cells(overturning(results, OverturningOptions(rows=(RHO,), columns=("scale",))))
+    assert (turned["scale=0.5"][2], turned["scale=1"][2]) == (0.0, 1.0)
+
+
+def test_tables_show_statistics_in_which_an_overturned_history_is_the_largest(
+    study_of: Make,
+) -> None:
+    layout = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        at = place(layout, number)
+        falls = at["record"] == 3 and at["scale"] == 1.0
+        name = "overturned_rolling" if falls else "survived"
+        return stored(name, rotation_ratio=float(str(at["record"])))
+
+    results = results_of(table_of(study_of, answer))
+    for statistic, values in (
+        ("median", [2.0, 2.0]),
+        ("largest", [3.0, "inf"]),
+        ("mean", [2, 1.5]),
+    ):
+        options = TableOptions(statistic=statistic, rows=("scale",), columns=(ALPHA,))
+        found = cells(statistic_table(results, options))
+        assert found[f"{ALPHA}=0.1"] == found[f"{ALPHA}=0.15"] == values
+        assert found[f"{ALPHA}=0.1;overturned"] == [0, 3]
+        assert found[f"{ALPHA}=0.1;counted"] == [9, 9]
+
+
+def test_scatter_holds_what_stood(study_of: Make) -> None:
+    def answer(number: int) -> Stored:
+        outcomes = ("survived", "at_rest", "overturned_rolling")
+        return stored(outcomes[number % 3], max_lift=float(number), drift_ratio=1.0)
+
+    results = results_of(table_of(study_of, answer))
+    found = scatter(results, ScatterOptions(x="max_lift", y="drift_ratio", series=(RHO,)))
+    points = cells(found)
+    assert sorted(points["max_lift"]) == [n for n in range(36) if n % 3 < 2]
+    assert points["point"] == [int(n) + 1 for n in points["max_lift"]]
+    assert set(points["outcome"]) == {"survived", "at_rest"}
+    assert (ALPHA in points, RHO in points, "scale" in points) == (True, True, True)
+    assert list(found.tables) == [""]
 
 
 def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
@@ -131,18 +179,17 @@ def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
             "overturned_rocking" if number == 35 else "survived", max_rotation=float(number)
         )
 
-    table = table_of(study_of, answer)
-    report = rotation_report(table, RotationOptions())
-    assert (report.key, report.reference, report.failed) == (RHO, 0, 0)
-    (panel,) = report.panels
-    assert [comparison.value for comparison in panel.comparisons] == ["critical", 0.5]
-    mine, alpha = panel.comparisons[1], math.atan(0.10)
-    assert mine.rotation[0] == pytest.approx(6 / alpha, rel=1e-12)
-    assert mine.reference[0] == pytest.approx(12 / alpha, rel=1e-12)
-    assert np.all(mine.reference_points - mine.points == 6)
-    assert math.isinf(mine.reference[-1])
-    other = rotation_report(table, RotationOptions(reference=0.5, panels=(ALPHA,)))
-    assert (other.reference, len(other.panels)) == (0.5, 2)
+    results = results_of(table_of(study_of, answer))
+    found = cells(rotation(results, RotationOptions(panels=())))
+    assert (set(found[RHO]), set(found[f"reference {RHO}"])) == ({"critical", 0.5}, {0})
+    # The second system, point 6, beside the reference, point 12; intensities are named.
+    mine, alpha = found[RHO].index(0.5), math.atan(0.10)
+    assert found["rotation_over_alpha"][mine] == pytest.approx(6 / alpha, rel=1e-12)
+    assert found["reference_rotation_over_alpha"][mine] == pytest.approx(12 / alpha, rel=1e-12)
+    assert found["scale"][mine : mine + 2] == [0.5, 1.0]
+    assert math.isinf(found["reference_rotation_over_alpha"][-1])
+    other = cells(rotation(results, RotationOptions(reference=0.5, panels=(ALPHA,))))
+    assert set(other[RHO]) == {"critical", 0}
 
 
 def test_contrasts_are_medians_over_the_motions(study_of: Make) -> None:
@@ -162,17 +209,37 @@ def test_contrasts_are_medians_over_the_motions(study_of: Make) -> None:
     options = ContrastOptions(
         key=RHO, reference=0.5, value=0, panels=(ALPHA,), rows=(ALPHA,), columns=("scale",)
     )
-    report = contrast_report(table_of(study_of, answer), options)
-    assert (report.reference, report.value, report.failed) == (0.5, 0, 1)
-    cells = {(cell.values[0], cell.values[2]): cell for cell in report.cells}
-    assert cells[0.10, 0.5].pairs == 2
-    assert cells[0.15, 0.5].ratios[:, 1] == pytest.approx([2.0, 0.75], rel=1e-15)  # 3, 4, 5 over 2
-    assert cells[0.10, 1.0].ratios[:, 1] == pytest.approx([1.75, 0.75], rel=1e-15)  # 3, 4 over 2
-    assert cells[0.10, 1.0].overturned == pytest.approx(1 / 3)
-    assert cells[0.10, 1.0].reference_overturned == 0.0
-    plain = ContrastOptions(rows=(ALPHA,), columns=("scale",))
-    first = contrast_report(table_of(study_of, answer), plain)
-    assert (first.key, first.reference, first.value) == (RHO, "critical", 0.5)
+    results = results_of(table_of(study_of, answer))
+    found = cells(contrast(results, options))
+    assert found["pairs"] == [2, 3, 3, 3]
+    assert found["failed"] == [1, 0, 0, 0]
+    assert found["ratio of rotation_ratio; pairs"] == [2, 2, 3, 2]
+    # 3, 4 and 5 over 2; of two the median is the first, as in all statistics.
+    assert found["ratio of rotation_ratio; median"] == [1.5, 1.5, 2.0, 1.5]
+    assert found["ratio of base_shear_ratio; median"] == [0.75] * 4
+    assert found["overturned"] == [0, 1, 0, 1]
+    assert found["overturned_share"] == [0.0, 1 / 3, 0.0, 1 / 3]
+    low, high = (found[f"overturned_{end}"][1] for end in ("low", "high"))
+    assert (low, high) == pytest.approx((beta.ppf(0.025, 1, 3), beta.ppf(0.975, 2, 2)))
+    assert found["reference_overturned"] == [0] * 4
+    assert "2 of 11 pairs have none" in contrast(results, options).notes[0]
+
+
+def test_contrasts_keep_intensities_apart(study_of: Make) -> None:
+    """Pooled, half of the flat ends would overturn where none and all do."""
+    layout = lay_out(study_of())
+
+    def answer(number: int) -> Stored:
+        at = place(layout, number)
+        falls = at[RHO] == 0.5 and at["scale"] == 1.0
+        return stored("overturned_rocking" if falls else "survived", rotation_ratio=1.0)
+
+    results = results_of(table_of(study_of, answer))
+    found = cells(contrast(results, ContrastOptions(rows=(ALPHA,), columns=(RHO,), key=RHO)))
+    assert found["scale"] == [0.5, 0.5, 1.0, 1.0]
+    assert found["overturned_share"] == [0.0, 0.0, 1.0, 1.0]
+    pooled = contrast(results, ContrastOptions(rows=(ALPHA,), columns=("record",), panels=()))
+    assert "pools 2 intensities" in pooled.notes[0]
 
 
 def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
@@ -184,12 +251,11 @@ def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
             outcomes[number % 4], rotation_ratio=x, base_shear_ratio=1.0 + min(4.0 * x, 2.0)
         )
 
-    report = demand_report(table_of(study_of, answer), DemandOptions(panels=(), series=(ALPHA,)))
-    (panel,) = report.panels
-    assert (panel.counted, panel.at_rest, panel.overturned, panel.failed) == (18, 9, 9, 0)
-    assert panel.fit is not None
-    assert panel.fit.break_x == pytest.approx(0.5, abs=1e-9)
-    assert sum(len(series.points) for series in panel.series) == 18
+    results = results_of(table_of(study_of, answer))
+    found = cells(demand(results, DemandOptions(panels=(), series=(ALPHA,))))
+    counts = ("counted", "at_rest", "overturned", "failed")
+    assert [found[name] for name in counts] == [[18], [9], [9], [0]]
+    assert found["saturation_rotation_ratio"] == pytest.approx([0.5], abs=1e-9)
 
 
 def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
@@ -207,19 +273,23 @@ def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
         for request in layout.records
         if request
     }
-    report = storey_shear_report(table, fixed, StoreyShearOptions(panels=(ALPHA, RHO)))
-    assert report.pooled == ("2 intensities",)
-    assert "12 of 36 histories overturned" in report.notes[1]
-    apart = storey_shear_report(table, fixed, StoreyShearOptions())
-    assert apart.panel_keys == (ALPHA, RHO, "scale")
-    assert (apart.profiles[0].counted, apart.profiles[0].overturned) == (2, 1)
-    first = report.profiles[0]
-    static = first.static_base_shear
-    assert static == pytest.approx(600e3 * 9.80665 * 0.10, rel=1e-12)
-    assert (first.counted, first.overturned) == (4, 2)
-    assert first.mean * static == pytest.approx([(0 + 1 + 2 + 3) / 4, 2.0, 1.0], rel=1e-12)
-    assert first.largest * static == pytest.approx([3.0, 2.0, 1.0], rel=1e-12)
-    assert first.fixed_largest * static == pytest.approx([10.0, 6.0, 3.0], rel=1e-12)
+    results = results_of(table, fixed=fixed)
+    pooled = storey_shear(results, StoreyShearOptions(panels=(ALPHA, RHO)))
+    notes = pooled.notes
+    assert "pools 2 intensities" in notes[0]
+    assert "12 of 36 histories overturned" in notes[1]
+    apart = cells(storey_shear(results, StoreyShearOptions()))
+    assert (apart["scale"][0], apart["counted"][0], apart["overturned"][0]) == (0.5, 2, 1)
+    found = cells(pooled)
+    assert (found["counted"][0], found["overturned"][0]) == (4, 2)
+    static = 600e3 * 9.80665 * 0.10
+    for name, values in {
+        "mean": [(0 + 1 + 2 + 3) / 4, 2.0, 1.0],
+        "largest": [3.0, 2.0, 1.0],
+        "fixed_largest": [10.0, 6.0, 3.0],
+    }.items():
+        assert found[f"{name}_shear"][:3] == pytest.approx(values, rel=1e-12)
+        assert found[f"{name}_shear_ratio"][0] == pytest.approx(values[0] / static, rel=1e-12)
 
 
 def test_buildings_of_different_height_have_no_common_profile(study_of: Make) -> None:
@@ -245,12 +315,12 @@ def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> No
         falls = at["scale"] == 1.0 and record > 1
         return stored("overturned_rolling" if falls else "survived", rotation_ratio=0.1 * record)
 
-    report = ida_report(table_of(study_of, answer), IdaOptions())
-    panel = report.panels[0]
-    assert panel.levels.tolist() == [0.5, 1.0]
-    assert panel.fractiles[:, 0].tolist() == pytest.approx([0.1, 0.2, 0.3])
-    assert panel.fractiles[:, 1].tolist() == [pytest.approx(0.1), math.inf, math.inf]
-    assert panel.overturned == (0, 2)
+    found = cells(ida(results_of(table_of(study_of, answer)), IdaOptions()))
+    assert found["scale"][:2] == [0.5, 1.0]
+    fractiles = [found[f"rotation_ratio_{share}"] for share in (16, 50, 84)]
+    assert [each[0] for each in fractiles] == pytest.approx([0.1, 0.2, 0.3])
+    assert [each[1] for each in fractiles] == [pytest.approx(0.1), math.inf, math.inf]
+    assert found["overturned"][:2] == [0, 2]
 
 
 def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
@@ -267,19 +337,19 @@ def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
     table = table_of(study_of, answer)
     rows = [answer(number) for number in range(36)]
     options = LinesOptions(x="scale", y=("max_rotation",), panels=(ALPHA,))
-    report = lines_report(table, reader(rows), options)
-    assert report.series_keys == (RHO,)
-    assert [len(panel.lines) for panel in report.panels] == [3, 3]
-    assert report.panels[0].lines[0].x == (0.5, 1.0)
-    assert report.panels[0].lines[0].y == (0.5, 1.0)
+    found = cells(lines(results_of(table, rows), options))
+    assert len(found["value"]) == 2 * 3 * 2
+    assert (found[RHO][:2], found["scale"][:2], found["value"][:2]) == (
+        ["critical"] * 2, [0.5, 1.0], [0.5, 1.0]
+    )  # fmt: skip
 
 
 def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) -> None:
     sizes = (f"{RHO}: [critical, 0.5, 0]", "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]")
     table = table_of(study_of, lambda _: stored(), sizes)
     options = LinesOptions(x="podium.bearing.semi_diagonal", y=("max_rotation",), series=())
-    (panel,) = lines_report(table, reader([stored()] * 36), options).panels
-    assert panel.lines[0].x == (1.5, 2.0, 2.5)
+    found = cells(lines(results_of(table, [stored()] * 36), options))
+    assert found["podium.bearing.semi_diagonal"] == [1.5, 2.0, 2.5]
 
 
 def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: Make) -> None:
@@ -291,9 +361,9 @@ def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: M
     ]
     table = tabulate(layout, rows)
     options = LinesOptions(x="curve.displacement", y=("curve.force",), panels=(ALPHA,))
-    first, _ = lines_report(table, reader(rows), options).panels
-    assert [line.y for line in first.lines] == [(2.0, 0.0), (2.0, 1.0), (2.0, 2.0)]
-    assert first.lines[0].x == (0.0, 1.0)
+    found = cells(lines(results_of(table, rows), options))
+    assert found["value"][:6] == [2.0, 0.0, 2.0, 1.0, 2.0, 2.0]
+    assert found["curve.displacement"][:2] == [0.0, 1.0]
 
 
 def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> None:
@@ -327,19 +397,18 @@ def test_lines_say_what_stands_for_the_records(
     table = table_of(study_of, answer)
     rows = [answer(number) for number in range(36)]
     options = LinesOptions(x=ALPHA, y=("max_rotation",), statistic=statistic, series=("scale",))
-    report = lines_report(table, reader(rows), options)
-    assert report.pooled == (f"3 values of {RHO}",)
-    (panel,) = report.panels
-    assert [line.values for line in panel.lines] == [(0.5,), (1.0,)]
-    line = panel.lines[0]
+    made = lines(results_of(table, rows), options)
+    assert f"pools 3 values of {RHO}" in made.notes[0]
+    found = cells(made)
+    assert found["scale"] == [0.5, 0.5, 1.0, 1.0]
     # 1, 1, 1, 2, 2, 2 and three overturned; 1, 1, 2, 2 and five overturned
-    assert (line.counted, line.overturned) == ((6, 4), (3, 5))
-    assert list(line.y) == values
-    assert any("survivors: 16 of 36" in note for note in report.notes) == (statistic == "mean")
+    assert (found["counted"][:2], found["overturned"][:2]) == ([6, 4], [3, 5])
+    assert [float(value) for value in found["value"][:2]] == values
+    assert any("survivors: 16 of 36" in note for note in made.notes) == (statistic == "mean")
 
 
 def test_lines_keep_intensities_apart(study_of: Make) -> None:
     table = table_of(study_of, lambda _: stored())
-    rows = reader([stored()] * 36)
-    report = lines_report(table, rows, LinesOptions(x=ALPHA, y=("max_rotation",)))
-    assert (report.series_keys, report.pooled) == ((RHO, "scale"), ())
+    made = lines(results_of(table, [stored()] * 36), LinesOptions(x=ALPHA, y=("max_rotation",)))
+    assert {RHO, "scale"} <= set(cells(made))
+    assert not list(made.notes)

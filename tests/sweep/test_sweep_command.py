@@ -16,6 +16,7 @@ from click.testing import CliRunner, Result
 
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS as REPORT_KINDS
+from rpscli.report.study.report import Found
 from rpscli.sweep.evaluation.results import SCALARS
 from sweep.small_studies import BASE, ROOT, STUDY, study_file
 
@@ -179,10 +180,10 @@ def test_a_report_that_cannot_be_drawn_is_refused_before_anything_runs(
 def test_a_report_that_fails_takes_nothing_with_it(
     sweep_json: Document, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def broken(*_: object) -> object:
+    def broken(*_: object) -> Found:
         raise ZeroDivisionError("no reason")
 
-    monkeypatch.setitem(REPORT_KINDS, "ida", replace(REPORT_KINDS["ida"], numbers=broken))
+    monkeypatch.setitem(REPORT_KINDS, "ida", replace(REPORT_KINDS["ida"], make=broken))
     (workplace / "study.yaml").write_text(STUDY + "reports: [ida, overturning]\n")
     document = sweep_json("study.yaml", exit_code=1)
     assert (document["status"], document["passed"]) == ("error", False)

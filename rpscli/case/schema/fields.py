@@ -277,6 +277,7 @@ class Several:
     item: Any
     alone: bool = True
     spaced: bool = True
+    least: int = 1
 
     def _form(self, value: object) -> str:
         if isinstance(value, list | tuple):
@@ -286,7 +287,7 @@ class Several:
     def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         """The check, for pydantic."""
         item = handler.generate_schema(self.item)
-        each = core_schema.tuple_schema([item], variadic_item_index=0, min_length=1)
+        each = core_schema.tuple_schema([item], variadic_item_index=0, min_length=self.least)
         one = core_schema.no_info_after_validator_function(lambda value: (value,), item)
         spaced = core_schema.no_info_after_validator_function(
             lambda section: section.values, handler.generate_schema(ValueRange)

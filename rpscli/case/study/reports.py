@@ -2,18 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Annotated, Any, Protocol, get_args
 
 from pydantic import Field
 
 from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.fields import Section, Text
 from rpscli.case.study.axes import Axis
-from rpscli.case.study.schema import Analysis
+from rpscli.case.study.schema import Analysis, AnyKeys
 from rpscli.case.text.document import Document, Fault, Path, dotted, shown
 from rpscli.errors import hint, listed
+
+_VARIED = "varied keys"
+VariedKeys = Annotated[AnyKeys, _VARIED]
+"""Keys under `vary`, or record and scale: one, several, or none to pool all that differs."""
+VariedKey = Annotated[Text, _VARIED]
+"""One of them."""
+
+
+def varied_keys(options: Section, path: Path = ()) -> Iterator[tuple[Path, str]]:
+    """Varied keys that options name, whatever the options are called, and where they stand."""
+    for name, field in type(options).model_fields.items():
+        value = getattr(options, name)
+        if isinstance(value, Section):
+            yield from varied_keys(value, (*path, name))
+        elif value is not None and (_VARIED in field.metadata or _is_varied(field.annotation)):
+            for key in (value,) if isinstance(value, str) else value:
+                yield (*path, name), key
+
+
+def _is_varied(annotation: Any) -> bool:
+    parts = get_args(annotation)
+    return _VARIED in getattr(annotation, "__metadata__", ()) or any(map(_is_varied, parts))
 
 
 class ReportOptions(Section):

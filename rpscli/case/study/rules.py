@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import field_at, unknown_key
 from rpscli.case.study.axes import Axis, clashes
-from rpscli.case.study.reports import ReportKinds, ReportOptions, ReportRequest
+from rpscli.case.study.reports import ReportKinds, ReportRequest, varied_keys
 from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import listed
@@ -120,18 +120,11 @@ def report_rules(
 
 
 def _key_faults(known: list[str], request: ReportRequest) -> Iterator[Fault]:
-    for option, key in _named_keys(request.options):
+    for option, key in varied_keys(request.options):
         if key not in known:
-            path = (*request.path, request.kind, option)
+            path = (*request.path, request.kind, *option)
             text = f"{dotted(path)} = {key} does not vary in this study; use {listed(known)}"
             yield Fault(path, text)
-
-
-def _named_keys(options: ReportOptions) -> Iterator[tuple[str, str]]:
-    for option in ("rows", "columns", "panels", "series", "key"):
-        named = getattr(options, option, None)
-        for key in (named,) if isinstance(named, str) else named or ():
-            yield option, key
 
 
 MOST_SYSTEMS = 200_000

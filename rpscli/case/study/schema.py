@@ -76,6 +76,8 @@ Option = Annotated[Any, PlainValidator(_option), WithJsonSchema({"type": ["numbe
 Key = Annotated[str, PlainValidator(_key), WithJsonSchema({"type": "string"})]
 Keys = Annotated[tuple[str, ...], Several(Key, spaced=False)]
 """One key or several."""
+AnyKeys = Annotated[tuple[str, ...], Several(Key, spaced=False, least=0)]
+"""The same, or none."""
 
 Numbers = Annotated[tuple[float, ...], Several(Number)]
 """One number, several, or a range of them."""

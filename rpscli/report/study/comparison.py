@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.study.observed import OVERTURNED
 from rpscli.report.figures import style
-from rpscli.report.study.fragility import measure_name
-from rpscli.report.study.labels import key_columns, labels
-from rpscli.report.study.panels import log_ticks
-from rpscli.report.study.report import Report
-from rpscli.report.table import Column
-from rpscli.sweep.reports.comparison import (
+from rpscli.report.study.comparison_numbers import (
     FITTED,
     Compared,
     ComparisonOptions,
@@ -26,8 +21,15 @@ from rpscli.sweep.reports.comparison import (
     fit_faults,
     uncomparable,
 )
+from rpscli.report.study.fragility import fit_cells, fit_units, measure_name
+from rpscli.report.study.labels import keyed, labels
+from rpscli.report.study.panels import log_ticks
+from rpscli.report.study.report import Found, Report
+from rpscli.report.study.statistics import reached
+from rpscli.report.table import Column
 from rpscli.sweep.statistics.agreement import Agreement, Maxima
 from rpscli.sweep.statistics.fractiles import CONFIDENCE
+from rpscli.sweep.study_results import StudyResults
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,140 +40,107 @@ MOST_ROWS = 8
 
 QUANTITIES = {quantity.name: quantity for quantity in LIMITED}
 
-MODEL = "model"
+TOLD = {(1, 1): "both", (0, 1): "computed only", (1, 0): "observed only", (0, 0): "neither"}
+"""Words for observed and computed overturning."""
 
-Row = tuple[Compared, str, str, float | None, Agreement]
+
+def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
+    """Compare every system, or the best one of each group, with its observations."""
+    report = comparison_report(study, options)
+    return Found(
+        comparison_tables(report),
+        (lambda title: comparison_figure(report, title)) if report.judged else None,
+        list(report.notes),
+        findings(report),
+    )
 
 
-def agreement_columns(report: ComparisonReport) -> list[Column]:
-    """Outcomes: one row a system, part and way to tell them, the model or a threshold."""
-    rows: list[Row] = []
-    for each in report.compared:
-        if isinstance(each.found, Outcomes):
-            rows.append((each, MODEL, "-", None, each.found.agreement))
-            rows += [
-                (each, f"threshold of {found.measure}", found.unit, found.value, found.agreement)
-                for found in each.found.thresholds
-            ]
-    counts = [row[4] for row in rows]
-    agreed = [found.agreed for found in counts]
-    return [
-        *_named(report, [row[0] for row in rows]),
-        Column("told_by", "-", [row[1] for row in rows]),
-        Column("threshold", "SI", [row[3] for row in rows]),
-        Column("counted", "-", [found.counted for found in counts]),
-        Column("agreed", "-", [found.number for found in agreed]),
-        Column("agreed_share", "-", [found.fraction for found in agreed]),
-        Column("agreed_low", "-", [found.low for found in agreed]),
-        Column("agreed_high", "-", [found.high for found in agreed]),
-        Column("overturned_observed", "-", [found.observed for found in counts]),
-        Column("overturned_computed", "-", [found.computed for found in counts]),
-        Column("both", "-", [found.both for found in counts]),
-        Column("computed_only", "-", [found.computed_only for found in counts]),
-        Column("observed_only", "-", [found.observed_only for found in counts]),
-        Column("neither", "-", [found.neither for found in counts]),
-        Column("failed", "-", [row[0].failed for row in rows]),
+def comparison_tables(report: ComparisonReport) -> dict[str, list[Column]]:
+    """Outcomes, fragilities, maxima, every pair, and what choices of the fit were worth."""
+    measured = report.intensity
+    told = (
+        "counted", "agreed", "agreed_share", "agreed_low", "agreed_high", "overturned_observed",
+        "overturned_computed", "both", "computed_only", "observed_only", "neither", "failed",
+    )  # fmt: skip
+    agreements = [
+        (each, by, value, *_agreement_cells(counts), each.failed)
+        for each in report.compared
+        if isinstance(each.found, Outcomes)
+        for by, value, counts in _ways(each.found)
     ]
-
-
-def _named(report: ComparisonReport, rows: Sequence[Compared]) -> list[Column]:
-    """Columns that say of what a row is."""
-    return [
-        *key_columns(report.system_keys, [row.values for row in rows]),
-        *key_columns(report.fit_keys, [row.chosen for row in rows]),
-        Column("records", "-", [row.part for row in rows]),
-    ]
-
-
-def fragility_columns(report: ComparisonReport) -> list[Column]:
-    """Both fragilities of every system and part."""
-    rows = [
-        (each, source, curve.fit)
+    fits = [
+        (each, source, measured.measure, *fit_cells(curve.fit), curve.fit.note)
         for each in report.compared
         if isinstance(each.found, Outcomes)
         for source, curve in _curves(each.found)
     ]
-    fits = [row[2] for row in rows]
-    unit = report.intensity.unit
-    return [
-        *_named(report, [row[0] for row in rows]),
-        Column("of", "-", [row[1] for row in rows]),
-        Column("intensity", "-", [report.intensity.measure] * len(rows)),
-        Column("method", "-", [fit.method for fit in fits]),
-        Column("median", unit, [fit.median for fit in fits]),
-        Column("median_low", unit, [fit.median_band[0] for fit in fits]),
-        Column("median_high", unit, [fit.median_band[1] for fit in fits]),
-        Column("beta", "-", [fit.beta for fit in fits]),
-        Column("beta_low", "-", [fit.beta_band[0] for fit in fits]),
-        Column("beta_high", "-", [fit.beta_band[1] for fit in fits]),
-        Column("note", "-", [fit.note for fit in fits]),
+    ratios = ("counted", "overturned_computed", "median_ratio", "dispersion", "kolmogorov_smirnov")
+    rows_of_maxima = [
+        (each, each.quantity, found.counted, found.overturned, found.median, found.dispersion,
+         found.distance, each.failed)
+        for each in report.compared
+        if isinstance(found := each.found, Maxima)
+    ]  # fmt: skip
+    pair_heads = {
+        "record": "-", "point": "-", measured.measure: measured.unit, "quantity": "-",
+        "observed": "SI", "computed": "SI", "told": "-",
+    }  # fmt: skip
+    chosen = [
+        ((*row.values, *row.chosen), row.worth.misfit, row.worth.count_off, str(row.taken).lower())
+        for row in report.candidates
     ]
+    keys = (*report.system_keys, *report.fit_keys)
+
+    def named(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[Column]:
+        of_part = [((*each.values, *each.chosen), each.part, *cells) for each, *cells in rows]
+        return keyed(keys, {"records": "-", **heads}, of_part)
+
+    return {
+        "": named({"told_by": "-", "threshold": "SI", **dict.fromkeys(told, "-")}, agreements),
+        "_fragility": named(
+            {"of": "-", "intensity": "-", **fit_units(measured.unit), "note": "-"}, fits
+        ),
+        "_maxima": named(dict.fromkeys(("quantity", *ratios, "failed"), "-"), rows_of_maxima),
+        "_pairs": named(pair_heads, _pair_rows(report)),
+        "_fit": keyed(keys, dict.fromkeys(("misfit", "count_off", "chosen"), "-"), chosen),
+    }
+
+
+def _ways(found: Outcomes) -> Iterator[tuple[str, float | None, Agreement]]:
+    """What tells outcomes: the model, and thresholds of measures."""
+    yield "model", None, found.agreement
+    for way in found.thresholds:
+        yield f"threshold of {way.measure}", way.value, way.agreement
+
+
+def _agreement_cells(counts: Agreement) -> tuple[object, ...]:
+    agreed = counts.agreed
+    shares = counts.counted, agreed.number, agreed.fraction, agreed.low, agreed.high
+    return (*shares, counts.observed, counts.computed, *counts)
 
 
 def _curves(found: Outcomes) -> tuple[tuple[str, Curve], ...]:
     return (("observed", found.observed), ("computed", found.computed))
 
 
-def maxima_columns(report: ComparisonReport) -> list[Column]:
-    """Computed over observed maxima: one row a system, part and quantity."""
-    rows = [(each, each.found) for each in report.compared if isinstance(each.found, Maxima)]
-    found = [row[1] for row in rows]
-    return [
-        *_named(report, [row[0] for row in rows]),
-        Column("quantity", "-", [row[0].quantity for row in rows]),
-        Column("counted", "-", [each.counted for each in found]),
-        Column("overturned_computed", "-", [each.overturned for each in found]),
-        Column("median_ratio", "-", [each.median for each in found]),
-        Column("dispersion", "-", [each.dispersion for each in found]),
-        Column("kolmogorov_smirnov", "-", [each.distance for each in found]),
-        Column("failed", "-", [row[0].failed for row in rows]),
-    ]
-
-
-def pair_columns(report: ComparisonReport) -> list[Column]:
+def _pair_rows(report: ComparisonReport) -> Iterator[tuple[Any, ...]]:
     """Every pair: hits and misses by record."""
-    rows = [
-        (each, report.quantities.index(each.quantity), int(place))
-        for each in report.compared
-        for place in each.pairs
-    ]
-    points = [int(report.pairs.points[place]) for _, _, place in rows]
-    computed = [float(report.computed[quantity, place]) for _, quantity, place in rows]
-    observed = [float(report.pairs.values[quantity, place]) for _, quantity, place in rows]
-    requests = [report.table.layout[point].record for point in points]
-    return [
-        *_named(report, [row[0] for row in rows]),
-        Column("record", "-", [request.source for request in requests if request]),
-        Column("point", "-", [point + 1 for point in points]),
-        Column(
-            report.intensity.measure,
-            report.intensity.unit,
-            [float(report.intensity.values[point]) for point in points],
-        ),
-        Column("quantity", "-", [row[0].quantity for row in rows]),
-        Column("observed", "SI", observed),
-        Column("computed", "SI", ["inf" if value == np.inf else value for value in computed]),
-        Column("told", "-", list(map(_told, rows, observed, computed))),
-    ]
-
-
-def _told(row: tuple[Compared, int, int], observed: float, computed: float) -> str | None:
-    if row[0].quantity != OVERTURNED:
-        return None
-    words = {(1, 1): "both", (0, 1): "computed only", (1, 0): "observed only", (0, 0): "neither"}
-    return words[int(observed), int(computed)]
-
-
-def candidate_columns(report: ComparisonReport) -> list[Column]:
-    """What every choice of the fitted keys was worth on the records that it was fitted to."""
-    rows = report.candidates
-    return [
-        *key_columns(report.system_keys, [row.values for row in rows]),
-        *key_columns(report.fit_keys, [row.chosen for row in rows]),
-        Column("misfit", "-", [row.worth.misfit for row in rows]),
-        Column("count_off", "-", [row.worth.count_off for row in rows]),
-        Column("chosen", "-", [str(row.taken).lower() for row in rows]),
-    ]
+    for each in report.compared:
+        quantity = report.quantities.index(each.quantity)
+        for place in each.pairs.tolist():
+            point = int(report.pairs.points[place])
+            request = report.table.layout[point].record
+            assert request is not None, "points of histories have a record"
+            observed, computed = (
+                report.pairs.values[quantity, place],
+                report.computed[quantity, place],
+            )
+            told = TOLD[int(observed), int(computed)] if each.quantity == OVERTURNED else None
+            intensity = report.intensity.values[point]
+            yield (
+                each, request.source, point + 1, intensity, each.quantity, observed,
+                reached(computed), told,
+            )  # fmt: skip
 
 
 def comparison_figure(report: ComparisonReport, title: str) -> bytes:
@@ -312,20 +281,4 @@ def _counts(counts: Agreement) -> str:
     )
 
 
-REPORT = Report(
-    options=ComparisonOptions,
-    numbers=comparison_report,
-    tables={
-        "": agreement_columns,
-        "_fragility": fragility_columns,
-        "_maxima": maxima_columns,
-        "_pairs": pair_columns,
-        "_fit": candidate_columns,
-    },
-    figure=comparison_figure,
-    drawable=lambda report: bool(report.judged),
-    notes=lambda report: report.notes,
-    findings=findings,
-    check=fit_faults,
-    requires=uncomparable,
-)
+REPORT = Report(ComparisonOptions, comparison, check=fit_faults, requires=uncomparable)

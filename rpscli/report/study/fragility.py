@@ -1,12 +1,25 @@
-"""Fragility curves with their bands and the data they go through."""
+"""Fragility: probability of exceeding a limit state against the intensity of the motion."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, StrictBool, create_model
+
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import LIMITS
+from rpscli.case.schema.case_file import Time
+from rpscli.case.schema.fields import Quantity, Section, Whole
+from rpscli.case.schema.limits import described
+from rpscli.case.study.reports import ReportOptions, VariedKeys
+from rpscli.case.study.schema import DampingRatio, PositiveNumbers, Seed
+from rpscli.records.measures import Measure
 from rpscli.report.figures import style
-from rpscli.report.study.labels import key_columns, labels
+from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import (
     Layout,
     colour,
@@ -16,87 +29,298 @@ from rpscli.report.study.panels import (
     panel_figure,
     remarks,
 )
-from rpscli.report.study.report import Report
-from rpscli.report.study.statistics import share_columns
-from rpscli.report.table import Column
-from rpscli.sweep.intensities import Intensity, measure_without_period
-from rpscli.sweep.reports.fragility import (
-    Fragility,
-    FragilityOptions,
-    FragilityReport,
-    LimitState,
-    fragility_report,
-    limit_states,
-)
+from rpscli.report.study.report import Found, Report
+from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
+from rpscli.sweep.intensities import Intensity
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import share
+from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
+from rpscli.sweep.statistics.observations import record_of
+from rpscli.sweep.statistics.verdicts import exceeds
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Array, Indices, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+CURVE_POINTS = 101
+MOST_BINS = 10
 MOST_BANDS = 4
 """Curves in one panel beyond which bands would hide each other."""
 
+_THRESHOLDS: Any = {
+    quantity.name: (PositiveNumbers | None, Field(None, description=described(quantity)))
+    for quantity in LIMITED
+}
 
-def fragility_columns(report: FragilityReport) -> list[Column]:
-    """One row a curve: median and beta with their bands, counts, and how the fit was had."""
-    curves, unit = report.curves, report.intensity.unit
-    im = report.intensity.measure
-    return [
-        *key_columns(report.series_keys, [c.values for c in curves]),
-        Column("limit", "-", [c.limit.label for c in curves]),
-        Column("intensity", "-", [im] * len(curves)),
-        Column("method", "-", [c.fit.method for c in curves]),
-        Column("median", unit, [c.fit.median for c in curves]),
-        Column("median_low", unit, [c.fit.median_band[0] for c in curves]),
-        Column("median_high", unit, [c.fit.median_band[1] for c in curves]),
-        Column("beta", "-", [c.fit.beta for c in curves]),
-        Column("beta_low", "-", [c.fit.beta_band[0] for c in curves]),
-        Column("beta_high", "-", [c.fit.beta_band[1] for c in curves]),
-        Column("counted", "-", [c.counted for c in curves]),
-        Column("exceeded", "-", [c.exceeded for c in curves]),
-        Column("overturned_among_them", "-", [c.overturned for c in curves]),
-        Column("failed", "-", [c.failed for c in curves]),
-        Column("note", "-", [c.fit.note for c in curves]),
+
+class LimitStates(create_model("LimitStates", __base__=Section, **_THRESHOLDS)):  # type: ignore[misc]
+    """Limit states of a fragility; overturning exceeds every one of them."""
+
+    overturning: StrictBool = Field(
+        default=True, description="whether overturning is a limit state itself"
+    )
+
+
+class MeasureOptions(ReportOptions):
+    """Options of reports that need an intensity measure."""
+
+    measure: Measure | None = Field(
+        None, description="the one that the study scales to by default, else PGV"
+    )
+    period: Time | None = Field(None, description="of Sa; T1 of each system by default")
+    damping: DampingRatio = Field(0.05, description="of Sa")
+
+
+class BandOptions(MeasureOptions):
+    """Options of reports whose curves have bands."""
+
+    resamples: Annotated[int, Whole(0, 10_000)] = Field(
+        200, description="bootstrap samples of the records for the bands; 0 = none"
+    )
+    confidence: Annotated[float, Quantity(above=0, below=1)] = Field(
+        0.9, description="probability inside the bands"
+    )
+    seed: Seed = Field(1, description="of the bootstrap")
+
+    @property
+    def bootstrap(self) -> Bootstrap:
+        """How the bands are had."""
+        return Bootstrap(self.resamples, self.confidence, self.seed)
+
+
+class FragilityOptions(BandOptions):
+    """Probability of exceeding a limit state against an intensity measure."""
+
+    limits: LimitStates = Field(LimitStates(), description="limit states")
+    series: VariedKeys | None = Field(None, description="varied keys, one curve for each value")
+
+
+class LimitState(NamedTuple):
+    """Exceeded where a result is beyond a threshold; every overturned point exceeds it."""
+
+    result: str
+    threshold: float | None
+
+    @property
+    def label(self) -> str:
+        """The state in words.
+
+        >>> LimitState("rotation_ratio", 0.5).label, LimitState("min_column_force", 1e5).label
+        ('rotation_ratio > 0.5', 'min_column_force < 100000')
+        """
+        if self.threshold is None:
+            return self.result
+        sign = "<" if LIMITS[self.result].from_below else ">"
+        return f"{self.result} {sign} {self.threshold:g}"
+
+
+class Observed(NamedTuple):
+    """Share of the points that exceed the limit within a bin of intensities, each (bins,)."""
+
+    intensity: Array
+    share: Array
+    points: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fragility:
+    """Data and fit of one limit state of one group of systems; `failed` points are left out.
+
+    `overturned` of the points that exceed the limit do so because they overturned.
+    """
+
+    values: tuple[object, ...]
+    limit: LimitState
+    fit: Lognormal
+    grid: Array
+    observed: Observed
+    counted: int
+    exceeded: int
+    overturned: int
+    failed: int
+
+    @property
+    def fitted(self) -> bool:
+        """Whether there is a curve."""
+        return self.fit.method != "none"
+
+
+@dataclass(frozen=True, eq=False)
+class Fragilities:
+    """All curves of a report."""
+
+    intensity: Intensity
+    confidence: float
+    systems: Grouping
+    limits: tuple[LimitState, ...]
+    curves: tuple[Fragility, ...]
+
+    def fitted(self, limit: LimitState) -> list[Fragility]:
+        """The curves of a limit state that could be fitted."""
+        return [curve for curve in self.curves if curve.limit == limit and curve.fitted]
+
+    @property
+    def notes(self) -> list[str]:
+        """What is pooled, what overturning does to limits, and what keeps fits from being plain."""
+        limited = [curve for curve in self.curves if curve.limit.threshold is not None]
+        fallen = sum(curve.overturned for curve in limited)
+        notes = list(self.systems.notes)
+        if fallen:
+            exceeded = sum(curve.exceeded for curve in limited)
+            counts = f"{fallen} of {exceeded} histories beyond a limit"
+            notes.append(f"an overturned history exceeds every limit: {counts} overturned")
+        return notes + [
+            f"{self.named(curve)}: {curve.fit.note}" for curve in self.curves if curve.fit.note
+        ]
+
+    def named(self, curve: Fragility) -> str:
+        """A curve's limit state with the values of its systems."""
+        keys = zip(self.systems.keys, curve.values, strict=True)
+        return curve.limit.label + "".join(f", {key} = {value}" for key, value in keys)
+
+
+def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
+    """Fit every limit state of every group of systems; samples and records are pooled."""
+    measured, limits = study.intensity(options), tuple(limit_states(options))
+    systems = grouping(study.table, options.series, (INTENSITY,))
+    curves = tuple(
+        _fragility(measured, options, group, limit) for limit in limits for group in systems.groups
+    )
+    return Fragilities(measured, options.confidence, systems, limits, curves)
+
+
+def limit_states(options: FragilityOptions) -> Iterator[LimitState]:
+    """The limit states that a study asks for."""
+    limits = options.limits
+    for quantity in LIMITED:
+        for threshold in getattr(limits, quantity.name) or ():
+            yield LimitState(quantity.name, threshold)
+    if limits.overturning:
+        yield LimitState("overturning", None)
+
+
+def _fragility(
+    measured: Intensity, options: FragilityOptions, group: Histories, limit: LimitState
+) -> Fragility:
+    table, points = group.table, group.points
+    kept = points[measured.values[points] > 0.0]
+    intensity = measured.values[kept]
+    beyond = exceeds(table, limit.result, limit.threshold or 0.0)[kept]
+    grid = intensity_grid(intensity)
+    return Fragility(
+        values=group.values,
+        limit=limit,
+        fit=fragility_fit(table, kept, intensity, beyond, grid, options.bootstrap),
+        grid=grid,
+        observed=binned(intensity, beyond),
+        counted=len(kept),
+        exceeded=int(beyond.sum()),
+        overturned=int(table.overturned[kept].sum()),
+        failed=len(group.every) - len(kept),
+    )
+
+
+def fragility_fit(
+    table: Table,
+    points: Indices,
+    intensity: Array,
+    beyond: NDArray[np.bool_],
+    grid: Array,
+    bootstrap: Bootstrap,
+) -> Lognormal:
+    """A curve through what became of some points (m,) of a study under intensities (m,)."""
+    # Points of one record hang together; each point is alone if there is one record only.
+    cluster = points if len(table.layout.records) == 1 else record_of(table.layout, points)
+    # Motions over points: samples and members of an ensemble share a motion.
+    shaken = points % table.layout.points_of_system // len(table.layout.members)
+    weight = len(np.unique(shaken)) / max(len(points), 1)
+    return lognormal_fit(intensity, beyond, cluster, weight, grid, bootstrap)
+
+
+def intensity_grid(intensities: Array) -> Array:
+    """Intensities at which curves are drawn: some way beyond the data on both sides."""
+    if not len(intensities):
+        return np.ones(CURVE_POINTS)
+    return np.geomspace(intensities.min() / 1.5, intensities.max() * 1.5, CURVE_POINTS)
+
+
+def binned(intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
+    """Shares at each intensity, or in bins of equal numbers of points if there are too many."""
+    levels, place = np.unique(intensity, return_inverse=True)
+    if len(levels) > 2 * MOST_BINS:
+        order = np.argsort(np.argsort(intensity, kind="stable"), kind="stable")
+        place = order * MOST_BINS // len(intensity)
+        levels = np.exp([np.log(intensity[place == i]).mean() for i in range(MOST_BINS)])
+    points = np.bincount(place, minlength=len(levels))
+    return Observed(levels, np.bincount(place, beyond, minlength=len(levels)) / points, points)
+
+
+def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
+    """What keeps a report from having the measure that it asks for."""
+    at_first_period = options.measure == "Sa" and options.period is None
+    if at_first_period and any(system.period is None for system in layout.properties):
+        yield "Sa at T1 needs storeys; give the report a `period`"
+
+
+def fragility(study: StudyResults, options: FragilityOptions) -> Found:
+    """Curves, and the data that they go through."""
+    found = fragilities(study, options)
+    keys, measure, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
+    curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
+    fits = [
+        (
+            *of,
+            measure,
+            *fit_cells(curve.fit),
+            curve.counted,
+            curve.exceeded,
+            curve.overturned,
+            curve.failed,
+            curve.fit.note,
+        )
+        for of, curve in curves
     ]
-
-
-def curve_columns(report: FragilityReport) -> list[Column]:
-    """The curves, one row a point of each; those that could not be fitted are left out."""
-    fitted = [c for c in report.curves if c.fitted]
-    rows = [(c, place) for c in fitted for place in range(len(c.grid))]
-    curves = [c for c, _ in rows]
-    return [
-        *key_columns(report.series_keys, [c.values for c in curves]),
-        Column("limit", "-", [c.limit.label for c in curves]),
-        Column(report.intensity.measure, report.intensity.unit, [c.grid[i] for c, i in rows]),
-        Column("probability", "-", [c.fit.curve[i] for c, i in rows]),
-        Column("low", "-", [c.fit.band[0][i] for c, i in rows]),
-        Column("high", "-", [c.fit.band[1][i] for c, i in rows]),
+    counts = ("counted", "exceeded", "overturned_among_them", "failed", "note")
+    fit_heads = {"limit": "-", "intensity": "-", **fit_units(unit), **dict.fromkeys(counts, "-")}
+    lines = [
+        (*of, *numbers)
+        for of, curve in curves
+        if curve.fitted
+        for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
     ]
-
-
-def observed_columns(report: FragilityReport) -> list[Column]:
-    """The data: one row an intensity of each curve, or a bin of intensities."""
-    rows = [(c, place) for c in report.curves for place in range(len(c.observed.intensity))]
-    shares = [share(round(c.observed.share[i] * n), n) for c, i in rows for n in [_points(c, i)]]
-    return [
-        *key_columns(report.series_keys, [c.values for c, _ in rows]),
-        Column("limit", "-", [c.limit.label for c, _ in rows]),
-        Column(
-            report.intensity.measure,
-            report.intensity.unit,
-            [float(c.observed.intensity[i]) for c, i in rows],
-        ),
-        Column("counted", "-", [found.of for found in shares]),
-        *share_columns("exceeded", shares),
+    observed = [
+        (*of, level, shares.of, shares.number, shares.fraction, shares.low, shares.high)
+        for of, curve in curves
+        for level, part, points in zip(*curve.observed, strict=True)
+        for shares in [share(round(part * points), int(points))]
     ]
+    line_heads = {"limit": "-", measure: unit, "probability": "-", "low": "-", "high": "-"}
+    of_shares = ("counted", "exceeded", "exceeded_share", "exceeded_low", "exceeded_high")
+    observed_heads = {"limit": "-", measure: unit, **dict.fromkeys(of_shares, "-")}
+    tables = {
+        "": keyed(keys, fit_heads, fits),
+        "_curves": keyed(keys, line_heads, lines),
+        "_observed": keyed(keys, observed_heads, observed),
+    }
+    drawable = any(curve.fitted for curve in found.curves)
+    return Found(
+        tables, (lambda title: fragility_figure(found, title)) if drawable else None, found.notes
+    )
 
 
-def _points(curve: Fragility, place: int) -> int:
-    return int(curve.observed.points[place])
+def fit_units(unit: str) -> dict[str, str]:
+    """Columns of a fit, with their units."""
+    medians = dict.fromkeys(("median", "median_low", "median_high"), unit)
+    return {"method": "-", **medians, **dict.fromkeys(("beta", "beta_low", "beta_high"), "-")}
 
 
-def fragility_figure(report: FragilityReport, title: str) -> bytes:
+def fit_cells(fit: Lognormal) -> tuple[object, ...]:
+    """A row of these columns."""
+    return (fit.method, fit.median, *fit.median_band, fit.beta, *fit.beta_band)
+
+
+def fragility_figure(report: Fragilities, title: str) -> bytes:
     """One panel a limit state; markers are observed shares, shades the bootstrap bands.
 
     Curves that could not be fitted are not drawn, nor are limit states without any.
@@ -116,7 +340,7 @@ def fragility_figure(report: FragilityReport, title: str) -> bytes:
             axes.plot(
                 curve.grid, curve.fit.curve, dashes, color=shade(place), lw=1.4,
                 marker=marker(place), ms=3.2, markevery=[],  # the legend shows both
-                label=labels(report.series_keys, curve.values) or None,
+                label=labels(report.systems.keys, curve.values) or None,
             )  # fmt: skip
             if len(curves) <= MOST_BANDS:
                 axes.fill_between(curve.grid, *curve.fit.band, color=shade(place), alpha=0.15, lw=0)
@@ -134,7 +358,10 @@ def fragility_figure(report: FragilityReport, title: str) -> bytes:
         notes.append("overturning exceeds every limit")
     if missing := sum(not c.fitted for c in report.curves):
         notes.append(f"{missing} of {len(report.curves)} curves without a fit, see CSV")
-    notes += [over(report.pooled), left_out(sum(c.failed for c in panels[0]) if panels else 0)]
+    notes += [
+        over(report.systems.pooled),
+        left_out(sum(c.failed for c in panels[0]) if panels else 0),
+    ]
     return panel_figure(
         Layout([limit_name(limit) for limit in limits], side_by_side(len(panels))),
         panels,
@@ -172,12 +399,8 @@ def measure_name(intensity: Intensity) -> str:
 
 
 REPORT = Report(
-    options=FragilityOptions,
-    numbers=lambda study, options: fragility_report(study.table, study.intensity(options), options),
-    tables={"": fragility_columns, "_curves": curve_columns, "_observed": observed_columns},
-    figure=fragility_figure,
-    drawable=lambda report: any(curve.fitted for curve in report.curves),
-    notes=lambda report: report.notes,
+    FragilityOptions,
+    fragility,
     requires=measure_without_period,
     results=lambda options: [limit.result for limit in limit_states(options)],
 )

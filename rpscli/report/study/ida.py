@@ -1,65 +1,80 @@
-"""Curves of incremental dynamic analyses with their fractiles."""
+"""Incremental dynamic analysis: demand of every record against intensity, and its fractiles."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
+from rpscli.case.study.axes import Axis
+from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
+from rpscli.case.text.document import Document, Fault
 from rpscli.report.figures import style
-from rpscli.report.study.labels import key_columns
+from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
-from rpscli.report.study.report import Report
-from rpscli.report.table import Column
+from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.reports.ida import (
-    FRACTILES,
-    IdaOptions,
-    IdaPanel,
-    IdaReport,
-    ida_report,
-    single_intensity,
-)
+from rpscli.sweep.statistics.fractiles import HIGH, LOW, demand, fractiles
+from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+FRACTILES = (LOW, 0.50, HIGH)
 MOST_CURVES = 200
 LINES = ((style.BLUE, ":"), (style.BLUE, "-"), (style.BLUE, "--"))
 
 
-def ida_columns(report: IdaReport) -> list[Column]:
-    """One row a level of each system; a fractile is empty where so many overturned."""
-    rows = [(p, level) for p in report.panels for level in range(len(p.levels))]
-    name, unit = _level(report)
-    demand = SCALARS["timehistory"][report.demand]
-    columns = key_columns(report.panel_keys, [p.values for p, _ in rows])
-    columns.append(Column(name, unit, [float(p.levels[i]) for p, i in rows]))
-    for place, fractile in enumerate(FRACTILES):
-        values = [float(p.fractiles[place, i]) for p, i in rows]
-        columns.append(Column(f"{report.demand}_{round(100 * fractile)}", demand.unit, values))
-    points = [int(np.sum(~np.isnan(p.curves[:, i]))) for p, i in rows]
-    return [
-        *columns,
-        Column("counted", "-", points),
-        Column("overturned", "-", [p.overturned[i] for p, i in rows]),
-        Column(
-            "failed",
-            "-",
-            [len(p.curves) - count for (p, _), count in zip(rows, points, strict=True)],
-        ),
+class IdaOptions(ReportOptions):
+    """Incremental dynamic analysis: demand against intensity, with fractiles."""
+
+    demand: DemandName = Field("rotation_ratio", description="horizontal axis")
+    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+
+
+class Panel(NamedTuple):
+    """Demands of one group of systems at ascending intensities, or factors on the records.
+
+    `curves` (curves, levels) are of each record, sample and member, NaN where the point failed;
+    `fractiles` (3, levels) of the points that did not fail. Infinite is overturned.
+    """
+
+    values: tuple[object, ...]
+    levels: list[Histories]
+    heights: Array
+    curves: Array
+    fractiles: Array
+
+
+def ida(study: StudyResults, options: IdaOptions) -> Found:
+    """Curves and fractiles of each system."""
+    table, measure = study.table, study.table.layout.plan.measure
+    found = grouping(table, options.panels, (INTENSITY,))
+    demands = demand(table, table.columns[options.demand])
+    panels = [_panel(group, demands) for group in found.groups]
+    name = measure.measure if measure else INTENSITY
+    quantity, level_unit = SCALARS["timehistory"][options.demand], unit_of(name)
+    heads = {name: level_unit}
+    heads |= {f"{options.demand}_{round(100 * share)}": quantity.unit for share in FRACTILES}
+    heads |= dict.fromkeys(("counted", "overturned", "failed"), "-")
+    rows = [
+        (panel.values, height, *spread, len(level), level.overturned.number, level.failed)
+        for panel in panels
+        for level, height, spread in zip(
+            panel.levels, panel.heights.tolist(), panel.fractiles.T.tolist(), strict=True
+        )
     ]
-
-
-def ida_figure(report: IdaReport, title: str) -> bytes:
-    """Demand to the right, intensity upwards; a curve runs out of the frame where it overturns."""
-    finite = [p.curves[np.isfinite(p.curves)] for p in report.panels]
+    finite = [panel.curves[np.isfinite(panel.curves)] for panel in panels]
     edge = 1.15 * max((float(values.max()) for values in finite if len(values)), default=1.0)
-    top = 1.04 * max(float(p.levels.max()) for p in report.panels)
+    top = 1.04 * max(float(panel.heights.max()) for panel in panels)
 
-    def draw(axes: Axes, panel: IdaPanel) -> None:
-        levels = np.concatenate([[0.0], panel.levels])
+    def draw(axes: Axes, panel: Panel) -> None:
+        levels = np.concatenate([[0.0], panel.heights])
         # Evenly through all of them: more would only blacken the panel.
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
             axes.plot(
@@ -72,27 +87,37 @@ def ida_figure(report: IdaReport, title: str) -> bytes:
                 label="median" if share == 0.5 else f"{style.percent(share)} fractile",
             )  # fmt: skip
 
-    name, unit = _level(report)
-    return panel_figure(
-        by_values(report.panel_keys, report.panels),
-        report.panels,
-        draw,
-        title=title,
-        x_label=SCALARS["timehistory"][report.demand].axis_label,
-        y_label=f"{name} [{unit}]",
-        limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
-        note=remarks(over(report.pooled), left_out(sum(p.failed for p in report.panels))),
+    return Found(
+        {"": keyed(found.keys, heads, rows)},
+        lambda title: panel_figure(
+            by_values(found.keys, panels),
+            panels,
+            draw,
+            title=title,
+            x_label=quantity.axis_label,
+            y_label=f"{name} [{level_unit}]",
+            limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
+            note=remarks(over(found.pooled), left_out(found.failed)),
+        ),
+        found.notes,
     )
 
 
-def _run_out(
-    demand: np.ndarray[tuple[int], np.dtype[np.float64]],
-    levels: np.ndarray[tuple[int], np.dtype[np.float64]],
-    edge: float,
-) -> tuple[list[float], list[float]]:
+def _panel(group: Histories, demands: Array) -> Panel:
+    levels = sorted(group.parts([INTENSITY]), key=_height)
+    curves = np.column_stack([demands[level.every] for level in levels])
+    spread = np.column_stack([fractiles(column, FRACTILES) for column in curves.T])
+    return Panel(group.values, levels, np.array(list(map(_height, levels))), curves, spread)
+
+
+def _height(level: Histories) -> float:
+    return float(str(level.values[0]))
+
+
+def _run_out(values: Array, levels: Array, edge: float) -> tuple[list[float], list[float]]:
     """A curve from the origin to the first level at which it leaves the frame."""
     x, y = [0.0], [0.0]
-    for value, level in zip(demand.tolist(), levels[1:].tolist(), strict=True):
+    for value, level in zip(values.tolist(), levels[1:].tolist(), strict=True):
         if np.isnan(value):
             continue
         if np.isinf(value):
@@ -105,17 +130,13 @@ def _run_out(
     return x, y
 
 
-def _level(report: IdaReport) -> tuple[str, str]:
-    name = report.measure or "scale"
-    return name, unit_of(name)
+def single_intensity(
+    document: Document, _axes: Sequence[Axis], request: ReportRequest
+) -> Iterator[Fault]:
+    """A study without several intensities has no curves."""
+    if not isinstance(document.content.get("scale"), dict | list):
+        text = "the report ida needs several intensities: scale: {measure: PGV, values: [...]}"
+        yield Fault(request.path, text)
 
 
-REPORT = Report(
-    options=IdaOptions,
-    numbers=lambda study, options: ida_report(study.table, options),
-    tables={"": ida_columns},
-    figure=ida_figure,
-    notes=lambda report: report.notes,
-    check=single_intensity,
-    results=lambda options: [options.demand],
-)
+REPORT = Report(IdaOptions, ida, check=single_intensity, results=lambda options: [options.demand])

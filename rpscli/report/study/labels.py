@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
-from rpscli.report.table import Column
+from rpscli.report.table import Column, columns_of
 from rpscli.sweep.intensities import unit_of
 from rpscli.units import in_si
 
@@ -99,3 +100,18 @@ def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
         Column(key, unit_of(key), [in_si(row[place], unit_of(key)) for row in rows])
         for place, key in enumerate(keys)
     ]
+
+
+def keyed(
+    keys: Sequence[str], heads: Mapping[str, str], rows: Iterable[Sequence[Any]]
+) -> list[Column]:
+    """Columns of some keys, and others by name and unit; a row begins with values of the keys."""
+    known = list(rows)
+    further = columns_of(heads, (row[1:] for row in known))
+    return [*key_columns(keys, [row[0] for row in known]), *further]
+
+
+def axis_label(key: str) -> str:
+    """A key's letter or last word with its unit, if it has one."""
+    unit = unit_of(key)
+    return symbol(key) if unit == "-" else f"{symbol(key)} [{unit}]"

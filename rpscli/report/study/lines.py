@@ -1,27 +1,38 @@
-"""Lines of results against varied keys, or of one list of results against another."""
+"""Any result against a varied key, or one list of results against another."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from pydantic import Field, StrictBool
 
 from rpscli.analyses.result_quantities import ResultQuantity
+from rpscli.case.schema.fields import Text
+from rpscli.case.study.axes import Axis
+from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
+from rpscli.case.study.schema import AnyKeys, Keys
+from rpscli.case.text.document import Document, Fault, Path, dotted
+from rpscli.errors import hint, listed
 from rpscli.report.figures import style
-from rpscli.report.study.labels import key_columns, labels, plain, symbol
+from rpscli.report.study.labels import keyed, labels, plain, symbol
 from rpscli.report.study.panels import by_values, colour, left_out, over, panel_figure, remarks
-from rpscli.report.study.report import Report
+from rpscli.report.study.report import Found, Report, Statistic
 from rpscli.report.study.statistics import reached
-from rpscli.report.table import Column
 from rpscli.sweep.evaluation.results import KNOWN, quantity
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.reports.lines import (
-    Line,
-    LinesOptions,
-    LinesPanel,
-    LinesReport,
-    lines_report,
-    unknown_results,
+from rpscli.sweep.statistics.grouping import (
+    Histories,
+    axis_keys,
+    grouping,
+    own_keys,
+    shown_keys,
+    statistic_words,
 )
+from rpscli.sweep.study_results import StudyResults
+from rpscli.units import in_si
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,86 +40,221 @@ if TYPE_CHECKING:
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
 """Names of results that are compared in one figure, where the last word says too much."""
 
+MEAN = statistic_words("mean")
 
-def lines_columns(report: LinesReport) -> list[Column]:
-    """One row a point of each line; ``inf`` where a fractile overturned."""
+Values = dict[str, list[Any]]
+"""Some results of all points, by name; None where a point has none."""
+
+
+class LinesOptions(ReportOptions):
+    """Any result against a varied key, or one list of results against another."""
+
+    x: Text = Field(description="a varied key, or a result that is a list")
+    y: Keys = Field(description="results, such as rolling.frequency_ratio.0")
+    dashed: AnyKeys = Field((), description="results drawn dashed, as a comparison")
+    series: VariedKeys | None = Field(None, description="varied keys, one line for each value")
+    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+    statistic: Statistic = Field(
+        "mean",
+        description="of points with one abscissa: the mean of survivors; or, with overturned"
+        " histories as larger than any demand, the median, the largest, or a fractile as 0.84",
+    )
+    upright: StrictBool = Field(default=False, description="draw x upwards, as floors are")
+    x_label: Text | None = Field(None, description="in place of the name of x")
+    y_label: Text | None = Field(None, description="in place of the name of y")
+
+
+class Line(NamedTuple):
+    """One line: a result of the points of one series.
+
+    `x` holds numbers, or words if the varied key has any. Where points share an abscissa,
+    `counted` of them stood and `overturned` did not, one number for each abscissa.
+    """
+
+    values: tuple[object, ...]
+    result: str
+    x: tuple[Any, ...]
+    y: tuple[float, ...]
+    counted: tuple[int, ...] = ()
+    overturned: tuple[int, ...] = ()
+
+
+class Panel(NamedTuple):
+    """Lines of one group of systems."""
+
+    values: tuple[object, ...]
+    lines: list[Line]
+
+
+def lines(study: StudyResults, options: LinesOptions) -> Found:
+    """The lines of every series of every panel.
+
+    Where several points share an abscissa (the records of a study) the line is the statistic that
+    the options name; failed points are left out.
+    """
+    layout, together = study.table.layout, axis_keys(study.table.layout, options.x)
+    panel_keys, series = options.panels or (), options.series
+    if series is None:
+        series = own_keys(layout, (*panel_keys, *together))
+    names = (*options.y, *options.dashed)
+    found = grouping(study.table, panel_keys, (*series, options.x))
+    values = _collected(study, names if together else (*names, options.x))
+    panels = [
+        Panel(
+            group.values,
+            [
+                line
+                for name in names
+                for part in group.parts(series)
+                for line in _lines(values, options, part, name)
+            ],
+        )
+        for group in found.groups
+    ]
+    every = [line for panel in panels for line in panel.lines]
+    single = all(c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True))
+    statistic = "" if single else statistic_words(options.statistic)
+    x_name, series_keys = shown_keys(layout, (options.x,))[0], shown_keys(layout, series)
     rows = [
-        (panel, line, place)
-        for panel in report.panels
+        (
+            (*panel.values, *line.values), line.result, _unit(line.result), line.x[i],
+            reached(line.y[i]), *(statistic and (statistic, line.counted[i], line.overturned[i])),
+        )
+        for panel in panels
         for line in panel.lines
-        for place in range(len(line.x))
-    ]
-    x_name = report.x_name
-    columns = [
-        *key_columns(report.panel_keys, [panel.values for panel, *_ in rows]),
-        *key_columns(report.series_keys, [line.values for _, line, _ in rows]),
-        Column("result", "-", [line.result for _, line, _ in rows]),
-        Column("unit", "-", [_unit(line.result) for _, line, _ in rows]),
-        Column(x_name, _unit(x_name), [line.x[place] for _, line, place in rows]),
-        Column("value", _common_unit(report), [reached(line.y[i]) for _, line, i in rows]),
-    ]
-    if report.statistic:
-        columns.append(Column("statistic", "-", [report.statistic] * len(rows)))
-        columns.append(Column("counted", "-", [line.counted[i] for _, line, i in rows]))
-        columns.append(Column("overturned", "-", [line.overturned[i] for _, line, i in rows]))
-    return columns
+        for i in range(len(line.x))
+    ]  # fmt: skip
+    units = {_unit(name) for name in names}
+    heads = {
+        "result": "-", "unit": "-", x_name: _unit(x_name),
+        "value": units.pop() if len(units) == 1 else "SI",
+    }  # fmt: skip
+    if statistic:
+        heads |= {"statistic": "-", "counted": "-", "overturned": "-"}
+    notes = [*found.notes] if together else []
+    if statistic == MEAN and (fallen := _left_out_of_means(panels)):
+        notes.append(fallen)
+
+    def figure(title: str) -> bytes:
+        y_label = ", ".join(filter(None, (options.y_label or _axis(names[0]), statistic)))
+        both = (options.x_label or _axis(x_name), y_label)
+        unbounded = any(math.inf in line.y for line in every)
+        return panel_figure(
+            by_values(found.keys, panels),
+            panels,
+            lambda axes, panel: _draw(axes, panel, every, options, series_keys, statistic),
+            title=title,
+            x_label=both[options.upright],
+            y_label=both[not options.upright],
+            note=remarks(
+                over(found.pooled) if together else "",
+                f"not drawn where the {statistic} overturned" if unbounded else "",
+                left_out(found.failed),
+            ),
+        )
+
+    return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure, notes)
 
 
-def lines_figure(report: LinesReport, title: str) -> bytes:
-    """One line a series and result; dashed ones are comparisons."""
-    options = report.options
-    series = list(dict.fromkeys(line.values for p in report.panels for line in p.lines))
-    count = max(len(series), len(report.results))
-    solid = [name for name in report.results if name not in options.dashed]
-    words = [LEGEND.get(name, name) for name in _distinct(report.results)]
-    names = dict(zip(report.results, words, strict=True))
-
-    def draw(axes: Axes, panel: LinesPanel) -> None:
-        among = _coincident(panel.lines)
-        for line in panel.lines:
-            place = series.index(line.values)
-            if len(series) == 1:
-                place = report.results.index(line.result)
-            x, words = _abscissae(line.x)
-            pair = (line.y, x) if options.upright else (x, line.y)
-            parts = (labels(report.series_keys, line.values), names[line.result])
-            axes.plot(
-                *pair, lw=1.4,
-                ls=_staggered(place, among) if line.dashed else _dashes(line.result, solid),
-                color=colour(place, count),
-                marker="o" if len(x) < 25 and not line.dashed else "", ms=3.0,
-                label=", ".join(filter(None, parts)) or None,
-            )  # fmt: skip
-            if not options.upright:
-                _say_what_is_left_out(axes, line, x, statistic=report.statistic)
-            if words:
-                (axes.set_yticks if options.upright else axes.set_xticks)(x, words)
-
-    y_label = options.y_label or _axis(report.results[0])
-    y_label = ", ".join(filter(None, (y_label, report.statistic)))
-    axis_labels = (options.x_label or _axis(report.x_name), y_label)
-    return panel_figure(
-        by_values(report.panel_keys, report.panels),
-        report.panels,
-        draw,
-        title=title,
-        x_label=axis_labels[options.upright],
-        y_label=axis_labels[not options.upright],
-        note=remarks(over(report.pooled), _beyond(report), left_out(report.failed)),
+def _left_out_of_means(panels: Sequence[Panel]) -> str:
+    """How many histories all means leave out."""
+    first = {repr((p.values, line.values)): line for p in panels for line in reversed(p.lines)}
+    overturned = sum(sum(line.overturned) for line in first.values())
+    of = overturned + sum(sum(line.counted) for line in first.values())
+    if not overturned:
+        return ""
+    return (
+        f"means are those of survivors: {overturned} of {of} histories overturned and"
+        " are left out; `statistic: median` counts them"
     )
 
 
-def _beyond(report: LinesReport) -> str:
-    """Fractiles are larger than any demand where so many overturned."""
-    lines = [line for panel in report.panels for line in panel.lines]
-    unbounded = any(y == float("inf") for line in lines for y in line.y)
-    return f"not drawn where the {report.statistic} overturned" if unbounded else ""
+def _collected(study: StudyResults, names: Iterable[str]) -> Values:
+    """Results of all points: numbers, lists, or None."""
+    wanted = tuple(names)
+    columns, analysis = study.stored()(wanted).columns, study.table.layout.plan.analysis
+    values: Values = {}
+    for name in wanted:
+        column, of = columns.get(name), quantity(analysis, name)
+        rows = [None] * len(study.table) if column is None else column.tolist()
+        values[name] = [_value(row, whole=of is not None and of.whole) for row in rows]
+    return values
 
 
-def _say_what_is_left_out(axes: Axes, line: Line, x: list[float], *, statistic: str) -> None:
+def _value(value: Any, *, whole: bool) -> Any:
+    """A number, a list without what is NaN behind its end, or None."""
+    if isinstance(value, list):
+        found = [_value(item, whole=whole) for item in value]
+        while found and found[-1] is None:
+            found.pop()
+        return found or None
+    if value is None or math.isnan(value):
+        return None
+    return int(value) if whole else value
+
+
+def _lines(values: Values, options: LinesOptions, series: Histories, name: str) -> list[Line]:
+    """Lines of one result of one series: one, or one for each point if results are lists."""
+    if options.x in values:
+        usable = [n for n in series.every.tolist() if values[name][n] is not None]
+        curves = [(values[options.x][n], values[name][n]) for n in usable]
+        whole = [c for c in curves if isinstance(c[0], list) and isinstance(c[1], list)]
+        if whole:
+            return [Line(series.values, name, tuple(x), tuple(y)) for x, y in whole]
+        pairs = sorted(c for c in curves if c[0] is not None)
+        return [Line(series.values, name, *zip(*pairs, strict=True))] if pairs else []
+    numbers = np.array([v if isinstance(v, int | float) else np.nan for v in values[name]])
+    at = []
+    for group in series.parts([options.x]):
+        found = group.statistic(numbers, options.statistic)
+        if not math.isnan(found):
+            known = int((~np.isnan(numbers[group.survivors])).sum())
+            x = in_si(group.values[0], unit_of(options.x))
+            at.append((x, found, known, group.overturned.number))
+    return [Line(series.values, name, *zip(*at, strict=True))] if at else []
+
+
+def _draw(
+    axes: Axes,
+    panel: Panel,
+    every: Sequence[Line],
+    options: LinesOptions,
+    series_keys: Sequence[str],
+    statistic: str,
+) -> None:
+    """One line a series and result; dashed ones are comparisons."""
+    results = (*options.y, *options.dashed)
+    series = list(dict.fromkeys(line.values for line in every))
+    words = (LEGEND.get(name, name) for name in _distinct(results))
+    names = dict(zip(results, words, strict=True))
+    dashed = [line for line in panel.lines if line.result in options.dashed]
+    paths = {tuple(plain(y) for y in line.y) for line in dashed}
+    among = len(dashed) if len(paths) == 1 else 1
+    for line in panel.lines:
+        place = series.index(line.values)
+        if len(series) == 1:
+            place = results.index(line.result)
+        x, words_at = _abscissae(line.x)
+        pair = (line.y, x) if options.upright else (x, line.y)
+        parts = (labels(series_keys, line.values), names[line.result])
+        is_dashed = line.result in options.dashed
+        axes.plot(
+            *pair, lw=1.4,
+            ls=_staggered(place, among)
+            if is_dashed
+            else ("-", "-.", ":")[options.y.index(line.result) % 3],
+            color=colour(place, max(len(series), len(results))),
+            marker="o" if len(x) < 25 and not is_dashed else "", ms=3.0,
+            label=", ".join(filter(None, parts)) or None,
+        )  # fmt: skip
+        if statistic == MEAN and not options.upright:
+            _say_what_is_left_out(axes, line, x)
+        if words_at:
+            (axes.set_yticks if options.upright else axes.set_xticks)(x, words_at)
+
+
+def _say_what_is_left_out(axes: Axes, line: Line, x: list[float]) -> None:
     """Both counts beside every mean that leaves overturned histories out."""
-    if statistic != "mean of survivors":
-        return
     axes.margins(y=0.12)
     for at, y, counted, overturned in zip(x, line.y, line.counted, line.overturned, strict=True):
         if overturned:
@@ -138,11 +284,6 @@ def _abscissae(values: tuple[object, ...]) -> tuple[list[float], list[str]]:
     return [float(i) for i in range(len(values))], [plain(value) for value in values]
 
 
-def _dashes(result: str, solid: list[str]) -> str:
-    """Each solid result has its own line."""
-    return ("-", "-.", ":")[solid.index(result) % 3]
-
-
 def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
     """Dashes that show each of so many series, up to three, that lie on each other.
 
@@ -150,12 +291,6 @@ def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
     ('--', (2, (2, 4)))
     """
     return (2 * place, (2, 2 * min(among, 3) - 2)) if among > 1 else "--"
-
-
-def _coincident(lines: Iterable[Line]) -> int:
-    """How many dashed lines lie on each other, if all of them do; else 1."""
-    paths = [tuple(plain(y) for y in line.y) for line in lines if line.dashed]
-    return len(paths) if len(set(paths)) == 1 else 1
 
 
 def _axis(name: str) -> str:
@@ -173,18 +308,26 @@ def _unit(name: str) -> str:
     return (found.unit or "-") if found else unit_of(name)
 
 
-def _common_unit(report: LinesReport) -> str:
-    """That of all results, or SI where they differ."""
-    units = {_unit(name) for name in report.results}
-    return units.pop() if len(units) == 1 else "SI"
+def unknown_results(
+    document: Document, axes: Sequence[Axis], request: ReportRequest
+) -> Iterator[Fault]:
+    """Results that the analysis does not have."""
+    options, analysis = request.options, document.content.get("analysis", "timehistory")
+    assert isinstance(options, LinesOptions), "requests have the options of their kind"
+    varied = {key for axis in axes for key in axis.keys} | {"record", "scale"}
+    named = [("x", options.x)] if options.x not in varied else []
+    named += [("y", name) for name in options.y] + [("dashed", name) for name in options.dashed]
+    for option, name in named:
+        if quantity(analysis, name) is None:
+            path: Path = (*request.path, request.kind, option)
+            meant = hint(name, KNOWN[analysis], f"known are {listed(KNOWN[analysis])}")
+            text = f"{dotted(path)} = {name} is no result of {analysis}"
+            yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {meant}")
 
 
 REPORT = Report(
-    options=LinesOptions,
-    numbers=lambda study, options: lines_report(study.table, study.stored(), options),
-    tables={"": lines_columns},
-    figure=lines_figure,
-    notes=lambda report: report.notes,
+    LinesOptions,
+    lines,
     check=unknown_results,
     results=lambda options: (*options.y, *options.dashed),
     analyses=("timehistory", "modal", "pushover"),

@@ -1,40 +1,67 @@
-"""All kinds of report by the names that studies call them."""
+"""All kinds of report by the names that studies call them, and what they need of a study."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
+from rpscli.case.conditions import FRICTION
+from rpscli.case.text.document import Fault
 from rpscli.report.study import (
+    against,
     comparison,
-    contrast,
-    demand,
-    demand_sample,
     directions,
-    floor_spectra,
     fragility,
+    heights,
     ida,
     lines,
-    overturning,
-    overturning_spectrum,
     risk,
-    rotation,
-    storey_shear,
+    scatter,
+    table,
 )
 from rpscli.report.study.report import Report
+from rpscli.sweep.points.check import needs_of
+from rpscli.sweep.points.layout import StudyPoints
 
-REPORTS: dict[str, Report[Any, Any]] = {
-    "overturning": overturning.REPORT,
-    "rotation": rotation.REPORT,
-    "contrast": contrast.REPORT,
-    "demand": demand.REPORT,
-    "demand_sample": demand_sample.REPORT,
+REPORTS: dict[str, Report[Any]] = {
+    "overturning": table.OVERTURNING,
+    "rotation": against.ROTATION,
+    "contrast": against.CONTRAST,
+    "demand": scatter.DEMAND,
+    "demand_sample": heights.DEMAND_SAMPLE,
     "directions": directions.REPORT,
-    "storey_shear": storey_shear.REPORT,
-    "floor_spectra": floor_spectra.REPORT,
+    "storey_shear": heights.STOREY_SHEAR,
+    "floor_spectra": heights.FLOOR_SPECTRA,
     "fragility": fragility.REPORT,
     "risk": risk.REPORT,
     "ida": ida.REPORT,
-    "overturning_spectrum": overturning_spectrum.REPORT,
+    "overturning_spectrum": scatter.OVERTURNING_SPECTRUM,
     "comparison": comparison.REPORT,
     "lines": lines.REPORT,
+    "table": table.TABLE,
+    "scatter": scatter.SCATTER,
 }
+
+
+def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:
+    """Limits on results that systems do not have, and reports that cannot be drawn."""
+    own = layout.study.file.limits is not None
+    limits = (
+        limit for system in layout.properties for limit in system.limits if limit.source != FRICTION
+    )
+    for name in dict.fromkeys(limit.name for limit in limits):
+        if lacking(layout, name):
+            path = ("limits", name) if own else ("base",)
+            yield Fault(path, f"limits.{needs_of(name)}", at_key=own)
+    for request in layout.study.reports:
+        report = REPORTS[request.kind]
+        for name in dict.fromkeys(report.results(request.options)):
+            if lacking(layout, name):
+                yield Fault(request.path, f"the report {request.kind}: {needs_of(name)}")
+        for text in report.requires(layout, request.options):
+            yield Fault(request.path, f"the report {request.kind}: {text}")
+
+
+def lacking(layout: StudyPoints, name: str) -> bool:
+    """Whether some system of a study cannot have a result."""
+    return any(name in properties.lacking for properties in layout.properties)

@@ -1,12 +1,14 @@
-"""A report of a study as one object: what may be asked, its numbers, tables and figure."""
+"""A report of a study: what may be asked, and what it finds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Annotated, Generic, Literal, TypeVar
 
+from rpscli.analyses.result_quantities import DEMANDS
+from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.reports import Check, ReportOptions
 from rpscli.case.study.schema import Analysis
 from rpscli.report.figures.look import USUAL, Look, figure_files
@@ -18,70 +20,66 @@ from rpscli.sweep.study_results import StudyResults
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    DemandName = str
+else:
+    DemandName = Literal[tuple(quantity.name for quantity in DEMANDS)]
+
+Statistic = Annotated[
+    float | Literal["mean", "median", "largest"],
+    Quantity(symbol="a fractile", above=0, below=1, words=("mean", "median", "largest")),
+]
+"""What stands for several histories."""
+
 Options = TypeVar("Options", bound=ReportOptions)
-Numbers = TypeVar("Numbers")
+Tables = Mapping[str, list[Column]]
+"""Columns of each CSV file, by what follows the report's name in the file's."""
 
 
 @dataclass(frozen=True)
-class Report(Generic[Options, Numbers]):
-    """One kind of report.
+class Found:
+    """What a report found.
 
-    Parameters
-    ----------
-    options
-        What a study may say about it.
-    numbers
-        What it computes; it takes from the results what it needs.
-    tables
-        Columns of each CSV file, by what follows the report's name in the file's.
-    figure
-        The file of its figure under a title.
-    texts
-        Further files, by what follows the report's name in the file's.
-    drawable
-        Whether there is anything to draw.
-    notes
-        What the user should know about the numbers.
-    findings
-        Its main numbers in lines, a name and a sentence each, for the terminal.
-    check
-        Rules that join the options with the rest of the study; seen before anything is computed.
-    results
-        Names of results that every system must have.
-    requires
-        What is wrong with the points of a study that it cannot show, in words; seen before anything
-        is computed.
-    analyses
-        Analyses whose results it shows.
+    `figure` makes the file of its figure under a title; None where nothing can be drawn. `notes`
+    are what the user should know about the numbers, `findings` the main ones in lines for the
+    terminal, `texts` further files, by what follows the report's name in the file's.
+    """
+
+    tables: Tables
+    figure: Callable[[str], bytes] | None
+    notes: Sequence[str] = ()
+    findings: Sequence[tuple[str, str]] = ()
+    texts: Mapping[str, str] = field(default_factory=dict)
+
+    def drawn(self, title: str, target: Target | Axes | None = None) -> Target:
+        """Its figure, which is no file yet; drawn into the target if there is one."""
+        assert self.figure is not None, "asked before"
+        return kept_figure(partial(self.figure, title), target)
+
+    def files(self, stem: str, title: str, look: Look = USUAL) -> Iterator[tuple[str, str | bytes]]:
+        """Names and contents of its files."""
+        for suffix, columns in self.tables.items():
+            yield f"{stem}{suffix}.csv", csv_text(columns)
+        for suffix, text in self.texts.items():
+            yield f"{stem}{suffix}", text
+        if self.figure is not None:
+            yield from figure_files({stem: partial(self.figure, title)}, look).items()
+
+
+@dataclass(frozen=True)
+class Report(Generic[Options]):
+    """One kind of report: what a study may say about it, and how it is made.
+
+    `check` holds rules that join the options with the rest of the study, `results` names results
+    that every system must have, and `requires` tells what is wrong with the points of a study that
+    it cannot show; all are seen before anything is computed.
     """
 
     options: type[Options]
-    numbers: Callable[[StudyResults, Options], Numbers]
-    tables: Mapping[str, Callable[[Numbers], list[Column]]]
-    figure: Callable[[Numbers, str], bytes]
-    texts: Callable[[Numbers], Mapping[str, str]] = lambda _: {}
-    drawable: Callable[[Numbers], bool] = lambda _: True
-    notes: Callable[[Numbers], Iterable[str]] = lambda _: ()
-    findings: Callable[[Numbers], Iterable[tuple[str, str]]] = lambda _: ()
+    make: Callable[[StudyResults, Options], Found]
     check: Check = lambda *_: ()
     results: Callable[[Options], Iterable[str]] = lambda _: ()
     requires: Callable[[StudyPoints, Options], Iterable[str]] = lambda *_: ()
     analyses: tuple[Analysis, ...] = ("timehistory",)
-
-    def drawn(self, numbers: Numbers, title: str, target: Target | Axes | None = None) -> Target:
-        """Its figure, which is no file yet; drawn into the target if there is one."""
-        return kept_figure(partial(self.figure, numbers, title), target)
-
-    def files(
-        self, numbers: Numbers, stem: str, title: str, look: Look = USUAL
-    ) -> Iterator[tuple[str, str | bytes]]:
-        """Names and contents of its files."""
-        for suffix, columns in self.tables.items():
-            yield f"{stem}{suffix}.csv", csv_text(columns(numbers))
-        for suffix, text in self.texts(numbers).items():
-            yield f"{stem}{suffix}", text
-        if self.drawable(numbers):
-            yield from figure_files({stem: partial(self.figure, numbers, title)}, look).items()
 
 
 def add_notes(notes: list[str], name: str, found: Iterable[str]) -> None:

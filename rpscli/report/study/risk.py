@@ -1,110 +1,252 @@
-"""Annual rates of limit states, and the intensities that they come from."""
+"""Risk: how often in its life a structure exceeds its limit states, from fragility and hazard."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
-from rpscli.report.study.fragility import limit_name, measure_name, side_by_side
-from rpscli.report.study.labels import key_columns, labels
-from rpscli.report.study.panels import Layout, colour, log_ticks, over, panel_figure, remarks
-from rpscli.report.study.report import Report
-from rpscli.report.table import Column
-from rpscli.sweep.reports.fragility import LimitState, limit_states
-from rpscli.sweep.reports.risk import (
-    Risk,
-    RiskOptions,
-    RiskReport,
-    probability,
-    risk_faults,
-    risk_report,
+from rpscli.case.schema.fields import Quantity, Section, Text
+from rpscli.errors import CaseError
+from rpscli.records.measures import Measure
+from rpscli.report.study.fragility import (
+    Fragilities,
+    Fragility,
+    FragilityOptions,
+    LimitState,
+    fragilities,
+    limit_name,
+    limit_states,
+    measure_name,
+    side_by_side,
 )
+from rpscli.report.study.labels import keyed, labels
+from rpscli.report.study.panels import Layout, colour, log_ticks, over, panel_figure, remarks
+from rpscli.report.study.report import Found, Report
+from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard
+from rpscli.sweep.fits.lognormal import NOTHING, Band, percentiles
+from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+BINS = 24
+"""Of intensities, for what contributes."""
+CLEARLY = 0.05
+"""Share of the rate beyond which the ends of the hazard curve are worth a note."""
 
-def risk_columns(report: RiskReport) -> list[Column]:
-    """One row a limit state: annual rate, return period, probability within a life; bands."""
-    risks, life = report.risks, f"probability_in_{report.years:g}_years"
-    measured = report.fragilities.intensity
-    rates = {
-        "": [risk.rate for risk in risks],
-        "_low": [risk.band[0] for risk in risks],
-        "_high": [risk.band[1] for risk in risks],
-    }
-    return [
-        *_systems(report, risks),
-        *(Column(f"annual_rate{end}", "1/year", found) for end, found in rates.items()),
-        Column("return_period", "year", [_return_period(rate) for rate in rates[""]]),
-        *(
-            Column(f"{life}{end}", "-", [probability(rate, report.years) for rate in found])
-            for end, found in rates.items()
-        ),
-        Column(f"half_from_{measured.measure}_below", measured.unit, [r.half for r in risks]),
-        Column("median", measured.unit, [r.fragility.fit.median for r in risks]),
-        Column("beta", "-", [r.fragility.fit.beta for r in risks]),
-        Column("note", "-", ["; ".join(_notes(r)) or None for r in risks]),
+
+class HazardSection(Section):
+    """A hazard curve: how often a year each intensity is exceeded at the site."""
+
+    file: Text = Field(
+        description="CSV with the header `PGV [cm/s],rate [1/year]`, seen from the study's folder"
+    )
+    measure: Measure = Field(description="of its first column")
+
+
+class RiskOptions(FragilityOptions):
+    """Annual rates of limit states, from their fragilities and a hazard curve."""
+
+    hazard: HazardSection = Field(description="the hazard curve")
+    years: Annotated[float, Quantity(above=0)] = Field(
+        50.0, description="the life for which a probability is given"
+    )
+
+
+class Contributions(NamedTuple):
+    """Annual rates (bins,) from motions between edges (bins + 1,); the last edge is infinite."""
+
+    edges: Array
+    rates: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Risk:
+    """Annual rate of one limit state of one group of systems; NaN without a fragility.
+
+    `band` encloses the confidence asked for over the bootstrap samples of the fragility; `half` is
+    the intensity that half of the rate comes from below.
+    """
+
+    fragility: Fragility
+    rate: float
+    band: Band
+    contributions: Contributions
+    half: float
+    notes: tuple[str, ...]
+
+
+def probability(rate: float, years: float) -> float:
+    """Of at least one excess within so many years, if excesses are a Poisson process.
+
+    >>> round(probability(1 / 475, 50), 3)
+    0.1
+    """
+    return -math.expm1(-rate * years)
+
+
+def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
+    """What keeps a study from having a risk: its hazard curve, above all."""
+    measure = options.hazard.measure
+    if options.measure not in (None, measure):
+        yield f"measure: {options.measure} is not hazard.measure: {measure}; take the first out"
+    if measure == "Sa" and options.period is None:
+        yield "a hazard curve of Sa is for one period; give the report a `period`"
+    try:
+        hazard_of(layout, options)
+    except CaseError as error:
+        yield str(error)
+
+
+def hazard_of(layout: StudyPoints, options: RiskOptions) -> Hazard:
+    """The hazard curve that a report names."""
+    return read_hazard(layout.study.folder / options.hazard.file, options.hazard.measure)
+
+
+def risk(study: StudyResults, options: RiskOptions) -> Found:
+    """Fit the fragilities and integrate them over the hazard."""
+    hazard = hazard_of(study.table.layout, options)
+    options = options.model_copy(update={"measure": options.hazard.measure})
+    found = fragilities(study, options)
+    risks = [risk_of(curve, hazard, options.confidence) for curve in found.curves]
+    known = [each for each in risks if each.fragility.fitted]
+    keys, measured, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
+    life = f"probability_in_{options.years:g}_years"
+    heads = {"limit": "-"}
+    heads |= dict.fromkeys(("annual_rate", "annual_rate_low", "annual_rate_high"), "1/year")
+    heads |= {"return_period": "year"} | dict.fromkeys((life, f"{life}_low", f"{life}_high"), "-")
+    heads |= {f"half_from_{measured}_below": unit, "median": unit, "beta": "-", "note": "-"}
+    rows = [
+        (
+            each.fragility.values,
+            each.fragility.limit.label,
+            *rates,
+            1.0 / each.rate if each.rate > 0.0 else math.nan,
+            *(probability(rate, options.years) for rate in rates),
+            each.half,
+            fit.median,
+            fit.beta,
+            "; ".join(filter(None, [fit.note, *each.notes])) or None,
+        )
+        for each in risks
+        for fit, rates in [(each.fragility.fit, (each.rate, *each.band))]
     ]
+    part_heads = {
+        "limit": "-", f"{measured}_from": unit, f"{measured}_to": unit, "annual_rate": "1/year",
+        "share": "-",
+    }  # fmt: skip
+    parts = [
+        (each.fragility.values, each.fragility.limit.label, low, high, rate, rate / each.rate)
+        for each in known
+        for low, high, rate in zip(
+            each.contributions.edges, each.contributions.edges[1:], each.contributions.rates,
+            strict=False,
+        )
+    ]  # fmt: skip
+    notes = dict.fromkeys(
+        f"{found.named(each.fragility)}: {note}" for each in risks for note in each.notes
+    )
+    return Found(
+        {"": keyed(keys, heads, rows), "_contributions": keyed(keys, part_heads, parts)},
+        (lambda title: risk_figure(found, known, options.years, title)) if known else None,
+        [*found.notes, *notes],
+    )
 
 
-def _return_period(rate: float) -> float:
-    return 1.0 / rate if rate > 0.0 else math.nan
-
-
-def _notes(risk: Risk) -> list[str]:
-    return [*filter(None, [risk.fragility.fit.note]), *risk.notes]
-
-
-def contribution_columns(report: RiskReport) -> list[Column]:
-    """Annual rates from motions between two intensities; the last row is all stronger ones."""
-    measured = report.fragilities.intensity
-    rows = [(r, i) for r in report.known for i in range(len(r.contributions.rates))]
-    edges = [(r.contributions.edges[i : i + 2].tolist()) for r, i in rows]
-    return [
-        *_systems(report, [r for r, _ in rows]),
-        Column(f"{measured.measure}_from", measured.unit, [low for low, _ in edges]),
-        Column(f"{measured.measure}_to", measured.unit, [high for _, high in edges]),
-        Column("annual_rate", "1/year", [float(r.contributions.rates[i]) for r, i in rows]),
-        Column("share", "-", [float(r.contributions.rates[i]) / r.rate for r, i in rows]),
+def risk_of(fragility: Fragility, hazard: Hazard, confidence: float) -> Risk:
+    """The annual rate of one fragility, with what contributes to it."""
+    low, high = hazard.intensity[[0, -1]]
+    edges = np.append(np.geomspace(low, high, BINS + 1), math.inf)
+    if not fragility.fitted:
+        nothing = Contributions(edges, np.full(BINS + 1, math.nan))
+        return Risk(fragility, math.nan, NOTHING, nothing, math.nan, ())
+    fit = fragility.fit
+    above = np.append(rates_above(hazard, fit.median, fit.beta, edges[:-1]), 0.0)
+    tails = (50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence))
+    # A sample in which fewer exceed the limit in stronger motions has no lognormal fragility.
+    sampled = [
+        annual_rate(hazard, median, beta)
+        for median, beta in zip(*fit.resampled, strict=True)
+        if 0.0 < beta < math.inf and 0.0 < median < math.inf
     ]
+    lost = len(fit.resampled[0]) - len(sampled)
+    return Risk(
+        fragility=fragility,
+        rate=float(above[0]),
+        band=percentiles(np.array(sampled), tails),
+        contributions=Contributions(edges, -np.diff(above)),
+        half=_half(hazard, fragility),
+        notes=tuple(_notes(fragility, hazard, above, lost)),
+    )
 
 
-def _systems(report: RiskReport, risks: list[Risk] | tuple[Risk, ...]) -> list[Column]:
-    values = [risk.fragility.values for risk in risks]
-    return [
-        *key_columns(report.fragilities.series_keys, values),
-        Column("limit", "-", [risk.fragility.limit.label for risk in risks]),
-    ]
+def _half(hazard: Hazard, fragility: Fragility) -> float:
+    """The intensity below and above which motions contribute the same."""
+    fit = fragility.fit
+    low, high = np.log(hazard.intensity[0]), np.log(hazard.intensity[-1]) + 10.0
+    whole = annual_rate(hazard, fit.median, fit.beta)
+    for _ in range(60):  # halving, to the last digits
+        middle = 0.5 * (low + high)
+        rest = rates_above(hazard, fit.median, fit.beta, np.exp([middle]))[0]
+        low, high = (middle, high) if rest > 0.5 * whole else (low, middle)
+    return float(np.exp(low))
 
 
-def risk_figure(report: RiskReport, title: str) -> bytes:
+def _notes(fragility: Fragility, hazard: Hazard, above: Array, lost: int) -> Iterator[str]:
+    at_first = (hazard.rate[0] * _probability(fragility, hazard.intensity[0])) / above[0]
+    if at_first > CLEARLY:
+        yield (
+            "the fragility is not negligible at the first intensity of the hazard curve, below"
+            " which nothing is counted; begin the curve with weaker motions"
+        )
+    if (beyond := above[-2] / above[0]) > CLEARLY:
+        yield (
+            f"{100.0 * beyond:.0f} % of the annual rate come from beyond the last intensity of the"
+            " hazard curve, which is continued with its last slope; extend the curve"
+        )
+    if lost:
+        yield (
+            f"{lost} bootstrap samples have fragilities that do not grow with the intensity, and"
+            " are left out of the bands"
+        )
+
+
+def _probability(fragility: Fragility, intensity: float) -> float:
+    fit = fragility.fit
+    return 0.5 * math.erfc(-math.log(intensity / fit.median) / fit.beta / math.sqrt(2.0))
+
+
+def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: str) -> bytes:
     """One panel a limit state: what share of its rate comes from which intensities."""
-    found = report.fragilities
     limits = [limit for limit in found.limits if found.fitted(limit)]
-    values = list(dict.fromkeys(risk.fragility.values for risk in report.known))
+    values = list(dict.fromkeys(each.fragility.values for each in risks))
 
     def draw(axes: Axes, limit: LimitState) -> None:
-        for risk in report.known:
-            if risk.fragility.limit != limit:
+        for each in risks:
+            if each.fragility.limit != limit:
                 continue
-            place = values.index(risk.fragility.values)
-            shade, (edges, rates) = colour(place, len(values)), risk.contributions
+            place = values.index(each.fragility.values)
+            shade, (edges, rates) = colour(place, len(values)), each.contributions
             axes.stairs(
-                100.0 * rates[:-1] / risk.rate, edges[:-1], color=shade, lw=1.4,
-                label=labels(found.series_keys, risk.fragility.values) or None,
+                100.0 * rates[:-1] / each.rate, edges[:-1], color=shade, lw=1.4,
+                label=labels(found.systems.keys, each.fragility.values) or None,
             )  # fmt: skip
-            axes.axvline(risk.half, color=shade, lw=0.8, ls="--")
+            axes.axvline(each.half, color=shade, lw=0.8, ls="--")
 
     def limit_axes(axes: Axes) -> None:
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
         log_ticks(axes.xaxis)
-        axes.set_xlim(*_shown(report))
+        axes.set_xlim(*_shown(risks))
         axes.set_ylim(bottom=0.0)
 
-    names = [f"{limit_name(limit)}\n{_chance(report, limit)}" for limit in limits]
+    names = [f"{limit_name(limit)}\n{_chance(risks, limit, years)}" for limit in limits]
     return panel_figure(
         Layout(names, side_by_side(len(limits))),
         limits,
@@ -114,38 +256,34 @@ def risk_figure(report: RiskReport, title: str) -> bytes:
         y_label="share of the annual rate [%]",
         limits=limit_axes,
         note=remarks(
-            f"P: probability in {report.years:g} years",
+            f"P: probability in {years:g} years",
             "dashed: half of the rate from either side",
-            over(found.pooled),
+            over(found.systems.pooled),
         ),
     )
 
 
-def _shown(report: RiskReport) -> tuple[float, float]:
+def _shown(risks: Sequence[Risk]) -> tuple[float, float]:
     """The intensities from which more than a hundredth of the largest share comes."""
     lows, highs = [], []
-    for risk in report.known:
-        edges, rates = risk.contributions
+    for each in risks:
+        edges, rates = each.contributions
         counting = np.flatnonzero(rates[:-1] >= 0.01 * rates[:-1].max())
         lows.append(float(edges[counting[0]]))
         highs.append(float(edges[counting[-1] + 1]))
     return 0.9 * min(lows), 1.1 * max(highs)
 
 
-def _chance(report: RiskReport, limit: LimitState) -> str:
+def _chance(risks: Sequence[Risk], limit: LimitState, years: float) -> str:
     """Probability within a life, of the only curve or of the least and the largest."""
-    rates = [risk.rate for risk in report.known if risk.fragility.limit == limit]
-    ends = [f"{probability(rate, report.years):.2g}" for rate in (min(rates), max(rates))]
+    rates = [each.rate for each in risks if each.fragility.limit == limit]
+    ends = [f"{probability(rate, years):.2g}" for rate in (min(rates), max(rates))]
     return f"P = {' to '.join(dict.fromkeys(ends))}"
 
 
 REPORT = Report(
-    options=RiskOptions,
-    numbers=risk_report,
-    tables={"": risk_columns, "_contributions": contribution_columns},
-    figure=risk_figure,
-    drawable=lambda report: bool(report.known),
-    notes=lambda report: report.notes,
+    RiskOptions,
+    risk,
     requires=risk_faults,
     results=lambda options: [limit.result for limit in limit_states(options)],
 )

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.sweep.statistics.fractiles import Share, share
+from rpscli.sweep.statistics.fractiles import Share, fractiles, share
 from rpscli.sweep.table import Array
 
 Flags = NDArray[np.bool_]
@@ -145,7 +145,7 @@ def maxima(computed: Array, observed: Array) -> Maxima:
     return Maxima(
         counted=len(logs),
         overturned=int(np.isinf(computed).sum()),
-        median=math.exp(float(np.median(logs))) if len(logs) else math.nan,
+        median=math.exp(fractiles(logs, [0.5])[0]),
         dispersion=float(np.std(logs, ddof=1)) if len(logs) > 1 else math.nan,
         distance=float(ks_2samp(computed, observed).statistic) if len(observed) else math.nan,
     )

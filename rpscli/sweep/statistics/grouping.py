@@ -6,8 +6,10 @@ are decided here once: a report names keys, and takes what it gets.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,15 +24,24 @@ INTENSITY = "scale"
 
 @dataclass(frozen=True, eq=False)
 class Histories:
-    """Points (m,) of one group that did not fail, and how many did."""
+    """The points of one group; those that failed are counted, and enter nothing else."""
 
     table: Table
     values: tuple[object, ...]
-    points: Indices
-    failed: int
+    every: Indices
 
     def __len__(self) -> int:
         return len(self.points)
+
+    @cached_property
+    def points(self) -> Indices:
+        """(m,) those that did not fail."""
+        return self.every[~self.table.failed[self.every]]
+
+    @property
+    def failed(self) -> int:
+        """Points left out."""
+        return len(self.every) - len(self.points)
 
     @property
     def fallen(self) -> NDArray[np.bool_]:
@@ -40,32 +51,41 @@ class Histories:
     @property
     def overturned(self) -> Share:
         """The share that overturned."""
-        return self.share(self.table.overturned)
+        return share(int(self.fallen.sum()), len(self))
 
     @property
     def survivors(self) -> Indices:
         """Points that did not overturn."""
         return self.points[~self.fallen]
 
-    def share(self, happened: NDArray[np.bool_]) -> Share:
-        """The share in which something happened, told for all points of the study."""
-        return share(int(happened[self.points].sum()), len(self.points))
+    def demands(self, values: Array) -> Array:
+        """(m,) of a result of all points of the study, infinite where overturned."""
+        return demand(self.table, values)[self.points]
 
-    def demands(self, result: str) -> Array:
-        """(m,) values of a result, infinite where overturned."""
-        return demand(self.table, self.table.columns[result])[self.points]
-
-    def fractiles(self, result: str, shares: Sequence[float]) -> Array:
-        """Fractiles of a result, in which an overturned history is larger than any demand."""
-        return fractiles(self.demands(result), shares)
+    def statistic(self, values: Array, wanted: float | str) -> float:
+        """The mean of survivors, or a fractile in which what overturned is the largest; or NaN."""
+        if wanted == "mean":
+            known = values[self.survivors]
+            known = known[~np.isnan(known)]
+            return math.fsum(known) / len(known) if len(known) else math.nan
+        share = {"median": 0.5, "largest": 1.0}.get(str(wanted)) or float(wanted)
+        return float(fractiles(self.demands(values), [share])[0])
 
     def parts(self, keys: Sequence[str]) -> list[Histories]:
-        """Its points that did not fail, grouped by further keys."""
-        layout = self.table.layout
-        return [
-            Histories(self.table, group.values, group.points, 0)
-            for group in groups(layout, keys, self.points)
-        ]
+        """Its points grouped by further keys."""
+        found = groups(self.table.layout, keys, self.every)
+        return [Histories(self.table, group.values, group.points) for group in found]
+
+
+def statistic_words(wanted: float | str) -> str:
+    """A statistic in words.
+
+    >>> statistic_words("mean"), statistic_words(0.84)
+    ('mean of survivors', '84 % fractile')
+    """
+    if wanted == "mean":
+        return "mean of survivors"
+    return wanted if isinstance(wanted, str) else f"{100.0 * wanted:g} % fractile"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +101,11 @@ class Grouping:
     notes: tuple[str, ...]
 
     @property
+    def computed(self) -> list[Histories]:
+        """Groups with points that did not fail."""
+        return [group for group in self.groups if len(group)]
+
+    @property
     def failed(self) -> int:
         """Points left out."""
         return sum(group.failed for group in self.groups)
@@ -89,11 +114,6 @@ class Grouping:
     def overturned(self) -> int:
         """Points that overturned."""
         return sum(group.overturned.number for group in self.groups)
-
-    @property
-    def values(self) -> list[tuple[object, ...]]:
-        """Values of the keys in each group."""
-        return [group.values for group in self.groups]
 
 
 def grouping(
@@ -109,10 +129,7 @@ def grouping(
     """
     layout = table.layout
     keys = own_keys(layout, besides) if keys is None else tuple(keys)
-    found = []
-    for group in groups(layout, keys, within):
-        failed = table.failed[group.points]
-        found.append(Histories(table, group.values, group.points[~failed], int(failed.sum())))
+    found = (Histories(table, *group) for group in groups(layout, keys, within))
     differing = pooled(layout, (*keys, *besides))
     return Grouping(shown_keys(layout, keys), tuple(found), differing, pooling_notes(differing))
 
@@ -166,14 +183,3 @@ def shown_keys(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
     measure = layout.plan.measure
     name = INTENSITY if measure is None else measure.measure
     return tuple(name if key == INTENSITY else key for key in keys)
-
-
-def apart(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
-    """The keys, and the intensity with them if the study has several."""
-    several = len(layout.scales) > 1 and INTENSITY not in keys
-    return (*keys, INTENSITY) if several else tuple(keys)
-
-
-def pooling_note(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
-    """The warning that belongs to what is pooled within groups of these keys."""
-    return pooling_notes(pooled(layout, keys))

@@ -1,4 +1,4 @@
-"""A study beside what was observed: outcomes, fragilities and maxima; fitted and held out."""
+"""Numbers of a study beside what was observed: outcomes, fragilities, maxima; fitted, held out."""
 
 from __future__ import annotations
 
@@ -18,11 +18,18 @@ from rpscli.case.study.schema import Keys, Seed
 from rpscli.case.text.document import Document, Fault, dotted
 from rpscli.errors import listed
 from rpscli.records.measures import Measure
+from rpscli.report.study.fragility import (
+    BandOptions,
+    MeasureOptions,
+    binned,
+    fragility_fit,
+    intensity_grid,
+    measure_without_period,
+)
+from rpscli.report.study.fragility import Observed as Binned
 from rpscli.sweep.fits.lognormal import Lognormal
-from rpscli.sweep.intensities import Intensity, MeasureOptions, measure_without_period
+from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.reports.fragility import BandOptions, binned, fragility_fit, intensity_grid
-from rpscli.sweep.reports.fragility import Observed as Binned
 from rpscli.sweep.statistics.agreement import (
     Agreement,
     Flags,
@@ -34,7 +41,8 @@ from rpscli.sweep.statistics.agreement import (
     outcome_worth,
     threshold,
 )
-from rpscli.sweep.statistics.grouping import pooling_note, shown_keys
+from rpscli.sweep.statistics.fractiles import demand, fractiles
+from rpscli.sweep.statistics.grouping import axis_keys, pooled, pooling_notes, shown_keys
 from rpscli.sweep.statistics.observations import Pairs, observed_pairs, unpaired
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
@@ -193,7 +201,7 @@ def comparison_report(study: StudyResults, options: ComparisonOptions) -> Compar
         computed=work.computed,
         compared=tuple(compared),
         candidates=tuple(candidates),
-        pooling=tuple(pooling_note(layout, (*system_keys, *fit_keys, "scale"))),
+        pooling=pooling_notes(pooled(layout, (*system_keys, *fit_keys, "scale"))),
     )
 
 
@@ -251,8 +259,7 @@ def _fit_keys(
 
 def _same_axis(layout: StudyPoints, key: str, keys: Iterable[str]) -> bool:
     """Whether a key belongs to the axis of one of others."""
-    axes = [set(axis.keys) for axis in layout.study.axes] + [{"scale"}]
-    return any(key in axis and axis & set(keys) for axis in axes)
+    return bool(set(axis_keys(layout, key)) & set(keys))
 
 
 class _Work:
@@ -275,12 +282,9 @@ class _Work:
     def _of(self, quantity: str) -> Array:
         """Computed values of all pairs; NaN of failed points."""
         points, table = self._pairs.points, self._table
-        overturned = table.overturned[points]
         if quantity == OVERTURNED:
-            found = overturned.astype(float)
-        else:
-            found = np.where(overturned, np.inf, table.columns[quantity][points])
-        return np.where(table.failed[points], np.nan, found)
+            return np.where(table.failed, np.nan, table.overturned)[points]
+        return demand(table, table.columns[quantity])[points]
 
     def _drawn(self) -> Mapping[str, Flags]:
         """Pairs of each part of the records."""
@@ -309,7 +313,7 @@ class _Work:
             return outcome_worth(computed == 1.0, observed == 1.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             off = np.abs(np.log(computed / observed))
-        return Worth(float(np.median(np.nan_to_num(off, nan=np.inf))), 0.0, 0.0)
+        return Worth(float(fractiles(np.nan_to_num(off, nan=np.inf), [0.5])[0]), 0.0, 0.0)
 
     def compared(self, values: tuple[object, ...], best: Group) -> Iterator[Compared]:
         """Every quantity in every part."""

@@ -1,0 +1,423 @@
+"""Storeys and floors of a study: shears over the height, floor spectra, demands for losses.
+
+Storey shears are those of Figure 9 of the paper. Demands are written as pelicun reads them: columns
+are called event-type-location-direction, and a row of units follows the header.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from rpscli.analyses.floor_spectra import DAMPING, PERIODS
+from rpscli.analyses.result_quantities import STOREY_SHEARS
+from rpscli.case.study.reports import ReportOptions, VariedKeys
+from rpscli.case.study.schema import DampingRatio
+from rpscli.report.figures import style
+from rpscli.report.study.labels import keyed
+from rpscli.report.study.panels import (
+    break_if_narrow,
+    by_values,
+    left_out,
+    over,
+    panel_figure,
+    remarks,
+)
+from rpscli.report.study.report import Found, Report
+from rpscli.report.study.statistics import reached
+from rpscli.report.table import Column
+from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.statistics.fractiles import HIGH, LOW, fractiles
+from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Array, Indices, groups
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class StoreyShearOptions(ReportOptions):
+    """Mean and largest storey shears against those on a fixed base."""
+
+    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+    unit: Literal["V_st", "kN"] = Field(
+        "V_st", description="of the figure: the base shear at uplift, or kN to compare systems"
+    )
+
+
+class FloorSpectraOptions(ReportOptions):
+    """Spectra of equipment on the floors: fractiles, isolated beside fixed base."""
+
+    damping: DampingRatio = Field(DAMPING, description="of the equipment")
+
+
+class DemandSampleOptions(ReportOptions):
+    """Demands of storeys and floors for loss assessment, as pelicun reads them."""
+
+
+SHEARS = (
+    ("mean", "mean of survivors", style.BLACK, "-"),
+    ("largest", "largest of survivors", style.RED, "-"),
+    ("fixed_mean", "mean, fixed base", style.BLACK, "--"),
+    ("fixed_largest", "largest, fixed base", style.RED, "--"),
+)
+
+
+class Profile(NamedTuple):
+    """Storey shears of a group of systems over V_st, in the order of `SHEARS`, each (n,).
+
+    Overturned and failed points are left out, of the fixed base too. `static` is V_st [N]; NaN if
+    the systems of the group differ in it.
+    """
+
+    values: tuple[object, ...]
+    histories: Histories
+    shears: tuple[Array, ...]
+    static: float
+
+
+def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
+    """Profiles of each system at each intensity, or of the groups that the study names."""
+    found = grouping(study.table, options.panels)
+    profiles = [profile for group in found.groups if (profile := profile_of(study, group))]
+    rows = [
+        (
+            profile.values,
+            storey + 1,
+            *(float(shear[storey]) for shear in profile.shears),
+            *(float(shear[storey] * profile.static) for shear in profile.shears),
+            len(profile.histories.survivors),
+            profile.histories.overturned.number,
+            profile.histories.failed,
+        )
+        for profile in profiles
+        for storey in range(len(profile.shears[0]))
+    ]
+    heads = {f"{name}_shear_ratio": "-" for name, *_ in SHEARS}
+    heads |= {f"{name}_shear": "N" for name, *_ in SHEARS}
+    heads |= dict.fromkeys(("counted", "overturned", "failed"), "-")
+    notes = list(found.notes)
+    histories = [profile.histories for profile in profiles]
+    if fallen := sum(group.overturned.number for group in histories):
+        notes.append(
+            f"means and largest shears are those of survivors: {fallen} of"
+            f" {sum(map(len, histories))} histories overturned and are left out, on the fixed base"
+            " too"
+        )
+    in_kn = options.unit == "kN"
+    apart = break_if_narrow()
+
+    def draw(axes: Axes, profile: Profile) -> None:
+        edges = np.arange(len(profile.shears[0]) + 1)
+        for (_, name, colour, line), shear in zip(SHEARS, profile.shears, strict=True):
+            values = shear
+            if in_kn:
+                axes.locator_params(axis="x", nbins=3)  # long numbers
+                values = shear * profile.static * 1e-3
+            # The shear is the same all the way up a storey.
+            axes.stairs(
+                values, edges, orientation="horizontal", color=colour, ls=line, lw=1.3, label=name
+            )
+        axes.set_ylim(0.0, len(edges) - 1)
+        axes.locator_params(axis="y", integer=True)
+        survivors, every = len(profile.histories.survivors), len(profile.histories)
+        axes.text(
+            0.96, 0.95, f"{survivors} survivors{apart}of {every}",
+            transform=axes.transAxes, ha="right", va="top", fontsize=0.9 * style.small(),
+        )  # fmt: skip
+
+    return Found(
+        {"": keyed(found.keys, {"storey": "-", **heads}, rows)},
+        lambda title: panel_figure(
+            by_values(found.keys, profiles),
+            profiles,
+            draw,
+            title=title,
+            x_label=STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol)
+            if in_kn
+            else "$V_i/V_{st}$ [-]",
+            y_label="level (0 = cap beam)",
+            share="x",
+            limits=lambda axes: axes.set_xlim(left=0.0),
+            note=remarks(over(found.pooled), left_out(sum(group.failed for group in histories))),
+        ),
+        notes,
+    )
+
+
+def profile_of(study: StudyResults, group: Histories) -> Profile | None:
+    """The profile of a group; None without storeys."""
+    table, layout = study.table, study.table.layout
+    systems = np.unique(group.every // layout.points_of_system)
+    n = layout.properties[systems[0]].storeys
+    if n == 0:
+        return None
+    statics = np.array([properties.static_base_shear for properties in layout.properties])
+    kept = group.survivors
+    static = statics[kept // layout.points_of_system, None]
+    fixed = np.empty((len(kept), n))
+    for row, number in enumerate(kept.tolist()):
+        point = layout[number]
+        assert point.record is not None, "points of histories have a record"
+        fixed[row] = abs(table.scale[number]) * study.fixed_base[point.system, point.record]
+    unique = np.unique(statics[systems])
+    shears = tuple(
+        statistic(values, axis=0) if len(kept) else np.full(n, np.nan)
+        for values in (table.storey_shears[kept, :n] / static, fixed / static)
+        for statistic in (np.mean, np.max)
+    )
+    return Profile(group.values, group, shears, float(unique[0]) if len(unique) == 1 else np.nan)
+
+
+def unlike_buildings(layout: StudyPoints, options: StoreyShearOptions) -> Iterator[str]:
+    """Panels whose systems differ in what their common profile would need."""
+    keys = own_keys(layout) if options.panels is None else options.panels
+    for group in groups(layout, keys):
+        systems = [layout.properties[i] for i in np.unique(group.points // layout.points_of_system)]
+        named = ", ".join(f"{key} = {value}" for key, value in zip(keys, group.values, strict=True))
+        of = f"the panel of {named}" if named else "its one panel"
+        storeys = sorted({system.storeys for system in systems})
+        if len(storeys) > 1:
+            yield (
+                f"{of} holds buildings of {storeys} storeys; let `panels` name the key in which"
+                " they differ"
+            )
+        elif options.unit == "kN" and len({system.static_base_shear for system in systems}) > 1:
+            yield f"{of} holds systems of different V_st, so that `unit` must be V_st"
+
+
+class Floors(NamedTuple):
+    """Spectra of the histories of a group: fractiles (3, 2, 2, n, p).
+
+    They are of the states isolated and fixed base, of pseudo-accelerations [m/s2] and displacements
+    relative to the floor [m], by floors and periods; infinite if overturned.
+    """
+
+    values: tuple[object, ...]
+    fractiles: Array
+
+
+FRACTILES = (LOW, 0.50, HIGH)
+STATES = {"isolated": ("on bearings", style.BLUE), "fixed_base": ("fixed base", style.BLACK)}
+SPECTRA = {"pseudo_acceleration": "m/s2", "displacement": "m"}
+
+
+def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
+    """Run the histories once more for their samples, which are not stored."""
+    found = grouping(study.table)
+    floors = [_floors(study, group, options.damping) for group in found.computed]
+    heads = {
+        f"{state}_{name}_{100 * share:.0f}": unit
+        for state in STATES
+        for name, unit in SPECTRA.items()
+        for share in FRACTILES
+    }
+    rows = [
+        (
+            one.values,
+            floor + 1,
+            float(period),
+            *(
+                reached(float(one.fractiles[row, state, name, floor, place]))
+                for state in range(len(STATES))
+                for name in range(len(SPECTRA))
+                for row in range(len(FRACTILES))
+            ),
+        )
+        for one in floors
+        for floor in range(one.fractiles.shape[3])
+        for place, period in enumerate(PERIODS)
+    ]
+    note = remarks(
+        over(found.pooled),
+        "fractiles that overturned are not drawn" if found.overturned else "",
+        left_out(found.failed),
+    )
+    return Found(
+        {"": keyed(found.keys, {"floor": "-", "period": "s", **heads}, rows)},
+        (lambda title: floor_spectra_figure(found.keys, floors, title, note)) if floors else None,
+        found.notes,
+    )
+
+
+def _floors(study: StudyResults, group: Histories, damping: float) -> Floors:
+    spectra = np.array([study.floor_spectra(n, damping) for n in group.points.tolist()])
+    # An overturned history is larger than any demand; its building on a fixed base is not.
+    spectra[group.fallen, 0] = np.inf
+    return Floors(group.values, np.quantile(spectra, FRACTILES, axis=0, method="inverted_cdf"))
+
+
+def floor_spectra_figure(
+    keys: Sequence[str], floors: Sequence[Floors], title: str, note: str
+) -> bytes:
+    """Median and 84 % fractile of the pseudo-acceleration, on the lowest floor and the roof."""
+    panels = [
+        Floors((*one.values, number), one.fractiles[:, :, 0, number - 1])
+        for one in floors
+        for number in dict.fromkeys((1, one.fractiles.shape[3]))
+    ]
+
+    def draw(axes: Axes, panel: Floors) -> None:
+        for state, (name, colour) in enumerate(STATES.values()):
+            for row, dashes, words in ((1, "-", "median"), (2, "--", "84 % fractile")):
+                values = panel.fractiles[row, state]
+                axes.plot(
+                    PERIODS, np.where(np.isfinite(values), values, np.nan), ls=dashes,
+                    color=colour, lw=1.3, label=f"{name}, {words}",
+                )  # fmt: skip
+
+    def limits(axes: Axes) -> None:
+        # At the end: panels are given ticks for equal steps before they are drawn.
+        axes.set_xscale("log")
+        axes.set(xlim=(PERIODS[0], PERIODS[-1]), ylim=(0.0, None))
+        for each in axes.figure.axes:
+            each.xaxis.set_major_formatter("{x:g}")
+
+    return panel_figure(
+        by_values((*keys, "floor"), panels),
+        panels,
+        draw,
+        title=title,
+        x_label="period [s]",
+        y_label="pseudo-acceleration [m/s²]",
+        limits=limits,
+        note=note,
+    )
+
+
+def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str]:
+    """Systems without a building, or with different ones in a sample."""
+    storeys = np.array([properties.storeys for properties in layout.properties])
+    by_sample = storeys.reshape(layout.combinations.shape)
+    if not storeys.all():
+        yield "a system has no superstructure, and so no floors; leave out storeys: 0"
+    elif (np.ptp(by_sample, axis=-1) > 0).any():
+        yield "the sample varies the number of storeys; vary it in an axis instead"
+
+
+HOW = (
+    "for pelicun: OVT is 1 where a history overturned, its other demands are those until then;"
+    ' take it as collapse with "CustomDemandTypes": {"Overturning": {"Acronym": "OVT", "UnitType":'
+    ' "unitless"}} and "CollapseFragility": {"DemandType": "OVT", "CapacityDistribution": "N/A",'
+    ' "CapacityMedian": 0.5}; BRD is the cap beam displacement, RID-0 the residual tilt of columns'
+)
+
+
+class DemandSample(NamedTuple):
+    """One system at one intensity: a row for each history that did not fail.
+
+    `accelerations` (m, n + 1) are the largest absolute ones of ground and floors [m/s2], `drifts`
+    (m, n) drift ratios; columns (m,) are displacements of the cap beam [m] and residual rotations
+    of the columns [rad]: the building is linear, and keeps no drift. Overturned histories have
+    their demands until then.
+    """
+
+    values: tuple[object, ...]
+    points: Indices
+    accelerations: Array
+    drifts: Array
+    displacements: Array
+    residual_rotations: Array
+    overturned: NDArray[np.bool_]
+
+
+def demand_sample(study: StudyResults, _options: DemandSampleOptions) -> Found:
+    """Run the histories once more for the demands of single floors, which are not stored."""
+    found = grouping(study.table)
+    samples = [_sample(study, group) for group in found.computed]
+    heads = dict.fromkeys(("counted", "overturned", "failed"), "-")
+    rows = [
+        (group.values, len(group), group.overturned.number, group.failed)
+        for group in found.computed
+    ]
+    numbers = Column("file", "-", range(1, len(samples) + 1))
+    note = remarks(
+        "fractiles that overturned are not drawn" if found.overturned else "",
+        left_out(sum(group.failed for group in found.computed)),
+    )
+    return Found(
+        {"": [numbers, *keyed(found.keys, heads, rows)]},
+        (lambda title: demand_sample_figure(found.keys, samples, title, note)) if samples else None,
+        [HOW] * bool(samples),
+        texts={f"_{n}.csv": sample_text(one) for n, one in enumerate(samples, start=1)},
+    )
+
+
+def _sample(study: StudyResults, group: Histories) -> DemandSample:
+    columns = {name: study.table.columns[name][group.points] for name in COLUMNS}
+    floors, drifts = study.floor_demands(group.points.tolist())
+    return DemandSample(
+        values=group.values,
+        points=group.points,
+        accelerations=np.column_stack([columns["pga"], floors]),
+        drifts=drifts,
+        displacements=columns["max_cap_beam_displacement"],
+        residual_rotations=np.abs(columns["residual_rotation"]),
+        overturned=group.fallen,
+    )
+
+
+COLUMNS = ("pga", "max_cap_beam_displacement", "residual_rotation")
+
+
+def sample_text(sample: DemandSample) -> str:
+    """The file of one system at one intensity; level 0 is the ground."""
+    columns = list(_columns(sample))
+    lines = [["", *(name for name, _, _ in columns)], ["Units", *(unit for _, unit, _ in columns)]]
+    for row, point in enumerate(sample.points.tolist()):
+        lines.append([str(point + 1), *(f"{values[row]:.10g}" for *_, values in columns)])
+    return "".join(",".join(line) + "\n" for line in lines)
+
+
+def _columns(sample: DemandSample) -> Iterator[tuple[str, str, Array]]:
+    """Name, unit in pelicun's spelling, and values of each column."""
+    for level, values in enumerate(sample.accelerations.T):
+        yield f"1-PFA-{level}-1", "mps2", values
+    for storey, values in enumerate(sample.drifts.T, start=1):
+        yield f"1-PID-{storey}-1", "unitless", values
+    yield "1-RID-0-1", "unitless", sample.residual_rotations
+    for storey, values in enumerate(sample.drifts.T, start=1):
+        yield f"1-RID-{storey}-1", "unitless", 0.0 * values  # the building is linear
+    yield "1-BRD-0-1", "m", sample.displacements
+    yield "1-OVT-0-1", "unitless", sample.overturned.astype(float)
+
+
+def demand_sample_figure(
+    keys: Sequence[str], samples: Sequence[DemandSample], title: str, note: str
+) -> bytes:
+    """Median and 84 % fractile of the accelerations from the ground to the roof."""
+
+    def draw(axes: Axes, sample: DemandSample) -> None:
+        axes.locator_params(axis="y", integer=True)
+        reached = np.where(sample.overturned[:, None], np.inf, sample.accelerations)
+        for share, dashes, name in ((0.5, "-", "median"), (HIGH, "--", "84 % fractile")):
+            values = np.array([fractiles(level, [share])[0] for level in reached.T])
+            axes.plot(
+                np.where(np.isfinite(values), values, np.nan), range(len(values)), "o",
+                ls=dashes, ms=3.0, color=style.BLUE, label=name,
+            )  # fmt: skip
+
+    return panel_figure(
+        by_values(keys, samples),
+        samples,
+        draw,
+        title=title,
+        x_label="largest acceleration [m/s²]",
+        y_label="level (0 = ground)",
+        limits=lambda axes: axes.set_xlim(left=0.0),
+        note=note,
+    )
+
+
+STOREY_SHEAR = Report(StoreyShearOptions, storey_shear, requires=unlike_buildings)
+FLOOR_SPECTRA = Report(FloorSpectraOptions, floor_spectra, requires=without_floors)
+DEMAND_SAMPLE = Report(
+    DemandSampleOptions,
+    demand_sample,
+    results=lambda _: ["drift_ratio"],
+    requires=without_floors,
+)

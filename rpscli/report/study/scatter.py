@@ -1,0 +1,389 @@
+"""Points of a study as scatter: one demand against another, and overturning spectra of pulses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from rpscli.case.schema.case_file import Time
+from rpscli.case.schema.fields import Quantity, Section
+from rpscli.case.study.reports import ReportOptions, VariedKeys
+from rpscli.errors import CaseError, RecordError
+from rpscli.records.query import Query, parse_query
+from rpscli.report.figures import style
+from rpscli.report.study.labels import keyed, labels
+from rpscli.report.study.panels import (
+    break_if_narrow,
+    by_values,
+    colour,
+    left_out,
+    marker,
+    over,
+    panel_figure,
+    remarks,
+)
+from rpscli.report.study.report import DemandName, Found, Report
+from rpscli.report.table import Column
+from rpscli.sweep.evaluation.points import RecordRequest
+from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.fits.bilinear import FEWEST, Bilinear, bilinear_fit
+from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Array, leading_keys
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class DemandOptions(ReportOptions):
+    """Base shear against rotation with its bilinear summary."""
+
+    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+    series: VariedKeys | None = Field(None, description="varied keys, one colour for each value")
+
+
+class ScatterOptions(DemandOptions):
+    """One demand against another, a marker for each history that stood."""
+
+    x: DemandName = Field(description="demand to the right")
+    y: DemandName = Field(description="demand upwards")
+    curve: Literal["bilinear"] | None = Field(None, description="through the points of a panel")
+
+
+COEFFICIENTS = (
+    ("saturation_{x}", "break_x"),
+    ("saturation_{y}", "break_y"),
+    ("k_s", "slope_after"),
+    ("slope_before", "slope"),
+    ("{y}_at_uplift", "start"),
+    ("residual", "residual"),
+)
+"""Names of what a bilinear curve is made of in tables, and its attributes."""
+
+
+class Cloud(NamedTuple):
+    """A panel: its histories, those of them that are drawn, and the curve through these."""
+
+    values: tuple[object, ...]
+    histories: Histories
+    shown: Histories
+    fit: Bilinear | None
+
+
+def scatter(study: StudyResults, options: ScatterOptions) -> Found:
+    """Every history that stood, and the curves through them."""
+    table, series = study.table, options.series or ()
+    return _scatter(study, options, options.x, options.y, series, ~table.overturned)
+
+
+def demand(study: StudyResults, options: DemandOptions) -> Found:
+    """What lifted off and stood, with a curve in each panel.
+
+    By default the axis in the middle of three gives the colours, the others and the intensity give
+    the panels.
+    """
+    leading = leading_keys(study.table.layout)
+    series = options.series if options.series is not None else leading[1:-1]
+    lifted = study.table.outcomes == "survived"
+    return _scatter(study, options, "rotation_ratio", "base_shear_ratio", series, lifted)
+
+
+def _scatter(
+    study: StudyResults,
+    options: DemandOptions,
+    x_name: str,
+    y_name: str,
+    series: tuple[str, ...],
+    kept: NDArray[np.bool_],
+) -> Found:
+    table = study.table
+    x, y = table.columns[x_name], table.columns[y_name]
+    kept = kept & ~table.failed & np.isfinite(x) & np.isfinite(y)
+    found = grouping(table, options.panels, series)
+    series_keys = shown_keys(table.layout, series)
+    plain = isinstance(options, ScatterOptions)  # else the curves are all that is asked for
+    curved = not isinstance(options, ScatterOptions) or options.curve is not None
+    clouds = []
+    for group in found.groups:
+        shown = Histories(table, group.values, group.points[kept[group.points]])
+        fit = bilinear_fit(x[shown.points], y[shown.points]) if curved else None
+        clouds.append(Cloud(group.values, group, shown, fit))
+    every = np.concatenate([cloud.shown.points for cloud in clouds])
+    highest, top = (float(values[every].max(initial=0.0)) for values in (x, y))
+    across = np.linspace(0.3, 1.0, 8) * highest
+    apart = break_if_narrow()
+
+    def draw(axes: Axes, cloud: Cloud) -> None:
+        for place, part in enumerate(cloud.shown.parts(series)):
+            axes.plot(
+                x[part.points], y[part.points], ls="", marker=marker(place), ms=2.4, alpha=0.55,
+                mew=0.0, color=colour(place), label=labels(series_keys, part.values) or None,
+            )  # fmt: skip
+        if not curved:
+            return
+        text = "no curve: too few points"
+        if (fit := cloud.fit) is not None:
+            ends = np.array([0.0, fit.break_x, max(highest, fit.break_x)])
+            axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
+            text = (
+                f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
+                f"\nslope kₛ{apart}{fit.slope_after:.2f} beyond"
+            )
+        # Where the curve runs through the lower right, the upper left is free.
+        rising = fit is not None and bool(np.min(fit(across)) < 0.25 * top)
+        axes.text(
+            0.04 if rising else 0.96, 0.95 if rising else 0.05, text, transform=axes.transAxes,
+            ha="left" if rising else "right", va="top" if rising else "bottom",
+            fontsize=0.9 * style.small(),
+            bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
+        )  # fmt: skip
+
+    def limits(axes: Axes) -> None:
+        axes.set_xlim(0.0, 1.04 * highest or 1.0)
+        axes.set_ylim(bottom=0.0)
+
+    quantities = SCALARS["timehistory"]
+    fallen = f"{found.overturned} overturned points left out" if found.overturned else ""
+    tables = {}
+    if curved:
+        tables["_curve" * plain] = _fits(found.keys, clouds, x_name, y_name, x)
+    if plain:
+        units = {name: quantities[name].unit for name in (x_name, y_name)}
+        rows = [
+            ((*cloud.values, *part.values), n + 1, table.outcomes[n], float(x[n]), float(y[n]))
+            for cloud in clouds
+            for part in cloud.shown.parts(series)
+            for n in part.points.tolist()
+        ]
+        heads = {"point": "-", "outcome": "-", **units}
+        tables = {"": keyed((*found.keys, *series_keys), heads, rows), **tables}
+    without = [_too_few(x, cloud) for cloud in clouds if curved and cloud.fit is None]
+    notes = list(found.notes)
+    if without:
+        notes.append(f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}")
+    return Found(
+        tables,
+        lambda title: panel_figure(
+            by_values(found.keys, clouds),
+            clouds,
+            draw,
+            title=title,
+            x_label=quantities[x_name].axis_label,
+            y_label=quantities[y_name].axis_label,
+            limits=limits,
+            note=remarks(over(found.pooled), fallen, left_out(found.failed)),
+        ),
+        notes,
+    )
+
+
+def _too_few(x: Array, cloud: Cloud) -> str:
+    points = len(np.unique(x[cloud.shown.points]))
+    return f"{points} different rotations of survivors; the curve needs {2 * FEWEST}"
+
+
+def _fits(
+    keys: tuple[str, ...], clouds: list[Cloud], x_name: str, y_name: str, x: Array
+) -> list[Column]:
+    """One row a panel: the curve, and the points that it went through or left out."""
+    rows = []
+    for cloud in clouds:
+        resting = cloud.histories.table.outcomes[cloud.histories.points] == "at_rest"
+        counts = len(cloud.shown), int(resting.sum()), cloud.histories.overturned.number
+        fitted = (getattr(cloud.fit, attribute, None) for _, attribute in COEFFICIENTS)
+        note = None if cloud.fit else _too_few(x, cloud)
+        rows.append((cloud.values, *fitted, *counts, cloud.histories.failed, note))
+    names = [name.format(x=x_name, y=y_name) for name, _ in COEFFICIENTS]
+    heads = [*names, "counted", "at_rest", "overturned", "failed", "note"]
+    return keyed(keys, dict.fromkeys(heads, "-"), rows)
+
+
+PULSE_OPTIONS = (
+    "amplitude", "period", "dt", "velocity_amplitude", "cycles", "phase",
+)  # fmt: skip
+
+NEGLIGIBLE = 1e-6
+"""Rotation over the critical one below which a figure shows no uplift: at an amplitude of exactly
+g tan(alpha) rounding decides about the outcome."""
+
+
+class PulseSection(Section):
+    """What a record that is not made from a formula has for a pulse."""
+
+    period: Time = Field(description="of the pulse")
+    amplitude: Annotated[float, Quantity("m/s2", above=0)] | None = Field(
+        None, description="peak acceleration of the unscaled pulse; that of the record by default"
+    )
+
+
+class SpectrumOptions(ReportOptions):
+    """Overturning spectrum of pulses: amplitude over g tan(alpha) against frequency over p."""
+
+    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+    series: VariedKeys | None = Field(None, description="varied keys, one colour for each value")
+    pulses: dict[str, PulseSection] = Field(
+        {},
+        description="period and amplitude of records that are files, by source or name",
+    )
+
+
+LOOKS = (
+    ("at_rest", "at rest", style.GREY, ".", 2.0),
+    ("survived", "survived", style.SKY, "o", 3.0),
+    ("overturned", "overturned", style.RED, "s", 3.0),
+)
+
+
+def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found:
+    """Amplitude and frequency of every point, made dimensionless by its own system."""
+    table, layout, series = study.table, study.table.layout, options.series or ()
+    frequency, amplitude = _pulses_of(study, options)
+    found = grouping(table, options.panels, (*series, INTENSITY, "record"))
+    series_keys = shown_keys(layout, series)
+    clouds = [(group, group.parts(series)) for group in found.groups]
+    several = max(len(parts) for _, parts in clouds) > 1
+    rotation = table.columns["rotation_ratio"]
+    shown = np.where(
+        (table.outcomes == "survived") & (rotation < NEGLIGIBLE), "at_rest", table.outcomes
+    )
+
+    def draw(axes: Axes, cloud: tuple[Histories, list[Histories]]) -> None:
+        for place, part in enumerate(cloud[1]):
+            boundary = _boundary(part, frequency, amplitude)
+            if several:
+                # What overturned and the least that did; survivors would hide the other series.
+                fell, shade = part.points[part.fallen], colour(place, len(cloud[1]))
+                axes.plot(
+                    frequency[fell], amplitude[fell], ls="", color=shade, marker=marker(place),
+                    ms=2.6, mew=0.0, alpha=0.35,
+                )  # fmt: skip
+                axes.plot(
+                    *boundary, color=shade, marker=marker(place), ms=3.4, lw=1.3,
+                    label=labels(series_keys, part.values),
+                )  # fmt: skip
+                continue
+            for word, name, shade, mark, size in LOOKS:
+                chosen = part.every[np.char.startswith(shown[part.every], word)]
+                if len(chosen):
+                    axes.plot(
+                        frequency[chosen], amplitude[chosen], ls="", color=shade, marker=mark,
+                        ms=size, mew=0.0, label=name,
+                    )  # fmt: skip
+            axes.plot(*boundary, color=style.BLACK, lw=1.2, label="least that overturns")
+
+    def limits(axes: Axes) -> None:
+        axes.set_xlim(left=0.0)
+        axes.set_ylim(bottom=0.0)
+
+    heads = {
+        "frequency_over_p": frequency, "amplitude_over_g_tan_alpha": amplitude,
+        "rotation_ratio": rotation, "outcome": table.outcomes,
+    }  # fmt: skip
+    rows = [
+        ((*group.values, *part.values), *(values[n] for values in heads.values()))
+        for group, parts in clouds
+        for part in parts
+        for n in part.every.tolist()
+    ]
+    return Found(
+        {"": keyed((*found.keys, *series_keys), dict.fromkeys(heads, "-"), rows)},
+        lambda title: panel_figure(
+            by_values(found.keys, found.groups),
+            clouds,
+            draw,
+            title=title,
+            x_label=r"$\omega/p$ [-]",
+            y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
+            limits=limits,
+            note=remarks(
+                over(found.pooled), "only what overturned" * several, left_out(found.failed)
+            ),
+        ),
+    )
+
+
+def _pulses_of(study: StudyResults, options: SpectrumOptions) -> tuple[Array, Array]:
+    """(points,) frequency of the pulse over p, and its amplitude over g tan(alpha)."""
+    table, layout = study.table, study.table.layout
+    pulses: dict[RecordRequest, Pulse] = {}
+    frequency, amplitude = np.full((2, len(table)), np.nan)
+    for point in layout:
+        assert point.record is not None, "points of histories have a record"
+        properties = layout.properties[point.system]
+        if point.record not in pulses:
+            pulses[point.record] = pulse_of(point.record.source, options)
+        pulse = pulses[point.record]
+        omega = 2.0 * math.pi / pulse.period
+        frequency[point.number] = omega / properties.frequency_parameter
+        if not table.failed[point.number]:
+            peak = pulse.amplitude or study.context.records.intensity(point.record, "PGA")
+            size = peak * abs(table.scale[point.number])
+            amplitude[point.number] = size / properties.uplift_acceleration
+    return frequency, amplitude
+
+
+def _boundary(part: Histories, frequency: Array, amplitude: Array) -> tuple[Array, Array]:
+    """Frequency ratios, and the least amplitude ratios that overturned; NaN where none did."""
+    fallen, ratios = part.points[part.fallen], np.unique(frequency[part.every])
+    least = [amplitude[fallen[frequency[fallen] == r]].min(initial=np.inf) for r in ratios]
+    return ratios, np.where(np.isfinite(least), least, np.nan)
+
+
+class Pulse(NamedTuple):
+    """Period [s] and peak acceleration [m/s2] of a pulse; None: that of the record."""
+
+    period: float
+    amplitude: float | None
+
+
+def pulse_of(source: str, options: SpectrumOptions) -> Pulse:
+    """The pulse of a record.
+
+    Raises
+    ------
+    CaseError
+        If the source is no pulse, and the options do not say what it is.
+
+    Examples
+    --------
+    >>> pulse_of("pulse:sine?amplitude=0.4g&period=1.2", SpectrumOptions())
+    Pulse(period=1.2, amplitude=None)
+    """
+    given = options.pulses.get(source) or options.pulses.get(PurePath(source).name)
+    if given is not None:
+        return Pulse(given.period, given.amplitude)
+    scheme, _, rest = source.partition(":")
+    if scheme != "pulse":
+        raise CaseError(
+            f"{source} is no pulse with a period, as pulse:sine?amplitude=1g&period=1 is; say what"
+            f" a file holds: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
+        )
+    query: Query = parse_query(rest.partition("?")[2], source, PULSE_OPTIONS)
+    return Pulse(query.quantity("period", "time"), None)
+
+
+def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Iterator[str]:
+    """Records of a study that have no place in a spectrum."""
+    requests = {properties.record for properties in layout.properties}
+    wanted = [request or other for request in layout.records for other in requests]
+    for request in dict.fromkeys(wanted):
+        try:
+            if request is not None:
+                pulse_of(request.source, options)
+        except (CaseError, RecordError) as error:
+            yield str(error)
+            return
+
+
+SCATTER = Report(ScatterOptions, scatter, results=lambda options: (options.x, options.y))
+DEMAND = Report(DemandOptions, demand)
+OVERTURNING_SPECTRUM = Report(
+    SpectrumOptions, overturning_spectrum, requires=records_without_period
+)

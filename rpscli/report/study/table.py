@@ -1,0 +1,179 @@
+"""Tables of a statistic: the share that overturns (paper, Table 3), or that of any demand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from rpscli.case.study.reports import ReportOptions, VariedKeys
+from rpscli.report.figures import style
+from rpscli.report.study.labels import key_columns, label, labels, plain
+from rpscli.report.study.panels import left_out, over
+from rpscli.report.study.report import DemandName, Found, Report, Statistic
+from rpscli.report.study.statistics import reached
+from rpscli.report.table import Column
+from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.statistics.grouping import (
+    Histories,
+    grouping,
+    shown_keys,
+    statistic_words,
+)
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import groups, leading_keys
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_ROWS = 60
+
+
+class OverturningOptions(ReportOptions):
+    """Share of the points that overturn, as a table."""
+
+    rows: VariedKeys | None = Field(
+        None, description="varied keys down the table; all but the columns'"
+    )
+    columns: VariedKeys | None = Field(
+        None, description="varied keys across; those of the last axis"
+    )
+
+
+class TableOptions(OverturningOptions):
+    """A statistic of a demand, as a table."""
+
+    result: DemandName = Field("rotation_ratio", description="of which the statistic is taken")
+    statistic: Statistic = Field(
+        "median",
+        description="of the histories of a cell; an overturned one is larger than any demand, but"
+        " for the mean, which is that of survivors",
+    )
+
+
+class Shown(NamedTuple):
+    """What a table shows of the histories of a cell.
+
+    `name` and `unit` are those of its numbers, `words` stand above the picture. `numbers` are a
+    cell's by what follows the name of its column, `texts` two lines in the picture, and `shade`
+    goes from 0 to 1.
+    """
+
+    name: str
+    unit: str
+    words: str
+    numbers: Callable[[Histories], dict[str, float | int | str | None]]
+    texts: Callable[[Histories], tuple[str, str]]
+    shade: Callable[[Histories], float]
+
+
+def overturning(study: StudyResults, options: OverturningOptions) -> Found:
+    """Count the overturned points of each system, at each intensity unless the study says else."""
+
+    def numbers(cell: Histories) -> dict[str, float | int | str | None]:
+        share = cell.overturned
+        return {
+            "": share.fraction,
+            ";low": share.low,
+            ";high": share.high,
+            ";number": share.number,
+            ";counted": share.of,
+        }
+
+    def texts(cell: Histories) -> tuple[str, str]:
+        share = cell.overturned
+        return f"{share.fraction:.2f}", f"{share.number} of {share.of}, {share.interval}"
+
+    words = "overturned: share, number, 95 % interval"
+    shown = Shown(
+        "overturned", "-", words, numbers, texts, lambda cell: cell.overturned.fraction or 0.0
+    )
+    return _table(study, options, shown)
+
+
+def statistic_table(study: StudyResults, options: TableOptions) -> Found:
+    """The statistic of each system, at each intensity unless the study says else."""
+    values = study.table.columns[options.result]
+    known = values[np.isfinite(values) & ~study.table.overturned]
+    largest = known.max(initial=0.0) or 1.0
+
+    def statistic(cell: Histories) -> float:
+        return cell.statistic(values, options.statistic)
+
+    def numbers(cell: Histories) -> dict[str, float | int | str | None]:
+        fallen = cell.overturned.number
+        return {"": reached(statistic(cell)), ";counted": len(cell), ";overturned": fallen}
+
+    def texts(cell: Histories) -> tuple[str, str]:
+        found, fallen = statistic(cell), cell.overturned.number
+        if np.isnan(found):
+            return "-", f"{fallen} of {len(cell)} overturned"
+        words = "overturned" if np.isinf(found) else f"{found:.3g}"
+        return words, f"{fallen} of {len(cell)} overturned"
+
+    quantity = SCALARS["timehistory"][options.result]
+    words = f"{quantity.axis_label}: {statistic_words(options.statistic)}"
+    shown = Shown(
+        options.result, quantity.unit, words, numbers, texts,
+        lambda cell: min(statistic(cell) / largest, 1.0),
+    )  # fmt: skip
+    return _table(study, options, shown)
+
+
+def _table(study: StudyResults, options: OverturningOptions, shown: Shown) -> Found:
+    table, layout = study.table, study.table.layout
+    across = options.columns
+    if across is None:
+        across = tuple(key for key in leading_keys(layout)[-1:] if key not in (options.rows or ()))
+    rows, column_keys = grouping(table, options.rows, across), shown_keys(layout, across)
+    columns = [group.values for group in groups(layout, across)]
+    cells: list[list[Histories | None]] = []
+    for row in rows.groups:
+        # by their text: a value may be a list, of devices or of masses
+        found = {repr(cell.values): cell for cell in row.parts(across)}
+        cells.append([found.get(repr(values)) for values in columns])
+    nothing = Histories(table, (), np.empty(0, dtype=np.int64))
+    written = key_columns(rows.keys, [row.values for row in rows.groups])
+    for place, values in enumerate(columns):
+        named = zip(column_keys, values, strict=True)
+        name = ";".join(f"{key}={plain(value)}" for key, value in named) or shown.name
+        numbers = [shown.numbers(row[place] or nothing) for row in cells]
+        for suffix in numbers[0]:
+            unit = "-" if suffix else shown.unit
+            written.append(Column(name + suffix, unit, [cell[suffix] for cell in numbers]))
+    written.append(Column("counted", "-", [len(row) for row in rows.groups]))
+    written.append(Column("failed", "-", [row.failed for row in rows.groups]))
+
+    def picture(title: str) -> bytes:
+        def draw(figure: Figure) -> None:
+            notes = [left_out(rows.failed)]
+            if len(cells) > MOST_ROWS:
+                notes.append(f"the first {MOST_ROWS} of {len(cells)} rows")
+            style.heading(figure, title, over(rows.pooled), shown.words, *notes)
+            axes = figure.subplots()
+            full = [[cell or nothing for cell in row] for row in cells[:MOST_ROWS]]
+            shades = [[shown.shade(cell) if len(cell) else np.nan for cell in row] for row in full]
+            axes.imshow(shades, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto", alpha=0.75)
+            small = 0.75 * style.small()
+            for y, row in enumerate(full):
+                for x, cell in enumerate(row):
+                    first, second = shown.texts(cell) if len(cell) else ("-", "")
+                    axes.text(x, y, first, ha="center", va="bottom")
+                    axes.text(x, y + 0.08, second, ha="center", va="top", fontsize=small)
+            heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
+            axes.set_xticks(range(len(columns)), [style.typeset(head) for head in heads])
+            names = [labels(rows.keys, row.values) for row in rows.groups[:MOST_ROWS]]
+            axes.set_yticks(range(len(full)), [style.typeset(name) for name in names])
+            axes.tick_params(length=0, labeltop=True, labelbottom=False)
+            axes.grid(visible=False)
+
+        height = 1.1 + 0.34 * min(len(cells), MOST_ROWS)
+        return style.picture(draw, height, min(style.WIDTH, 3.4 + 1.25 * len(columns)))
+
+    return Found({"": written}, picture, rows.notes)
+
+
+OVERTURNING = Report(OverturningOptions, overturning)
+TABLE = Report(TableOptions, statistic_table, results=lambda options: [options.result])
