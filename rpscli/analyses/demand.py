@@ -8,9 +8,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from rpscli.analyses.kernels.compilation import compiled
 from rpscli.analyses.kernels.history import Request as HistoryRequest
-from rpscli.analyses.kernels.history import refuse_steps, run_of
+from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
 from rpscli.analyses.kernels.step_lengths import longest_time
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
@@ -90,8 +89,6 @@ def demand(
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
-    from rpscli.physics.planar.driver import integrate
-
     structures = _Distinct[PodiumStructure]()
     systems = _Distinct[tuple[PodiumStructure, TimeHistorySettings]]()
     motions = _Distinct[MotionComponents]()
@@ -107,8 +104,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
         refuse_steps(longest_time(r.settings, r.motion.duration) * rates[history.system])
     run = run_of(stacked, motions.items, given)
     lanes = LANES if len(requests) >= worth_lanes else 1
-    with compiled(equipped=any(r.structure.devices for r in requests)):
-        integrate(run, lanes)
+    follow(run, lanes)
     return Histories(structures.items, of_structure, frozen(run.results))
 
 

@@ -13,6 +13,8 @@ _listeners: list[Listener] = []
 _begun: set[str] = set()
 """Kernels that somebody compiles, or has compiled."""
 _lock = Lock()
+_ready: set[str] = set()
+"""Kernels that are known to be compiled: a file tells, which is looked for once."""
 
 KERNELS = ("kernel", "kernel with devices")
 """A case without devices needs the first one only, the others the second."""
@@ -27,7 +29,10 @@ def is_ready(*, equipped: bool = False) -> bool:
     """Whether the kernel was compiled before, so that calling it starts at once."""
     from rpscli.physics.core.compile import is_compiled
 
-    return is_compiled(KERNELS[equipped])
+    name = KERNELS[equipped]
+    if name not in _ready and is_compiled(name):
+        _ready.add(name)
+    return name in _ready
 
 
 @contextmanager

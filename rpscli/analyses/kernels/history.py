@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import threading
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -18,7 +20,7 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
-from rpscli.physics.planar.run import Output, Run, empty_block
+from rpscli.physics.planar.run import Output, Run, empty_block, empty_state
 from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
 from rpscli.records.ground_motion import MotionComponents
 
@@ -52,30 +54,64 @@ def run_of(
 
     `rows` samples and `events` of the first history are kept.
     """
-    n = int(systems["n"][0])
+    first = systems.view(np.ndarray)
+    n, devices = int(first["n"][0]), int(first["devices"].max())
     starts = [0, *accumulate(motion.samples.size for motion in motions)]
-    given = records(REQUEST, count=len(requests))
-    plain = given.view(record_type(REQUEST), np.ndarray)
-    for row, (system, number, scale) in zip(plain, requests, strict=True):
+    given = np.zeros(len(requests), record_type(REQUEST))
+    for row, (system, number, scale) in zip(given, requests, strict=True):
         motion, start = motions[number], starts[number]
         up = motion.row("vertical")
         row["system"], row["record"], row["npts"] = system, start, motion.npts
         row["vertical"] = NO_RECORD if up is None else start + up * motion.npts
         row["dt"], row["scale"] = motion.dt, scale
-    along = [motion.samples.ravel() for motion in motions]
     return Run(
         systems=systems,
-        requests=given,
-        acceleration=along[0] if len(along) == 1 else np.concatenate(along),
-        results=records(RESULT, count=len(requests)),
-        output=Output(
-            samples=records(SAMPLE, count=rows),
-            floors=np.empty((rows, 2, n)),
-            log=records(EVENT, count=events),
-            devices=np.empty((rows, 4, int(systems["devices"].max()))),
-        ),
+        requests=given.view(np.recarray),
+        acceleration=np.concatenate([motion.samples.ravel() for motion in motions]),
+        results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
+        output=_output(n, devices, rows, events) if rows else _no_output(n, devices),
         block=empty_block(n),
     )
+
+
+def _output(storeys: int, devices: int, rows: int, events: int) -> Output:
+    return Output(
+        samples=records(SAMPLE, count=rows),
+        floors=np.empty((rows, 2, storeys)),
+        log=records(EVENT, count=events),
+        devices=np.empty((rows, 4, devices)),
+    )
+
+
+@lru_cache
+def _no_output(storeys: int, devices: int) -> Output:
+    return _output(storeys, devices, 0, 0)
+
+
+_kept = threading.local()
+
+
+def _scratch(name: str, storeys: int, make: Callable[[], Record]) -> Record:
+    """A record that the thread keeps: to touch as much new memory takes as long as a history."""
+    known: dict[str, Record] = vars(_kept)
+    if name not in known:
+        known[name] = make()
+    known[name].view(np.ndarray)["n"] = storeys
+    return known[name]
+
+
+def follow(run: Run, lanes: int) -> None:
+    """Follow every history of a run; writes `run.results`."""
+    from rpscli.physics.planar.driver import integrate_lanes
+
+    systems = run.systems.view(np.ndarray)
+    equipped = bool(systems["devices"].any())
+    n = int(systems["n"][0])
+    state = _scratch(f"state {equipped}", n, lambda: empty_state(n, equipped=equipped))
+    state.view(np.ndarray)["lanes"] = lanes
+    block = _scratch("block", n, lambda: empty_block(n))
+    with compiled(equipped=equipped):
+        integrate_lanes(state, run._replace(block=block))
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,17 +193,13 @@ def sampled_history(
     structure: PodiumStructure, motion: MotionComponents, settings: TimeHistorySettings
 ) -> SampledHistory:
     """Run one history and keep everything."""
-    # Imported here: compiling or loading kernels costs time that other commands need not pay.
-    from rpscli.physics.planar.driver import integrate
-
     systems = stacked_systems([(structure, settings)])
     refuse_endless(structure, settings, motion)
     rows = longest_history(settings, motion)
     events = FIRST_LOG
     while True:
         run = run_of(systems, [motion], [Request(0, 0)], rows=rows, events=events)
-        with compiled(equipped=bool(structure.devices)):
-            integrate(run, lanes=1)
+        follow(run, lanes=1)
         history = run.results[0]
         if (seen := int(history.events.sum())) <= events:
             break

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -22,22 +23,48 @@ LEAST_SHAKEN = 1e-3
 """Modes that hardly take part are not given more weight than those that take part so much."""
 
 
+SYSTEMS_KEPT = 128
+"""Records of systems that are kept: to make one takes longer than to copy what of it is used."""
+
+_PLAIN = record_type(SYSTEM)
+_SQUARE = ("phi", "storey_shear_of")
+"""Matrices of modes, most of a record, which stand together; of few storeys little is used."""
+
+
 def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
-    """Structures with the same number of storeys, each with its settings: (S,) records."""
+    """Structures with the same number of storeys, each with its settings: (S,) records to read."""
+    if len(systems) == 1:
+        return _system(*systems[0])
     stacked = records(SYSTEM, count=len(systems))
-    plain = stacked.view(record_type(SYSTEM), np.ndarray)  # attributes take ten times as long
-    for record, (structure, settings) in zip(plain, systems, strict=True):
-        fill_podium(record, structure)
-        fill_settings(record, structure, settings)
-        if structure.superstructure is not None:
-            fill_building(record, structure.superstructure)
+    n, rows = systems[0][0].storeys, stacked.view(_PLAIN, np.ndarray)
+    places = [_PLAIN.fields[name][1] for name in _SQUARE]  # type: ignore[index]
+    before, behind = min(places), max(places) + _PLAIN[_SQUARE[0]].itemsize
+    into = rows.view(np.uint8).reshape(len(systems), -1)
+    for row, (structure, settings) in enumerate(systems):
+        plain = _system(structure, settings).view(_PLAIN, np.ndarray)
+        numbers = plain.view(np.uint8)
+        into[row, :before], into[row, behind:] = numbers[:before], numbers[behind:]
+        for name in _SQUARE:
+            rows[name][row, :n, :n] = plain[name][0, :n, :n]
     return stacked
+
+
+@lru_cache(SYSTEMS_KEPT)
+def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record:
+    """One structure with its settings, (1,)."""
+    system = records(SYSTEM)
+    record = system.view(_PLAIN, np.ndarray)[0]  # attributes take ten times as long
+    fill_podium(record, structure)
+    fill_settings(record, structure, settings)
+    if structure.superstructure is not None:
+        fill_building(record, structure.superstructure)
+    return system
 
 
 def building_system(building: Superstructure) -> Record:
     """A building alone, (1,): what full contact on a fixed base reads."""
     system = records(SYSTEM)
-    fill_building(system.view(record_type(SYSTEM), np.ndarray)[0], building)
+    fill_building(system.view(_PLAIN, np.ndarray)[0], building)
     return system
 
 
