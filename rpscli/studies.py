@@ -46,10 +46,9 @@ from rpscli.report.table import Column
 from rpscli.shown import Shown
 from rpscli.study_run import StudyRun, require_results
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.point_columns import Columns, array, point_columns
 from rpscli.sweep.points.check import Watched
 from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.points_csv import units_of_columns
+from rpscli.sweep.points_csv import Columns, array, point_columns, units_of_columns
 from rpscli.sweep.run.runner import Progress
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import Verdict

@@ -1,20 +1,27 @@
-"""`points.csv`: one line a point, in the order of the study, the same bytes on every run."""
+"""The points of a study as columns: as arrays, and as `points.csv`.
+
+The file has one line a point, in the order of the study, and the same bytes on every run.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
 import json
-import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
-from rpscli.sweep.evaluation.points import Point
+import numpy as np
+from numpy.typing import NDArray
+
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.points.described import described, identifying_columns
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.table import Table
+from rpscli.sweep.table import Array, Table
 from rpscli.units import in_si
+
+Columns = dict[str, NDArray[Any]]
 
 LINES_A_PIECE = 1000
 
@@ -22,28 +29,23 @@ LINES_A_PIECE = 1000
 def points_csv(table: Table) -> Iterator[str]:
     """The text, in pieces. Numbers have all their digits; what does not exist is empty."""
     layout = table.layout
-    histories = layout.plan.analysis == "timehistory"
-    results = [
-        (table.columns[path].tolist(), quantity.whole)
-        for path, quantity in SCALARS[layout.plan.analysis].items()
-    ]
-    names = units_of_columns(layout)
-    units = dict(names)
+    results = [(table.columns[name], q.whole) for name, q in SCALARS[layout.plan.analysis].items()]
+    names, cell = units_of_columns(layout), _cells(dict(units_of_columns(layout)))
+    scales = _scales(table)
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(f"{name} [{of}]" for name, of in names)
-    for number, point in enumerate(layout):
-        cells = [_cell(value, units[name]) for name, value in described(layout, point).items()]
-        if histories:
-            cells.append(_number(scale_of(table, point)))
-        cells.append(str(table.outcomes[number]))
-        cells += [_number(column[number], whole=whole) for column, whole in results]
-        writer.writerow(cells)
-        if number % LINES_A_PIECE == LINES_A_PIECE - 1:
-            yield buffer.getvalue()
-            buffer.seek(0)
-            buffer.truncate()
-    yield buffer.getvalue()
+    for first in range(0, len(table), LINES_A_PIECE):
+        piece = slice(first, first + LINES_A_PIECE)
+        points = (layout[number] for number in range(len(table))[piece])
+        known = [[cell(*item) for item in described(layout, point).items()] for point in points]
+        columns = [] if scales is None else [_numbers(scales[piece])]
+        columns.append(table.outcomes[piece].tolist())
+        columns += [_numbers(column[piece], whole=whole) for column, whole in results]
+        writer.writerows([*start, *rest] for start, *rest in zip(known, *columns, strict=True))
+        yield buffer.getvalue()
+        buffer.seek(0)
+        buffer.truncate()
 
 
 def units_of_columns(layout: StudyPoints) -> list[tuple[str, str]]:
@@ -56,17 +58,68 @@ def units_of_columns(layout: StudyPoints) -> list[tuple[str, str]]:
     return columns + [(path, quantity.unit) for path, quantity in results.items()]
 
 
-def scale_of(table: Table, point: Point) -> float:
-    """The factor on the record; known beforehand unless a measure decides about it."""
-    if table.layout.plan.measure is None:
-        return point.scale * point.scale_change
-    return float(table.scale[point.number])
+def _scales(table: Table) -> Array | None:
+    """Factors on the records; known beforehand unless a measure decides about them."""
+    plan = table.layout.plan
+    if plan.analysis != "timehistory":
+        return None
+    if plan.measure is not None:
+        return table.scale
+    return np.array([point.scale * point.scale_change for point in table.layout])
 
 
-def _number(value: float, *, whole: bool = False) -> str:
-    if not math.isfinite(value):
-        return ""
-    return str(int(value)) if whole else repr(value)
+def point_columns(table: Table) -> Columns:
+    """(points,) of each column of `points.csv` under its name: SI numbers, else objects.
+
+    Results that do not exist are NaN.
+    """
+    layout, scales = table.layout, _scales(table)
+    units = dict(units_of_columns(layout))
+    rows = [described(layout, point) for point in layout]
+    columns = {name: array([in_si(row[name], units[name]) for row in rows]) for name in rows[0]}
+    if scales is not None:
+        columns["scale"] = scales
+    return {**columns, "outcome": table.outcomes, **table.columns}
+
+
+def array(values: Any) -> NDArray[Any]:
+    """Numbers if all of them are, with NaN for None; else objects.
+
+    >>> array([1, None, "inf"]).tolist(), array([0.5, "critical"]).tolist()
+    ([1.0, nan, inf], [0.5, 'critical'])
+    """
+    kept = list(values)
+    numbers = [np.nan if value is None else np.inf if value == "inf" else value for value in kept]
+    if all(isinstance(value, int | float) for value in numbers):
+        return np.array(numbers)
+    found = np.empty(len(kept), dtype=object)
+    found[:] = kept
+    return found
+
+
+def _numbers(values: Array, *, whole: bool = False) -> list[str]:
+    finite = np.isfinite(values).tolist()
+    if not any(finite):
+        return [""] * len(finite)
+    if whole:
+        return [str(int(v)) if ok else "" for v, ok in zip(values.tolist(), finite, strict=True)]
+    return [repr(v) if ok else "" for v, ok in zip(values.tolist(), finite, strict=True)]
+
+
+def _cells(units: dict[str, str]) -> Callable[[str, object], str]:
+    """What writes a value of a column; each is looked at once."""
+    known: dict[tuple[str, type, object], str] = {}
+
+    def cell(name: str, value: object) -> str:
+        key = name, type(value), value
+        try:
+            if key not in known:
+                known[key] = _cell(value, units[name])
+            return known[key]
+        except TypeError:  # lists and mappings
+            return _cell(value, units[name])
+
+    return cell
 
 
 def _cell(value: object, unit: str) -> str:
