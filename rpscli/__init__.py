@@ -27,10 +27,14 @@ if TYPE_CHECKING:
     from rpscli.case.case import Case, load_case
     from rpscli.errors import RpsError
     from rpscli.model.bearing import Bearing
-    from rpscli.model.damping import ModalDamping, RayleighDamping
     from rpscli.model.impact import ImpactLaw
     from rpscli.model.podium import PodiumStructure
-    from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+    from rpscli.model.superstructure import (
+        ModalDamping,
+        RayleighDamping,
+        Superstructure,
+        profile_stiffnesses,
+    )
     from rpscli.records.ground_motion import GroundMotion
     from rpscli.records.source import load_record
     from rpscli.records.spectrum import response_spectrum
@@ -48,10 +52,14 @@ _HOMES = {
     "rpscli.case.case": ("Case", "load_case"),
     "rpscli.errors": ("RpsError",),
     "rpscli.model.bearing": ("Bearing",),
-    "rpscli.model.damping": ("ModalDamping", "RayleighDamping"),
     "rpscli.model.impact": ("ImpactLaw",),
     "rpscli.model.podium": ("PodiumStructure",),
-    "rpscli.model.superstructure": ("Superstructure", "profile_stiffnesses"),
+    "rpscli.model.superstructure": (
+        "ModalDamping",
+        "RayleighDamping",
+        "Superstructure",
+        "profile_stiffnesses",
+    ),
     "rpscli.records.ground_motion": ("GroundMotion",),
     "rpscli.records.spectrum": ("response_spectrum",),
     "rpscli.records.source": ("load_record",),

@@ -15,11 +15,16 @@ from oracles.storey_lagrangian import OracleSystem
 from rpscli.analyses.kernels.step_lengths import uplifted_rate
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Profile, Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import (
+    ModalDamping,
+    Profile,
+    RayleighDamping,
+    Superstructure,
+    profile_stiffnesses,
+)
 from rpscli.records.ground_motion import GroundMotion
 
 Array = NDArray[np.float64]

@@ -10,9 +10,9 @@ from typing import Any, Generic, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.device_results import DeviceDemand, device_demands
 from rpscli.analyses.outcome import OUTCOME_WORDS, Outcome, failure_text, outcome_of
 from rpscli.analyses.result_quantities import HISTORY, KERNEL_FIELDS, ResultQuantity, values_of
+from rpscli.analyses.trace import DeviceDemand, device_demands
 from rpscli.frozen import frozen
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.physics.core.records import Record, record_type

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.events import Event
 from rpscli.analyses.fixed_base import FixedBaseResponse, largest_velocities
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.analyses.trace import Trace
+from rpscli.analyses.trace import Event, Trace
 from rpscli.frozen import frozen
 from rpscli.physics.planar import geometry, state
 from rpscli.records.ground_motion import GroundMotion

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rpscli.analyses.events import event_list
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.trace import trace_of
+from rpscli.analyses.trace import event_list, trace_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 

@@ -1,22 +1,156 @@
-"""Everything that follows from the stored samples of a history, sample by sample."""
+"""Samples and events of a history, and what its devices saw: the kernel's records in words.
+
+>>> from rpscli.physics.planar import state
+>>> EVENT_NAMES[state.UPLIFT], EVENT_NAMES[state.OVERTURNING], EVENT_NAMES[state.TENDON_TAUT]
+('uplift', 'overturning', 'tendon_taut')
+>>> len(EVENT_NAMES) == state.EVENT_KINDS
+True
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import cast
+from typing import Literal, TypeAlias, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.device_results import DeviceTrace, Rows, cap_beam_forces
 from rpscli.analyses.kernels.history import SampledHistory
+from rpscli.frozen import Frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import Record
 from rpscli.physics.planar import geometry, state
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
+Rows: TypeAlias = slice | NDArray[np.intp]
+"""Numbers of samples."""
+
+EventKind = Literal[
+    "uplift",
+    "impact",
+    "recontact",
+    "rolling_to_rocking",
+    "rocking_to_rolling",
+    "critical_rotation_passed",
+    "overturning",
+    "sticking",
+    "sliding",
+    "stop_met",
+    "stop_left",
+    "tendon_yielding",
+    "tendon_slack",
+    "tendon_taut",
+]
+
+EVENT_NAMES: tuple[EventKind, ...] = get_args(EventKind)
+"""By the codes of the kernels."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """One event of a history.
+
+    Parameters
+    ----------
+    time
+        Since the start of the record [s].
+    kind
+        What happened.
+    rotation
+        theta [rad].
+    rotation_rate_before, rotation_rate_after
+        theta' [rad/s].
+    energy_lost
+        [J], negative where an impact created energy.
+    """
+
+    time: float
+    kind: EventKind
+    rotation: float
+    rotation_rate_before: float
+    rotation_rate_after: float
+    energy_lost: float
+
+
+def event_list(log: Record) -> tuple[Event, ...]:
+    """Events from the rows of the kernel's log."""
+    return tuple(
+        Event(time, EVENT_NAMES[kind], theta, before, after, lost)
+        for time, kind, theta, before, after, lost in log.tolist()
+    )
+
+
+@dataclass(frozen=True)
+class DeviceDemand:
+    """Largest demands of one device.
+
+    Forces and velocities are looked at where steps end and where the tilt turns, strokes
+    everywhere.
+    """
+
+    kind: str
+    """Name of its law."""
+    force: float
+    """At the cap beam [N]: of a tendon the tension of one, of rolling resistance the horizontal
+    force that does the same."""
+    stroke: float
+    """|u_b| [m]; of a tendon its elongation."""
+    velocity: float
+    """Rate of the stroke [m/s]."""
+    energy: float
+    """Dissipated, by all tendons together [J]."""
+    remaining_prestress: float | None
+    """Of a tendon at the end, upright [N]; None of others."""
+
+
+def device_demands(structure: PodiumStructure, history: Record) -> tuple[DeviceDemand, ...]:
+    """Demands of each device from a `state.RESULT`, in the order of the structure's."""
+    rotation = np.array([history["max_theta"]])
+    return tuple(
+        DeviceDemand(
+            device.kind,
+            float(history["device_force"][i]),
+            float(device.stroke(structure, rotation)[0]),
+            float(history["device_velocity"][i]),
+            float(history["device_energy"][i]),
+            device.remaining_prestress(float(history["permanent"][i])),
+        )
+        for i, device in enumerate(structure.devices)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceTrace(Frozen):
+    """What each device does at the samples: arrays (samples, devices)."""
+
+    force: Array
+    """On the cap beam, positive to the right [N]; of a tendon the tension of one."""
+    displacement: Array
+    """u_b [m]; of a tendon the elongation of one."""
+    energy: Array
+    """Dissipated so far [J]."""
+    stored: Array
+    """Energy over what was stored at rest [J]."""
+
+    def at(self, rows: Rows) -> DeviceTrace:
+        """Only some samples."""
+        return DeviceTrace(
+            self.force[rows], self.displacement[rows], self.energy[rows], self.stored[rows]
+        )
+
+
+def cap_beam_forces(
+    structure: PodiumStructure, devices: DeviceTrace, rotation: Array
+) -> tuple[Array, Array]:
+    """Forces of all devices on the cap beam, to the right and downwards, (samples,) [N]."""
+    push, pull = np.zeros(len(rotation)), np.zeros(len(rotation))
+    for i, device in enumerate(structure.devices):
+        across, down = device.beam_forces(structure, rotation, devices.force[:, i])
+        push, pull = push + across, pull + down
+    return push, pull
+
 
 BLOCK = 50_000
 """Samples whose quantities are derived at once."""

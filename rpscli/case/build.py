@@ -19,11 +19,15 @@ from rpscli.case.schema.case_file import (
     SuperstructureSection,
 )
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
-from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.devices import DEVICES
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import (
+    ModalDamping,
+    RayleighDamping,
+    Superstructure,
+    profile_stiffnesses,
+)
 
 
 class Shape(NamedTuple):

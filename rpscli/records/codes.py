@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rpscli.errors import RecordError
-from rpscli.records.query import hint, parse_query
+from rpscli.records.quantities import hint, parse_query
 from rpscli.records.target import Array, TargetSpectrum, table_spectrum, velocity_of
 
 EN1998_SOILS = {

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rpscli.records.ground_motion import GroundMotion, require_one_step
-from rpscli.records.query import Query, parse_query
+from rpscli.records.quantities import Query, parse_query
 
 HALF_TURN = 180.0
 """Directions half a turn apart are the same motion with the other sign [deg]."""

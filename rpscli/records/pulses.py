@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.query import Query, hint, parse_query
+from rpscli.records.quantities import Query, hint, parse_query
 
 LEAD = 2.5
 """Periods before the peak of a Ricker wavelet: at its start it is below 1e-12 of the peak."""

@@ -21,7 +21,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.pair import angle_of, rotated
-from rpscli.records.query import hint, parse_query
+from rpscli.records.quantities import hint, parse_query
 
 SCHEME = "fema_p695"
 

@@ -14,8 +14,14 @@ from rpscli.errors import RecordError, nearest
 from rpscli.records import pulses, sets, synthetic
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import angle_of, rotated
-from rpscli.records.quantities import canonical_unit, unit_factor
-from rpscli.records.query import LIKENESS, Query, hint, parse_query
+from rpscli.records.quantities import (
+    LIKENESS,
+    Query,
+    canonical_unit,
+    hint,
+    parse_query,
+    unit_factor,
+)
 
 _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
     sets.SCHEME: sets.load_component,

@@ -25,7 +25,7 @@ from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import displacement, velocity
 from rpscli.records.pulses import mavroeidis_papageorgiou
-from rpscli.records.query import parse_query
+from rpscli.records.quantities import parse_query
 
 SCHEME = "synthetic"
 

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
-from rpscli.records.query import parse_query
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, parse_query, unit_factor
 
 Array = NDArray[np.float64]
 

@@ -23,9 +23,9 @@ from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError
-from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import ModalDamping, RayleighDamping
 from rpscli.physics.core.records import LANES
 from rpscli.records.ground_motion import MotionComponents
 

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from paper_structures import FLAT, building, podium
 
 from rpscli.analyses.pushover import PATTERNS, load_pattern, pushover
-from rpscli.model.damping import RayleighDamping
-from rpscli.model.superstructure import Superstructure
+from rpscli.model.superstructure import RayleighDamping, Superstructure
 
 
 @pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])

@@ -22,10 +22,9 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import RecordError
-from rpscli.model.damping import ModalDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure
+from rpscli.model.superstructure import ModalDamping, Superstructure
 
 SECONDS = 5.0 if COMPILED else 1.5
 SETTINGS = TimeHistorySettings(free_vibration=1.0)

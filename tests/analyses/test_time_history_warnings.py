@@ -19,8 +19,8 @@ from paper_structures import (
 from rpscli.analyses.fixed_base import fixed_base_response, fixed_base_shears
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.impact import ImpactLaw
+from rpscli.model.superstructure import RayleighDamping
 
 
 @needs_compiled_kernels

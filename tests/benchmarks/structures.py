@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from rpscli.case.case import parse_case
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import CaseError
-from rpscli.model.damping import ModalDamping, RayleighDamping
-from rpscli.model.superstructure import profile_stiffnesses
+from rpscli.model.superstructure import ModalDamping, RayleighDamping, profile_stiffnesses
 
 # Ratios of a few products of doubles.
 ROUNDING = 1e-13

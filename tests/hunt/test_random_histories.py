@@ -21,10 +21,14 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import (
+    ModalDamping,
+    RayleighDamping,
+    Superstructure,
+    profile_stiffnesses,
+)
 from rpscli.records.ground_motion import GroundMotion
 
 pytestmark = pytest.mark.posix  # trials are timed by its signals

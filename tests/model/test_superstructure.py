@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from paper_structures import Array, building
 
-from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.superstructure import (
+    ModalDamping,
     Profile,
+    RayleighDamping,
     Superstructure,
     profile_shape,
     profile_stiffnesses,

@@ -22,7 +22,6 @@ from paper_structures import (
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.devices import (
     FrictionDamper,
     RollingResistance,
@@ -32,6 +31,7 @@ from rpscli.model.devices import (
 )
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.superstructure import ModalDamping, RayleighDamping
 from rpscli.records.ground_motion import GroundMotion
 
 pytestmark = needs_compiled_kernels

@@ -10,10 +10,10 @@ from paper_structures import FLAT, ground, needs_compiled_kernels, podium
 from scipy.integrate import quad
 
 from rpscli.analyses.demand import demand
-from rpscli.analyses.events import Event
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.trace import Event
 from rpscli.model.podium import PodiumStructure
 
 QUIET = TimeHistorySettings(free_vibration=0.0)

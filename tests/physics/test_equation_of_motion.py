@@ -13,10 +13,9 @@ from oracles.storey_lagrangian import Contact, StoreyLagrangian
 from paper_structures import Array, oracle_system
 
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import ModalDamping, RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure
+from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
 from rpscli.physics.planar.equation_of_motion import inertia, inertia_slope
 from rpscli.physics.planar.geometry import contact_arm, contact_height
 from rpscli.physics.planar.state import ROCKING, ROLLING

@@ -12,9 +12,9 @@ from rpscli.analyses.kernels import step_lengths, systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import RayleighDamping
 
 pytestmark = needs_compiled_kernels
 

@@ -10,7 +10,7 @@ from paper_structures import FLAT, Array, building, needs_compiled_kernels, podi
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.superstructure import ModalDamping, RayleighDamping
 from rpscli.physics.planar.demands import raise_floors
 from rpscli.physics.planar.state import ROLLING
 

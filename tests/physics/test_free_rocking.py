@@ -22,9 +22,9 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import RayleighDamping
 
 LINEAR = 3.0 * SLENDER**2
 """What the linear theory leaves out, relative: a few alpha^2."""

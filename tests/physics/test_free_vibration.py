@@ -17,9 +17,9 @@ from paper_structures import (
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import RayleighDamping
 from rpscli.physics.planar.state import FULL_CONTACT
 from rpscli.records.ground_motion import GroundMotion
 

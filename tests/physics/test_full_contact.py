@@ -11,8 +11,7 @@ from scipy.signal import lsim
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.damping import ModalDamping, RayleighDamping
-from rpscli.model.superstructure import Superstructure
+from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
 from rpscli.physics.core.records import records
 from rpscli.physics.planar.full_contact.modal_block import fill_work
 from rpscli.physics.planar.run import empty_block

@@ -21,7 +21,7 @@ from rpscli.analyses.modal import modal
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.damping import ModalDamping, RayleighDamping
+from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
 BEYOND_A_PLAIN_STEP = 1.25
 """Steps that an event adds on average: the one that leads on from it, now and then one taken again

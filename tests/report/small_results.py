@@ -14,9 +14,8 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import ModalDamping
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import ModalDamping, Superstructure, profile_stiffnesses
 from rpscli.records.source import load_record
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.case.study.rules import MOST_POINTS, MOST_SYSTEMS
 from rpscli.case.study.study import parse_study
 from rpscli.errors import CaseError
-from rpscli.model.damping import RayleighDamping
+from rpscli.model.superstructure import RayleighDamping
 from rpscli.report.study.registry import REPORTS
 
 SLENDERNESS = "podium.bearing.slenderness"

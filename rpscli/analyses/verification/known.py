@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import GroundMotion
 
 

@@ -15,7 +15,7 @@ from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.fields import Quantity, Section
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.errors import CaseError, RecordError
-from rpscli.records.query import Query, parse_query
+from rpscli.records.quantities import Query, parse_query
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import (

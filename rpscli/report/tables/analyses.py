@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.events import Event
 from rpscli.analyses.floor_spectra import FloorSpectra
 from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.pushover import CapacityCurve, StoreyCurve
 from rpscli.analyses.result_quantities import STOREY_CURVE, STOREYS
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.trace import Event
 from rpscli.report.table import Column, columns_of
 
 

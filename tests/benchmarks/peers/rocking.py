@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.model.damping import RayleighDamping
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import RayleighDamping
 
 Floats = NDArray[np.float64]
 
