@@ -13,7 +13,6 @@ from rpscli.case.schema.case_file import (
     AnalysisSection,
     BearingSection,
     CaseFile,
-    DeviceSection,
     DimensionsSection,
     PodiumMasses,
     SuperstructureSection,
@@ -21,7 +20,7 @@ from rpscli.case.schema.case_file import (
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
 from rpscli.model.devices import DEVICES
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import (
     ModalDamping,
     RayleighDamping,
@@ -108,16 +107,13 @@ def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
         superstructure=building(file.superstructure),
         impact_law=podium.impact_law,
         gravity=file.analysis.gravity,
-        devices=tuple(device_of(section) for section in file.podium.devices),
+        devices=tuple(
+            DEVICES[section.kind](**section.model_dump(exclude={"kind"}, exclude_none=True))
+            for section in file.podium.devices
+        ),
         columns=file.podium.columns or 1,
         friction=file.podium.friction,
     )
-
-
-def device_of(section: DeviceSection) -> Device:
-    """The device that a section describes."""
-    values = section.model_dump(exclude={"kind"}, exclude_none=True)
-    return DEVICES[section.kind](**values)
 
 
 def building(section: SuperstructureSection) -> Superstructure | None:

@@ -27,10 +27,11 @@ from rpscli.case.schema.fields import (
 )
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
-from rpscli.case.study.axes import Axis, clashes, sources_of
+from rpscli.case.study.axes import Axis, sources_of
 from rpscli.case.study.rules import (
     fixed_faults,
     record_rules,
+    twice,
     unknown_keys,
     varied_paths,
 )
@@ -301,7 +302,7 @@ def parse_design(
     confirming, source_faults = _confirming(document, folder)
     faults = [*check.faults, *source_faults, *sources_of(document, folder)[1]]
     faults += [*_fixed_properties(document), *unknown_keys(document), *_link_faults(document)]
-    faults += [*clashes(varied_paths(document)), *record_rules(document)]
+    faults += [*twice(document), *record_rules(document)]
     document.refuse([*faults, *fixed_faults(document, of_base)])
     file = check.read
     assert file is not None, "without faults the file is read"
@@ -386,13 +387,10 @@ def _fixed_properties(document: Document) -> Iterator[Fault]:
 
 
 def _link_faults(document: Document) -> Iterator[Fault]:
-    """Linked keys that vary by themselves, and sums of keys that do not vary."""
+    """Sums of keys that do not vary."""
     variables, linked = (document.content.get(key) for key in ("variables", "linked"))
     known = [*(variables if isinstance(variables, dict) else ()), PLUS]
     for key, terms in linked.items() if isinstance(linked, dict) else ():
-        if key in known:
-            text = f"{key} varies under variables already; take one of them out"
-            yield Fault(("linked", key), text, at_key=True)
         for name in terms if isinstance(terms, dict) else ():
             if name not in known:
                 text = f"linked.{key} needs {name}, which is not under variables"

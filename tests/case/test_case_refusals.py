@@ -29,7 +29,7 @@ SINGLE_VALUES = [
     ("ratio: 0.05", "ratio: 5", "8:20", ["< 1", "5 % is 0.05"]),
     ("ratio: 0.05", "ratio: 5 %", "8:20: superstructure.damping.ratio = '5 %'", ["a number"]),
     ("[1, 2]", "[1]", "8:33", ["two modes, as in [1, 2]"]),
-    ("[1, 2]", "[0, 2]", "8:33", ["modes count from 1"]),
+    ("[1, 2]", "[0, 2]", "8:34", ["modes count from 1"]),
     ("[1, 2]", "[1, 4]", "8:33", ["from 1 to superstructure.storeys = 3 (line 3)"]),
     ("modes: [1, 2]", "modes: both", "8:33", ["two modes"]),
     ("semi_diagonal: 1.5", "semi_diagonal: 0", "11:20", ["> 0 m"]),

@@ -103,7 +103,7 @@ class DampingSection(Section):
     ratio: Annotated[
         float, Quantity(symbol="of critical damping", at_least=0, below=1, remedy="5 % is 0.05")
     ] = Field(description="critical damping ratio")
-    modes: Annotated[tuple[int, int], ModePair()] | None = Field(
+    modes: ModePair | None = Field(
         None,
         description="the two modes of Rayleigh damping, counted from 1; left out: the same ratio"
         " in every mode. One storey, or one mode named twice: stiffness-proportional",

@@ -195,25 +195,16 @@ class Whole:
         return {"type": "integer", "minimum": self.at_least} | most
 
 
-@dataclass(frozen=True)
-class ModePair:
-    """Two modes of vibration, counted from 1."""
+def _two(value: object) -> object:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        refuse("must be two modes, as in [1, 2]; leave modes out to damp every mode alike")
+    return value
 
-    def pair(self, value: object) -> tuple[int, int]:
-        """The two; raises pydantic's error if they are not."""
-        if not isinstance(value, list | tuple) or len(value) != 2:
-            refuse("must be two modes, as in [1, 2]; leave modes out to damp every mode alike")
-        first, second = (Whole(1, remedy="modes count from 1").number(mode) for mode in value)
-        return first, second
 
-    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
-        """The check, for pydantic."""
-        return core_schema.no_info_plain_validator_function(self.pair)
-
-    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
-        """The JSON schema."""
-        mode = {"type": "integer", "minimum": 1}
-        return {"type": "array", "items": mode, "minItems": 2, "maxItems": 2}
+Mode = Annotated[int, Whole(1, remedy="modes count from 1")]
+_MODES = {"type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 2, "maxItems": 2}
+ModePair = Annotated[tuple[Mode, Mode], BeforeValidator(_two), WithJsonSchema(_MODES)]
+"""Two modes of vibration, counted from 1."""
 
 
 def _text(value: object) -> str:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
 from pydantic import (
+    AfterValidator,
     Field,
     PlainValidator,
     ValidationError,
     ValidationInfo,
     WithJsonSchema,
-    model_validator,
 )
 
 from rpscli.case.schema.fields import Quantity, Section, refuse
@@ -37,6 +37,15 @@ MeasuredValue = Annotated[
 ]
 
 
+def _of_sa(period: float | None, info: ValidationInfo) -> float | None:
+    if info.data.get("measure", "Sa") != "Sa":
+        refuse(f"belongs to the measure Sa; {info.data['measure']} has none, take it out")
+    return period
+
+
+of_sa = AfterValidator(_of_sa)
+
+
 class ScaleToSection(Section):
     """A value of an intensity measure of the horizontal record, in place of a factor."""
 
@@ -44,18 +53,12 @@ class ScaleToSection(Section):
         description="PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"
     )
     value: MeasuredValue = Field(description="what it is to be, SI or with a unit, such as 0.4 g")
-    period: Annotated[float, Quantity("s", above=0)] | None = Field(
+    period: Annotated[Annotated[float, Quantity("s", above=0)] | None, of_sa] = Field(
         None, description="of Sa; left out: the fixed-base first period of the building"
     )
     damping: Annotated[float, Quantity(symbol="of critical damping", at_least=0, below=1)] = Field(
         0.05, description="of Sa"
     )
-
-    @model_validator(mode="after")
-    def _of_sa(self) -> Self:
-        if self.period is not None and self.measure != "Sa":
-            refuse(f"must have a period with the measure Sa only; {self.measure} has none")
-        return self
 
 
 def scale_to_of(text: str) -> ScaleToSection:

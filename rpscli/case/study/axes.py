@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from rpscli.case.study.schema import Axes, RecordPattern, Source
 from rpscli.case.text.document import Document, Fault, Path, Place, dotted
-from rpscli.errors import RecordError, listed
+from rpscli.errors import RecordError
 from rpscli.records.source import expand_sources
 
 Values = tuple[Any, ...]
@@ -80,16 +80,6 @@ def _axis(document: Document, path: Path, values: Mapping[str, Values]) -> Axis:
         rows=tuple(zip(*values.values(), strict=True)),
         places=tuple(places(key, len(column)) for key, column in values.items()),
     )
-
-
-def clashes(keys: Mapping[str, Path]) -> Iterator[Fault]:
-    """A key that varies twice, or together with a part of itself."""
-    names = sorted(keys)
-    for name in names:
-        inside = [other for other in names if other.startswith(f"{name}.")]
-        if inside:
-            text = f"{name} varies as a whole; {listed(inside, 'and')} inside it must not vary too"
-            yield Fault(keys[name], text, at_key=True)
 
 
 def sources_of(document: Document, folder: Folder) -> tuple[tuple[str, ...], list[Fault]]:

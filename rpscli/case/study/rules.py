@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import field_at, unknown_key
-from rpscli.case.study.axes import Axis, clashes
+from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportKinds, ReportRequest, varied_keys
 from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.case.text.document import Document, Fault, Path, dotted
@@ -20,20 +20,20 @@ OF_POINTS = ("record", "scale")
 """Axes of the product that are no case keys; reports may name them."""
 
 
-def varied_paths(document: Document) -> dict[str, Path]:
+def _varied(document: Document) -> Iterator[tuple[str, Path]]:
     """Every key that varies or is sampled, and where it stands."""
-    axes = document.content.get("vary", [])
-    ranges = document.at(("sample", "ranges"))
-    paths: dict[str, Path] = {}
+    axes = document.content.get("vary")
     for index, axis in enumerate(axes if isinstance(axes, list) else ()):
-        for key in axis if isinstance(axis, dict) else ():
-            paths[key] = ("vary", index, key)
-    for key in ranges if isinstance(ranges, dict) else ():
-        paths[key] = ("sample", "ranges", key)
-    for part in ("variables", "linked"):  # of a design
-        written = document.content.get(part)
-        paths |= {key: (part, key) for key in (written if isinstance(written, dict) else ())}
-    return paths
+        yield from ((key, ("vary", index, key)) for key in (axis if isinstance(axis, dict) else ()))
+    for owner in (("sample", "ranges"), ("variables",), ("linked",)):  # the latter of a design
+        written = document.at(owner)
+        keys = written if isinstance(written, dict) else ()
+        yield from ((key, (*owner, key)) for key in keys)
+
+
+def varied_paths(document: Document) -> dict[str, Path]:
+    """Every key that varies or is sampled, once."""
+    return dict(_varied(document))
 
 
 def unknown_keys(document: Document) -> Iterator[Fault]:
@@ -45,23 +45,20 @@ def unknown_keys(document: Document) -> Iterator[Fault]:
             yield Fault(place, hint, at_key=True)
 
 
-def twice(document: Document, axes: list[Axis]) -> Iterator[Fault]:
-    """Keys that vary in two axes, or vary and are sampled."""
+def twice(document: Document) -> Iterator[Fault]:
+    """Keys that vary twice, or together with a part of themselves."""
     seen: dict[str, Path] = {}
-    for index, axis in enumerate(axes):
-        for key in axis.keys:
-            path: Path = ("vary", index, key)
-            if key in seen:
-                text = f"{key} varies already in another axis{document.where(seen[key])}"
-                yield Fault(path, f"{text}; take one of them out", at_key=True)
-            seen[key] = path
-    ranges = document.at(("sample", "ranges"))
-    for key in ranges if isinstance(ranges, dict) else ():
+    for key, path in _varied(document):
         if key in seen:
-            path = ("sample", "ranges", key)
-            text = f"{key} varies already{document.where(seen[key])}; take one of them out"
+            axis = " in another axis" if path[0] == seen[key][0] == "vary" else ""
+            text = f"{key} varies already{axis}{document.where(seen[key])}; take one of them out"
             yield Fault(path, text, at_key=True)
-    yield from clashes(varied_paths(document))
+        seen[key] = path
+    names = sorted(seen)
+    for name in names:
+        if inside := [other for other in names if other.startswith(f"{name}.")]:
+            text = f"{name} varies as a whole; {listed(inside, 'and')} inside it must not vary too"
+            yield Fault(seen[name], text, at_key=True)
 
 
 def fixed_faults(document: Document, overrides: Sequence[str]) -> Iterator[Fault]:

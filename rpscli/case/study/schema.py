@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     ConfigDict,
     Discriminator,
@@ -35,7 +34,7 @@ from rpscli.case.schema.fields import (
     refuse,
 )
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.schema.scale_to import MeasuredValue, measured_value
+from rpscli.case.schema.scale_to import MeasuredValue, measured_value, of_sa
 from rpscli.case.text.document import shown
 from rpscli.records.measures import Measure
 
@@ -104,12 +103,6 @@ Axes = Annotated[
 Analysis = Literal["timehistory", "modal", "pushover"]
 
 
-def _of_sa(period: float | None, info: ValidationInfo) -> float | None:
-    if info.data.get("measure", "Sa") != "Sa":
-        refuse(f"belongs to the measure Sa; {info.data['measure']} has none, take it out")
-    return period
-
-
 class MeasureScale(Section):
     """Every record scaled to given values of an intensity measure."""
 
@@ -117,7 +110,7 @@ class MeasureScale(Section):
         description="PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"
     )
     values: MeasuredValues = Field(description="values to scale to, SI or with a unit")
-    period: Annotated[Time | None, AfterValidator(_of_sa)] = Field(
+    period: Annotated[Time | None, of_sa] = Field(
         None, description="of Sa; left out: the fixed-base first period of each system"
     )
     damping: DampingRatio = Field(0.05, description="of Sa")
@@ -230,12 +223,6 @@ Sources = Annotated[
 ]
 
 
-def _base(value: object) -> object:
-    if not isinstance(value, dict) and not (isinstance(value, str) and value.strip()):
-        refuse("must be a file, as text, or a case, as a mapping")
-    return value
-
-
 def _report(value: object) -> object:
     if not isinstance(value, str) and not (isinstance(value, dict) and len(value) == 1):
         refuse("must be a name, or one `name: {option: value}`")
@@ -243,7 +230,11 @@ def _report(value: object) -> object:
 
 
 WrittenOrNamed = str | dict[str, Any]
-Base = Annotated[WrittenOrNamed, PlainValidator(_base), WithJsonSchema({}), CHECKED_BY_ITSELF]
+Base = Annotated[
+    WrittenOrNamed,
+    must_be((str, dict), "a file, as text, or a case, as a mapping", filled=True),
+    CHECKED_BY_ITSELF,
+]
 Reports = Annotated[
     tuple[Annotated[WrittenOrNamed, PlainValidator(_report), WithJsonSchema({})], ...],
     must_be(list, "a list, as in [overturning, fragility]"),

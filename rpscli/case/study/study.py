@@ -118,7 +118,7 @@ def study_of(
     sources, source_faults = sources_of(document, folder)
     reports, report_faults = requests_of(document, kinds)
     faults = [*check.faults, *axis_faults, *source_faults, *report_faults]
-    faults += [*unknown_keys(document), *twice(document, axes), *record_rules(document)]
+    faults += [*unknown_keys(document), *twice(document), *record_rules(document)]
     faults += analysis_rules(document, reports, kinds)
     observed = None
     if not axis_faults and (axes or not document.content.get("vary")):

@@ -277,15 +277,8 @@ def _scalar(tag: str, text: str) -> Scalar:
         return None
     if tag == "bool":
         return text.lower() == "true"
-    return _integer(text) if tag == "int" else _real(text)
-
-
-def _integer(text: str) -> int:
-    base = {"0o": 8, "0x": 16}.get(text[:2], 10)
+    if tag == "float":
+        return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
     if len(text) > 400:  # far outside every quantity, and slow to convert
         raise ValueError(f"a whole number of {len(text)} digits is too long")
-    return int(text, base)
-
-
-def _real(text: str) -> float:
-    return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
+    return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
