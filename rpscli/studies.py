@@ -198,9 +198,9 @@ class Study(Shown):
         scheduler
             Address of a Dask scheduler, in place of threads.
         fresh
-            Throw away what is stored.
+            Discard stored results.
         retry_failed
-            Compute points again that failed.
+            Recompute failed points.
         progress
             Is told how far it is.
 

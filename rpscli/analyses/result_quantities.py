@@ -125,7 +125,7 @@ HISTORY = (
         "max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1",
         kernel="max_theta",
     ),
-    ResultQuantity("max_rotation_time", "s", "largest rotation at"),
+    ResultQuantity("max_rotation_time", "s", "time of largest rotation"),
     ResultQuantity(
         "rotation_ratio", "-", "rotation ratio", r"$|\theta_{max}|/\theta_{cr}$", limit="0.5",
         demand=True, meaning="largest rotation over critical rotation",
@@ -186,9 +186,9 @@ SAMPLED = (
         meaning="largest base shear over that of the fixed base",
     ),
     ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
-    ResultQuantity("max_column_force", "N", "normal force of a column", limit="2e6"),
+    ResultQuantity("max_column_force", "N", "axial force of a column", limit="2e6"),
     ResultQuantity(
-        "min_column_force", "N", "least normal force of a column", limit="1e4", from_below=True
+        "min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True
     ),
     ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction in the case"),
 )  # fmt: skip

@@ -236,8 +236,8 @@ class TimeHistoryResult(Demand):
         if self.is_near_critical and passed is not None:
             yield (
                 f"the critical rotation was passed at t = {passed:.4g} s (largest {ratio:.3g}"
-                " theta_cr): the weight no longer restored, only the ground fetched the storey"
-                " back; judge by many records"
+                " theta_cr): the weight no longer restored, only the ground motion"
+                " reversed it; judge by many records"
             )
         elif self.is_near_critical:
             yield (

@@ -274,7 +274,8 @@ def answer_tables(
             for design, verdicts in confirmation.items()
             for verdict in verdicts
         ]
-        yield Table.of_texts(("design", "limit", "", "asked for", "found"), rows, words=5, keys=2)
+        heads = ("design", "limit", "", "requirement", "result")
+        yield Table.of_texts(heads, rows, words=5, keys=2)
     yield ONE_DIRECTION
 
 
@@ -340,7 +341,7 @@ def _requirements(document: dict[str, Any], answer: Answer) -> Table:
                 f"{row['designs_that_meet_it']} designs",
             )
         )
-    heads = ("requirement", "asked for", "", "found", "met by")
+    heads = ("limit", "requirement", "", "result", "met by")
     return Table.of_texts(heads, rows, words=3)
 
 

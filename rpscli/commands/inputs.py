@@ -109,7 +109,7 @@ class _Factor(click.types.FloatParamType):
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter:
-            text = f"{value!r} is no number; scale to an intensity by --scale-to PGA=0.4g"
+            text = f"{value!r} is not a number; scale to an intensity by --scale-to PGA=0.4g"
             self.fail(text, param, ctx)
 
 

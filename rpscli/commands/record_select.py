@@ -99,9 +99,9 @@ def command(
 
     SRC are files, folders or sets (fema_p695:farfield/*). Sa(T1) is the wrong aim for rocking: once
     lifted, a structure has no period of its own, and overturning follows the velocity of long
-    pulses. So spectra are compared over a range of periods, PGV and PGD stand beside the target's
-    (PGV of a code's spectrum: its pseudo-velocity at 1 s over 1.65), and --scale-by PGV brings
-    every motion to one PGV.
+    pulses. So spectra are compared over a range of periods, PGV and PGD are reported with the
+    target's (PGV of a code's spectrum: its pseudo-velocity at 1 s over 1.65), and --scale-by PGV
+    brings every motion to one PGV.
 
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.

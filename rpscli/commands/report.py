@@ -57,7 +57,7 @@ from rpscli.report.files import require_writable, write_whole
     help="A limit besides those of the case or study, as in `rps timehistory`; repeatable.",
 )
 @style_option
-@click.option("--force", is_flag=True, help="Overwrite a file that is no report.")
+@click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
 @terminal_options
 def command(
     subject: str,
@@ -144,8 +144,8 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
         own = False
     if not own:
         raise Refused(
-            f"{file} exists and is no report of {name}; name another file with -o, or overwrite it"
-            " with --force"
+            f"{file} exists and is not a report of {name}; name another file with -o, or overwrite"
+            " it with --force"
         )
 
 

@@ -278,5 +278,5 @@ def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
         for system, verdict in zip(cells, ordered, strict=True)
     ]
     keys = len(heads) + 1
-    heads += ["limit", "", "asked for", "found"]
+    heads += ["limit", "", "requirement", "result"]
     return Table.of_texts(heads, rows, words=keys + 2, keys=keys)

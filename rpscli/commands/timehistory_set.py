@@ -257,4 +257,4 @@ def _verdict_table(computed: Sequence[Computed]) -> Table:
                     f"{verdict.beyond.number} of {verdict.beyond.of} beyond{largest}",
                 ]
             )
-    return Table.of_texts(["case", "limit", "", "asked for", "found"], rows, words=5, keys=2)
+    return Table.of_texts(["case", "limit", "", "requirement", "result"], rows, words=5, keys=2)

@@ -114,7 +114,8 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
     rows = [_row(result, name) for name in names]
     if result.structure.columns > 1:
         return rows
-    return [(row[0].replace("a column", "all columns"), *row[1:]) for row in rows]
+    labels = ("total column shear", "axial force, all columns", "minimum axial force, all columns")
+    return [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
 
 
 def _energy(result: TimeHistoryResult) -> list[Row]:
@@ -181,4 +182,4 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
             rows.append((*row, "", ""))
         else:
             rows.append((*row, "overturned" if verdict.overturned else value, condition.bound))
-    return Table.of_texts(["limit", "", "from", "value", "asked for"], rows, words=3)
+    return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)

@@ -274,7 +274,7 @@ class OutputFolder:
         except FileNotFoundError:
             return {}
         except (OSError, ValueError, TypeError, KeyError):
-            return self._refuse(f"{place} is no description of a run of rps")
+            return self._refuse(f"{place} is not a description of a run of rps")
         if record := earlier.get("record"):
             owner = f"{owner} under {record}"
         same = earlier["command"] == self.run.command and earlier["file"] == self._subject
@@ -288,7 +288,7 @@ class OutputFolder:
     def _refuse_strangers(self) -> None:
         for path in self._contents:
             if path.exists() and self._known_as(path) not in self._own:
-                self._refuse(f"{path} exists and is no earlier output of this command")
+                self._refuse(f"{path} exists and is not an earlier output of this command")
 
     def _refuse(self, reason: str) -> dict[str, Any]:
         if not self.force:

@@ -72,7 +72,7 @@ def test_a_style_file_goes_over_ours(tmp_path: Path, monkeypatch: pytest.MonkeyP
         ("font.siize: 9\n", "font.siize"),
         ("font.size: large as life\n", "font.size"),
         (None, "No such file"),
-        (b"\xff\xfe\x00", "is no text"),
+        (b"\xff\xfe\x00", "is not a text"),
     ],
 )
 def test_a_style_file_that_says_nonsense_is_refused(

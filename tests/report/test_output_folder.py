@@ -67,7 +67,7 @@ def test_nothing_outside_the_folder_is_taken_away(tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", ["", "[]", "{}", "null", '{"command": 1}', "\0"])
 def test_a_strange_run_json_is_refused(tmp_path: Path, text: str) -> None:
     (tmp_path / "run.json").write_text(text, encoding="utf-8")
-    with pytest.raises(Refused, match=r"run\.json is no description"):
+    with pytest.raises(Refused, match=r"run\.json is not a description"):
         folder_of(tmp_path)
     folder_of(tmp_path, force=True).write()
     assert not folder_of(tmp_path).replaces_other_inputs

@@ -100,7 +100,7 @@ def overrides_option(meaning: str) -> Callable[[Command], Command]:
 
 
 _overrides = overrides_option(
-    "Put a value over the case's own, such as --set podium.bearing.curvature_ratio=1.5"
+    "Override a value of the case, such as --set podium.bearing.curvature_ratio=1.5"
 )
 
 style_option = click.option(
@@ -161,7 +161,7 @@ def _formats(text: str) -> tuple[str, ...]:
     for word in words:
         if word not in FORMATS:
             meant = hint(word, (*FORMATS, "none"), "write png, svg, pdf, svg,pdf or none", 0.6)
-            raise UsageError(f"--figures {text}: {word or 'nothing'} is no format; {meant}")
+            raise UsageError(f"--figures {text}: {word or 'nothing'} is not a format; {meant}")
     return tuple(dict.fromkeys(words))
 
 
@@ -173,13 +173,13 @@ def film_options(function: Command) -> Command:
         "file",
         type=click.Path(path_type=Path),
         metavar="FILE",
-        help=f"Also draw it moving: {' or, with ffmpeg, '.join(RATES)}.",
+        help=f"Also draw an animation: {' or, with ffmpeg, '.join(RATES)}.",
     )
     @click.option(
         "--animate-size",
         type=click.IntRange(200, 4000),
         metavar="PIXELS",
-        help=f"Width of the moving picture; {USUAL_SIZE} by default.",
+        help=f"Width of the animation; {USUAL_SIZE} by default.",
     )
     @functools.wraps(function)
     def command(*, file: Path | None, **rest: Any) -> None:
@@ -224,8 +224,8 @@ def film_part_options(function: Command) -> Command:
 def run_options(function: Command) -> Command:
     """How the points of a study are computed, as the keywords of `SweepChoices`."""
     for option in (
-        click.option("--retry-failed", is_flag=True, help="Compute points again that failed."),
-        click.option("--fresh", is_flag=True, help="Throw away what is stored, and begin anew."),
+        click.option("--retry-failed", is_flag=True, help="Recompute failed points."),
+        click.option("--fresh", is_flag=True, help="Discard stored results."),
         click.option(
             "--dry-run", is_flag=True, help="Check the file; show its points and an estimate."
         ),

@@ -155,7 +155,7 @@ def read_style(path: Path) -> dict[str, Any]:
         settings = rc_params_from_file(_regular(path), use_default_template=False)
         found = cast("dict[str, Any]", settings)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "is no text"
+        reason = getattr(error, "strerror", None) or "is not a text"
         raise UsageError(
             f"--style {str(path)[:200]}: cannot be read: {reason}; name a style file of matplotlib"
         ) from None
@@ -171,7 +171,7 @@ def read_style(path: Path) -> dict[str, Any]:
 def _regular(path: Path) -> Path:
     """The path, but of a device or a pipe, which may have no end."""
     if path.exists() and not path.is_file():
-        raise OSError(0, "is no file")
+        raise OSError(0, "is not a file")
     return path
 
 

@@ -64,7 +64,7 @@ DYNAMICS = (
     ),
     Derived("gamma", "cap beam over columns", "gamma", "-", lambda s: s.gamma),
     Derived("eta", "superstructure over cap beam", "eta", "-", lambda s: s.eta),
-    Derived("gamma_total", "both over columns", "gamma (1 + eta)", "-", lambda s: s.gamma_total),
+    Derived("gamma_total", "total mass ratio", "gamma (1 + eta)", "-", lambda s: s.gamma_total),
     Derived("restitution", "restitution at impact", "e", "-", lambda s: s.restitution),
     Derived(
         "uplift_acceleration", "uplift acceleration, quasi-static", "g tan(alpha)", "m/s2",
