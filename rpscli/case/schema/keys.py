@@ -25,7 +25,7 @@ def sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         yield annotation
     elif isinstance(annotation, Several):
-        yield ValueRange
+        yield from [ValueRange] * annotation.spaced
     else:
         for part in _parts(annotation):
             yield from sections_of(part)
