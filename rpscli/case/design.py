@@ -382,7 +382,7 @@ def _fixed_properties(document: Document) -> Iterator[Fault]:
     """Keys that are no property of the structure."""
     for key, place in varied_paths(document).items():
         if key.split(".")[0] in {"limits", "analysis", "rps", "title", "record"}:
-            text = f"{key} must not change in a design; it is no property of the structure"
+            text = f"{key} must not change in a design; it is not a property of the structure"
             yield Fault(place, text, at_key=True)
 
 

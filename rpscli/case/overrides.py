@@ -117,7 +117,7 @@ def _step(owner: object, path: Path, part: str | int) -> Fault | None:
     elif not isinstance(owner, dict):
         return Fault(path, f"{dotted(path)} = {shown(owner)} is a single value; set it as a whole")
     elif isinstance(part, int):
-        return Fault(path, f"{dotted(path) or 'the case'} is not a list; {part} is no key of it")
+        return Fault(path, f"{dotted(path) or 'the case'} is not a list; {part} is not a key of it")
     return None
 
 

@@ -82,7 +82,11 @@ def test_a_value_may_vary(equipped: str) -> None:
         ("force: 400 kN", "force: -1", "c.yaml:21:31: podium.devices.1.force = -1 must be > 0 N"),
         ("force: 400 kN", "force: 4 t", "podium.devices.1.force = '4 t' is a mass, but must"),
         (", force: 400 kN", "", "c.yaml:21:7: podium.devices.1.force is missing: friction: F_d"),
-        ("force: 4", "gap: 1, force: 4", "podium.devices.1.gap is no key of kind: friction, which"),
+        (
+            "force: 4",
+            "gap: 1, force: 4",
+            "podium.devices.1.gap is not a key of kind: friction, which",
+        ),
         ("exponent: 0.5", "exponent: 3", "must be >= 0.2 and <= 2 (a); 1 is a linear damper"),
         ("kind: friction", "kind: fiction", "did you mean friction?"),
         ("kind: friction, ", "", "podium.devices.1.kind is missing: viscous or friction damper"),

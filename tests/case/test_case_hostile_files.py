@@ -89,7 +89,7 @@ def test_a_pipe_is_read_if_somebody_writes(
 def test_sizes_are_refused_before_they_are_read(tmp_path: Path) -> None:
     path = tmp_path / "large.yaml"
     path.write_bytes(b"rps: 1\ntitle: " + b"x" * files.LARGEST)
-    assert "more than 2 MB is no case or study" in refusal(path)
+    assert "more than 2 MB is not a case or a study" in refusal(path)
 
 
 def test_many_values_are_refused_while_they_are_read() -> None:

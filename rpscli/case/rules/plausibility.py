@@ -57,7 +57,7 @@ def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
     return texts
 
 
-class Usual(NamedTuple):
+class TypicalRange(NamedTuple):
     """A quantity and the range in which buildings have it."""
 
     name: str
@@ -74,12 +74,12 @@ class Usual(NamedTuple):
             yield Doubt(f"{self.name} = {{0}}{unit} is unusual: {usual} is{advice}", value)
 
 
-HEIGHT = Usual("the height of the columns 2H", "m", 0.3, 10.0)
-SEMI_DIAGONAL = Usual("the semi-diagonal of the columns R", "m", 0.15, 6.0)
-PERIOD = Usual("the first period on a fixed base T1", "s", 0.02, 5.0)
-STOREY_MASS = Usual("the mean mass of a storey", "t", 1.0, 10_000.0)
-RESTITUTION = Usual("the restitution at impact e", "", 0.5, 1.0)
-FRICTION = Usual("the coefficient podium.friction", "", 0.1, 1.5)
+HEIGHT = TypicalRange("the height of the columns 2H", "m", 0.3, 10.0)
+SEMI_DIAGONAL = TypicalRange("the semi-diagonal of the columns R", "m", 0.15, 6.0)
+PERIOD = TypicalRange("the first period on a fixed base T1", "s", 0.02, 5.0)
+STOREY_MASS = TypicalRange("the mean mass of a storey", "t", 1.0, 10_000.0)
+RESTITUTION = TypicalRange("the restitution at impact e", "", 0.5, 1.0)
+FRICTION = TypicalRange("the coefficient podium.friction", "", 0.1, 1.5)
 
 NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""

@@ -261,7 +261,7 @@ def _keys_of(case: PartialCase, path: Path, kind: str) -> Iterator[Fault]:
     for key in case.written(path, *DeviceSection.model_fields):
         if key not in ("kind", *needed, *optional):
             known = listed((*needed, *optional), "and")
-            text = f"{name}.{key} is no key of kind: {kind}, which has {known}; take it out"
+            text = f"{name}.{key} is not a key of kind: {kind}, which has {known}; take it out"
             yield Fault((*path, key), text, at_key=True)
 
 

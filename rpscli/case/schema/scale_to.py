@@ -74,7 +74,7 @@ def scale_to_of(text: str) -> ScaleToSection:
     measure = next((known for known in MEASURE_UNITS if known.lower() == name.lower()), None)
     if measure is None:
         known_are = f"known are {', '.join(MEASURE_UNITS)}"
-        raise ValueError(f"{name} is no measure; {hint(name, MEASURE_UNITS, known_are, 0.6)}")
+        raise ValueError(f"{name} is not a measure; {hint(name, MEASURE_UNITS, known_are, 0.6)}")
     given: dict[str, Any] = {"measure": measure, "value": _number(value)}
     if period is not None:
         given["period"] = _number(period)

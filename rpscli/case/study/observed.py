@@ -86,7 +86,7 @@ def observed_of(
     try:
         rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        return None, [_fault(written, lines.line_num, f"is no CSV: {error}")]
+        return None, [_fault(written, lines.line_num, f"is not CSV: {error}")]
     if len(rows) < 2:
         return None, [Fault(PATH, f"observed: {written} must have a line of titles and more lines")]
     (first, heads), *rest = rows

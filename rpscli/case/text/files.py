@@ -59,7 +59,7 @@ def _bounded(file: BinaryIO, name: str) -> bytes:
     data = file.read(LARGEST + 1)
     if len(data) > LARGEST:
         raise CaseError(
-            f"{name}: more than {LARGEST / 1e6:g} MB is no case or study; records are named by"
+            f"{name}: more than {LARGEST / 1e6:g} MB is not a case or a study; records are named by"
             " their files, not written out"
         )
     return data
