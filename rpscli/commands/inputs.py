@@ -68,15 +68,7 @@ def case_folder(
     record_source: Path | str | None = None,
     **inputs: Any,
 ) -> OutputFolder:
-    """The folder of a command's results, claimed before the work begins.
-
-    Parameters
-    ----------
-    record_source
-        The record that the results belong to besides the case, if they do.
-    inputs
-        Everything else that decides about them.
-    """
+    """The folder of a command's results, claimed before the work begins."""
     resolved: Mapping[str, Any] = {
         "case": given.case.document,
         "overrides": list(given.request.overrides),
@@ -133,13 +125,7 @@ class MotionRequest:
 
 
 def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator[MotionRequest]:
-    """One request for each motion that the sources stand for, sets and folders taken apart.
-
-    Raises
-    ------
-    UsageError
-        If several motions share one vertical component.
-    """
+    """One request for each motion that the sources stand for, sets and folders taken apart."""
     if not records:
         yield request
         return
@@ -170,15 +156,7 @@ def motion_source(case: Case, request: MotionRequest) -> Path | str:
 
 
 def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
-    """Read the motion; a `--record` stands in place of the whole `record` section of the case.
-
-    Raises
-    ------
-    UsageError
-        If neither names a record, or it is to be scaled to what the case cannot have.
-    RecordError
-        If a record cannot be read or scaled, or the components have different time steps.
-    """
+    """Read the motion; a `--record` stands in place of the whole `record` section of the case."""
     from rpscli.records.source import load_components, load_record
 
     given = case.record if request.record is None else None

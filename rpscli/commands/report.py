@@ -124,15 +124,7 @@ def _require_sense(
 
 
 def _require_free(file: Path, name: str, *, force: bool) -> None:
-    """Refuse to replace what is no earlier page about the same.
-
-    Raises
-    ------
-    Refused
-        If another file is in the way.
-    OutputError
-        If nothing can be written there.
-    """
+    """Refuse to replace what is no earlier page about the same."""
     require_writable(file.parent)
     if force or not file.exists():
         return

@@ -49,13 +49,7 @@ class Earlier:
 
 
 def earlier_results(folder: Path) -> Earlier:
-    """What a folder holds.
-
-    Raises
-    ------
-    UsageError
-        If it holds nothing that a page can be made of.
-    """
+    """What a folder holds."""
     command = None
     try:
         run = json.loads((folder / RUN_FILE).read_text(encoding="utf-8"))

@@ -64,11 +64,6 @@ def history_requests(
 
     Without ``-o`` each goes to a folder of its record's name and scale. With it, several go to
     folders of these names inside, below one of each case if there are several cases.
-
-    Raises
-    ------
-    RecordError
-        For all motions that cannot be had, one line for each.
     """
     requests = []
     case_labels = unique([given.case.name for given in cases])

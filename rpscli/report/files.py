@@ -19,13 +19,7 @@ Content: TypeAlias = bytes | Iterator[str]
 
 
 def write_whole(contents: Mapping[Path, Content]) -> None:
-    """Write files so that each appears whole or not at all, in folders that are made if needed.
-
-    Raises
-    ------
-    OutputError
-        If one cannot be written; then none has been replaced.
-    """
+    """Write files so that each appears whole or not at all, in folders that are made if needed."""
     ready: dict[Path, Path] = {}
     path = Path()
     try:
@@ -51,13 +45,7 @@ def write_whole(contents: Mapping[Path, Content]) -> None:
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Make the folder, and wait until no other process that asks writes there.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be made.
-    """
+    """Make the folder, and wait until no other process that asks writes there."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -75,13 +63,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def require_writable(folder: Path) -> None:
-    """Whether a folder can be made or written to: better known before the work than after.
-
-    Raises
-    ------
-    OutputError
-        If it cannot.
-    """
+    """Whether a folder can be made or written to: better known before the work than after."""
     if "\0" in str(folder):
         raise OutputError(f"{str(folder)[:200]!r}: no path holds a zero byte; correct the name")
     try:
@@ -95,13 +77,7 @@ def require_writable(folder: Path) -> None:
 
 
 def require_writable_file(file: Path) -> None:
-    """Whether a file can be made or replaced.
-
-    Raises
-    ------
-    OutputError
-        If it cannot.
-    """
+    """Whether a file can be made or replaced."""
     require_writable(file.parent)
     try:
         if file.is_dir():
@@ -122,23 +98,7 @@ RUN_FILE = "run.json"
 
 @dataclass(frozen=True)
 class Run:
-    """What a command was run on.
-
-    Parameters
-    ----------
-    command
-        Such as ``timehistory``.
-    name
-        Of the case or the record.
-    file
-        Where the input was read from; None for the standard input and for made records.
-    digest
-        SHA-256 (hexadecimal) of the input's text.
-    inputs
-        Everything else that decides about the result, resolved.
-    record
-        The record besides the case that the results belong to: a file, or a source that is none.
-    """
+    """What a command was run on: what has no file is known by the SHA-256 of its text."""
 
     command: str
     name: str
@@ -149,24 +109,10 @@ class Run:
 
 
 class OutputFolder:
-    """The files that one run leaves behind.
+    """The files that one run leaves behind, in a folder that is made when they are written.
 
-    Parameters
-    ----------
-    folder
-        Made when the files are written.
-    run
-        Identifies the owner. A later run of the same command on the same file, under the same
-        record, may replace the files, though the file's content or the options have changed.
-    force
-        Overwrite whatever is in the way.
-
-    Raises
-    ------
-    Refused
-        If the folder holds the results of another command or another case.
-    OutputError
-        If nothing can be written there.
+    A later run of the same command on the same file under the same record may replace them, though
+    the file's content or the options have changed; `force` overwrites whatever is in the way.
     """
 
     def __init__(self, folder: Path, run: Run, *, force: bool = False) -> None:
@@ -208,15 +154,7 @@ class OutputFolder:
         self._contents[path] = content.encode() if isinstance(content, str) else content
 
     def write(self) -> None:
-        """Write all files, `run.json` with them.
-
-        Raises
-        ------
-        Refused
-            If a file is in the way that is not the command's own earlier output.
-        OutputError
-            If the files cannot be written; none is then.
-        """
+        """Write all files, `run.json` with them."""
         with locked(self.folder):
             # Another process may have written here since this one began.
             self._earlier = self._claimed()

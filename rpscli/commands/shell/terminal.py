@@ -28,15 +28,7 @@ GAP = 3
 
 @dataclass(frozen=True)
 class Terminal:
-    """How much is said, and in which form.
-
-    Parameters
-    ----------
-    as_json
-        One JSON document in place of tables.
-    quiet
-        No tables, no notes; errors are still reported.
-    """
+    """One JSON document in place of tables; quiet: neither tables nor notes, but errors."""
 
     as_json: bool = False
     quiet: bool = False
@@ -160,11 +152,6 @@ def emit(text: str, stream: TextIO | None) -> None:
 
     After `rps ... | head -1` there is nobody left to read. The command goes on, so that its files
     and its exit code do not depend on who listens. The same holds for a stream that is closed.
-
-    Raises
-    ------
-    OutputError
-        If the standard output goes to a file that cannot be written.
     """
     if stream is None:
         return

@@ -146,13 +146,7 @@ class Plan(NamedTuple):
 
 
 def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
-    """Evenly spaced samples of the wanted part, by default from the first motion to the last.
-
-    Raises
-    ------
-    UsageError
-        If the history ends before that part, or there are too many frames.
-    """
+    """Evenly spaced samples of the wanted part, by default from the first motion to the last."""
     time, rotation = result.trace.time, np.abs(result.trace.rotation)
     moving = np.flatnonzero(rotation > 0.01 * rotation.max()) if rotation.any() else np.empty(0)
     first = max(time[int(moving[0])] - 0.5, 0.0) if moving.size else 0.0

@@ -51,14 +51,9 @@ def upright_outline(bearing: Bearing) -> Array:
 
 
 def leaning_outline(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
-    """Corners of the column at a rotation, (points, 2) [m]; upright it stands on the origin.
+    """Corners of the column, (points, 2) [m], turned clockwise by `rotation` [rad].
 
-    Parameters
-    ----------
-    rotation
-        theta [rad], positive about the right edge: clockwise.
-    displacement, lift
-        u_b and v_b of the cap beam [m]; the column's centre makes half of both.
+    Upright it stands on the origin; its centre makes half of the cap beam's u_b and v_b [m].
     """
     cosine, sine = math.cos(rotation), math.sin(rotation)
     turn = np.array([[cosine, -sine], [sine, cosine]])

@@ -37,31 +37,12 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class FilmRequest:
-    """What is wanted of a film.
-
-    Parameters
-    ----------
-    file
-        Its ending says the format.
-    size
-        Width [pixels].
-    speed
-        Times real time; None fits the motion into some seconds.
-    first, last
-        The part of the history that is shown [s]; None where the motion begins or ends.
-
-    Raises
-    ------
-    UsageError
-        If there is no such format here, or no such part.
-    OutputError
-        If it cannot be written there.
-    """
+    """What is wanted of a film, whose ending says the format; it is refused before the work."""
 
     file: Path
-    size: int = USUAL_SIZE
-    speed: float | None = None
-    first: float | None = None
+    size: int = USUAL_SIZE  # width [pixels]
+    speed: float | None = None  # times real time; None fits the motion into some seconds
+    first: float | None = None  # [s]; None where the motion begins
     last: float | None = None
 
     def __post_init__(self) -> None:
@@ -114,15 +95,7 @@ def film(
     wanted: FilmRequest,
     progress: Progress = lambda *_: None,
 ) -> bytes:
-    """The file of a film.
-
-    Parameters
-    ----------
-    draw
-        Fills the figure, and says how it moves.
-    width, height
-        Of the figure [in], which lays itself out once.
-    """
+    """The file of a film: `draw` fills a figure (width, height) [in] and says how it moves."""
     with style.in_style():
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
@@ -179,13 +152,7 @@ def _palette() -> Image:
 
 
 def _mp4(frames: Iterator[Image], rate: int) -> bytes:
-    """Written beside and read again: the encoder goes back in its file.
-
-    Raises
-    ------
-    OutputError
-        If the encoder fails.
-    """
+    """Written beside and read again: the encoder goes back in its file."""
     first = next(frames)
     with TemporaryDirectory() as folder:
         file = Path(folder, "film.mp4")

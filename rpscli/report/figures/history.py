@@ -25,13 +25,7 @@ STRETCHES = 2_000
 
 
 def extremes(*curves: NDArray[Any]) -> NDArray[np.intp]:
-    """Samples to draw, in order: the first, the last, and the least and largest of each stretch.
-
-    Parameters
-    ----------
-    *curves
-        (samples,) each; all samples where they are few.
-    """
+    """Samples of curves (samples,) to draw: first, last, and least and largest of each stretch."""
     count = len(curves[0])
     if count <= MOST:
         return np.arange(count)

@@ -30,21 +30,11 @@ SMALL = 8.0 / 9.0
 
 @dataclass(frozen=True)
 class Look:
-    """How the figures of a command are written.
+    """How the figures of a command are written."""
 
-    Parameters
-    ----------
-    formats
-        Endings of the files; none at all if it is empty, None if the user did not say.
-    columns
-        Of the page that a figure fills; None leaves each figure its own width.
-    style
-        matplotlib's settings of the user's style file, which go over ours.
-    """
-
-    formats: tuple[str, ...] | None = None
-    columns: int | None = None
-    style: Mapping[str, Any] = field(default_factory=dict)
+    formats: tuple[str, ...] | None = None  # none at all if empty, None if the user did not say
+    columns: int | None = None  # of the page that a figure fills; None leaves it its own width
+    style: Mapping[str, Any] = field(default_factory=dict)  # matplotlib's settings, over ours
 
     @property
     def endings(self) -> tuple[str, ...]:
@@ -137,13 +127,7 @@ def quiet_matplotlib() -> None:
 
 
 def read_style(path: Path) -> dict[str, Any]:
-    """matplotlib's settings in a style file.
-
-    Raises
-    ------
-    UsageError
-        If there is no such file, or it says what matplotlib does not understand.
-    """
+    """matplotlib's settings in a style file."""
     quiet_matplotlib()
     from matplotlib import rc_params_from_file
 

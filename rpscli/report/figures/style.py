@@ -75,16 +75,9 @@ def picture(
     width: float = WIDTH,
     layout: Literal["constrained"] | None = "constrained",
 ) -> bytes:
-    """The file of a figure, with the look and in the format that are in force.
+    """The file of a figure (width, height) [in], with the look and in the format that are in force.
 
-    Parameters
-    ----------
-    draw
-        Fills the figure, which is empty and lays itself out.
-    height, width
-        Size [in], where the look does not say otherwise.
-    layout
-        None for a figure that places its axes itself, which draws four times as fast.
+    Without a layout it places its axes itself, which draws four times as fast.
     """
     if (kept := _kept.get()) is not None and kept.target is not None:
         draw(cast("Figure", kept.target))
@@ -125,11 +118,6 @@ def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) 
     """The figure that `draw` would make a file of; drawn into the target if there is one.
 
     Axes make room for a part of their figure.
-
-    Raises
-    ------
-    UsageError
-        If they are no subplot.
     """
     from matplotlib.axes import Axes
 

@@ -87,15 +87,9 @@ def pictures(files: Iterable[tuple[str, object]]) -> Iterator[tuple[str, dict[st
 
 
 def figures(shown: Sequence[Picture], room: int) -> list[Element]:
-    """Pictures above their captions, numbered from 1.
+    """Pictures above their captions, numbered from 1, in so much room [letters] for all together.
 
-    Parameters
-    ----------
-    shown
-        In order.
-    room
-        Letters for all together: the largest drawings become images, if these are smaller, until
-        there is room.
+    The largest drawings become images, if these are smaller, until there is room.
     """
     # Each drawing has names inside: a prefix keeps them apart from those of the others.
     drawn = [_drawing(each.files["svg"], f"f{n}-", each.caption) for n, each in enumerate(shown, 1)]
@@ -195,17 +189,7 @@ class Section:
 
 
 def page(title: str, subtitle: str, sections: Sequence[Section], name: str) -> bytes:
-    """The file of a page.
-
-    Parameters
-    ----------
-    title, subtitle
-        What the page is about; what it is and when and by what it was made.
-    sections
-        In order; those without anything in them are left out.
-    name
-        Of the case or the study, by which a later page knows its own; see `is_about`.
-    """
+    """The file of a page: sections that hold something; by `name` a later page knows its own."""
     kept = [section for section in sections if section.blocks]
     shown = [block for s in kept for block in s.blocks if isinstance(block, Picture)]
     drawn = iter(figures(shown, FOR_FIGURES))

@@ -119,15 +119,7 @@ def mean_columns(selection: Selection) -> list[Column]:
 
 
 def selection_list(selection: Selection, folder: Path) -> str:
-    """`selection.txt`: one source with its factor a line, for `list:selection.txt` in a study.
-
-    Parameters
-    ----------
-    selection
-        Whose motions were read from the working folder.
-    folder
-        Where the list will stand; files are named as seen from there.
-    """
+    """`selection.txt`: a source with its factor a line, files as seen from the folder."""
     heads = (
         f"# {len(selection.chosen)} motions for {selection.target.source}",
         "# in a study: records: ['list:selection.txt'], with the path as seen from the study",
