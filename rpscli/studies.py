@@ -108,7 +108,7 @@ def _as_in_a_file(value: object) -> object:
         return str(value)
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise TypeError(f"{value!r} is no text, number, list or mapping")
+    raise TypeError(f"{value!r} is not a text, number, list or mapping")
 
 
 def _study_of(mapping: Mapping[str, Any], overrides: Sequence[str]) -> CheckedStudy:
@@ -261,7 +261,9 @@ class StudyResult(Shown):
         """(points,) of a varied key or a result, as `points.csv` names it."""
         if name not in self.columns:
             there_are = f"there are {', '.join(self.columns)}"
-            raise KeyError(f"{name} is no column; {hint(str(name), self.columns, there_are, 0.6)}")
+            raise KeyError(
+                f"{name} is not a column; {hint(str(name), self.columns, there_are, 0.6)}"
+            )
         return self.columns[name]
 
     @cached_property
@@ -391,7 +393,7 @@ class StudyResult(Shown):
         known = self.study.reports
         if name not in known:
             have = f"it has {', '.join(known)}" if known else "it has none"
-            raise UsageError(f"{name} is no report of the study; {have}")
+            raise UsageError(f"{name} is not a report of the study; {have}")
         return known[name]
 
     @cached_property

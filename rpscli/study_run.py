@@ -34,8 +34,7 @@ from rpscli.sweep.run.keys import all_keys
 from rpscli.sweep.run.resume import remember, resume
 from rpscli.sweep.run.runner import Finish, Progress, run
 from rpscli.sweep.run.threads import Threads, available_cores
-from rpscli.sweep.statistics.scales import scale_notes
-from rpscli.sweep.statistics.summary import Summary, summary
+from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, judged
 from rpscli.sweep.store import Store
 from rpscli.sweep.study_results import StudyResults

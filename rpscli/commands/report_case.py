@@ -253,7 +253,7 @@ def _input(given: CaseInput, request: HistoryRequest | None) -> list[Block]:
     origin = listing(
         ("case", case.source),
         ("SHA-256 of its text", case.digest),
-        ("values put over it", ", ".join(given.request.overrides)),
+        ("overridden values", ", ".join(given.request.overrides)),
         *motions.items(),
         ("made by", programs()),
     )

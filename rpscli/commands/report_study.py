@@ -175,7 +175,7 @@ def _input(study: Study, first: Case) -> Iterator[Block]:
         ("study", checked.source),
         ("SHA-256 of its text", checked.digest),
         ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
-        ("values put over it", ", ".join(study.overrides)),
+        ("overridden values", ", ".join(study.overrides)),
         ("solver", plan.solver),
         ("made by", programs()),
     )

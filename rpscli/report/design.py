@@ -19,8 +19,7 @@ from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
-from rpscli.sweep.design.answer import NONE, ROBUST, Answer, Interval
-from rpscli.sweep.design.judgement import Requirement
+from rpscli.sweep.design.answer import NONE, ROBUST, Answer, Interval, Requirement
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.table import Array, Indices
@@ -44,15 +43,15 @@ def requirement_unit(requirement: Requirement) -> str:
     return "-" if name in EVENTS else LIMITS[name].unit
 
 
-def aim_label(aim: Objective) -> str:
+def objective_label(objective: Objective) -> str:
     """A sum in words.
 
     >>> from rpscli.case.design import Term
-    >>> aim_label({"podium.bearing.semi_diagonal": Term(times=2.0), "max_base_shear": Term()})
+    >>> objective_label({"podium.bearing.semi_diagonal": Term(times=2.0), "max_base_shear": Term()})
     '2 R + base shear, median'
     """
     terms = []
-    for name, term in aim.items():
+    for name, term in objective.items():
         known = LIMITS.get(name)
         fractile = "median" if term.fractile == 0.5 else f"{100.0 * term.fractile:g} % fractile"
         words = symbol(name) if known is None else f"{known.label}, {fractile}"
@@ -60,11 +59,11 @@ def aim_label(aim: Objective) -> str:
     return " + ".join(terms)
 
 
-def aim_unit(aim: Objective) -> str:
-    """SI unit of an aim of one term; ``-`` for a sum, which may be of anything."""
-    if len(aim) != 1:
+def objective_unit(objective: Objective) -> str:
+    """SI unit of an objective of one term; ``-`` for a sum, which may be of anything."""
+    if len(objective) != 1:
         return "-"
-    ((name, term),) = aim.items()
+    ((name, term),) = objective.items()
     if term.times != 1.0:
         return "-"
     return LIMITS[name].unit if name in LIMITS else unit_of(name)
@@ -80,7 +79,8 @@ def answer_document(answer: Answer) -> dict[str, Any]:
             "passing": int(answer.passes.sum()),
         },
         "least": [
-            {"aim": aim_label(aim), "unit": aim_unit(aim)} for aim in answer.task.file.minimise
+            {"aim": objective_label(objective), "unit": objective_unit(objective)}
+            for objective in answer.task.file.minimise
         ],
         "best": None if found is None else _design(answer, found),
         "robust": None if answer.robust == NONE else _design(answer, answer.robust),
@@ -100,19 +100,21 @@ def answer_document(answer: Answer) -> dict[str, Any]:
 
 
 def _design(answer: Answer, place: int) -> dict[str, Any]:
-    aims = zip(
-        map(aim_label, answer.task.file.minimise), answer.judged.aims[:, 0, place], strict=True
+    objectives = zip(
+        map(objective_label, answer.task.file.minimise),
+        answer.judged.objectives[:, 0, place],
+        strict=True,
     )
     return {
         "design": place + 1,
         "values": dict(zip(answer.task.keys, answer.values[place].tolist(), strict=True)),
-        "aims": {name: float(value) for name, value in aims},
+        "aims": {name: float(value) for name, value in objectives},
     }
 
 
 def _intervals(answer: Answer) -> list[tuple[str, Interval]]:
     keys = [(key, answer.interval(place)) for place, key in enumerate(answer.task.keys)]
-    return [*keys, (aim_label(answer.task.file.minimise[0]), answer.aim_interval)]
+    return [*keys, (objective_label(answer.task.file.minimise[0]), answer.objective_interval)]
 
 
 def _without_one(answer: Answer) -> list[dict[str, Any]]:
@@ -126,7 +128,7 @@ def _without_one(answer: Answer) -> list[dict[str, Any]]:
 
 
 def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
-    """Each requirement at the best design, or at the one that fails least."""
+    """Each requirement at the best design, or at the least violated one."""
     judged, place = answer.judged, answer.closest
     without = {each.requirement: each for each in answer.without}
     rows = []
@@ -143,17 +145,17 @@ def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
                 "met": bool(judged.met[row, 0, place]),
                 "designs_that_meet_it": int(judged.met[row, 0].sum()),
                 "binds": None if each is None else each.binds,
-                "aim_without_it": None if each is None else each.aim,
+                "aim_without_it": None if each is None else each.objective,
             }
         )
     return rows
 
 
 def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Column]:
-    """One row a design: its keys, whether it passes, aims, and the value of each requirement.
+    """One row a design: its keys, whether it passes, objectives, and the value of each requirement.
 
     `passing_share` is the share of the resamples of the records in which it passes; a value that
-    overturned is ``inf``, and cells of designs that are no valid case are empty.
+    overturned is ``inf``, and cells of designs that are not valid cases are empty.
     """
     judged, passing = answer.judged, answer.passing_share
 
@@ -165,9 +167,11 @@ def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Colu
     for name, flags in (("valid", answer.valid), ("passes", answer.passes)):
         columns.append(Column(name, "-", [str(bool(flags[place])).lower() for place in places]))
     columns.append(column("passing_share", "-", passing))
-    for row, aim in enumerate(answer.task.file.minimise):
-        name = aim_label(aim).replace(",", "")
-        columns.append(column(f"least {name}", aim_unit(aim), judged.aims[row, 0]))
+    for row, objective in enumerate(answer.task.file.minimise):
+        name = objective_label(objective).replace(",", "")
+        columns.append(
+            column(f"least {name}", objective_unit(objective), judged.objectives[row, 0])
+        )
     for row, requirement in enumerate(judged.requirements):
         name, unit = requirement_label(requirement), requirement_unit(requirement)
         columns.append(column(name, unit, judged.values[row, 0]))
@@ -317,26 +321,31 @@ def _draw_designs(axes: Axes, answer: Answer, x: int, y: int) -> None:
 
 
 def front_figure(answer: Answer, title: str) -> bytes:
-    """Both aims: no passing design lies left of and below the front."""
-    aims, labels = answer.judged.aims[:, 0].copy(), []
-    for place, aim in enumerate(answer.task.file.minimise):
-        unit = aim_unit(aim)
-        largest = np.abs(aims[place][np.isfinite(aims[place])]).max(initial=0.0)
+    """Both objectives: no passing design lies left of and below the front."""
+    objectives, labels = answer.judged.objectives[:, 0].copy(), []
+    for place, objective in enumerate(answer.task.file.minimise):
+        unit = objective_unit(objective)
+        largest = np.abs(objectives[place][np.isfinite(objectives[place])]).max(initial=0.0)
         factor, prefix = style.engineering(float(largest)) if unit == "N" else (1.0, "")
-        aims[place] *= factor
-        labels.append(f"{aim_label(aim)} [{prefix}{unit}]")
+        objectives[place] *= factor
+        labels.append(f"{objective_label(objective)} [{prefix}{unit}]")
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, f"{len(answer.front)} designs on the front")
+        style.heading(figure, title, f"{len(answer.front)} designs on the Pareto front")
         axes = figure.subplots()
         for chosen, mark in (
             (answer.valid & ~answer.passes, {"marker": "v", "color": style.RED, "label": "fails"}),
             (answer.passes, {"marker": "o", "color": style.BLUE, "label": "passes"}),
         ):
             of_mark: dict[str, Any] = mark
-            axes.plot(*aims[:, chosen], ls="", ms=3.2, alpha=0.6, **of_mark)
-        axes.plot(*aims[:, answer.front], color=style.BLACK, drawstyle="steps-post", label="front")
-        _mark(axes, answer, aims.T)
+            axes.plot(*objectives[:, chosen], ls="", ms=3.2, alpha=0.6, **of_mark)
+        axes.plot(
+            *objectives[:, answer.front],
+            color=style.BLACK,
+            drawstyle="steps-post",
+            label="Pareto front",
+        )
+        _mark(axes, answer, objectives.T)
         axes.set_xlabel(labels[0])
         axes.set_ylabel(labels[1])
         style.legend_above(axes, 4)

@@ -35,13 +35,11 @@ from rpscli.report.study.comparison_numbers import Compared, ComparisonReport, C
 from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
 from rpscli.report.study.heights import DemandSample, demand_sample_figure
 from rpscli.report.study.risk import Contributions, Risk, risk_figure
-from rpscli.sweep.design.answer import Answer
-from rpscli.sweep.design.judgement import Judged, Requirement
+from rpscli.sweep.design.answer import Answer, Judged, Requirement
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
 from rpscli.sweep.intensities import Intensity
-from rpscli.sweep.statistics.agreement import Agreement, maxima
 from rpscli.sweep.statistics.grouping import Grouping
-from rpscli.sweep.statistics.observations import Pairs
+from rpscli.sweep.statistics.observations import Agreement, Pairs, maxima
 from rpscli.sweep.table import Table
 
 Array = NDArray[np.float64]
@@ -337,14 +335,14 @@ def answer_of(
         keys=keys,
         unknowns=keys,
         study=SimpleNamespace(sources=["a", "b", "c", "d"]),
-        file=SimpleNamespace(least=least),
+        file=SimpleNamespace(minimise=least),
     )
     judged = Judged(
         requirements=tuple(requirements),
         values=np.array(demands, dtype=float),
         excess=np.zeros((1, len(at))),
         met=met[None],
-        aims=np.repeat(np.array(aims, dtype=float)[:, None], len(met), axis=1),
+        objectives=np.repeat(np.array(aims, dtype=float)[:, None], len(met), axis=1),
     )
     places = (at - low) / (high - low)
     is_valid = np.broadcast_to(np.array(valid, dtype=bool), len(at))
@@ -398,18 +396,18 @@ def test_the_front_of_two_aims() -> None:
         least=[{"max_base_shear": Term()}, {"max_cap_beam_displacement": Term(fractile=0.84)}],
     )  # fmt: skip
     figure = drawn(front_figure, answer)
-    assert "3 designs on the front" in figure.get_suptitle()
+    assert "3 designs on the Pareto front" in figure.get_suptitle()
     (axes,) = figure.axes
     same(curve(axes, "passes"), ((2.0, 1.0, 3.0, 2.5), way[:4]))
     same(curve(axes, "fails"), ((0.5, INF), way[4:]))
-    same(curve(axes, "front"), ((1.0, 2.0, 3.0), (0.4, 0.2, 0.1)))
-    (line,) = [line for line in axes.lines if line.get_label() == "front"]
+    same(curve(axes, "Pareto front"), ((1.0, 2.0, 3.0), (0.4, 0.2, 0.1)))
+    (line,) = [line for line in axes.lines if line.get_label() == "Pareto front"]
     assert line.get_drawstyle() == "steps-post"
     for label in ("best", "best in 90 % of the resamples"):
         same(curve(axes, label), ([1.0], [0.4]))
     assert axes.get_xlabel() == "base shear, median [MN]"
     assert axes.get_ylabel() == "cap beam displacement, 84 % fractile [m]"
-    names = {"fails", "passes", "front", "best", "best in 90 % of the resamples"}
+    names = {"fails", "passes", "Pareto front", "best", "best in 90 % of the resamples"}
     assert set(legend(axes)) == names
 
 

@@ -283,7 +283,9 @@ def test_what_is_drawn_are_the_results(result: rpscli.StudyResult) -> None:
 
 
 def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
-    with pytest.raises(rpscli.RpsError, match="demand is no report of the study; it has overturn"):
+    with pytest.raises(
+        rpscli.RpsError, match="demand is not a report of the study; it has overturn"
+    ):
         result.draw("demand")
     loose = Figure().add_axes((0.1, 0.1, 0.8, 0.8))
     with pytest.raises(rpscli.RpsError, match="no subplot"):

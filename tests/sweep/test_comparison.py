@@ -24,7 +24,7 @@ from rpscli.report.study.comparison_numbers import (
     uncomparable,
 )
 from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.statistics.agreement import Maxima, agreement, threshold
+from rpscli.sweep.statistics.observations import Maxima, agreement, threshold
 from sweep.made_up import ALPHA, place, results_of, stored, tabulate
 from sweep.small_studies import Make
 

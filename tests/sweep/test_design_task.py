@@ -19,14 +19,13 @@ from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program
 from rpscli.errors import CaseError
-from rpscli.sweep.design.answer import interval_of
-from rpscli.sweep.design.judgement import weights_of
-from rpscli.sweep.design.search import Search
-from rpscli.sweep.design.space import Array, first_places, neighbours, next_places
+from rpscli.sweep.design.answer import interval_of, weights_of
+from rpscli.sweep.design.search import Search, first_places, neighbours, next_places
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.run.schedule import LARGEST_BATCH
+from rpscli.sweep.table import Array
 from sweep.small_studies import BASE, ROOT
 from sweep.test_interruption import ended
 
@@ -266,7 +265,7 @@ def test_invalid_designs_count_as_failing(design_json: DesignJson) -> None:
     found = design_json(text)
     assert found["designs"]["valid"] < found["designs"]["looked_at"]
     assert found["best"]["values"][SLENDERNESS] < 0.275
-    assert any("no valid cases" in warning for warning in found["warnings"])
+    assert any("not valid cases" in warning for warning in found["warnings"])
 
 
 def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) -> None:

@@ -18,8 +18,7 @@ from rpscli.report.study.statistics import summary_columns, summary_document
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.statistics.fractiles import fractiles, share
 from rpscli.sweep.statistics.grouping import own_keys, pooled
-from rpscli.sweep.statistics.scales import scale_notes
-from rpscli.sweep.statistics.summary import Summary, summary
+from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import decisive, judge, judged
 from rpscli.sweep.table import Table
 from sweep.made_up import ALPHA, RHO, Stored, place, stored, table_of

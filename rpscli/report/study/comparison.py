@@ -27,8 +27,8 @@ from rpscli.report.study.panels import log_ticks
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
-from rpscli.sweep.statistics.agreement import Agreement, Maxima
 from rpscli.sweep.statistics.fractiles import CONFIDENCE
+from rpscli.sweep.statistics.observations import Agreement, Maxima
 from rpscli.sweep.study_results import StudyResults
 
 if TYPE_CHECKING:

@@ -30,20 +30,22 @@ from rpscli.report.study.fragility import Observed as Binned
 from rpscli.sweep.fits.lognormal import Lognormal
 from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.agreement import (
+from rpscli.sweep.statistics.fractiles import demand, fractiles
+from rpscli.sweep.statistics.grouping import axis_keys, pooled, pooling_notes, shown_keys
+from rpscli.sweep.statistics.observations import (
     Agreement,
     Flags,
     Maxima,
+    Pairs,
     Worth,
     agreement,
     best_place,
     maxima,
+    observed_pairs,
     outcome_worth,
     threshold,
+    unpaired,
 )
-from rpscli.sweep.statistics.fractiles import demand, fractiles
-from rpscli.sweep.statistics.grouping import axis_keys, pooled, pooling_notes, shown_keys
-from rpscli.sweep.statistics.observations import Pairs, observed_pairs, unpaired
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
 

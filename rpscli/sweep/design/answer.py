@@ -1,8 +1,8 @@
-"""What a search answers: the best design, what it rests on, and what would change it."""
+"""What a search answers: designs against requirements, the best one, and what would change it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -10,13 +10,140 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.case.design import DesignTask
-from rpscli.sweep.design.judgement import Judged
+from rpscli.case.conditions import EVENTS, Condition
+from rpscli.case.design import DesignTask, Objective
 from rpscli.sweep.statistics.fractiles import CONFIDENCE, fractiles
-from rpscli.sweep.table import Array, Indices
+from rpscli.sweep.statistics.verdicts import decisive, judge, worse
+from rpscli.sweep.table import Array, Indices, Table
+
+Demands = Mapping[str, Array]
+"""(designs, records, intensities) of each limit by name, larger ones the worse: see `worse`.
+
+NaN where a history failed or the design is not a valid case."""
+
+
+class Requirement(NamedTuple):
+    """A condition at one intensity: its place among them, its measure and its value.
+
+    The value is None where there is one intensity only.
+    """
+
+    condition: Condition
+    intensity: int
+    measure: str = "scale"
+    level: float | None = None
+
+    @property
+    def bound(self) -> float:
+        """What the value must keep: an admissible share of an event, or a limit."""
+        return self.condition.share if self.condition.name in EVENTS else self.condition.limit
+
+
+class Weights(NamedTuple):
+    """How often each record counts, (rows, records).
+
+    The first row is of ones. `resamples` rows of a bootstrap follow, then one row for each record
+    that is left out, if there are several.
+    """
+
+    rows: Array
+    resamples: int
+
+
+def weights_of(records: int, resamples: int, seed: int) -> Weights:
+    """The records as they are, drawn anew, and without one of them at a time."""
+    if records < 2:
+        return Weights(np.ones((1, records)), 0)
+    even = np.full(records, 1.0 / records)
+    drawn = np.random.default_rng(seed).multinomial(records, even, size=resamples)
+    ones = np.ones((1, records))
+    return Weights(np.concatenate([ones, drawn, 1.0 - np.eye(records)]), resamples)
+
+
+def demands_of(table: Table, name: str) -> Array:
+    """(designs, records, intensities) demands of the designs of a study on a limit."""
+    layout = table.layout
+    shape = len(layout.properties), len(layout.records), len(layout.scales)
+    return worse(table, name).reshape(shape)
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What became of each design.
+
+    Parameters
+    ----------
+    requirements
+        In the order of the rows below.
+    values
+        (requirements, weightings, designs) share of an event, or the demand that no more than the
+        admissible records exceed.
+    excess
+        (requirements, designs) records beyond the limit less those that may be, over all of them;
+        a requirement is met where it is not positive.
+    met
+        (requirements, weightings, designs)
+    objectives
+        (objectives, weightings, designs)
+    """
+
+    requirements: tuple[Requirement, ...]
+    values: Array
+    excess: Array
+    met: np.typing.NDArray[np.bool_]
+    objectives: Array
+
+    @property
+    def passes(self) -> np.typing.NDArray[np.bool_]:
+        """(weightings, designs) whether all requirements are met."""
+        return np.asarray(self.met.all(axis=0))
+
+
+def judged_designs(
+    task: DesignTask,
+    requirements: Sequence[Requirement],
+    values: Array,
+    demands: Demands,
+    weights: Array,
+) -> Judged:
+    """Judge designs with values (designs, keys) in weightings (weightings, records) of the records.
+
+    `demands` are those of the names in requirements and objectives.
+    """
+    found, excess, met = [], [], []
+    for requirement in requirements:
+        condition = requirement.condition
+        at = demands[condition.name][:, :, requirement.intensity]
+        counted = judge(at, weights, condition)
+        excess.append(counted.excess[0])
+        met.append(counted.met)
+        if condition.name in EVENTS:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                found.append(counted.beyond / counted.total)
+        else:
+            found.append(condition.sign * decisive(at, weights, condition))
+    keys = dict(zip(task.keys, values.T, strict=True))
+    objectives = [_objective(objective, keys, demands, weights) for objective in task.file.minimise]
+    return Judged(tuple(requirements), *map(np.array, (found, excess, met, objectives)))
+
+
+def _objective(
+    objective: Objective, keys: Mapping[str, Array], demands: Demands, weights: Array
+) -> Array:
+    """(weightings, designs) a sum; of a result, the largest of all intensities."""
+    total = np.zeros((len(weights), len(next(iter(keys.values())))))
+    for name, term in objective.items():
+        if name in keys:
+            total += term.times * keys[name]
+            continue
+        condition = Condition(name, 0.0, "", fractile=term.fractile)
+        of_each = [decisive(at, weights, condition) for at in np.moveaxis(demands[name], 2, 0)]
+        total += term.times * np.max(of_each, axis=0)
+    return total
+
 
 LARGE = 1e300
-"""Stands for an aim that is not known."""
+"""Stands for an objective that is not known."""
 
 ROBUST = 0.9
 """Share of the resamples in which a robust design passes."""
@@ -26,10 +153,10 @@ NONE = -1
 
 
 class Without(NamedTuple):
-    """The least aim if one requirement fell; `binds` if it is less then."""
+    """The least objective if one requirement fell; `binds` if it is less then."""
 
     requirement: int
-    aim: float
+    objective: float
     binds: bool
 
 
@@ -72,16 +199,16 @@ class Answer:
 
     @cached_property
     def closest(self) -> int:
-        """Place of the design that fails least: the best one where there is one."""
+        """Place of the least violated design: the best one where there is one."""
         if self.best != NONE:
             return self.best
         worst = self.judged.excess.max(axis=0)
-        return int(np.lexsort((self.aims, _distance(self.judged), worst))[0])
+        return int(np.lexsort((self.objectives, _distance(self.judged), worst))[0])
 
     @cached_property
-    def aims(self) -> Array:
+    def objectives(self) -> Array:
         """(designs,) what is to be least, infinite where so many overturned or none is known."""
-        return np.asarray(np.nan_to_num(self.judged.aims[0, 0], nan=np.inf, posinf=np.inf))
+        return np.asarray(np.nan_to_num(self.judged.objectives[0, 0], nan=np.inf, posinf=np.inf))
 
     @property
     def passes(self) -> NDArray[np.bool_]:
@@ -98,15 +225,17 @@ class Answer:
     def chosen(self) -> Indices:
         """(weightings,) the best design of each; NONE where nothing passes."""
         passes = self.judged.passes
-        # A passing design whose aim is not known comes after all others.
-        aims = np.where(passes, np.nan_to_num(self.judged.aims[0], nan=LARGE, posinf=LARGE), np.inf)
-        return np.where(passes.any(axis=1), aims.argmin(axis=1), NONE)
+        # A passing design whose objective is not known comes after all others.
+        objectives = np.where(
+            passes, np.nan_to_num(self.judged.objectives[0], nan=LARGE, posinf=LARGE), np.inf
+        )
+        return np.where(passes.any(axis=1), objectives.argmin(axis=1), NONE)
 
     @cached_property
     def robust(self) -> int:
         """The best design that passes in nearly all resamples; NONE without one."""
-        aims = np.where(self.passes & (self.passing_share >= ROBUST), self.aims, np.inf)
-        return int(aims.argmin()) if np.isfinite(aims).any() else NONE
+        objectives = np.where(self.passes & (self.passing_share >= ROBUST), self.objectives, np.inf)
+        return int(objectives.argmin()) if np.isfinite(objectives).any() else NONE
 
     @property
     def unanswered(self) -> int:
@@ -119,11 +248,11 @@ class Answer:
         return interval_of(self.values[chosen[chosen != NONE], key])
 
     @property
-    def aim_interval(self) -> Interval:
+    def objective_interval(self) -> Interval:
         """Of what is to be least."""
         chosen = self.chosen[1 : 1 + self.resamples]
         rows = np.nonzero(chosen != NONE)[0]
-        return interval_of(self.judged.aims[0][1 + rows, chosen[rows]])
+        return interval_of(self.judged.objectives[0][1 + rows, chosen[rows]])
 
     @property
     def without_record(self) -> Indices:
@@ -132,11 +261,11 @@ class Answer:
 
     @property
     def front(self) -> Indices:
-        """Passing designs that no other passing one betters in both aims, by the first."""
+        """Passing designs that no other passing one betters in both objectives, by the first."""
         passing = np.nonzero(self.passes)[0]
-        if len(self.judged.aims) < 2 or not len(passing):
+        if len(self.judged.objectives) < 2 or not len(passing):
             return passing[:0]
-        first, second = self.judged.aims[:, 0, passing]
+        first, second = self.judged.objectives[:, 0, passing]
         order = np.lexsort((second, first))
         least = np.minimum.accumulate(second[order])
         kept = np.concatenate([[True], second[order][1:] < least[:-1]])
@@ -149,8 +278,8 @@ class Answer:
             return
         for place in range(len(self.judged.requirements)):
             others = np.delete(self.judged.met[:, 0], place, axis=0).all(axis=0) & self.valid
-            least = float(self.aims[others].min())
-            yield Without(place, least, least < self.aims[self.best])
+            least = float(self.objectives[others].min())
+            yield Without(place, least, least < self.objectives[self.best])
 
     @property
     def at_bounds(self) -> Iterator[tuple[str, str]]:

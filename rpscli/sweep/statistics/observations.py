@@ -1,16 +1,20 @@
-"""Which points of a study stand beside which observations."""
+"""Points of a study beside observations: which stand beside which, and how well they agree."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import PurePath
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.case.study.observed import Observed, comparable
 from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.statistics.fractiles import Share, fractiles, share
 from rpscli.sweep.statistics.grouping import INTENSITY
 from rpscli.sweep.table import Array, Indices, groups
 
@@ -104,3 +108,141 @@ def unpaired(layout: StudyPoints) -> Iterator[str]:
             f"no line of {observed.name} has a record and a system of the study, such as"
             f" {observed.rows[0].record!r}; records go by their sources or the names of files"
         )
+
+
+Flags = NDArray[np.bool_]
+
+
+class Agreement(NamedTuple):
+    """How often computed and observed outcomes are the same."""
+
+    both: int
+    computed_only: int
+    observed_only: int
+    neither: int
+
+    @property
+    def counted(self) -> int:
+        """All outcomes."""
+        return sum(self)
+
+    @property
+    def agreed(self) -> Share:
+        """The share of equal outcomes."""
+        return share(self.both + self.neither, self.counted)
+
+    @property
+    def computed(self) -> int:
+        """Computed overturnings."""
+        return self.both + self.computed_only
+
+    @property
+    def observed(self) -> int:
+        """Observed overturnings."""
+        return self.both + self.observed_only
+
+
+@dataclass(frozen=True)
+class Maxima:
+    """Computed over observed maxima of one quantity.
+
+    `median` and `dispersion` (standard deviation of the logarithm) are those of the `counted`
+    ratios; `overturned` histories have none, and are infinite in the distance of Kolmogorov and
+    Smirnov between both distributions.
+    """
+
+    counted: int
+    overturned: int
+    median: float
+    dispersion: float
+    distance: float
+
+
+class Worth(NamedTuple):
+    """What a fit makes small: the misfit, and then what is off in the count.
+
+    The misfit is the share of wrong outcomes, or the median of |ln(computed/observed)| of maxima;
+    `error` is its standard error, 0 of maxima.
+    """
+
+    misfit: float
+    count_off: float
+    error: float
+
+
+def outcome_worth(computed: Flags, observed: Flags) -> Worth:
+    """Worth of computed outcomes beside observed ones.
+
+    >>> import numpy as np
+    >>> outcome_worth(np.array([True, True, False, False]), np.array([True, False, False, False]))
+    Worth(misfit=0.25, count_off=0.25, error=0.21650635094610965)
+    """
+    misfit = float(np.mean(computed != observed))
+    error = math.sqrt(misfit * (1.0 - misfit) / len(observed))
+    return Worth(misfit, abs(float(computed.mean() - observed.mean())), error)
+
+
+def best_place(worths: Sequence[Worth]) -> int:
+    """Which worth a fit takes: the best count among those that the misfit does not tell apart.
+
+    Misfits up to one standard error above the least are not told apart (the one-standard-error
+    rule of Breiman et al., Classification and Regression Trees, 1984): the least alone follows
+    chance, and its count is off to either side. Of several equal ones the middle is taken, which a
+    little more data moves least.
+
+    >>> best_place([Worth(0.10, 0.06, 0.03), Worth(0.12, 0.01, 0.03), Worth(0.15, 0.0, 0.03)])
+    1
+    """
+    least = min(worths)
+    near = [worth for worth in worths if worth.misfit <= least.misfit + least.error]
+    best = min(near, key=lambda worth: (worth.count_off, worth.misfit))
+    places = [place for place, worth in enumerate(worths) if worth == best]
+    return places[(len(places) - 1) // 2]
+
+
+def agreement(computed: Flags, observed: Flags) -> Agreement:
+    """Count the four pairs of outcomes.
+
+    >>> import numpy as np
+    >>> agreement(np.array([True, True, False]), np.array([True, False, False]))
+    Agreement(both=1, computed_only=1, observed_only=0, neither=1)
+    """
+    cells = (computed & observed, computed & ~observed, ~computed & observed, ~computed & ~observed)
+    return Agreement(*(int(cell.sum()) for cell in cells))
+
+
+def threshold(intensity: Array, observed: Flags) -> float:
+    """The intensity beyond which all is taken to overturn, chosen as `best_place` says.
+
+    It lies midway (geometrically) between two data, or is the least or twice the largest of them.
+
+    >>> import numpy as np
+    >>> im = np.array([1.0, 2.0, 4.0, 8.0])
+    >>> round(threshold(im, np.array([False, False, True, True])), 3)
+    2.828
+    """
+    levels = np.unique(intensity)
+    cuts = np.array([levels[0], *np.sqrt(levels[1:] * levels[:-1]), 2.0 * levels[-1]])
+    worths = [outcome_worth(intensity >= cut, observed) for cut in cuts]
+    return float(cuts[best_place(worths)])
+
+
+def maxima(computed: Array, observed: Array) -> Maxima:
+    """Compare maxima; computed ones are infinite where the structure overturned.
+
+    >>> import numpy as np
+    >>> found = maxima(np.array([2.0, 8.0, np.inf]), np.array([1.0, 1.0, 1.0]))
+    >>> found.counted, found.overturned, round(found.median, 6), found.distance
+    (2, 1, 2.0, 1.0)
+    """
+    from scipy.stats import ks_2samp
+
+    stood = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
+    logs = np.log(computed[stood] / observed[stood])
+    return Maxima(
+        counted=len(logs),
+        overturned=int(np.isinf(computed).sum()),
+        median=math.exp(fractiles(logs, [0.5])[0]),
+        dispersion=float(np.std(logs, ddof=1)) if len(logs) > 1 else math.nan,
+        distance=float(ks_2samp(computed, observed).statistic) if len(observed) else math.nan,
+    )
