@@ -58,12 +58,6 @@ def test_not_a_number_is_a_number_to_yaml() -> None:
     assert math.isnan(plain(".NaN"))
 
 
-@given(st.integers(min_value=-(10**30), max_value=10**30))
-@settings(deadline=None)
-def test_whole_numbers_come_back(number: int) -> None:
-    assert plain(str(number)) == number
-
-
 @given(st.floats(allow_nan=False, allow_infinity=False))
 @settings(deadline=None)
 def test_real_numbers_come_back_exactly(number: float) -> None:

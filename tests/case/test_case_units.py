@@ -125,12 +125,6 @@ def test_si(text: str, unit: str, value: float) -> None:
     assert si_value(text, unit) == pytest.approx(value, rel=ROUNDING)
 
 
-@given(st.floats(min_value=1e-3, max_value=1e9))
-@settings(deadline=None)
-def test_a_tonne_is_a_thousand_kilogrammes(mass: float) -> None:
-    assert si_value(f"{mass!r} t", "kg") == pytest.approx(1000.0 * mass, rel=ROUNDING)
-
-
 @pytest.mark.parametrize(
     ("text", "unit", "parts"),
     [

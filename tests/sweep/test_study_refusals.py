@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 
-from sweep.small_studies import STUDY
+from rpscli.errors import CaseError
+from sweep.small_studies import STUDY, study_file
 
 SCALE = "scale: [0.5, 1.0]"
 SAMPLED = "sample: {size: 4, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\n"
@@ -96,13 +95,11 @@ def sampled(distribution: str) -> tuple[str, str]:
         (BASE, "base: broken.yaml", ("broken.yaml:3:1", "line 2, column 16")),
     ],
 )
-def test_a_mistake_is_refused(
-    workplace: Path, sweep: Callable[..., Result], old: str, new: str, parts: tuple[str, ...]
-) -> None:
-    assert old in STUDY
+def test_a_mistake_is_refused(workplace: Path, old: str, new: str, parts: tuple[str, ...]) -> None:
     (workplace / "broken.yaml").write_text("rps: 1\nsemi_diagonal: [1\n", encoding="utf-8")
+    assert old in STUDY
     (workplace / "study.yaml").write_text(STUDY.replace(old, new), encoding="utf-8")
-    result = sweep("study.yaml", "--dry-run")
-    assert result.exit_code == 3, result.stdout
+    with pytest.raises(CaseError) as refused:
+        study_file("study.yaml")
     for part in parts:
-        assert part in result.stderr, result.stderr
+        assert part in str(refused.value), refused.value
