@@ -26,12 +26,10 @@ from rpscli.report.study.statistics import (
 from rpscli.report.table import columns_of, csv_text
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.check import needs_of
-from rpscli.sweep.points.described import reproduction
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points.layout import StudyPoints, reproduction
 from rpscli.sweep.points_csv import points_csv
 from rpscli.sweep.run.cluster import Cluster
-from rpscli.sweep.run.keys import all_keys
-from rpscli.sweep.run.resume import remember, resume
+from rpscli.sweep.run.resume import all_keys, remember, resume
 from rpscli.sweep.run.runner import Finish, Progress, run
 from rpscli.sweep.run.threads import Threads, available_cores
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary

@@ -36,7 +36,7 @@ class ResultQuantity(NamedTuple):
     whole
         Whether it is a count.
     needs
-        What a structure must have to have it.
+        What a structure must have to have it, one of `NEEDS`.
     meaning
         What a ratio is made of, for the schemas of limits.
     from_below
@@ -86,6 +86,17 @@ class ResultQuantity(NamedTuple):
         """
         words = symbol or self.label
         return f"{words} [{unit.replace('/s2', '/s²')}]" if unit else words
+
+
+NEEDS = {
+    "superstructure": "a superstructure",
+    "superstructure.storey_height": "superstructure.storey_height in the case",
+    "podium.friction": "podium.friction in the case",
+    "damper": "a damper in podium.devices",
+    "stop": "a stop in podium.devices",
+    "tendon": "a prestressed tendon in podium.devices",
+}
+"""What a structure must have for a result, in words."""
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:
@@ -139,35 +150,35 @@ HISTORY = (
     ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6", demand=True),
     ResultQuantity(
         "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
-        needs="a superstructure", meaning="largest base shear over M_tot g tan(alpha)",
+        needs="superstructure", meaning="largest base shear over M_tot g tan(alpha)",
     ),
     ResultQuantity(
         "drift_ratio", "-", "drift ratio", limit="0.005", demand=True,
-        needs="superstructure.storey_height in the case",
+        needs="superstructure.storey_height",
         meaning="largest storey drift over storey height",
     ),
     ResultQuantity(
         "max_floor_acceleration", "m/s2", "floor acceleration", limit="5", demand=True,
-        needs="a superstructure",
+        needs="superstructure",
     ),
     ResultQuantity("residual_rotation", "rad", "residual rotation", limit="0.001"),
     ResultQuantity("residual_displacement", "m", "residual displacement", limit="0.01"),
     ResultQuantity(
-        "max_damper_force", "N", "damper force", limit="4e5", needs="a damper in podium.devices",
+        "max_damper_force", "N", "damper force", limit="4e5", needs="damper",
     ),
     ResultQuantity(
-        "max_stop_force", "N", "stop force", limit="1e6", needs="a stop in podium.devices",
+        "max_stop_force", "N", "stop force", limit="1e6", needs="stop",
     ),
     ResultQuantity(
         "lost_prestress", "-", "lost prestress", limit="0.1",
-        needs="a prestressed tendon in podium.devices", meaning="share that a tendon has lost",
+        needs="tendon", meaning="share that a tendon has lost",
     ),
     ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
     ResultQuantity("duration", "s", "duration", kernel="time"),
     ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
     ResultQuantity(
-        "friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction in the case",
+        "friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction",
         meaning="friction demand over podium.friction; columns slide above 1",
     ),
 )  # fmt: skip
@@ -175,14 +186,14 @@ HISTORY = (
 
 SAMPLED = (
     ResultQuantity(
-        "max_roof_displacement", "m", "roof displacement", limit="0.5", needs="a superstructure"
+        "max_roof_displacement", "m", "roof displacement", limit="0.5", needs="superstructure"
     ),
     ResultQuantity(
-        "max_floor_velocity", "m/s", "floor velocity", limit="1", needs="a superstructure"
+        "max_floor_velocity", "m/s", "floor velocity", limit="1", needs="superstructure"
     ),
     ResultQuantity(
         "fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$", limit="0.5",
-        demand=True, needs="a superstructure",
+        demand=True, needs="superstructure",
         meaning="largest base shear over that of the fixed base",
     ),
     ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
@@ -190,7 +201,7 @@ SAMPLED = (
     ResultQuantity(
         "min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True
     ),
-    ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction in the case"),
+    ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction"),
 )  # fmt: skip
 """Scalars of a history that is followed with all its samples: a single one, or those of a study
 with `whole_histories: true`."""

@@ -22,7 +22,7 @@ from rpscli.report.html.page import Block, Code, Picture, Section, page_look, pi
 from rpscli.report.html.sections import motions_section
 from rpscli.report.study.labels import label
 from rpscli.report.table import Table
-from rpscli.sweep.evaluation.systems import resolved
+from rpscli.sweep.evaluation.context import resolved
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case

@@ -65,7 +65,7 @@ class SweepChoices:
 def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal) -> Study:
     """Read and check a study and all its systems."""
     from rpscli.studies import read_study
-    from rpscli.sweep.points.sampling import balance_note
+    from rpscli.sweep.points.combinations import balance_note
 
     examined = partial(watched, "systems examined", terminal)
     study = read_study(request.source, request.overrides, conditions, examined)
@@ -137,8 +137,8 @@ def warn(notes: list[str], terminal: Terminal) -> None:
 def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> None:
     """Count, first and last points, and an estimate of the time."""
     from rpscli.analyses.kernels.compilation import is_ready
-    from rpscli.sweep.points.described import described
-    from rpscli.sweep.run.estimate import estimated_seconds
+    from rpscli.sweep.points.layout import described
+    from rpscli.sweep.run.schedule import estimated_seconds
     from rpscli.sweep.run.threads import available_cores
 
     layout, count = study.layout, len(study)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rpscli.analyses.result_quantities import LIMITED
+from rpscli.analyses.result_quantities import LIMITED, NEEDS
 from rpscli.case.conditions import EVENTS, LIMITS, Condition, case_conditions, with_friction
 from rpscli.commands.inputs import (
     RESULTS,
@@ -146,7 +146,8 @@ def compute(
         limits = [*with_friction(limits, case.structure), *conditions]
         for limit in limits:
             if limit.name in found and found[limit.name] is None:
-                raise UsageError(f"{limit.source}: {limit.name} needs {LIMITS[limit.name].needs}")
+                needs = NEEDS[LIMITS[limit.name].needs]
+                raise UsageError(f"{limit.source}: {limit.name} needs {needs}")
         records = Records.of([result.outcome], [demands])
         verdicts = judged_records(records, [request.label], limits)
         error = _exceeded(verdicts)

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.points.described import described, identifying_columns
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points.layout import StudyPoints, described, identifying_columns
 from rpscli.sweep.table import Array, Table
 from rpscli.units import in_si
 

@@ -15,11 +15,10 @@ from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.analyses.timehistory import time_history
 from rpscli.records.source import load_record
 from rpscli.sweep.evaluation.batch import run_batch
-from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.evaluation.context import StudyContext, resolved
 from rpscli.sweep.evaluation.results import SCALARS, PointResults, at_path
-from rpscli.sweep.evaluation.systems import resolved
 from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.run.keys import point_key
+from rpscli.sweep.run.resume import point_key
 from sweep.small_studies import STUDY, Make
 
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")

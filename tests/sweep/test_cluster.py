@@ -17,10 +17,9 @@ from rpscli.sweep.evaluation.points import Plan, Point
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.points_csv import points_csv
 from rpscli.sweep.run.cluster import Cluster, compute
-from rpscli.sweep.run.engine import Engine
-from rpscli.sweep.run.keys import all_keys
-from rpscli.sweep.run.resume import resume
+from rpscli.sweep.run.resume import all_keys, resume
 from rpscli.sweep.run.runner import Progress, run
+from rpscli.sweep.run.schedule import Engine
 from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import tabulate

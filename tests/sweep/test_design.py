@@ -15,10 +15,9 @@ from rpscli.records.measures import intensity_measures
 from rpscli.records.source import load_record
 from rpscli.records.spectrum import spectral_acceleration
 from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.combinations import balance_note, changes, sample
 from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.points.perturbation import changes
-from rpscli.sweep.points.sampling import balance_note, sample
-from rpscli.sweep.run.keys import all_keys
+from rpscli.sweep.run.resume import all_keys
 from rpscli.sweep.run.schedule import LARGEST_BATCH, batches
 from sweep.small_studies import STUDY, Make
 

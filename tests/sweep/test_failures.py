@@ -17,7 +17,7 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.source import load_record
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.described import reproduction
+from rpscli.sweep.points.layout import reproduction
 from sweep.small_studies import BASE, STUDY, study_file
 
 Document = Callable[..., dict[str, Any]]

@@ -20,8 +20,7 @@ from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import MISSING, PointResults
 from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.run.keys import all_keys
-from rpscli.sweep.run.resume import resume
+from rpscli.sweep.run.resume import all_keys, resume
 from rpscli.sweep.run.runner import Progress, run
 from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.store import Store

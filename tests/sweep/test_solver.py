@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import rpscli
-from rpscli.sweep.evaluation.solver import SOLVING, digest_of_sources
+from rpscli.sweep.evaluation.points import SOLVING, digest_of_sources
 
 PACKAGE = Path(rpscli.__file__).parent
 
@@ -60,7 +60,7 @@ def test_a_source_in_a_sub_folder_counts(package: Path, folder: str) -> None:
 def test_every_module_behind_a_stored_number_counts() -> None:
     script = """
 import sys
-import rpscli.sweep.evaluation.batch, rpscli.sweep.evaluation.fixed_base
+import rpscli.sweep.evaluation.batch
 print(*(m.__file__ for n, m in sys.modules.items() if n.startswith("rpscli.")), sep=chr(10))
 """
     paths = [str(PACKAGE.parent), *sys.path]
@@ -74,7 +74,7 @@ print(*(m.__file__ for n, m in sys.modules.items() if n.startswith("rpscli.")), 
     modules = {Path(line).relative_to(PACKAGE).as_posix() for line in done.stdout.split()}
     counted = {name for name in modules if name.startswith(tuple(SOLVING))}
     assert "analyses/demand.py" in counted
-    assert modules - counted == {"errors.py", "shown.py", "sweep/__init__.py"}
+    assert modules - counted == {"errors.py", "frozen.py", "shown.py", "sweep/__init__.py"}
 
 
 def test_what_only_draws_does_not_count(package: Path) -> None:

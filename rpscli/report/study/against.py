@@ -30,7 +30,7 @@ from rpscli.report.study.panels import (
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.report.study.statistics import share_columns
 from rpscli.report.table import Column
-from rpscli.sweep.points.described import described
+from rpscli.sweep.points.layout import described
 from rpscli.sweep.statistics.fractiles import Share, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping, own_keys
 from rpscli.sweep.study_results import StudyResults

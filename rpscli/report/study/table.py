@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -160,8 +160,9 @@ def _table(study: StudyResults, options: OverturningOptions, shown: Shown) -> Fo
             for y, row in enumerate(full):
                 for x, cell in enumerate(row):
                     first, second = shown.texts(cell) if len(cell) else ("-", "")
-                    axes.text(x, y, first, ha="center", va="bottom")
-                    axes.text(x, y + 0.08, second, ha="center", va="top", fontsize=small)
+                    inside: dict[str, Any] = {"ha": "center", "in_layout": False}
+                    axes.text(x, y, first, va="bottom", **inside)
+                    axes.text(x, y + 0.08, second, va="top", fontsize=small, **inside)
             heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
             axes.set_xticks(range(len(columns)), [style.typeset(head) for head in heads])
             names = [labels(rows.keys, row.values) for row in rows.groups[:MOST_ROWS]]

@@ -15,8 +15,8 @@ from rpscli.case.text.document import Fault
 from rpscli.errors import CaseError
 from rpscli.sweep.design.answer import Answer, Requirement, demands_of, judged_designs, weights_of
 from rpscli.sweep.points.check import needs_of
+from rpscli.sweep.points.combinations import unit_cube
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.points.sampling import unit_cube
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.table import Array, Table
 

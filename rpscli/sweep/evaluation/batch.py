@@ -6,18 +6,23 @@ order, or the process. A point that cannot be computed gives a row that says why
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.analyses.demand import Request, histories
+from rpscli.analyses.fixed_base import fixed_base_shears
 from rpscli.analyses.largest_demands import Histories
 from rpscli.analyses.outcome import failure_text
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, SAMPLED, STOREY_SHEARS, values_of
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import RpsError
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import GroundMotion
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import (
@@ -143,3 +148,12 @@ def _attempt(work: Callable[..., Result], *given: Any) -> Result | str:
         return str(error)
     except Exception as error:  # noqa: BLE001 -- one point must not take the study down
         return f"{type(error).__name__}: {error}"
+
+
+def reference_shears(structure: PodiumStructure, motion: GroundMotion) -> NDArray[np.float64]:
+    """Largest storey shears (n,) [N] from the bottom, under an unscaled motion."""
+    building = structure.superstructure
+    assert building is not None, "only buildings have a response"
+    # The largest shear after the end of the record comes within a period.
+    after = math.ceil(float(building.periods[0]) / motion.dt)
+    return fixed_base_shears(building, motion, motion.npts - 1 + after)

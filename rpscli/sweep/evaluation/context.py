@@ -1,17 +1,192 @@
-"""What the points of a study share: its systems and ground motions, and how these are scaled."""
+"""What the points of a study share: its systems and its ground motions, each made or read once."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+import json
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from threading import RLock
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from rpscli.analyses.demand import Request
-from rpscli.records.measures import Measure, factor_to
-from rpscli.sweep.evaluation.points import Plan, Point
-from rpscli.sweep.evaluation.record_cache import RecordCache
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.case.case import Case, case_from_mapping
+from rpscli.errors import RecordError
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import MotionComponents
+from rpscli.records.measures import Measure, factor_to, measured
+from rpscli.records.source import load_components
+from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest
 from rpscli.sweep.evaluation.results import Array
-from rpscli.sweep.evaluation.systems import Systems
+
+Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
+
+SAMPLES_KEPT = 32_000_000
+"""Samples of ground motions held in memory (256 MB); the longest unused one goes first."""
+
+
+class Recent(Generic[Key, Value]):
+    """The values that were asked for last; safe to share among threads.
+
+    Parameters
+    ----------
+    room
+        Sum of the sizes that are kept.
+    size
+        Size of a value.
+    """
+
+    def __init__(self, room: float, size: Callable[[Value], float] = lambda _: 1.0) -> None:
+        self._room, self._size, self._held = room, size, 0.0
+        self._values: OrderedDict[Key, Value] = OrderedDict()
+        self._lock = RLock()
+
+    def value(self, key: Key, make: Callable[[], Value]) -> Value:
+        """The value of a key, made if it is not at hand. Two threads never make the same one."""
+        with self._lock:
+            if key in self._values:
+                self._values.move_to_end(key)
+                return self._values[key]
+            made = self._values[key] = make()
+            self._held += self._size(made)
+            while self._held > self._room and len(self._values) > 1:
+                _, oldest = self._values.popitem(last=False)
+                self._held -= self._size(oldest)
+            return made
+
+
+class RecordCache:
+    """Motions, the intensity of each, and the reasons why some cannot be had."""
+
+    def __init__(self) -> None:
+        self._motions: Recent[RecordRequest, MotionComponents | str] = Recent(
+            SAMPLES_KEPT, _samples
+        )
+        self._digests: Recent[RecordRequest, bytes] = Recent(float("inf"))
+        self._intensities: Recent[tuple[object, ...], float] = Recent(1e6)
+
+    def motion(self, request: RecordRequest) -> MotionComponents:
+        """The motion of a request.
+
+        Raises
+        ------
+        RecordError
+            If it cannot be read; the same error each time, without trying again.
+        """
+        found = self._motions.value(request, lambda: _load(request))
+        if isinstance(found, str):
+            raise RecordError(found)
+        return found
+
+    def digest(self, request: RecordRequest) -> bytes:
+        """Digest of a motion's content; of the reason, if it cannot be read."""
+
+        def make() -> bytes:
+            try:
+                return self.motion(request).digest
+            except RecordError as error:
+                return hashlib.sha256(f"unreadable: {request.source}: {error}".encode()).digest()
+
+        return self._digests.value(request, make)
+
+    def intensity(
+        self,
+        request: RecordRequest,
+        measure: Measure,
+        period: float | None = None,
+        damping: float = 0.05,
+    ) -> float:
+        """A measure of the unscaled horizontal motion, SI units."""
+        key = (request, measure, period, damping)
+        return self._intensities.value(
+            key, lambda: measured(self.motion(request).horizontal, measure, period, damping)
+        )
+
+
+def _samples(found: MotionComponents | str) -> float:
+    """Room that a motion takes, both components together; a reason hardly any."""
+    if isinstance(found, str):
+        return 1.0
+    return sum(motion.npts for motion in found.named.values())
+
+
+def _load(request: RecordRequest) -> MotionComponents | str:
+    """The motion, or why there is none."""
+    source, folder, above, dt, units = request
+    try:
+        return load_components(source, above, folder=Path(folder), dt=dt, units=units)
+    except (RecordError, OSError) as error:
+        return str(error)
+
+
+SYSTEMS_KEPT = 512
+"""Systems held in memory with their modes of vibration; the longest unused one goes first."""
+
+DECIDING = ("superstructure", "podium", "analysis")
+"""Sections of a resolved case on which results depend besides the record."""
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """One structure of a study and the settings of its analysis."""
+
+    structure: PodiumStructure
+    settings: TimeHistorySettings
+    digest: bytes
+
+    def perturbed(self, restitution_change: float) -> PodiumStructure:
+        """The structure with its restitution times a factor; the building is shared."""
+        if restitution_change == 1.0:
+            return self.structure
+        law = self.structure.impact_law
+        changed = replace(law, factor=law.factor * restitution_change)
+        return replace(self.structure, impact_law=changed)
+
+
+def system_of(case: Case) -> System:
+    """The system that a case describes."""
+    return System(case.structure, case.analysis, digest_of(case.document))
+
+
+def digest_of(document: Mapping[str, Any]) -> bytes:
+    """Digest of everything in a resolved case that decides about results."""
+    deciding = {name: document.get(name) for name in DECIDING}
+    return hashlib.sha256(json.dumps(deciding, sort_keys=True).encode()).digest()
+
+
+def record_request(case: Case) -> RecordRequest | None:
+    """The case's own record."""
+    if (record := case.record) is None:
+        return None
+    folder = str(case.folder)
+    return RecordRequest(record.source, folder, record.vertical, record.dt, record.units)
+
+
+def resolved(plan: Plan, values: Sequence[Any]) -> Case:
+    """The case with values at the varied keys."""
+    given = dict(zip(plan.keys, values, strict=True))
+    return case_from_mapping(plan.base, plan.base_name, Path(plan.base_folder), given, label="vary")
+
+
+class Systems:
+    """The systems of a plan, resolved when they are first needed and kept for a while."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._recent: Recent[int, System] = Recent(SYSTEMS_KEPT)
+
+    def __getitem__(self, point: Point) -> System:
+        """The system of a point."""
+        return self._recent.value(
+            point.system, lambda: system_of(resolved(self._plan, point.values))
+        )
+
 
 PEAKS: tuple[Measure, ...] = ("PGA", "PGV")
 """What the table of a study tells of each scaled motion."""

@@ -1,8 +1,12 @@
-"""What a point of a study is, small enough to be made when it is needed and sent anywhere."""
+"""What a point of a study is, small enough to be sent anywhere, and which code computes it."""
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
+from functools import cache
+from importlib import metadata
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from rpscli.case.study.schema import Analysis, MeasureScale
@@ -68,3 +72,31 @@ class Plan:
     measure: MeasureScale | None
     whole: bool
     solver: str
+
+
+SOLVING = (
+    *("constants.py", "units.py", "physics", "model", "records", "analyses", "case"),
+    "sweep/evaluation",
+)
+"""Files and folders of the package whose sources decide about what is stored under a key."""
+
+
+@cache
+def solver_version() -> str:
+    """Version of rps and a digest of the sources that compute."""
+    try:
+        version = metadata.version("rpscli")
+    except metadata.PackageNotFoundError:
+        version = "0+unknown"
+    return f"{version}+{digest_of_sources(Path(__file__).parents[2])[:16]}"
+
+
+def digest_of_sources(package: Path) -> str:
+    """SHA-256 of the names and contents of all sources that compute, in sub-folders too."""
+    digest = hashlib.sha256()
+    for name in SOLVING:
+        place = package / name
+        for source in [place] if place.is_file() else sorted(place.rglob("*.py")):
+            digest.update(f"{source.relative_to(package).as_posix()}\0".encode())
+            digest.update(source.read_bytes())
+    return digest.hexdigest()

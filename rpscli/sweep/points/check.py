@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path as Folder
 from typing import NamedTuple, TypeAlias
 
-from rpscli.analyses.result_quantities import HISTORY, SAMPLED
+from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of, with_friction
 from rpscli.case.overrides import Override
@@ -20,10 +20,9 @@ from rpscli.case.text.document import Fault, Path, Place
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
+from rpscli.sweep.evaluation.context import digest_of, record_request, resolved
 from rpscli.sweep.evaluation.points import Plan, RecordRequest
-from rpscli.sweep.evaluation.systems import digest_of, record_request, resolved
-from rpscli.sweep.points.combinations import Combinations
-from rpscli.sweep.points.perturbation import Change
+from rpscli.sweep.points.combinations import Change, Combinations
 
 Watched: TypeAlias = Callable[[range], Iterator[int]]
 """Goes through numbers and may show how far it is."""
@@ -140,7 +139,7 @@ def lacking(study: Study, case: Case) -> frozenset[str]:
 
 def needs_of(name: str) -> str:
     """What a study must have for a result, in words."""
-    needs = {quantity.name: quantity.needs for quantity in (*HISTORY, *SAMPLED)}[name]
+    needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *SAMPLED)}[name]
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f" and {needs} in all systems" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"
@@ -152,16 +151,16 @@ def _device_with(result: str) -> Callable[[PodiumStructure], bool]:
 
 
 HAS: dict[str, Callable[[PodiumStructure], bool]] = {
-    "a superstructure": lambda structure: structure.superstructure is not None,
-    "superstructure.storey_height in the case": lambda structure: (
+    "superstructure": lambda structure: structure.superstructure is not None,
+    "superstructure.storey_height": lambda structure: (
         structure.superstructure is not None and structure.superstructure.storey_heights is not None
     ),
-    "podium.friction in the case": lambda structure: structure.friction is not None,
-    "a damper in podium.devices": _device_with("max_damper_force"),
-    "a stop in podium.devices": _device_with("max_stop_force"),
-    "a prestressed tendon in podium.devices": _device_with("lost_prestress"),
+    "podium.friction": lambda structure: structure.friction is not None,
+    "damper": _device_with("max_damper_force"),
+    "stop": _device_with("max_stop_force"),
+    "tendon": _device_with("lost_prestress"),
 }
-"""Whether a structure has what a result needs, by the words of the table of results."""
+"""Whether a structure has what a result needs, by the names of `NEEDS`."""
 
 
 def _digest(building: Superstructure) -> bytes:

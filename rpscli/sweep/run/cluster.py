@@ -17,10 +17,9 @@ from typing import Any
 from rpscli.errors import RpsError, UsageError
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.points import Plan, Point
+from rpscli.sweep.evaluation.points import Plan, Point, solver_version
 from rpscli.sweep.evaluation.results import PointResults, failures
-from rpscli.sweep.evaluation.solver import solver_version
-from rpscli.sweep.run.engine import Computed
+from rpscli.sweep.run.schedule import Computed
 
 WAITING = 2
 """Batches that are kept ready for each thread of the cluster."""

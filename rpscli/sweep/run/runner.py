@@ -12,9 +12,8 @@ from types import FrameType
 
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.run.engine import Engine
 from rpscli.sweep.run.resume import Resume
-from rpscli.sweep.run.schedule import batches
+from rpscli.sweep.run.schedule import Engine, batches
 from rpscli.sweep.store import Store
 
 

@@ -1,4 +1,4 @@
-"""In which order points are computed: batches that share sizes of building and records.
+"""Batches of points that share sizes of building and records, who computes them, and how long.
 
 The order of computation is not the order of the study. Points with one number of storeys stand
 together, and among them those of one record, because the kernels run fastest on them; the tallest
@@ -9,11 +9,15 @@ pass.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
+from typing import Protocol
 
+from rpscli.sweep.evaluation.batch import run_batch
+from rpscli.sweep.evaluation.context import SYSTEMS_KEPT, StudyContext
 from rpscli.sweep.evaluation.points import Point
-from rpscli.sweep.evaluation.systems import SYSTEMS_KEPT
+from rpscli.sweep.evaluation.results import PointResults
 from rpscli.sweep.points.layout import StudyPoints
 
 LARGEST_BATCH = 480
@@ -56,3 +60,55 @@ def _storeys(layout: StudyPoints, number: int) -> int:
 def _record(layout: StudyPoints, number: int) -> int:
     of_system = layout.points_of_system
     return number % of_system // (of_system // len(layout.records))
+
+
+Computed = tuple[list[Point], PointResults]
+"""A batch of points with its results."""
+
+
+class Engine(Protocol):
+    """Computes batches somewhere, several at a time."""
+
+    @property
+    def jobs(self) -> int:
+        """How many batches are computed at a time."""
+
+    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
+        """The batches with their results, as they come.
+
+        A batch is taken from the iterable only when somebody is there to compute it. When the
+        iterable ends, the batches under way are waited for; every batch comes back once.
+        """
+
+
+PROBES = 96
+LONGEST_PROBING = 3.0
+"""Time after which no further points are tried [s]."""
+
+
+def estimated_seconds(layout: StudyPoints, context: StudyContext, jobs: int) -> float:
+    """Compute points spread over the study, in batches, and take the rest to be like them."""
+    count = len(layout)
+    tried = min(PROBES, count)
+    numbers = sorted({count * (2 * i + 1) // (2 * tried) for i in range(tried)})
+    probes = list(batches(layout, numbers, jobs=1))
+    began = time.perf_counter()
+    for batch in probes:
+        _seconds(context, batch[:1])  # reads records, loads kernels
+        if time.perf_counter() - began > LONGEST_PROBING:
+            break
+    affordable = 1 + int(LONGEST_PROBING / _seconds(context, probes[0][:1]))
+    spent, points = 0.0, 0
+    for batch in probes:
+        spent += _seconds(context, batch[:affordable])
+        points += len(batch[:affordable])
+        if spent > LONGEST_PROBING:
+            break
+    mean = spent / points
+    return mean * count / min(jobs, count)
+
+
+def _seconds(context: StudyContext, points: Sequence[Point]) -> float:
+    began = time.perf_counter()
+    run_batch(context, points)
+    return time.perf_counter() - began

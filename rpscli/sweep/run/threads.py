@@ -15,7 +15,7 @@ from threading import Lock, Thread
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
-from rpscli.sweep.run.engine import Computed
+from rpscli.sweep.run.schedule import Computed
 
 HEARING = 0.2
 """Seconds after which who waits for a batch looks up.

@@ -14,8 +14,8 @@ from typing import NamedTuple
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.sweep.evaluation.batch import reference_shears
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.fixed_base import reference_shears
 from rpscli.sweep.evaluation.points import RecordRequest
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Store
