@@ -20,8 +20,7 @@ from rpscli.report.study.scatter import (
     records_without_period,
 )
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
-from rpscli.sweep.fits.probit import probit_fit, separated
+from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit, probit_fit, separated
 from rpscli.sweep.intensities import intensity
 from rpscli.sweep.points.layout import lay_out
 from sweep.made_up import Stored, cells, results_of, tabulate
@@ -162,7 +161,7 @@ def test_hopeless_data_get_no_curve_but_a_reason(flags: list[int], note: str) ->
 def test_a_fit_that_does_not_converge_is_no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     im, y = drawn(40)
     assert fit(im, y, resamples=0).method == "maximum likelihood"
-    monkeypatch.setattr("rpscli.sweep.fits.probit.MOST_STEPS", 2)
+    monkeypatch.setattr("rpscli.sweep.fits.lognormal.MOST_STEPS", 2)
     found = fit(im, y, resamples=0)
     assert found.method == "none"
     assert found.note is not None

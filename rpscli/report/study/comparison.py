@@ -178,7 +178,7 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
     for (name, curve), colour, marker in zip(
         _curves(found), (style.BLACK, style.BLUE), "os", strict=True
     ):
-        if curve.fitted:
+        if curve.fit.fitted:
             axes.plot(
                 curve.grid, curve.fit.curve, color=colour, lw=1.4, label=name,
                 marker=marker, ms=3.2, markevery=[],  # the legend shows both

@@ -89,14 +89,8 @@ class Curve(NamedTuple):
     binned: Binned
     grid: Array
 
-    @property
-    def fitted(self) -> bool:
-        """Whether there is a curve."""
-        return self.fit.method != "none"
 
-
-@dataclass(frozen=True, eq=False)
-class Outcomes:
+class Outcomes(NamedTuple):
     """Overturning in one part of the records; None where nothing could be counted."""
 
     agreement: Agreement

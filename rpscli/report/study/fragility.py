@@ -140,11 +140,6 @@ class Fragility:
     overturned: int
     failed: int
 
-    @property
-    def fitted(self) -> bool:
-        """Whether there is a curve."""
-        return self.fit.method != "none"
-
 
 @dataclass(frozen=True, eq=False)
 class Fragilities:
@@ -158,7 +153,7 @@ class Fragilities:
 
     def fitted(self, limit: LimitState) -> list[Fragility]:
         """The curves of a limit state that could be fitted."""
-        return [curve for curve in self.curves if curve.limit == limit and curve.fitted]
+        return [curve for curve in self.curves if curve.limit == limit and curve.fit.fitted]
 
     @property
     def notes(self) -> list[str]:
@@ -286,7 +281,7 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     lines = [
         (*of, *numbers)
         for of, curve in curves
-        if curve.fitted
+        if curve.fit.fitted
         for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
     ]
     observed = [
@@ -303,7 +298,7 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
         "_curves": keyed(keys, line_heads, lines),
         "_observed": keyed(keys, observed_heads, observed),
     }
-    drawable = any(curve.fitted for curve in found.curves)
+    drawable = any(curve.fit.fitted for curve in found.curves)
     return Found(
         tables, (lambda title: fragility_figure(found, title)) if drawable else None, found.notes
     )
@@ -356,7 +351,7 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
         notes.append("dashed: separated data, penalised fit")
     if any(limit.threshold is not None for limit in limits):
         notes.append("overturning exceeds every limit")
-    if missing := sum(not c.fitted for c in report.curves):
+    if missing := sum(not c.fit.fitted for c in report.curves):
         notes.append(f"{missing} of {len(report.curves)} curves without a fit, see CSV")
     notes += [
         over(report.systems.pooled),

@@ -116,7 +116,7 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     options = options.model_copy(update={"measure": options.hazard.measure})
     found = fragilities(study, options)
     risks = [risk_of(curve, hazard, options.confidence) for curve in found.curves]
-    known = [each for each in risks if each.fragility.fitted]
+    known = [each for each in risks if each.fragility.fit.fitted]
     keys, measured, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
     life = f"probability_in_{options.years:g}_years"
     heads = {"limit": "-"}
@@ -164,7 +164,7 @@ def risk_of(fragility: Fragility, hazard: Hazard, confidence: float) -> Risk:
     """The annual rate of one fragility, with what contributes to it."""
     low, high = hazard.intensity[[0, -1]]
     edges = np.append(np.geomspace(low, high, BINS + 1), math.inf)
-    if not fragility.fitted:
+    if not fragility.fit.fitted:
         nothing = Contributions(edges, np.full(BINS + 1, math.nan))
         return Risk(fragility, math.nan, NOTHING, nothing, math.nan, ())
     fit = fragility.fit

@@ -38,35 +38,14 @@ RATE_UNITS = ("1/year", "1/yr", "1/a")
 
 @dataclass(frozen=True, eq=False)
 class Hazard:
-    """A hazard curve.
-
-    Parameters
-    ----------
-    intensity
-        (points,) ascending, in the SI unit of the measure.
-    rate
-        (points,) how often a year they are exceeded, not rising [1/year].
-    """
+    """Ascending intensities (points,) in SI, and how often a year they are exceeded [1/year]."""
 
     intensity: Array
     rate: Array
 
 
 def read_hazard(path: Path, measure: Measure) -> Hazard:
-    """A hazard curve from a CSV file with the header ``PGV [cm/s],rate [1/year]``.
-
-    Parameters
-    ----------
-    path
-        The file.
-    measure
-        What its first column must hold.
-
-    Raises
-    ------
-    CaseError
-        With the line that is wrong.
-    """
+    """A hazard curve from a CSV file with the header ``PGV [cm/s],rate [1/year]``."""
     text = read_text(path)
     rows = [
         (line, row)
@@ -122,31 +101,13 @@ def _numbers(path: Path, line: int, row: Sequence[str]) -> tuple[float, float]:
 
 
 def annual_rate(hazard: Hazard, median: float, beta: float) -> float:
-    """How often a year the limit is exceeded by motions above the curve's first point [1/year].
-
-    Parameters
-    ----------
-    hazard
-        The hazard curve.
-    median, beta
-        Of the lognormal fragility: in the unit of the intensity, and [-].
-    """
+    """How often a year the limit is exceeded by motions above the curve's first point [1/year]."""
     low = hazard.intensity[:1]
     return float(rates_above(hazard, median, beta, low)[0])
 
 
 def rates_above(hazard: Hazard, median: float, beta: float, intensities: Array) -> Array:
-    """(n,) how often a year motions above given intensities exceed the limit [1/year].
-
-    Parameters
-    ----------
-    hazard
-        The hazard curve.
-    median, beta
-        Of the fragility.
-    intensities
-        (n,) not below the first point of the curve.
-    """
+    """(n,) how often a year motions above intensities of the curve exceed the limit [1/year]."""
     from scipy.special import ndtr
 
     x, height = np.log(hazard.intensity), np.log(hazard.rate)
