@@ -254,13 +254,13 @@ def _cell(
 
 
 def _left_out_of_ratios(cells: Sequence[Contrast]) -> Iterator[str]:
-    """Pairs of which a history overturned have no ratio."""
+    """Pairs without a ratio: a history overturned, or that of the reference has nothing."""
     pairs = sum(cell.pairs for cell in cells)
-    without = pairs - sum(max(cell.behind, default=0) for cell in cells)
+    without = pairs - sum(min(cell.behind, default=cell.pairs) for cell in cells)
     if without:
         yield (
-            f"ratios are those of pairs of which both stood: {without} of {pairs} pairs have none,"
-            " and count in the shares that overturned alone"
+            "ratios are those of pairs in which both stood and the reference is not 0:"
+            f" {without} of {pairs} pairs have none; the shares that overturned are of all pairs"
         )
 
 
