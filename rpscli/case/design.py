@@ -301,12 +301,12 @@ def parse_design(
     check = schema_check(DesignFile, document)
     confirming, source_faults = _confirming(document, folder)
     faults = [*check.faults, *source_faults, *sources_of(document, folder)[1]]
-    faults += [*_fixed_properties(document), *unknown_keys(document), *_link_faults(document)]
-    faults += [*twice(document), *record_rules(document)]
+    faults += [*_fixed_properties(document), *unknown_keys(document), *twice(document)]
+    faults += record_rules(document)
     document.refuse([*faults, *fixed_faults(document, of_base)])
     file = check.read
     assert file is not None, "without faults the file is read"
-    document.refuse(_objective_faults(file))
+    document.refuse(_name_faults(file))
     shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
     study = study_of(
         replace(document, content=shared),
@@ -386,20 +386,13 @@ def _fixed_properties(document: Document) -> Iterator[Fault]:
             yield Fault(place, text, at_key=True)
 
 
-def _link_faults(document: Document) -> Iterator[Fault]:
-    """Sums of keys that do not vary."""
-    variables, linked = (document.content.get(key) for key in ("variables", "linked"))
-    known = [*(variables if isinstance(variables, dict) else ()), PLUS]
-    for key, terms in linked.items() if isinstance(linked, dict) else ():
-        for name in terms if isinstance(terms, dict) else ():
-            if name not in known:
-                text = f"linked.{key} needs {name}, which is not under variables"
-                yield Fault(("linked", key), f"{text}; use {listed(known)}")
-
-
-def _objective_faults(file: DesignFile) -> Iterator[Fault]:
-    """Names that are neither keys that change nor results."""
-    keys = [*file.variables, *file.linked]
+def _name_faults(file: DesignFile) -> Iterator[Fault]:
+    """Names that are not keys that change, or in what is minimised not results either."""
+    known, keys = [*file.variables, PLUS], [*file.variables, *file.linked]
+    for key, sums in file.linked.items():
+        for name in (name for name in sums if name not in known):
+            text = f"linked.{key} needs {name}, which is not under variables"
+            yield Fault(("linked", key), f"{text}; use {listed(known)}")
     sampled = {quantity.name for quantity in SAMPLED}
     results = {quantity.name for quantity in DEMANDS}
     terms = [term for objective in file.minimise for term in objective.items()]

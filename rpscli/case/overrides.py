@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
@@ -39,20 +40,26 @@ def apply_overrides(
     >>> apply_overrides(document, ["podium.bearing.slenderness=0.2"]).content
     {'podium': {'bearing': {'slenderness': 0.2}}}
     """
-    changed = Document(
-        document.name,
-        copy.deepcopy(document.content),
-        dict(document.keys),
-        dict(document.values),
-        document.faults,
+    changed = replace(
+        document,
+        content=copy.deepcopy(document.content),
+        keys=dict(document.keys),
+        values=dict(document.values),
     )
     faults = []
     for override in _parsed(overrides, label):
-        fault = _put(changed, override, model)
-        if fault:
-            faults.append(Fault(fault.path, fault.text, place=override.place))
+        try:
+            _put(changed, override, model)
+        except _CannotBeSet as error:
+            faults.append(Fault(error.path, str(error), place=override.place))
     changed.refuse(faults)
     return changed
+
+
+class _CannotBeSet(ValueError):
+    def __init__(self, path: Path, text: str) -> None:
+        super().__init__(text)
+        self.path = path
 
 
 def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
@@ -84,52 +91,46 @@ def _written(value: Any) -> str:
     return value if isinstance(value, str) else shown(value)
 
 
-def _put(document: Document, override: Override, model: type[BaseModel]) -> Fault | None:
-    """Put one value in place; returns what is wrong with its key, if anything."""
+def _put(document: Document, override: Override, model: type[BaseModel]) -> None:
+    """Put one value in place."""
     path = tuple(int(part) if part.isdecimal() else part for part in override.key.split("."))
-    named = tuple(part for part in path if isinstance(part, str))
-    if field_at(model, named) is None:
-        return _unknown(named, model)
+    _require_known(tuple(part for part in path if isinstance(part, str)), model)
     owner: Any = document.content
-    for depth, part in enumerate(path):
-        fault = _step(owner, path[:depth], part)
-        if fault:
-            return fault
-        if depth == len(path) - 1:
-            return _set(document, owner, path, override)
+    *parents, key = path
+    for depth, part in enumerate(parents):
+        _require_place(owner, path[:depth], part)
         if isinstance(owner, dict) and part not in owner:
             if override.value is None:
-                return None  # nothing there to take out
+                return  # nothing there to take out
             owner[part] = {}
             _settle(document, path[: depth + 1], override.place)
         owner = owner[part]
-    raise AssertionError("a key has at least one part")
-
-
-def _step(owner: object, path: Path, part: str | int) -> Fault | None:
-    """What keeps `part` from being a key or an index of the value at a path."""
-    if isinstance(owner, list):
-        if not isinstance(part, int):
-            return Fault(path, f"{dotted(path)} is a list, without a key {part}")
-        if part >= len(owner):
-            text = f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
-            return Fault(path, text)
-    elif not isinstance(owner, dict):
-        return Fault(path, f"{dotted(path)} = {shown(owner)} is a single value; set it as a whole")
-    elif isinstance(part, int):
-        return Fault(path, f"{dotted(path) or 'the case'} is not a list; {part} is not a key of it")
-    return None
-
-
-def _set(document: Document, owner: Any, path: Path, override: Override) -> Fault | None:
+    _require_place(owner, tuple(parents), key)
     if override.value is None and isinstance(owner, list):
-        return Fault(path, f"{dotted(path)} cannot be taken out of its list; set the whole list")
+        text = f"{dotted(path)} cannot be taken out of its list; set the whole list"
+        raise _CannotBeSet(path, text)
     _settle(document, path, override.place)
     if override.value is None:
-        owner.pop(path[-1], None)
+        owner.pop(key, None)
     else:
-        owner[path[-1]] = override.value
-    return None
+        owner[key] = override.value
+
+
+def _require_place(owner: object, path: Path, part: str | int) -> None:
+    """Refuse what keeps `part` from being a key or an index of the value at a path."""
+    if isinstance(owner, list) and isinstance(part, int):
+        if part < len(owner):
+            return
+        text = f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
+    elif isinstance(owner, list):
+        text = f"{dotted(path)} is a list, without a key {part}"
+    elif not isinstance(owner, dict):
+        text = f"{dotted(path)} = {shown(owner)} is a single value; set it as a whole"
+    elif isinstance(part, int):
+        text = f"{dotted(path) or 'the case'} is not a list; {part} is not a key of it"
+    else:
+        return
+    raise _CannotBeSet(path, text)
 
 
 def _settle(document: Document, path: Path, place: Place) -> None:
@@ -140,14 +141,14 @@ def _settle(document: Document, path: Path, place: Place) -> None:
         places[path] = place
 
 
-def _unknown(named: tuple[str, ...], model: type[BaseModel]) -> Fault:
-    """Name the first part of the key that the format does not know."""
+def _require_known(named: tuple[str, ...], model: type[BaseModel]) -> None:
+    """Name the first part of a key that the format does not know."""
+    if not named:
+        raise _CannotBeSet((), "an index alone is not a key of the format")
     for length in range(1, len(named) + 1):
         path = named[:length]
         if field_at(model, path) is None:
             if section_at(model, path[:-1]) is None:
-                return Fault(
-                    path, f"{dotted(path[:-1])} can be set as a whole only, not {dotted(named)}"
-                )
-            return unknown_key(model, path)[0]
-    return Fault((), "an index alone is not a key of the format")
+                text = f"{dotted(path[:-1])} can be set as a whole only, not {dotted(named)}"
+                raise _CannotBeSet(path, text)
+            raise _CannotBeSet(path, unknown_key(model, path)[0].text)

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
 
-from rpscli.case.schema.fields import ModePair, Quantity, Section, Text, Whole
+from rpscli.case.schema.fields import DampingRatio, ModePair, Quantity, Section, Text, Whole
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
@@ -100,9 +100,7 @@ Profile = Literal["sine", "uniform", "linear", "flexural"]
 class DampingSection(Section):
     """Damping of the building on a fixed base: Rayleigh if modes are named, else modal."""
 
-    ratio: Annotated[
-        float, Quantity(symbol="of critical damping", at_least=0, below=1, remedy="5 % is 0.05")
-    ] = Field(description="critical damping ratio")
+    ratio: DampingRatio = Field(description="critical damping ratio")
     modes: ModePair | None = Field(
         None,
         description="the two modes of Rayleigh damping, counted from 1; left out: the same ratio"

@@ -195,6 +195,11 @@ class Whole:
         return {"type": "integer", "minimum": self.at_least} | most
 
 
+DampingRatio = Annotated[
+    float, Quantity(symbol="of critical damping", at_least=0, below=1, remedy="5 % is 0.05")
+]
+
+
 def _two(value: object) -> object:
     if not isinstance(value, list | tuple) or len(value) != 2:
         refuse("must be two modes, as in [1, 2]; leave modes out to damp every mode alike")

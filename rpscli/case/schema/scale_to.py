@@ -14,7 +14,7 @@ from pydantic import (
     WithJsonSchema,
 )
 
-from rpscli.case.schema.fields import Quantity, Section, refuse
+from rpscli.case.schema.fields import DampingRatio, Quantity, Section, refuse
 from rpscli.errors import hint
 from rpscli.records.measures import MEASURE_UNITS, Measure
 
@@ -56,9 +56,7 @@ class ScaleToSection(Section):
     period: Annotated[Annotated[float, Quantity("s", above=0)] | None, of_sa] = Field(
         None, description="of Sa; left out: the fixed-base first period of the building"
     )
-    damping: Annotated[float, Quantity(symbol="of critical damping", at_least=0, below=1)] = Field(
-        0.05, description="of Sa"
-    )
+    damping: DampingRatio = Field(0.05, description="of Sa")
 
 
 def scale_to_of(text: str) -> ScaleToSection:

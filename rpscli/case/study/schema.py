@@ -25,6 +25,7 @@ from pydantic_core import CoreSchema
 from rpscli.case.schema.case_file import FORMAT_VERSION, PositiveRatio, Time
 from rpscli.case.schema.fields import (
     CHECKED_BY_ITSELF,
+    DampingRatio,
     Quantity,
     Section,
     Several,
@@ -40,10 +41,6 @@ from rpscli.records.measures import Measure
 
 Number = Annotated[float, Quantity()]
 Seed = Annotated[int, Whole(0)]
-DampingRatio = Annotated[
-    float,
-    Quantity(symbol="of critical damping", at_least=0, below=1, remedy="5 % is 0.05"),
-]
 Share = Annotated[
     float,
     Quantity(symbol="share of the value", at_least=0, below=1, remedy="1 % is 0.01"),

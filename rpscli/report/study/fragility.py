@@ -13,10 +13,10 @@ from pydantic import Field, StrictBool, create_model
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import LIMITS
 from rpscli.case.schema.case_file import Time
-from rpscli.case.schema.fields import Quantity, Section, Whole
+from rpscli.case.schema.fields import DampingRatio, Quantity, Section, Whole
 from rpscli.case.schema.limits import described
 from rpscli.case.study.reports import ReportOptions, VariedKeys
-from rpscli.case.study.schema import DampingRatio, PositiveNumbers, Seed
+from rpscli.case.study.schema import PositiveNumbers, Seed
 from rpscli.records.measures import Measure
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels

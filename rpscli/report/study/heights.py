@@ -15,8 +15,8 @@ from pydantic import Field
 
 from rpscli.analyses.floor_spectra import DAMPING, PERIODS
 from rpscli.analyses.result_quantities import STOREY_SHEARS
+from rpscli.case.schema.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions, VariedKeys
-from rpscli.case.study.schema import DampingRatio
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import (
