@@ -26,7 +26,7 @@ from rpscli.physics.planar.equation_of_motion import (
 )
 from rpscli.physics.planar.run import empty_state
 from rpscli.physics.planar.steps import take_steps
-from rpscli.physics.planar.transitions import change_edge, enter_phase, lock
+from rpscli.physics.planar.transitions import change_edge, enter_phase, recontact
 from rpscli.records.ground_motion import MotionComponents
 
 LEAST_DT = 0.01
@@ -192,6 +192,6 @@ class OneLane:
         """Let the storey go over to its other edge; returns the energy lost [J]."""
         return float(change_edge(self.s, 0, self.system))
 
-    def lock(self) -> float:
+    def recontact(self) -> float:
         """Let the storey come to rest; returns the energy lost [J]."""
-        return float(lock(self.s, 0, self.system))
+        return float(recontact(self.s, 0, self.system))

@@ -94,7 +94,7 @@ def test_locking_keeps_the_relative_velocities(
     structure = podium(3, 0.15, rho)
     lane = arriving(structure, rate, floors, RELATIVE)
     base_rate = 2.0 * structure.bearing.half_height * rate
-    before, gone = lane.energy(), lane.lock()
+    before, gone = lane.energy(), lane.recontact()
     assert gone == pytest.approx(before - lane.energy(), abs=1e-13 * before)
     assert lane.velocity[0] == 0.0
     assert lane.velocity[1:] == pytest.approx(np.array(floors) - base_rate, abs=1e-13)
@@ -110,7 +110,7 @@ def test_the_limit_is_what_endless_bounces_leave(
     law_of = ImpactLaw(law, 0.9 if law == "value" else None, factor=0.5)
     structure = podium(3, 0.15, rho, law=law_of)
     bouncing, locking = (arriving(structure, -rate, floors, LIMIT) for _ in range(2))
-    locking.lock()  # just after an impact, the tilt growing again
+    locking.recontact()  # just after an impact, the tilt growing again
     while bouncing.velocity[0] > 1e-17:
         velocity = bouncing.velocity
         velocity[0] *= -1.0  # the floors' springs have no time to act

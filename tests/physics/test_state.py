@@ -138,7 +138,7 @@ def test_kinds_and_outcomes_are_distinct() -> None:
             "IDLE WORKING BEYOND",
             f"{kinds} {changes} OVERTURNING NO_EVENT",
             f"{outcomes} {failures}",
-            "GOES_ON STANDS IS_OVER",
+            "GOES_ON FOLLOW_CONTACT IS_OVER",
         )
     ]
     for names in groups:

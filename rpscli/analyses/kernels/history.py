@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
@@ -20,7 +19,7 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
-from rpscli.physics.planar.run import Output, Run, empty_block, empty_state
+from rpscli.physics.planar.run import Output, Run
 from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
 from rpscli.records.ground_motion import MotionComponents
 
@@ -70,7 +69,6 @@ def run_of(
         acceleration=np.concatenate([motion.samples.ravel() for motion in motions]),
         results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
         output=_output(n, devices, rows, events) if rows else _no_output(n, devices),
-        block=empty_block(n),
     )
 
 
@@ -88,30 +86,12 @@ def _no_output(storeys: int, devices: int) -> Output:
     return _output(storeys, devices, 0, 0)
 
 
-_kept = threading.local()
-
-
-def _scratch(name: str, storeys: int, make: Callable[[], Record]) -> Record:
-    """A record that the thread keeps: to touch as much new memory takes as long as a history."""
-    known: dict[str, Record] = vars(_kept)
-    if name not in known:
-        known[name] = make()
-    known[name].view(np.ndarray)["n"] = storeys
-    return known[name]
-
-
 def follow(run: Run, lanes: int) -> None:
     """Follow every history of a run; writes `run.results`."""
-    from rpscli.physics.planar.driver import integrate_lanes
+    from rpscli.physics.planar.driver import integrate
 
-    systems = run.systems.view(np.ndarray)
-    equipped = bool(systems["devices"].any())
-    n = int(systems["n"][0])
-    state = _scratch(f"state {equipped}", n, lambda: empty_state(n, equipped=equipped))
-    state.view(np.ndarray)["lanes"] = lanes
-    block = _scratch("block", n, lambda: empty_block(n))
-    with compiled(equipped=equipped):
-        integrate_lanes(state, run._replace(block=block))
+    with compiled(equipped=bool(run.systems.view(np.ndarray)["devices"].any())):
+        integrate(run, lanes)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,31 +9,17 @@ from rpscli.physics.core.records import INSTANTS, NO_RECORD, Floats, Record
 
 
 class Ground(NamedTuple):
-    """How the ground moves in an interval.
+    """How the ground moves in an interval."""
 
-    Parameters
-    ----------
-    a_g, g_up
-        a_g and g + a_v at the start of an interval [m/s2].
-    a_g_slope, g_up_slope
-        Their slopes over it [m/s3].
-    """
-
-    a_g: float
-    a_g_slope: float
-    g_up: float
-    g_up_slope: float
+    a_g: float  # a_g and g + a_v at the start of an interval [m/s2]
+    a_g_slope: float  # their slopes over it [m/s3]
+    g_up: float  # a_g and g + a_v at the start of an interval [m/s2]
+    g_up_slope: float  # their slopes over it [m/s3]
 
 
 @compiled
 def ground_in(s: Record, l: int, acceleration: Floats, interval: int) -> Ground:
-    """How the ground moves in an interval of the lane's record.
-
-    Parameters
-    ----------
-    interval
-        Its number, from 0.
-    """
+    """How the ground moves in an interval of the lane's record."""
     gravity, scale = s.gravity[l], s.scale[l]
     if interval + 1 >= s.npts[l]:
         return Ground(0.0, 0.0, gravity, 0.0)
@@ -62,20 +48,9 @@ def set_ground(s: Record, l: int, acceleration: Floats) -> None:
 def set_ground_of_block(
     s: Record, l: int, block: Record, acceleration: Floats, h: float, each: int, steps: int
 ) -> None:
-    """Write the ground's motion at the instants of a block of steps of length h.
+    """Write the ground's motion at the instants of a block of steps of length h [h s].
 
     The last instant belongs to the step before it: the ground acceleration may jump there.
-
-    Parameters
-    ----------
-    s, l, block
-        The lanes, which of them, and the block: written.
-    h
-        Length of a step [s].
-    each
-        Steps from the present instant to the next sample, and from one to the next.
-    steps
-        Steps that will be taken.
     """
     i = s.interval[l]
     if each == 1 and s.time[l] == 0.0 and i + 1 < s.npts[l]:
@@ -104,19 +79,7 @@ def copy_samples(
     steps: int,
     rest: float,
 ) -> None:
-    """Write `rest` plus a record to values and slopes: a step is an interval.
-
-    Parameters
-    ----------
-    values, slopes
-        (INSTANTS,) [m/s2, m/s3]: written.
-    start
-        Offset of the present sample among all.
-    steps
-        Steps that will be taken.
-    rest
-        What the record is added to [m/s2].
-    """
+    """Write `rest` plus a record to values and slopes: a step is an interval."""
     scale, rate = s.scale[l], s.sampling_rate[l]
     for k in range(steps + 1):
         values[k] = rest + scale * acceleration[start + k]
@@ -132,13 +95,7 @@ def copy_samples(
 def divide_intervals(
     s: Record, l: int, block: Record, acceleration: Floats, h: float, each: int, steps: int
 ) -> None:
-    """The same where a step does not lead from sample to sample.
-
-    Parameters
-    ----------
-    h, each, steps
-        See `set_ground_of_block`.
-    """
+    """The same where a step does not lead from sample to sample."""
     interval, time = s.interval[l], s.time[l]
     ground = ground_in(s, l, acceleration, interval)
     to_sample = each
@@ -178,19 +135,7 @@ def log_event(
     after: float,
     lost: float,
 ) -> None:
-    """Count an event, and log it if there is room (the caller sees from the counts if not).
-
-    Parameters
-    ----------
-    time
-        Since the start of the record [s].
-    kind
-        `state.UPLIFT` to `state.OVERTURNING`.
-    theta, before, after
-        Rotation [rad], and its rate before and after the event [rad/s].
-    lost
-        Energy that the event took [J].
-    """
+    """Count an event, and log it if there is room (the caller sees from the counts if not)."""
     if log.shape[0] > 0:
         row = 0
         for i in range(s.events.shape[1]):
@@ -205,13 +150,7 @@ def log_event(
 
 @compiled
 def enter_interval(s: Record, l: int, acceleration: Floats, interval: int) -> bool:
-    """Begin an interval of the record; True if it is beyond the history's end.
-
-    Parameters
-    ----------
-    interval
-        Its number, from 0.
-    """
+    """Begin an interval of the record; True if it is beyond the history's end."""
     s.interval[l] = interval
     set_ground(s, l, acceleration)
     return bool(interval >= s.intervals[l])

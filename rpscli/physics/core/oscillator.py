@@ -17,17 +17,7 @@ from rpscli.physics.core.compile import compiled
 
 @compiled
 def decay(omega: float, xi: float, h: float) -> tuple[float, float]:
-    """c(h) and s(h) [1, s]; under-, over- and critically damped.
-
-    Parameters
-    ----------
-    omega
-        w [rad/s].
-    xi
-        Damping ratio.
-    h
-        Time [s].
-    """
+    """c(h) and s(h) [1, s]; under-, over- and critically damped [omega rad/s, h s]."""
     rate = xi * omega
     square = omega**2 - rate**2
     if abs(square) * h**2 < 1e-16:
@@ -49,21 +39,10 @@ def decay(omega: float, xi: float, h: float) -> tuple[float, float]:
 def transition(
     omega: float, xi: float, h: float
 ) -> tuple[float, float, float, float, float, float, float, float]:
-    """The exact map over a step h.
+    """The exact map over a step h [omega rad/s, h s].
 
-    Parameters
-    ----------
-    omega
-        w [rad/s].
-    xi
-        Damping ratio.
-    h
-        Length of the step [s].
-
-    Returns
-    -------
-    a, b, c, d, e, f, g, i of q1 = a q + b q' + c p + d p' and q1' = e q + f q' + g p + i p', with p
-    the load at the start of the step and p' its slope.
+    Returns: a, b, c, d, e, f, g, i of q1 = a q + b q' + c p + d p' and q1' = e q + f q' + g p + i
+    p', with p the load at the start of the step and p' its slope.
     """
     c, s = decay(omega, xi, h)
     square = omega * omega

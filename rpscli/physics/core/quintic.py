@@ -43,17 +43,7 @@ DEEPEST_HALVING = 40
 def quintic(
     h: float, f0: float, df0: float, ddf0: float, f1: float, df1: float, ddf1: float
 ) -> Quintic:
-    """Bernstein coefficients of the Hermite quintic over a step of length h.
-
-    Parameters
-    ----------
-    h
-        Length of the step [s].
-    f0, df0, ddf0
-        Value, first and second time derivative at its start.
-    f1, df1, ddf1
-        The same at its end.
-    """
+    """Bernstein coefficients of the Hermite quintic over a step of length h [h s]."""
     d0, d1 = 0.2 * h * df0, 0.2 * h * df1
     c0, c1 = 0.05 * h**2 * ddf0, 0.05 * h**2 * ddf1
     return (f0, f0 + d0, f0 + 2.0 * d0 + c0, f1 - 2.0 * d1 + c1, f1 - d1, f1)
@@ -73,17 +63,7 @@ def upper_hull(b: Quintic) -> float:
 
 @compiled
 def offset(b: Quintic, sign: float, level: float) -> Quintic:
-    """Coefficients of sign (f - level).
-
-    Parameters
-    ----------
-    b
-        Bernstein coefficients of f over [0, 1].
-    sign
-        1 or -1.
-    level
-        In the unit of f.
-    """
+    """Coefficients of sign (f - level)."""
     return (
         sign * (b[0] - level),
         sign * (b[1] - level),
@@ -96,15 +76,7 @@ def offset(b: Quintic, sign: float, level: float) -> Quintic:
 
 @compiled
 def value(b: Quintic, t: float) -> float:
-    """f at t.
-
-    Parameters
-    ----------
-    b
-        Bernstein coefficients of f over [0, 1].
-    t
-        Fraction of the step.
-    """
+    """f at t."""
     r = 1.0 - t
     t2, r2 = t * t, r * r
     ends = b[0] * r2 * r2 * r + b[5] * t2 * t2 * t
@@ -115,34 +87,14 @@ def value(b: Quintic, t: float) -> float:
 
 @compiled
 def first_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
-    """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE`.
-
-    Parameters
-    ----------
-    b
-        Bernstein coefficients of f over [0, 1].
-    settled
-        Corrections of t end below this.
-    piece
-        (6,) scratch.
-    """
+    """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE` [piece (6,)]."""
     stays = min(lower_hull(b), b[0]) >= 0.0
     return NO_PASSAGE if stays else search_descent(b, settled, piece)
 
 
 @compiled
 def search_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
-    """The same for a quintic whose hull does not say that there is none.
-
-    Parameters
-    ----------
-    b
-        Bernstein coefficients of f over [0, 1].
-    settled
-        Corrections of t end below this.
-    piece
-        (6,) scratch.
-    """
+    """The same for a quintic whose hull does not say that there is none [piece (6,)]."""
     level, index = 0, 0
     while True:
         width = 0.5**level
@@ -165,17 +117,7 @@ def search_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> fl
 
 @compiled
 def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -> None:
-    """Coefficients over [start, end], by de Casteljau's scheme from either end; writes `piece`.
-
-    Parameters
-    ----------
-    b
-        Bernstein coefficients over [0, 1].
-    start, end
-        The interval within [0, 1].
-    piece
-        (6,) coefficients over it: written.
-    """
+    """Coefficients over [start, end], by de Casteljau's scheme from either end; writes `piece`."""
     for i in range(6):
         piece[i] = b[i]
     if start == 0.0 and end == 1.0:
@@ -207,15 +149,7 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
 
 @compiled
 def descent_in(piece: NDArray[np.float64], settled: float) -> float:
-    """The root of a piece that changes sign once, downwards: Newton's method inside a bracket.
-
-    Parameters
-    ----------
-    piece
-        (6,) Bernstein coefficients over the piece.
-    settled
-        Corrections of the root end below this share of it.
-    """
+    """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
     low, high = 0.0, 1.0
     t = b[0] / (b[0] - b[5]) if b[0] > 0.0 > b[5] else 0.5  # where the chord crosses
@@ -237,15 +171,7 @@ def descent_in(piece: NDArray[np.float64], settled: float) -> float:
 
 @compiled
 def slope(b: Quintic, t: float) -> float:
-    """df/dt at t.
-
-    Parameters
-    ----------
-    b
-        Bernstein coefficients of f over [0, 1].
-    t
-        Fraction of the step.
-    """
+    """df/dt at t."""
     r = 1.0 - t
     return 5.0 * (
         (b[1] - b[0]) * r**4

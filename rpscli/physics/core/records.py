@@ -11,6 +11,7 @@ two sizes, compiled by two processes, is taken for the same.
 from __future__ import annotations
 
 from functools import cache
+from threading import local
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -46,38 +47,24 @@ NO_RECORD = -1
 """`vertical` of a history without vertical ground motion."""
 
 
-class Field(NamedTuple):
-    """A field of a record: a number, or an array of the named sizes.
+WHOLE = "integer"
+"""Unit of what is counted: such fields are integers."""
 
-    Parameters
-    ----------
-    name
-        Of the field.
-    sizes
-        Of its axes, by name or as a number; none of a number.
-    unit
-        SI; ``-`` for plain numbers, ``mixed`` where entries or cases differ.
-    meaning
-        Symbol or formula, and words.
-    by
-        Modules and folders of this package that write it; none writes `system` or `request`.
-    """
+
+class Field(NamedTuple):
+    """A field of a record: a number, or an array of the named sizes."""
 
     name: str
-    sizes: str
-    unit: str
-    meaning: str
-    by: str = ""
+    sizes: str  # of its axes, by name or as a number; none of a number
+    unit: str  # SI; ``-`` for plain numbers, ``mixed`` where entries or cases differ
+    meaning: str  # symbol or formula, and words
+    by: str = ""  # modules and folders of kernels that write it
 
     def __str__(self) -> str:
         """One line, as `describe` prints it."""
         sizes = f"({self.sizes})" if self.sizes else "number"
         writer = f"; by {self.by}" if self.by else ""
         return f"{self.name:22} {sizes:18} [{self.unit}] {self.meaning}{writer}"
-
-
-WHOLE = "integer"
-"""Unit of what is counted: such fields are integers."""
 
 
 SIZES = {
@@ -121,20 +108,26 @@ half as long again, as its rows fall on other lines of the processor's cache in 
 
 
 def records(fields: tuple[Field, ...], count: int = 1) -> Record:
-    """An array (count,) of records of zeros that begins with a page.
-
-    Parameters
-    ----------
-    fields
-        As of `record_type`.
-    count
-        Number of records.
-    """
+    """An array (count,) of records of zeros that begins with a page."""
     kind = record_type(fields)
     size = kind.itemsize * count
     room = np.zeros(size + PAGE, np.uint8)
     first = -room.ctypes.data % PAGE
     return room[first : first + size].view(kind).view(np.recarray)
+
+
+_kept = local()
+
+
+def scratch(fields: tuple[Field, ...]) -> Record:
+    """An array of one record that this thread keeps, with whatever its last use left there.
+
+    A state is 1.5 MB: made anew for each short history, it would take as long as the history.
+    """
+    kept = vars(_kept)
+    if (found := kept.get(id(fields))) is None:  # tables live as long as the program
+        found = kept[id(fields)] = records(fields)
+    return found
 
 
 def describe(fields: tuple[Field, ...]) -> str:

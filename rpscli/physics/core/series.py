@@ -1,4 +1,4 @@
-"""The motion of one lane within a step: the polynomials that the Taylor step leaves behind."""
+"""Series that Taylor steps leave behind, sine and cosine, and a rule of quadrature."""
 
 from __future__ import annotations
 
@@ -7,52 +7,28 @@ from typing import TypeAlias
 from rpscli.physics.core.compile import compiled, inlined
 
 Terms: TypeAlias = tuple[float, float, float, float, float, float, float, float]
-"""Terms of order 0 to `state.ORDER` of a velocity, as powers of the fraction of the step."""
+"""Terms of order 0 to `records.ORDER` of a velocity, as powers of the fraction of the step."""
 
 
 @compiled
 def value(c: Terms, t: float) -> float:
-    """The sum of c_k t^k.
-
-    Parameters
-    ----------
-    c
-        Coefficients c_0 to c_7.
-    t
-        Fraction of the step.
-    """
-    late = c[4] + t * (c[5] + t * (c[6] + t * c[7]))
-    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * late)))
+    """The sum of c_k t^k."""
+    higher_terms = c[4] + t * (c[5] + t * (c[6] + t * c[7]))
+    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * higher_terms)))
 
 
 @compiled
 def integral(c: Terms, t: float) -> float:
-    """The sum of c_k t^(k + 1)/(k + 1).
-
-    Parameters
-    ----------
-    c
-        Coefficients c_0 to c_7.
-    t
-        Fraction of the step.
-    """
-    late = c[4] * 0.2 + t * (c[5] * (1.0 / 6.0) + t * (c[6] * (1.0 / 7.0) + t * (c[7] * 0.125)))
-    return t * (c[0] + t * (c[1] * 0.5 + t * (c[2] * (1.0 / 3.0) + t * (c[3] * 0.25 + t * late))))
+    """The sum of c_k t^(k + 1)/(k + 1)."""
+    higher = c[4] * 0.2 + t * (c[5] * (1.0 / 6.0) + t * (c[6] * (1.0 / 7.0) + t * (c[7] * 0.125)))
+    return t * (c[0] + t * (c[1] * 0.5 + t * (c[2] * (1.0 / 3.0) + t * (c[3] * 0.25 + t * higher))))
 
 
 @compiled
 def slope(c: Terms, t: float) -> float:
-    """The sum of k c_k t^(k - 1).
-
-    Parameters
-    ----------
-    c
-        Coefficients c_0 to c_7.
-    t
-        Fraction of the step.
-    """
-    late = 4.0 * c[4] + t * (5.0 * c[5] + t * (6.0 * c[6] + t * (7.0 * c[7])))
-    return c[1] + t * (2.0 * c[2] + t * (3.0 * c[3] + t * late))
+    """The sum of k c_k t^(k - 1)."""
+    higher_terms = 4.0 * c[4] + t * (5.0 * c[5] + t * (6.0 * c[6] + t * (7.0 * c[7])))
+    return c[1] + t * (2.0 * c[2] + t * (3.0 * c[3] + t * higher_terms))
 
 
 # Sine and cosine of a tilt, without branches so that lanes can be computed together.

@@ -50,8 +50,8 @@ def observe_ends(s: Record) -> None:
             s.shear_bound[l] += s.shear_weight[r, l] * (q * q)
             s.acceleration_bound[l] += s.acceleration_weight[r, l] * (force * force)
     for l in range(lanes):
-        sheared = s.shear_bound[l] > s.shear_harmless[l]
-        accelerated = s.acceleration_bound[l] > s.acceleration_harmless[l]
+        sheared = s.shear_bound[l] > s.shear_below_all_maxima[l]
+        accelerated = s.acceleration_bound[l] > s.acceleration_below_all_maxima[l]
         s.demands_rise[l] = s.at_sample[l] if sheared | accelerated else 0.0
     for l in range(lanes):
         across, upwards = cap_beam_acceleration(
@@ -74,17 +74,7 @@ def observe_ends(s: Record) -> None:
 
 @compiled
 def raise_contacts(s: Record, l: int, look: float, across: float, upwards: float, V: float) -> None:
-    """Raise friction demands and lower least normal forces of a lane, where look > 0.
-
-    Parameters
-    ----------
-    look
-        Nothing is raised where this is 0.
-    across, upwards
-        u_b'' and v_b'' relative to the ground [m/s2].
-    V
-        Base shear of the building, and what devices push the cap beam with [N].
-    """
+    """Raise friction demands and lower least normal forces of a lane, where look > 0."""
     top, bottom, light_top, light_bottom = contact_measures(
         s.cap_beam_mass[l],
         s.floors_mass[l],
@@ -115,29 +105,21 @@ def raise_floors(s: Record, l: int, system: Record) -> None:
             acceleration += system.phi[r, i] * s.modal_force[r, l]
         s.storey_shear[l, i] = max(s.storey_shear[l, i], abs(shear))
         s.floor_acceleration[l, i] = max(s.floor_acceleration[l, i], abs(acceleration))
-    set_harmless(s, l, system)
+    set_below_all_maxima(s, l, system)
 
 
 @compiled
-def set_harmless(s: Record, l: int, system: Record) -> None:
+def set_below_all_maxima(s: Record, l: int, system: Record) -> None:
     """Note what raises no storey's shear and no floor's acceleration, see this module."""
     shear, acceleration = math.inf, math.inf
     for i in range(s.n):
-        shear = min(shear, harmless(s.storey_shear[l, i], system.shear_bound_of[i]))
+        shear = min(shear, below_maximum(s.storey_shear[l, i], system.shear_bound_of[i]))
         largest = s.floor_acceleration[l, i]
-        acceleration = min(acceleration, harmless(largest, system.acceleration_bound_of[i]))
-    s.shear_harmless[l], s.acceleration_harmless[l] = shear, acceleration
+        acceleration = min(acceleration, below_maximum(largest, system.acceleration_bound_of[i]))
+    s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l] = shear, acceleration
 
 
 @compiled
-def harmless(largest: float, bound: float) -> float:
-    """What the weighted squares of the modes may reach without raising the largest demand.
-
-    Parameters
-    ----------
-    largest
-        Largest demand so far [N or m/s2].
-    bound
-        `shear_bound_of` or `acceleration_bound_of`, see `state`.
-    """
+def below_maximum(largest: float, bound: float) -> float:
+    """What the weighted squares of the modes may reach without raising the largest demand."""
     return SURELY * (largest * largest) * bound

@@ -20,14 +20,17 @@ from rpscli.physics.planar.devices.flows import book_devices, leave_devices, obs
 from rpscli.physics.planar.devices.rest import load_devices, release_devices
 from rpscli.physics.planar.energy import book_energy, building_energy, uplifted_energy
 from rpscli.physics.planar.equation_of_motion import load_factors
-from rpscli.physics.planar.events import go_on_renewed, next_interval, raise_peak, resolve_step
-from rpscli.physics.planar.full_contact.stand import stand
-from rpscli.physics.planar.run import Output, Run, empty_state
+from rpscli.physics.planar.events import go_on_restarted, next_interval, raise_peak, resolve_step
+from rpscli.physics.planar.full_contact.follow import follow_full_contact
+from rpscli.physics.planar.run import Output, Run
+from rpscli.physics.core.records import scratch
+from rpscli.physics.planar.state import BLOCK, EQUIPPED_STATE, STATE
 from rpscli.physics.planar.samples import store_sample
 from rpscli.physics.planar.state import (
     AFTER_RELEASE,
     AT_REST,
     EVENT_KINDS,
+    FOLLOW_CONTACT,
     FULL_CONTACT,
     GOES_ON,
     IS_OVER,
@@ -36,7 +39,6 @@ from rpscli.physics.planar.state import (
     ROCKING,
     ROLLING,
     RUNNING,
-    STANDS,
     SURVIVED,
     UPLIFT,
 )
@@ -45,29 +47,23 @@ from rpscli.physics.planar.transitions import enter_phase
 
 
 def integrate(run: Run, lanes: int = LANES) -> None:
-    """Follow every history of `run.requests` from rest; writes `run.results`.
-
-    Parameters
-    ----------
-    run
-        What to run; its systems all have the same number of storeys.
-    lanes
-        Histories side by side: 1 or `LANES`. The results are the same.
-    """
-    equipped = bool(run.systems.devices.any())
-    integrate_lanes(empty_state(int(run.systems.n[0]), lanes, equipped=equipped), run)
+    """Follow every history of `run.requests` from rest; writes `run.results`."""
+    state = scratch(EQUIPPED_STATE if run.systems["devices"].any() else STATE)
+    block, storeys = scratch(BLOCK), int(run.systems["n"][0])
+    state["n"], state["lanes"], block["n"] = storeys, lanes, storeys
+    integrate_lanes(state, block, run)
 
 
 @kernel
-def integrate_lanes(state: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- see below
-    """The same, in lanes that are made already: an array of one `state.STATE`.
+def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- see below
+    """The same, in lanes and a block of steps that are made already: arrays of one record.
 
     What many samples need is handed on by itself: of each array in a tuple references are counted.
     What becomes of a lane is decided here: in a function of its own it would cost a tenth of the
     speed, and all that it calls would be compiled once more.
     """
     s = state[0]
-    systems, acceleration, output, block = run.systems, run.acceleration, run.output, run.block
+    systems, acceleration, output = run.systems, run.acceleration, run.output
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, s.lanes
     begun = False
@@ -75,30 +71,30 @@ def integrate_lanes(state: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- 
         if begun:
             advance_lanes(state, systems, block, output.log)
         for l in range(s.lanes):
-            fate = IS_OVER
+            next_action = IS_OVER
             if not begun:  # each takes its first history
-                s.history[l], s.accepted[l], s.renew[l] = NO_HISTORY, 0.0, NOTHING_NEW
-            elif s.waits[l] == 0.0 or s.history[l] == NO_HISTORY:
+                s.history[l], s.accepted[l], s.restart_after[l] = NO_HISTORY, 0.0, NOTHING_NEW
+            elif s.needs_attention[l] == 0.0 or s.history[l] == NO_HISTORY:
                 continue
             elif s.accepted[l] == 0.0:
-                fate = NOT_ACCEPTED
+                next_action = NOT_ACCEPTED
             elif s.steps_left[l] > 0.0:
                 plan_steps(s, l)
-                fate = GOES_ON
+                next_action = GOES_ON
             else:
-                fate = next_interval(s, l, acceleration)
+                next_action = next_interval(s, l, acceleration)
                 if s.audited > 0:
                     keep_sample(s, l, systems, output)
-            while fate != GOES_ON or s.renew[l] != NOTHING_NEW:
+            while next_action != GOES_ON or s.restart_after[l] != NOTHING_NEW:
                 system = systems[s.system[l]]
-                if fate == NOT_ACCEPTED:
-                    fate = resolve_step(s, l, system, block[0], output.log)
-                elif fate == STANDS:
-                    fate = stand(s, l, system, block[0], acceleration, output)
-                elif fate == GOES_ON:
-                    fate = go_on_renewed(s, l, system, output)
+                if next_action == NOT_ACCEPTED:
+                    next_action = resolve_step(s, l, system, block[0], output.log)
+                elif next_action == FOLLOW_CONTACT:
+                    next_action = follow_full_contact(s, l, system, block[0], acceleration, output)
+                elif next_action == GOES_ON:
+                    next_action = go_on_restarted(s, l, system, output)
                 else:
-                    fate = next_history(s, l, run)
+                    next_action = next_history(s, l, run)
             active -= s.history[l] == NO_HISTORY
         begun = True
 
@@ -123,21 +119,15 @@ def keep_sample(s: Record, l: int, systems: Record, output: Output) -> None:
 
 @kernel
 def next_history(s: Record, l: int, run: Run) -> int:
-    """A lane's history is over: STANDS or GOES_ON with the next, if there is one.
-
-    Parameters
-    ----------
-    run
-        Its requests wait, its results are written.
-    """
+    """A lane's history is over: FOLLOW_CONTACT or GOES_ON with the next, if there is one."""
     if s.history[l] != NO_HISTORY:
         finish_history(s, l, run.systems[s.system[l]], run.results)
     if s.waiting < run.requests.shape[0]:
         s.waiting += 1
-        fate = begin_history(s, l, run, s.waiting - 1)
-        if fate == GOES_ON:
+        next_action = begin_history(s, l, run, s.waiting - 1)
+        if next_action == GOES_ON:
             plan_steps(s, l)
-        return fate
+        return next_action
     idle(s, l)
     return GOES_ON
 
@@ -160,19 +150,13 @@ def observe_lanes(s: Record, systems: Record, block: Record, log: Record) -> Non
 @compiled
 def idle(s: Record, l: int) -> None:
     """Leave a lane without a history: it makes empty steps."""
-    s.history[l], s.devices[l], s.kinked[l] = NO_HISTORY, 0, 0.0
-    s.renew[l], s.step[l] = NOTHING_NEW, 0.0
+    s.history[l], s.devices[l], s.nonsmooth_damper[l] = NO_HISTORY, 0, 0.0
+    s.restart_after[l], s.step[l] = NOTHING_NEW, 0.0
 
 
 @compiled
 def begin_history(s: Record, l: int, run: Run, history: int) -> int:
-    """Load a history into a lane, at rest at the start of its record: STANDS, or GOES_ON tilted.
-
-    Parameters
-    ----------
-    history
-        Its number among the requests.
-    """
+    """Load a history into a lane, at rest: FOLLOW_CONTACT, or GOES_ON if it is tilted."""
     request = run.requests[history]
     system = run.systems[request.system]
     load_system(s, l, system)
@@ -180,7 +164,7 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
     s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
     load_devices(s, l, system)
-    s.outcome[l], s.renew[l] = RUNNING, NOTHING_NEW
+    s.outcome[l], s.restart_after[l] = RUNNING, NOTHING_NEW
     s.interval[l] = 0
     s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
     steps = max(math.ceil(request.dt * system.uplifted_rate), 1)
@@ -199,7 +183,7 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     store_sample(s, l, system, run.output)
     s.next_a_g[l], s.next_g_up[l] = s.a_g[l], s.g_up[l]
     raise_contacts(s, l, 1.0, 0.0, 0.0, 0.0)
-    return STANDS
+    return FOLLOW_CONTACT
 
 
 @compiled
@@ -227,7 +211,7 @@ def clear_results(s: Record, l: int) -> None:
     s.max_theta[l], s.max_theta_time[l], s.critical_time[l] = 0.0, 0.0, -1.0
     s.friction_top[l], s.friction_bottom[l] = 0.0, 0.0
     s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
-    s.shear_harmless[l], s.acceleration_harmless[l] = 0.0, 0.0
+    s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l] = 0.0, 0.0
     for i in range(s.n):
         s.storey_shear[l, i], s.floor_acceleration[l, i] = 0.0, 0.0
     s.energy_input[l], s.energy_damped[l] = 0.0, 0.0
@@ -242,20 +226,14 @@ def release(s: Record, l: int, system: Record) -> None:
     """Start from rest at a rotation, the building unstrained."""
     theta = abs(system.initial_rotation)
     s.side[l] = math.copysign(1.0, system.initial_rotation)
-    s.theta[l], s.max_theta[l], s.renew[l] = theta, theta, AFTER_RELEASE
+    s.theta[l], s.max_theta[l], s.restart_after[l] = theta, theta, AFTER_RELEASE
     enter_phase(s, l, system, ROLLING if theta < system.beta else ROCKING)
     release_devices(s, l)
 
 
 @compiled
 def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
-    """Write what the history leaves behind.
-
-    Parameters
-    ----------
-    results
-        (P,) `state.RESULT`: written.
-    """
+    """Write what the history leaves behind [results (P,)]."""
     result = results[s.history[l]]
     if s.phase[l] == FULL_CONTACT:
         result.energy_stored = building_energy(s, l, 0.0)

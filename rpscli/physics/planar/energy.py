@@ -28,13 +28,7 @@ def relative_momentum(s: Record, l: int) -> float:
 
 @compiled
 def building_energy(s: Record, l: int, beam_velocity: float) -> float:
-    """Kinetic and strain energy of the floors [J], the cap beam moving at u_b'.
-
-    Parameters
-    ----------
-    beam_velocity
-        u_b' [m/s].
-    """
+    """Kinetic and strain energy of the floors [J], the cap beam moving at u_b'."""
     energy = float(0.5 * s.floors_mass[l] * (beam_velocity * beam_velocity))
     for r in range(s.n):
         q, dq = s.q[r, l], s.dq[0, r, l]
@@ -57,15 +51,7 @@ def uplifted_energy(s: Record, l: int) -> float:
 
 @compiled
 def powers_within(s: Record, l: int, t: float) -> tuple[float, float]:
-    """Power of the ground and of the dampers [W], a fraction t of the step after its start.
-
-    Parameters
-    ----------
-    s, l
-        The lanes, and which of them: its Taylor terms are read.
-    t
-        Fraction of the step.
-    """
+    """Power of the ground and of the dampers [W], a fraction t of the step after its start."""
     terms = rotation_terms(s, l)
     theta, theta_dot = s.theta[l] + s.step[l] * integral(terms, t), value(terms, t)
     sine, cosine = sine_cosine(theta)
@@ -90,11 +76,6 @@ def book_energy(s: Record, l: int, fraction: float) -> None:
 
     The flows are integrated by a rule of their own, so that the audit can show something: it does
     not know that the motion balances them.
-
-    Parameters
-    ----------
-    fraction
-        How much of the step is booked.
     """
     for i in range(len(NODES)):
         supplied, damped = powers_within(s, l, fraction * NODES[i])

@@ -59,17 +59,7 @@ def phase_constants(s: Record, l: int) -> Phase:
 
 @compiled
 def inertia(io_1: float, one_4gamma: float, four_gamma_eta: float, S: Number, B: Number) -> Number:
-    """A(x) = Io - 1 + (1 + 4 gamma) S + 4 gamma eta B^2 (paper, Table 1); numbers or arrays.
-
-    Parameters
-    ----------
-    io_1, one_4gamma, four_gamma_eta
-        Io - 1, 1 + 4 gamma, 4 gamma eta.
-    S
-        B^2 + C^2, see `squared_distance`.
-    B
-        Contact arm over R.
-    """
+    """A(x) = Io - 1 + (1 + 4 gamma) S + 4 gamma eta B^2 (paper, Table 1); numbers or arrays."""
     return io_1 + one_4gamma * S + four_gamma_eta * (B * B)
 
 
@@ -80,32 +70,13 @@ def inertia_slope(
     """D(x) = A'(x)/2, with S' = 2 c B and B' = c - C.
 
     The paper's Table 1 lacks the factor 4 gamma eta in the rocking phase (c = 0).
-
-    Parameters
-    ----------
-    one_4gamma, four_gamma_eta
-        1 + 4 gamma, 4 gamma eta.
-    phase
-        Constants of the phase of motion.
-    B, C
-        Contact arm and contact height over R.
     """
     return B * (one_4gamma * phase.c + four_gamma_eta * (phase.c - C))
 
 
 @compiled
 def horizontal_action(s: Record, l: int, a_g: float, V: float) -> float:
-    """What acts horizontally on the storey, towards smaller x [1/s2].
-
-    Parameters
-    ----------
-    s, l
-        The lanes, and which of them: its side and masses are read.
-    a_g
-        Ground acceleration, positive to the right [m/s2].
-    V
-        Base shear of the building, positive to the right on the cap beam [N].
-    """
+    """What acts horizontally on the storey, towards smaller x [1/s2] [a_g m/s2, V N]."""
     return float(s.side[l] * (a_g * s.ground_over_R[l] - V * s.shear_factor[l]))
 
 
@@ -120,23 +91,7 @@ def rotation_acceleration(
     action: float,
     device: float = 0.0,
 ) -> float:
-    """x'' of the equation of motion (paper, Eq. 2) [rad/s2].
-
-    Parameters
-    ----------
-    per_A
-        1/A.
-    B, C, D
-        Contact arm and contact height over R, and A'/2.
-    theta_dot
-        x' [rad/s].
-    weight
-        (g + a_v)(1 + 2 gamma + 2 gamma eta)/R [1/s2].
-    action
-        See `horizontal_action` [1/s2].
-    device
-        G, what devices add [1/s2].
-    """
+    """x'' of the equation of motion (paper, Eq. 2) [rad/s2]."""
     return -(((B * weight + D * (theta_dot * theta_dot)) + C * action) - device) * per_A
 
 
@@ -150,21 +105,7 @@ def cap_beam_acceleration(
     theta_dot: Number,
     theta_ddot: Number,
 ) -> tuple[Number, Number]:
-    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8); numbers or arrays.
-
-    Parameters
-    ----------
-    side
-        1 for a tilt to the right, -1 to the left.
-    diameter
-        2 R [m].
-    c
-        That of the phase of motion.
-    B, C
-        Contact arm and contact height over R.
-    theta_dot, theta_ddot
-        x' and x'' [rad/s, rad/s2].
-    """
+    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8); numbers or arrays."""
     square = theta_dot * theta_dot
     across = side * diameter * (C * theta_ddot + B * square)
     return across, diameter * (B * theta_ddot + (c - C) * square)
@@ -183,13 +124,7 @@ def add_modal_force(s: Record, r: int, l: int) -> None:
 
 @inlined
 def accelerate_rotation(s: Record, l: int, elapsed: float) -> None:
-    """x'' and what it is made of, where V is known; see `accelerate`.
-
-    Parameters
-    ----------
-    elapsed
-        Share of the step that has passed: 1 at its end, 0 at its start.
-    """
+    """x'' and what it is made of, where V is known; see `accelerate`."""
     theta_dot = s.next_theta_dot[l]
     sine, cosine = sine_cosine(s.next_theta[l])
     phase = phase_constants(s, l)
@@ -266,24 +201,24 @@ def extend_rotation(s: Record, lanes: int, m: int) -> None:
         h = s.step[l]
         part = h * (1.0 / m)
         B, C, c = s.B_terms[0, l], s.C_terms[0, l], s.phase_c[l]
-        first, late = s.dtheta_terms[0, l], s.dtheta_terms[k, l]
-        falls, rises, pushes = 0.0, 0.0, -s.device_terms[k, l]
+        first, last = s.dtheta_terms[0, l], s.dtheta_terms[k, l]
+        sum_B, sum_C, sum_action = 0.0, 0.0, -s.device_terms[k, l]
         square, inertial, beam = 0.0, 0.0, 0.0
         for j in range(1, m):
-            falls += s.C_terms[j, l] * s.dtheta_terms[k - j, l]
-            rises += s.B_terms[j, l] * s.dtheta_terms[k - j, l]
-            pushes += s.C_terms[j, l] * s.action_terms[k - j, l]
+            sum_B += s.C_terms[j, l] * s.dtheta_terms[k - j, l]
+            sum_C += s.B_terms[j, l] * s.dtheta_terms[k - j, l]
+            sum_action += s.C_terms[j, l] * s.action_terms[k - j, l]
             square += s.B_terms[j, l] * s.B_terms[m - j, l]
             inertial += (0.5 * (m + j) / m) * s.A_terms[m - j, l] * s.dtheta_terms[j, l]
             beam += s.C_terms[j, l] * s.dtheta_terms[m - j, l]
-        B_m = -part * ((C - c) * late + falls)
-        C_m = part * (B * late + rises)
+        B_m = -part * ((C - c) * last + sum_B)
+        C_m = part * (B * last + sum_C)
         A_m = 2.0 * c * s.one_4gamma[l] * C_m + s.four_gamma_eta[l] * (2.0 * B * B_m + square)
         s.B_terms[m, l], s.C_terms[m, l], s.A_terms[m, l] = B_m, C_m, A_m
         g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
         before = s.B_terms[k - 1, l] if m > 1 else 0.0
         weights = g_up * s.B_terms[k, l] + h * s.g_up_slope[l] * before
-        force = s.weight_over_R[l] * weights + pushes
+        force = s.weight_over_R[l] * weights + sum_action
         inertial += 0.5 * A_m * first
         # What was found last, the action of the modes, enters last.
         rate = -(s.per_A[l] * part * C) * s.action_terms[k, l] - s.per_A[l] * (
@@ -319,13 +254,7 @@ def extend_modes(s: Record, lanes: int, m: int) -> None:
 
 @compiled
 def action_term(s: Record, l: int, m: int, V_m: float) -> float:
-    """Term of order m > 0 of `horizontal_action`.
-
-    Parameters
-    ----------
-    V_m
-        Term of order m of the base shear V [N].
-    """
+    """Term of order m > 0 of `horizontal_action` [V_m N]."""
     ground = s.step[l] * s.a_g_slope[l] * s.ground_over_R[l] if m == 1 else 0.0
     side = s.side[l]
     return float(side * ground - (side * s.shear_factor[l]) * V_m)
@@ -336,15 +265,7 @@ def action_term(s: Record, l: int, m: int, V_m: float) -> float:
 
 @compiled
 def tilting_energy(s: Record, l: int, B: float, C: float, theta_dot: float) -> float:
-    """Kinetic energy of columns and cap beam, and of the floors' vertical motion [J].
-
-    Parameters
-    ----------
-    B, C
-        Contact arm and contact height over R.
-    theta_dot
-        x' [rad/s].
-    """
+    """Kinetic energy of columns and cap beam, and of the floors' vertical motion [J]."""
     phase = phase_constants(s, l)
     S = squared_distance(phase, C)
     A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], S, B)
@@ -354,13 +275,7 @@ def tilting_energy(s: Record, l: int, B: float, C: float, theta_dot: float) -> f
 
 @compiled
 def load_factors(gamma: float, eta: float) -> tuple[float, float]:
-    """1 + 2 gamma and 2 gamma eta: columns with the cap beam, and the building, over N m_c / 2.
-
-    Parameters
-    ----------
-    gamma, eta
-        Cap beam over columns, building over cap beam.
-    """
+    """1 + 2 gamma and 2 gamma eta: columns with the cap beam, and the building, over N m_c / 2."""
     return 1.0 + 2.0 * gamma, 2.0 * gamma * eta
 
 
@@ -376,15 +291,6 @@ def uplift_push(ground_factor: float, shear_share: float, a_g: float, V: float) 
 
     It is -R times `horizontal_action` of the side to the right, at x = 0 (Theory, section 3);
     linear in a_g and V, so that it serves their derivatives too.
-
-    Parameters
-    ----------
-    ground_factor
-        1 + 2 gamma.
-    shear_share
-        2 gamma eta/M_tot [1/kg].
-    a_g, V
-        Ground acceleration [m/s2] and base shear [N], or a derivative of both.
     """
     return shear_share * V - ground_factor * a_g
 
@@ -403,22 +309,7 @@ def contact_forces(
 ) -> tuple[float, float, float, float]:
     """Forces of all columns together on the beam, and of the ground on the columns [N].
 
-    Parameters
-    ----------
-    cap_beam, floors, columns
-        m_b, M_tot, N m_c [kg].
-    across, upwards
-        u_b'' and v_b'' relative to the ground [m/s2].
-    V
-        Base shear of the building, springs and dampers, and what devices push the beam with [N].
-    a_g, g_up
-        a_g and g + a_v [m/s2].
-    pull
-        Vertical force of tendons on the beam, downwards [N].
-
-    Returns
-    -------
-    F_top, F_bot, N_top, N_bot (Theory, section 8).
+    Returns: F_top, F_bot, N_top, N_bot (Theory, section 8).
     """
     shear_top = cap_beam * (across + a_g) - V
     shear_bottom = shear_top + columns * (0.5 * across + a_g)
@@ -429,14 +320,10 @@ def contact_forces(
 
 @compiled
 def friction(shear: float, normal: float) -> float:
-    """|F|/N; infinite once the contact is lost.
-
-    Parameters
-    ----------
-    shear, normal
-        F and N at one end of the columns [N].
-    """
-    return abs(shear) / normal if normal > 0.0 else math.inf
+    """|F|/N, infinite once the contact is lost; without branches, so that lanes go together."""
+    presses = normal > 0.0
+    demand = abs(shear) / (normal if presses else 1.0)
+    return demand if presses else math.inf
 
 
 @compiled
@@ -456,29 +343,19 @@ def contact_measures(
 
     Where no mass stands on the columns their upper ends demand nothing: friction 0, normal force
     infinite.
-
-    Parameters
-    ----------
-    cap_beam, floors, columns
-        m_b, M_tot, N m_c [kg].
-    across, upwards
-        u_b'' and v_b'' relative to the ground [m/s2].
-    V
-        Base shear of the building, and what devices push the beam with [N].
-    a_g, g_up
-        a_g and g + a_v [m/s2].
-    gravity
-        g [m/s2].
-    pull
-        Vertical force of tendons on the beam, downwards [N].
     """
     upper, lower = cap_beam + floors, cap_beam + floors + columns
     shear_top, shear_bottom, normal_top, normal_bottom = contact_forces(
         cap_beam, floors, columns, across, upwards, V, a_g, g_up, pull
     )
-    top = friction(shear_top, normal_top) if upper > 0.0 else 0.0
-    light_top = normal_top / (upper * gravity) if upper > 0.0 else math.inf
-    return top, friction(shear_bottom, normal_bottom), light_top, normal_bottom / (lower * gravity)
+    loaded, demand = upper > 0.0, friction(shear_top, normal_top)
+    light_top = normal_top / (upper * gravity if loaded else 1.0)
+    return (
+        demand if loaded else 0.0,
+        friction(shear_bottom, normal_bottom),
+        light_top if loaded else math.inf,
+        normal_bottom / (lower * gravity),
+    )
 
 
 # The motion within a step: the polynomials that the Taylor step leaves behind.

@@ -26,24 +26,23 @@ from rpscli.physics.core.records import NO_HISTORY, Floats, Record
 from rpscli.physics.planar.devices.events import change_law, has_friction, locate_change
 from rpscli.physics.planar.devices.flows import book_devices, observe_devices
 from rpscli.physics.planar.devices.forces import set_devices
-from rpscli.physics.planar.devices.rest import begin_excursion, turn
+from rpscli.physics.planar.devices.rest import at_reversal, begin_excursion
 from rpscli.physics.planar.energy import book_energy
-from rpscli.physics.planar.equation_of_motion import (
-    renew_accelerations,
-)
+from rpscli.physics.planar.equation_of_motion import renew_accelerations
 from rpscli.physics.planar.run import Output
 from rpscli.physics.planar.samples import store_sample
 from rpscli.physics.planar.state import (
     AFTER_IMPACT,
     AFTER_PHASE_CHANGE,
     AFTER_RELEASE,
-    AFTER_TURNING,
+    AFTER_REVERSAL,
     AFTER_UPLIFT,
     CRITICAL_PASSAGE,
     EVENT_KINDS,
     FAILED_NOT_FINITE,
     FAILED_STEP_TOO_SMALL,
     FAILED_TOO_MANY_EVENTS,
+    FOLLOW_CONTACT,
     GOES_ON,
     IMPACT,
     IS_OVER,
@@ -55,7 +54,6 @@ from rpscli.physics.planar.state import (
     ROCKING,
     ROLLING,
     ROLLING_TO_ROCKING,
-    STANDS,
 )
 from rpscli.physics.planar.steps import (
     end_step_at,
@@ -84,10 +82,8 @@ STALL = 100
 def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[float, float, int, int]:
     """Fraction of the step just taken at which its first event happens, and which.
 
-    Returns
-    -------
-    Fraction, level of the tilt, kind of the event, or NO_EVENT: then the alarm was false; and, of
-    a CHANGE_OF_DEVICE, the function that it was watched by.
+    Returns: Fraction, level of the tilt, kind of the event, or NO_EVENT: then the alarm was false;
+    and, of a CHANGE_OF_DEVICE, the function that it was watched by.
     """
     path, piece = path_of(s, l), block.piece
     first, level, kind = NO_PASSAGE, 0.0, NO_EVENT
@@ -119,17 +115,7 @@ def end_on_event(
     kind: int,
     which: int,
 ) -> None:
-    """End the step on an event, and switch.
-
-    Parameters
-    ----------
-    fraction
-        Fraction of the step at which the event happens.
-    level
-        The tilt there [rad].
-    kind, which
-        Kind of event, see `state`, and the watched function of a device.
-    """
+    """End the step on an event, and switch [level rad]."""
     if s.audited > 0:
         book_energy(s, l, fraction)
     if s.devices[l] > 0:
@@ -160,7 +146,7 @@ def end_on_event(
         s.outcome[l] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
         return
     enter_phase(s, l, system, ROCKING if kind == ROLLING_TO_ROCKING else ROLLING)
-    s.renew[l] = AFTER_PHASE_CHANGE
+    s.restart_after[l] = AFTER_PHASE_CHANGE
 
 
 @compiled
@@ -184,9 +170,9 @@ def next_interval(s: Record, l: int, acceleration: Floats) -> int:
     if enter_interval(s, l, acceleration, s.interval[l] + 1):
         return IS_OVER
     if s.interval[l] + 1 == s.npts[l]:
-        s.renew[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
+        s.restart_after[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
     s.step[l], s.steps_left[l] = s.uplifted_step[l], s.uplifted_steps[l]
-    if s.kinked[l] > 0.0:
+    if s.nonsmooth_damper[l] > 0.0:
         shorten_step(s, l)
     return GOES_ON
 
@@ -202,7 +188,7 @@ def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) 
         return IS_OVER
     if s.too_long[l] > 0.0:
         s.step[l], s.steps_left[l] = 0.5 * s.step[l], 2.0 * s.steps_left[l]
-        if s.kinked[l] > 0.0:
+        if s.nonsmooth_damper[l] > 0.0:
             s.steps_left[l] = 2.0
         return GOES_ON
     if not math.isfinite(s.next_theta[l] + s.next_theta_dot[l] + s.next_theta_ddot[l]):
@@ -218,41 +204,35 @@ def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) 
 
 
 @compiled
-def go_on_turned(s: Record, l: int, system: Record, output: Output, after: int) -> int:
-    """At a standstill of the tilt: GOES_ON, or STANDS if friction holds it.
-
-    Parameters
-    ----------
-    after
-        AFTER_RELEASE or AFTER_TURNING.
-    """
-    stuck = turn(s, l, output.log)
+def go_on_at_reversal(s: Record, l: int, system: Record, output: Output, after: int) -> int:
+    """At a standstill of the tilt: GOES_ON, or FOLLOW_CONTACT if friction holds it."""
+    stuck = at_reversal(s, l, output.log)
     if after == AFTER_RELEASE:
         store_sample(s, l, system, output)
-    return STANDS if stuck else GOES_ON
+    return FOLLOW_CONTACT if stuck else GOES_ON
 
 
 @kernel
-def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
-    """Compute accelerations anew: GOES_ON, or STANDS after the last impact or held by friction."""
+def go_on_restarted(s: Record, l: int, system: Record, output: Output) -> int:
+    """Accelerations anew: GOES_ON; FOLLOW_CONTACT after the last impact or held by friction."""
     if s.history[l] == NO_HISTORY:
         return IS_OVER
     if s.devices[l] > 0:
         set_devices(s, l, s.theta[l], s.theta_dot[l])
     renew_accelerations(s, l)
-    after = s.renew[l]
-    s.renew[l] = NOTHING_NEW
+    after = s.restart_after[l]
+    s.restart_after[l] = NOTHING_NEW
     if after == AFTER_PHASE_CHANGE and s.theta_dot[l] == 0.0 and has_friction(s, l):
         # It has just begun to slide: the same holds as at uplift, in either direction.
         s.theta_ddot[l] = s.direction[l] * max(s.direction[l] * s.theta_ddot[l], 0.0)
     elif after == AFTER_UPLIFT:
         # At the threshold theta'' is zero but for rounding, and about to grow.
         s.theta_ddot[l] = max(s.theta_ddot[l], 0.0)
-    elif after in (AFTER_RELEASE, AFTER_TURNING):
-        return go_on_turned(s, l, system, output, after)
+    elif after in (AFTER_RELEASE, AFTER_REVERSAL):
+        return go_on_at_reversal(s, l, system, output, after)
     elif after == AFTER_IMPACT and comes_to_rest(s, l, system, output.log):
-        return STANDS
-    if s.kinked[l] > 0.0:
+        return FOLLOW_CONTACT
+    if s.nonsmooth_damper[l] > 0.0:
         plan_steps(s, l)
     return GOES_ON
 
@@ -261,7 +241,7 @@ def go_on_renewed(s: Record, l: int, system: Record, output: Output) -> int:
 
 
 @compiled
-def crest(path: Quintic) -> tuple[float, float]:
+def peak_in_step(path: Quintic) -> tuple[float, float]:
     """Fraction of the step and height of the tilt's maximum, where x' falls through zero.
 
     Bisection of the slope: it never leaves the step, and is rarely needed.
@@ -283,7 +263,7 @@ def raise_peak(s: Record, l: int, block: Record, log: Record) -> None:
     path = path_of(s, l)
     turns = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
     if turns and upper_hull(path) > s.max_theta[l]:
-        fraction, height = crest(path)
+        fraction, height = peak_in_step(path)
     if height > s.max_theta[l]:
         s.max_theta[l] = height
         s.max_theta_time[l] = s.interval_start[l] + (s.time[l] + fraction * s.step[l])
@@ -293,13 +273,7 @@ def raise_peak(s: Record, l: int, block: Record, log: Record) -> None:
 
 @compiled
 def log_critical_passage(s: Record, l: int, block: Record, log: Record, path: Quintic) -> None:
-    """Note when theta_cr was passed for the first time, within the step just taken.
-
-    Parameters
-    ----------
-    path
-        The tilt over the step [rad].
-    """
+    """Note when theta_cr was passed for the first time, within the step just taken [path rad]."""
     level, h, side = s.theta_cr[l], s.step[l], s.side[l]
     t = min(first_descent(offset(path, -1.0, level), SETTLED, block.piece), 1.0)
     rate = side * slope(path, t) / h if h > 0.0 else 0.0

@@ -39,50 +39,24 @@ Value = TypeVar("Value", float, NDArray[np.float64])
 
 
 class Phase(NamedTuple):
-    """Constants of one phase of motion (rolling or rocking), all dimensionless.
+    """Constants of one phase of motion (rolling or rocking), all dimensionless."""
 
-    Parameters
-    ----------
-    p, q, c
-        B = p cos x + q sin x, C = c + p sin x - q cos x.
-    u0, v0
-        Constants of |u_b|/2R and v_b/2R.
-    """
-
-    p: float
-    q: float
-    c: float
-    u0: float
-    v0: float
+    p: float  # B = p cos x + q sin x, C = c + p sin x - q cos x
+    q: float  # B = p cos x + q sin x, C = c + p sin x - q cos x
+    c: float  # B = p cos x + q sin x, C = c + p sin x - q cos x
+    u0: float  # constants of |u_b|/2R and v_b/2R
+    v0: float  # constants of |u_b|/2R and v_b/2R
 
 
 def rolling_phase(alpha: float, rho: float) -> Phase:
-    """Constants while the contact point travels along the arc (x < beta).
-
-    Parameters
-    ----------
-    alpha
-        Slenderness angle of the column [rad].
-    rho
-        r/(2H), r the radius of its arcs.
-    """
+    """Constants while the contact point travels along the arc (x < beta) [alpha rad]."""
     k = 2.0 * rho * math.cos(alpha)
     p, q = math.sin(alpha), k - math.cos(alpha)
     return Phase(p=p, q=q, c=k, u0=p, v0=q)
 
 
 def rocking_phase(alpha: float, rho: float, beta: float) -> Phase:
-    """Constants while the column pivots about the end of the arc (x >= beta).
-
-    Parameters
-    ----------
-    alpha
-        Slenderness angle of the flat part [rad].
-    rho
-        r/(2 H), radius of the arcs over the height.
-    beta
-        Rotation at which the arc ends [rad].
-    """
+    """Constants while the column pivots about the end of the arc (x >= beta)."""
     k = 2.0 * rho * math.cos(alpha)
     return Phase(
         p=math.sin(alpha) + k * math.sin(beta),
@@ -94,69 +68,27 @@ def rocking_phase(alpha: float, rho: float, beta: float) -> Phase:
 
 
 def contact_arm(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """B(x): horizontal distance of the weight from the contact point, over R.
-
-    Parameters
-    ----------
-    phase
-        Constants of the phase of motion.
-    cos_x, sin_x
-        Of the tilt, numbers or arrays.
-    """
+    """B(x): horizontal distance of the weight from the contact point, over R."""
     return phase.p * cos_x + phase.q * sin_x
 
 
 def contact_height(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """C(x): du_b/dtheta = 2 R C.
-
-    Parameters
-    ----------
-    phase
-        Constants of the phase of motion.
-    cos_x, sin_x
-        Of the tilt, numbers or arrays.
-    """
+    """C(x): du_b/dtheta = 2 R C."""
     return phase.c + phase.p * sin_x - phase.q * cos_x
 
 
 def squared_distance(phase: Phase, C: float) -> float:
-    """S(x) = B^2 + C^2, from C alone.
-
-    Parameters
-    ----------
-    phase
-        Constants of the phase of motion.
-    C
-        Contact height over R.
-    """
+    """S(x) = B^2 + C^2, from C alone."""
     return phase.p * phase.p + phase.q * phase.q + phase.c * (2.0 * C - phase.c)
 
 
 def cap_beam_displacement(phase: Phase, x: Value, cos_x: Value, sin_x: Value) -> Value:
-    """|u_b| / 2R.
-
-    Parameters
-    ----------
-    phase
-        Constants of the phase of motion.
-    x
-        Tilt, a number or an array [rad].
-    cos_x, sin_x
-        Of the tilt.
-    """
+    """|u_b| / 2R [x rad]."""
     return phase.u0 + phase.c * x - phase.q * sin_x - phase.p * cos_x
 
 
 def cap_beam_lift(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """v_b / 2R.
-
-    Parameters
-    ----------
-    phase
-        Constants of the phase of motion.
-    cos_x, sin_x
-        Of the tilt, numbers or arrays.
-    """
+    """v_b / 2R."""
     return phase.v0 + phase.p * sin_x - phase.q * cos_x
 
 
@@ -170,13 +102,6 @@ def critical_rotation(rolling: Phase, rocking: Phase, beta: float) -> float:
 
     The column rolls up to beta and rocks beyond; B is continuous at beta, so a root of the rolling
     branch counts only if it lies before beta.
-
-    Parameters
-    ----------
-    rolling, rocking
-        Constants of the phases before and beyond beta.
-    beta
-        Rotation at which the arc ends [rad].
     """
     root = arm_root(rolling)
     return root if root <= beta else arm_root(rocking)
@@ -185,17 +110,7 @@ def critical_rotation(rolling: Phase, rocking: Phase, beta: float) -> float:
 def path_along(
     rolling: Phase, rocking: Phase, beta: float, x: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], ...]:
-    """B, C, u_b/2R and v_b/2R along an array of x >= 0, each in its own phase.
-
-    Parameters
-    ----------
-    rolling, rocking
-        Constants of the phases before and beyond beta.
-    beta
-        Rotation at which the arc ends [rad].
-    x
-        Rotations |theta|, of any shape [rad].
-    """
+    """B, C, u_b/2R and v_b/2R along an array of x >= 0, each in its own phase [beta rad, x rad]."""
     cos_x, sin_x = np.cos(x), np.sin(x)
     rolls = x < beta
     one, two = (

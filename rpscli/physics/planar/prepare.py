@@ -21,10 +21,10 @@ import numpy as np
 from rpscli.physics.core.compile import cache_folder
 from rpscli.physics.core.records import NO_HISTORY, Record
 from rpscli.physics.planar.driver import advance_lanes, integrate_lanes, next_history
-from rpscli.physics.planar.events import go_on_renewed, resolve_step
+from rpscli.physics.planar.events import go_on_restarted, resolve_step
+from rpscli.physics.planar.full_contact.follow import follow_full_contact
 from rpscli.physics.planar.full_contact.modal_block import integrate_fixed_base
-from rpscli.physics.planar.full_contact.stand import stand
-from rpscli.physics.planar.run import empty_run, empty_state
+from rpscli.physics.planar.run import empty_block, empty_run, empty_state
 
 
 def compile_kernel(*, equipped: bool) -> None:
@@ -47,7 +47,7 @@ def compile_kernel(*, equipped: bool) -> None:
         try:
             compile_phases(equipped=equipped)
             other.wait()
-            integrate_lanes(empty_state(1, 1, equipped=equipped), empty_run(1))
+            integrate_lanes(empty_state(1, 1, equipped=equipped), empty_block(1), empty_run(1))
         except BaseException:
             other.kill()
             raise
@@ -56,18 +56,20 @@ def compile_kernel(*, equipped: bool) -> None:
 def compile_phases(*, equipped: bool) -> None:
     """Full contact, what begins a phase or a history, and the building on a fixed base."""
     run, s = empty_run(1), no_histories(equipped=equipped)[0]
-    stand(s, 0, run.systems[0], run.block[0], run.acceleration, run.output)
+    block = empty_block(1)
+    follow_full_contact(s, 0, run.systems[0], block[0], run.acceleration, run.output)
     next_history(s, 0, run)
-    go_on_renewed(s, 0, run.systems[0], run.output)
+    go_on_restarted(s, 0, run.systems[0], run.output)
     floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
-    integrate_fixed_base(run.acceleration, 1.0, 0, run.systems, run.block, floors, largest)
+    integrate_fixed_base(run.acceleration, 1.0, 0, run.systems, block, floors, largest)
 
 
 def compile_steps(*, equipped: bool) -> None:
     """Uplifted steps of all lanes, and those of one that end on an event."""
     run, state = empty_run(1), no_histories(equipped=equipped)
-    advance_lanes(state, run.systems, run.block, run.output.log)
-    resolve_step(state[0], 0, run.systems[0], run.block[0], run.output.log)
+    block = empty_block(1)
+    advance_lanes(state, run.systems, block, run.output.log)
+    resolve_step(state[0], 0, run.systems[0], block[0], run.output.log)
 
 
 def no_histories(*, equipped: bool) -> Record:

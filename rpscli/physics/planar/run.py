@@ -24,65 +24,26 @@ class Output(NamedTuple):
     """Samples and events of a history that is run by itself; of many, give no rows to keep none.
 
     Without room for samples no energy is audited; events beyond the log's rows are only counted.
-
-    Parameters
-    ----------
-    samples
-        (rows,) `state.SAMPLE`.
-    floors
-        (rows, 2, n) displacements and velocities of the floors [m, m/s], relative to the ground.
-    log
-        (rows,) `state.EVENT`.
-    devices
-        (rows, 4, devices) force [N], displacement [m], dissipated and stored energy [J] of all
-        devices.
     """
 
-    samples: Record
-    floors: NDArray[np.float64]
-    log: Record
-    devices: NDArray[np.float64]
+    samples: Record  # (rows,) `state.SAMPLE`
+    floors: NDArray[np.float64]  # (rows, 2, n) u and u' of the floors over the ground [m, m/s]
+    log: Record  # (rows,) `state.EVENT`
+    devices: NDArray[np.float64]  # (rows, 4, devices) force [N], path [m], energy lost, stored [J]
 
 
 class Run(NamedTuple):
-    """Histories to run, and what they leave behind; all arrays of records but the floats.
+    """Histories to run, and what they leave behind; all arrays of records but the floats."""
 
-    Parameters
-    ----------
-    systems
-        (S,) `state.SYSTEM`, all of the same number of storeys n.
-    requests
-        (P,) `state.REQUEST`: the histories.
-    acceleration
-        Records of the ground end to end [m/s2], linear between their samples.
-    results
-        (P,) `state.RESULT`: written.
-    output
-        Samples and events, where there is one history: written.
-    block
-        (1,) `state.BLOCK`: scratch of full contact.
-    """
-
-    systems: Record
-    requests: Record
-    acceleration: Floats
-    results: Record
-    output: Output
-    block: Record
+    systems: Record  # (S,) `state.SYSTEM`, all of the same number of storeys n
+    requests: Record  # (P,) `state.REQUEST`: the histories
+    acceleration: Floats  # records of the ground end to end [m/s2], linear between their samples
+    results: Record  # (P,) `state.RESULT`: written
+    output: Output  # samples and events, where there is one history: written
 
 
 def empty_state(storeys: int, lanes: int = LANES, *, equipped: bool = False) -> Record:
-    """Lanes with nothing to do, an array of one record; all of them are used, or one.
-
-    Parameters
-    ----------
-    storeys
-        n, for all lanes.
-    lanes
-        1 or `LANES`.
-    equipped
-        Whether any structure has devices.
-    """
+    """Lanes with nothing to do, an array of one record; all of them are used, or one."""
     state = records(EQUIPPED_STATE if equipped else STATE)
     state.n, state.lanes = storeys, lanes
     return state
@@ -110,5 +71,4 @@ def empty_run(storeys: int) -> Run:
             log=records(EVENT, count=0),
             devices=np.empty((0, 4, 0)),
         ),
-        block=empty_block(storeys),
     )

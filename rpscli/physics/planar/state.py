@@ -18,14 +18,15 @@ from rpscli.physics.core.records import WHOLE, Field
 SLOTS = 8
 """Devices that a structure may have."""
 
-# Kinds of device, and what their constants are.
-(
-    VISCOUS,  # c, a
-    FRICTION,  # F_d
-    STOP,  # d, k_s, c_s
-    TENDON,  # P_0, k_t, P_y of one column
-    ROLLING_RESISTANCE,  # the moment 2 W f
-) = range(5)
+# Kinds of device.
+VISCOUS, FRICTION, STOP, TENDON, ROLLING_RESISTANCE = range(5)
+
+# Where the constants of their laws stand in `device_constants`.
+DAMPER_COEFFICIENT, DAMPER_EXPONENT = range(2)  # c, a
+FRICTION_FORCE = 0  # F_d
+STOP_GAP, STOP_STIFFNESS, STOP_DAMPING = range(3)  # d, k_s, c_s
+TENDON_PRESTRESS, TENDON_STIFFNESS, TENDON_YIELD = range(3)  # P_0, k_t, P_y of one column
+ROLLING_MOMENT = 0  # 2 W f
 
 # Branches of a device's law: of a stop with its gap open, pushing back, let go before its gap; of
 # a tendon slack, elastic, yielding. The others have one.
@@ -73,11 +74,11 @@ RUNNING = -1
     AFTER_UPLIFT,
     AFTER_IMPACT,
     AFTER_RELEASE,
-    AFTER_TURNING,  # x' = 0 under friction
+    AFTER_REVERSAL,  # x' = 0 under friction
 ) = range(6)
 
 # What becomes of a lane.
-GOES_ON, STANDS, IS_OVER, NOT_ACCEPTED = range(4)
+GOES_ON, FOLLOW_CONTACT, IS_OVER, NOT_ACCEPTED = range(4)
 
 # Steps in full contact whose maps are kept.
 WHOLE_STEP, SHORT_STEP = range(2)
@@ -109,9 +110,7 @@ SYSTEM = (
     Field("storey_shear_of", "modes modes", "N/(m sqrt(kg))", "k_i (phi_i - phi_(i-1))"),
     Field("shear_weight", "modes", "mixed", "g_r of `demands`, for storey shears"),
     Field("acceleration_weight", "modes", "mixed", "g_r for floor accelerations"),
-    Field(
-        "shear_bound_of", "modes", "mixed", "of a storey: its squared shear times this <= sum g q^2"
-    ),
+    Field("shear_bound_of", "modes", "mixed", "of a storey: squared shear times this <= sum g q^2"),
     Field("acceleration_bound_of", "modes", "mixed", "of a floor: likewise"),
     Field("uplifted_rate", "", "1/s", "least number of Taylor steps a second"),
     Field("contact_rate", "", "1/s", "least number of steps a second in full contact"),
@@ -162,7 +161,7 @@ STATE = (
     Field("linear_speed", "lanes", "m/s", "see `system`", "devices"),
     Field("friction_force", "lanes", "N", "of all friction dampers", "devices"),
     Field("friction_moment", "lanes", "N m", "of all rolling resistance", "devices"),
-    Field("kinked", "lanes", "-", "1: a damper's force has a kink at u_b' = 0", "devices, driver"),
+    Field("nonsmooth_damper", "lanes", "-", "1: a force has a kink at u_b' = 0", "devices, driver"),
     # The history and its record.
     Field("scale", "lanes", "-", "factor on the record", "driver"),
     Field("history", "lanes", WHOLE, "number of the request, or NO_HISTORY", "driver"),
@@ -174,13 +173,7 @@ STATE = (
     Field("intervals", "lanes", WHOLE, "of the history, at most", "driver"),
     Field("outcome", "lanes", WHOLE, "how it ended, or RUNNING", "driver, events, full_contact"),
     # The phase of motion and the range of the tilt in it.
-    Field(
-        "phase",
-        "lanes",
-        WHOLE,
-        "FULL_CONTACT, ROLLING, ROCKING or STUCK",
-        "devices, driver, transitions",
-    ),
+    Field("phase", "lanes", WHOLE, "FULL_CONTACT to STUCK", "devices, driver, transitions"),
     Field("phase_p", "lanes", "-", "B = p cos x + q sin x", "transitions"),
     Field("phase_q", "lanes", "-", "C = c + p sin x - q cos x", "transitions"),
     Field("phase_c", "lanes", "-", "k while rolling, 0 rocking", "transitions"),
@@ -216,13 +209,7 @@ STATE = (
     Field("C", "lanes", "-", "contact height C(x)", "equation_of_motion, steps"),
     Field("per_A", "lanes", "-", "1/A(x)", "equation_of_motion, steps"),
     Field("V", "lanes", "N", "base shear, springs and dampers", "equation_of_motion, steps"),
-    Field(
-        "q",
-        "modes lanes",
-        "m sqrt(kg)",
-        "modal displacements over the beam",
-        "driver, events, full_contact, steps",
-    ),
+    Field("q", "modes lanes", "m sqrt(kg)", "of modes", "driver, events, full_contact, steps"),
     # The motion at its end.
     Field("next_theta", "lanes", "rad", "x", "equation_of_motion, steps"),
     Field("next_theta_dot", "lanes", "rad/s", "x'", "equation_of_motion, steps"),
@@ -231,45 +218,21 @@ STATE = (
     Field("next_C", "lanes", "-", "contact height C(x)", "equation_of_motion"),
     Field("next_per_A", "lanes", "-", "1/A(x)", "equation_of_motion"),
     Field("next_V", "lanes", "N", "base shear", "devices, equation_of_motion, full_contact"),
-    Field(
-        "next_a_g",
-        "lanes",
-        "m/s2",
-        "ground acceleration",
-        "devices, driver, equation_of_motion, full_contact",
-    ),
+    Field("next_a_g", "lanes", "m/s2", "a_g", "devices, driver, equation_of_motion, full_contact"),
     Field(
         "next_g_up", "lanes", "m/s2", "g + a_v", "devices, driver, equation_of_motion, full_contact"
     ),
     Field("next_device", "lanes", "1/s2", "what devices add to A x''", "devices"),
     Field("next_push", "lanes", "N", "on the cap beam, to the right", "devices"),
     Field("next_pull", "lanes", "N", "on the cap beam, downwards", "devices"),
-    Field(
-        "next_q",
-        "modes lanes",
-        "m sqrt(kg)",
-        "modal displacements over the beam",
-        "equation_of_motion, steps",
-    ),
-    Field(
-        "next_dq",
-        "modes lanes",
-        "m sqrt(kg)/s",
-        "modal velocities",
-        "equation_of_motion, steps",
-    ),
+    Field("next_q", "modes lanes", "m sqrt(kg)", "of modes", "equation_of_motion, steps"),
+    Field("next_dq", "modes lanes", "m sqrt(kg)/s", "velocities", "equation_of_motion, steps"),
     # Taylor coefficients over the step, as powers of t/h.
     Field("dtheta_terms", "terms lanes", "rad/s", "of x'", "equation_of_motion"),
     Field("B_terms", "terms lanes", "-", "of B", "equation_of_motion"),
     Field("C_terms", "terms lanes", "-", "of C", "equation_of_motion"),
     Field("A_terms", "terms lanes", "-", "of A, from order 1", "equation_of_motion"),
-    Field(
-        "action_terms",
-        "terms lanes",
-        "1/s2",
-        "of s (a_g (1 + 2 gamma)/R - 2 V/(N m_c R))",
-        "equation_of_motion",
-    ),
+    Field("action_terms", "terms lanes", "1/s2", "of `horizontal_action`", "equation_of_motion"),
     Field("device_terms", "terms lanes", "1/s2", "of what devices add to A x''", "devices"),
     Field(
         "dq",
@@ -278,20 +241,8 @@ STATE = (
         "of q'; dq[0] is q' at the start",
         "driver, equation_of_motion, events, full_contact, steps, transitions",
     ),
-    Field(
-        "modal_force",
-        "modes lanes",
-        "m sqrt(kg)/s2",
-        "w^2 q + 2 xi w q' of the last order",
-        "equation_of_motion",
-    ),
-    Field(
-        "beam_velocity_term",
-        "lanes",
-        "m/s",
-        "what the last order adds to u_b' and the ground",
-        "equation_of_motion",
-    ),
+    Field("modal_force", "modes lanes", "m sqrt(kg)/s2", "last order's f_r", "equation_of_motion"),
+    Field("beam_velocity_term", "lanes", "m/s", "last term of u_b' + ground", "equation_of_motion"),
     # What is known of the step: 1 or 0, numbers so that lanes go together.
     Field("too_long", "lanes", "-", "1: for its series", "devices, steps"),
     Field("accepted", "lanes", "-", "1: no event, not too long", "devices, driver, steps"),
@@ -299,49 +250,25 @@ STATE = (
     Field("peak_inside", "lanes", "-", "1: may hold the largest x", "devices, steps"),
     Field("no_event", "lanes", "-", "1: a closer look found none", "driver, events, steps"),
     Field("demands_rise", "lanes", "-", "1: a floor's may be raised", "demands"),
-    Field("waits", "lanes", "-", "1: must be looked at alone", "steps"),
-    Field(
-        "renew",
-        "lanes",
-        WHOLE,
-        "after what accelerations are old",
-        "devices, driver, events, transitions",
-    ),
+    Field("needs_attention", "lanes", "-", "1: must be looked at alone", "steps"),
+    Field("restart_after", "lanes", WHOLE, "AFTER_...", "devices, driver, events, transitions"),
     # Maxima so far; times that never came are negative.
     Field("max_theta", "lanes", "rad", "largest x", "demands, driver, events"),
     Field("max_theta_time", "lanes", "s", "when", "demands, driver, events"),
     Field("critical_time", "lanes", "s", "when theta_cr was first passed", "driver, events"),
-    Field(
-        "friction_top",
-        "lanes",
-        "-",
-        "largest |F|/N at the upper ends",
-        "demands, driver, full_contact",
-    ),
+    Field("friction_top", "lanes", "-", "largest |F|/N, top", "demands, driver, full_contact"),
     Field("friction_bottom", "lanes", "-", "at the lower ends", "demands, driver, full_contact"),
-    Field(
-        "normal_top",
-        "lanes",
-        "-",
-        "least N over the weight on it, upper ends",
-        "demands, driver, full_contact",
-    ),
+    Field("normal_top", "lanes", "-", "least N/weight, upper end", "demands, driver, full_contact"),
     Field("normal_bottom", "lanes", "-", "lower ends", "demands, driver, full_contact"),
     Field("storey_shear", "lanes modes", "N", "largest |k_i d_i|", "demands, driver"),
     Field("floor_acceleration", "lanes modes", "m/s2", "largest absolute one", "demands, driver"),
     Field("shear_bound", "lanes", "mixed", "sum g q^2 at the end of the step", "demands"),
-    Field(
-        "shear_harmless", "lanes", "mixed", "no storey's shear rises up to this", "demands, driver"
-    ),
+    Field("shear_below_all_maxima", "lanes", "mixed", "no shear rises to this", "demands, driver"),
     Field("acceleration_bound", "lanes", "mixed", "sum g force^2", "demands"),
-    Field("acceleration_harmless", "lanes", "mixed", "likewise", "demands, driver"),
+    Field("acceleration_below_all_maxima", "lanes", "mixed", "likewise", "demands, driver"),
     # Energy and counts.
-    Field(
-        "energy_input", "lanes", "J", "by the ground, if audited", "driver, energy, full_contact"
-    ),
-    Field(
-        "energy_damped", "lanes", "J", "in the building, if audited", "driver, energy, full_contact"
-    ),
+    Field("energy_input", "lanes", "J", "of the ground, audited", "driver, energy, full_contact"),
+    Field("energy_damped", "lanes", "J", "in building, if audited", "driver, energy, full_contact"),
     Field("energy_lost", "lanes", "J", "at impacts and re-contacts", "driver, transitions"),
     Field("energy_created", "lanes", "J", "at impacts that create it", "driver, transitions"),
     Field("steps", "lanes", "-", "taken", "driver, steps"),
@@ -358,7 +285,7 @@ EQUIPPED_STATE = (
     *STATE,
     Field("columns", "lanes", "-", "N", "devices"),
     Field("device_kind", f"{SLOTS} lanes", WHOLE, "see `system`", "devices"),
-    Field("device_constants", f"{SLOTS} 4 lanes", "mixed", "see `system`", "devices"),
+    Field("law", f"{SLOTS} 4 lanes", "mixed", "`device_constants` of `system`", "devices"),
     Field("tendons", "lanes", WHOLE, "number of tendons in a column", "devices"),
     Field("half_width", "lanes", "m", "B of the flat part", "driver"),
     Field("arc_radius", "lanes", "m", "r; 0 for flat ends", "driver"),
@@ -372,7 +299,7 @@ EQUIPPED_STATE = (
     Field("resistance_terms", "terms lanes", "N", "of -s P", "devices"),
     Field("power_terms", f"{SLOTS} terms lanes", "mixed", "of |u_b'|^a", "devices"),
     Field("lever_terms", "terms terms lanes", "m", "of de/dx and its derivatives", "devices"),
-    Field("opening_terms", "9 lanes", "m", "of a tendon's elongation e", "devices"),
+    Field("elongation_terms", "9 lanes", "m", "of a tendon's elongation e", "devices"),
     Field("event_terms", "9 lanes", "mixed", "of what must not fall below zero", "devices"),
     Field("local", "4 9", "mixed", "scratch: powers of x - x_0", "devices"),
     Field("device_force", f"{SLOTS} lanes", "N", "largest |force|", "devices"),

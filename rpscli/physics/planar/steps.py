@@ -1,7 +1,7 @@
 """A step that was taken: does it hold an event, is it short enough; then it is accepted.
 
 All lanes together and without branches: a lane that must not be touched is masked by its
-`accepted`. What is not accepted `waits` to be looked at alone.
+`accepted`. What is not accepted `needs_attention` to be looked at alone.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def plan_steps(s: Record, l: int) -> None:
     left = s.dt[l] - s.time[l]
     steps = max(math.ceil(left / s.uplifted_step[l] - 1e-9), 1)
     s.step[l], s.steps_left[l] = max(left, 0.0) / steps, steps
-    if s.kinked[l] > 0.0:
+    if s.nonsmooth_damper[l] > 0.0:
         shorten_step(s, l)
 
 
@@ -106,15 +106,7 @@ def check_steps(s: Record) -> None:
 
 @compiled
 def chosen(accepted: float, end: float, start: float) -> float:
-    """The end of an accepted step, else its start.
-
-    Parameters
-    ----------
-    accepted
-        1 or 0.
-    end, start
-        In one unit.
-    """
+    """The end of an accepted step, else its start."""
     # Adding zero keeps the compiler from choosing between addresses, lane by lane.
     new = end + 0.0
     return new if accepted > 0.0 else start
@@ -142,7 +134,9 @@ def accept_steps(s: Record) -> None:
         s.time[l] += s.step[l] if accepted else 0.0
         left = s.steps_left[l] - (1.0 if accepted else 0.0)
         s.steps_left[l] = left
-        s.waits[l] = 0.0 if accepted & (left > 0.0) & (s.kinked[l] == 0.0) else 1.0
+        s.needs_attention[l] = (
+            0.0 if accepted & (left > 0.0) & (s.nonsmooth_damper[l] == 0.0) else 1.0
+        )
         s.no_event[l] = 0.0
         s.steps[l] += 1.0
 
@@ -227,15 +221,9 @@ def add_terms(s: Record) -> None:
 def sums(
     t0: float, t1: float, t2: float, t3: float, t4: float, t5: float, t6: float, t7: float
 ) -> tuple[float, float]:
-    """Integral over t/h from 0 to 1, and value at 1, of a series.
-
-    Parameters
-    ----------
-    t0, t1, t2, t3, t4, t5, t6, t7
-        Coefficients of powers of t/h.
-    """
-    late = t7 * 0.125 + t6 * (1.0 / 7.0) + t5 * (1.0 / 6.0) + t4 * 0.2
-    change = late + t3 * 0.25 + t2 * (1.0 / 3.0) + t1 * 0.5 + t0
+    """Integral over t/h from 0 to 1, and value at 1, of a series."""
+    higher_terms = t7 * 0.125 + t6 * (1.0 / 7.0) + t5 * (1.0 / 6.0) + t4 * 0.2
+    change = higher_terms + t3 * 0.25 + t2 * (1.0 / 3.0) + t1 * 0.5 + t0
     return change, t7 + t6 + t5 + t4 + t3 + t2 + t1 + t0
 
 
@@ -248,13 +236,6 @@ def fraction_at(s: Record, l: int, level: float, guess: float) -> float:
     """Fraction of the step at which the tilt is at a level: Newton's method from near it.
 
     A path that only grazes the level may have no root; the guess then stands.
-
-    Parameters
-    ----------
-    level
-        Tilt [rad].
-    guess
-        Fraction of the step.
     """
     t, h, terms = guess, s.step[l], rotation_terms(s, l)
     height = level - s.theta[l]
@@ -271,27 +252,13 @@ def fraction_at(s: Record, l: int, level: float, guess: float) -> float:
 
 @compiled
 def tilt_at(s: Record, l: int, t: float) -> float:
-    """The tilt of a lane at a fraction t of its step.
-
-    Parameters
-    ----------
-    t
-        Fraction of the step.
-    """
+    """The tilt of a lane at a fraction t of its step."""
     return float(s.theta[l] + s.step[l] * integral(rotation_terms(s, l), t))
 
 
 @compiled
 def end_step_at(s: Record, l: int, t: float, level: float) -> None:
-    """Make a fraction t of the step of a lane its end, where the tilt is at a level.
-
-    Parameters
-    ----------
-    t
-        Fraction of the step.
-    level
-        Tilt there [rad].
-    """
+    """Make a fraction t of the step of a lane its end, where the tilt is at a level [level rad]."""
     h, terms = s.step[l], rotation_terms(s, l)
     s.next_theta[l], s.next_theta_dot[l] = level, value(terms, t)
     s.next_theta_ddot[l] = slope(terms, t) / h if h > 0.0 else s.theta_ddot[l]

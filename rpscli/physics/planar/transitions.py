@@ -26,13 +26,7 @@ from rpscli.physics.planar.state import (
 
 @compiled
 def add_floor_velocity(s: Record, l: int, change: float) -> None:
-    """Add the same velocity to every floor, relative to the cap beam [m/s].
-
-    Parameters
-    ----------
-    change
-        [m/s].
-    """
+    """Add the same velocity to every floor, relative to the cap beam [m/s] [change m/s]."""
     for r in range(s.n):
         s.dq[0, r, l] += s.Gamma[r, l] * change
 
@@ -87,7 +81,7 @@ def bounces_left_out(s: Record, l: int, system: Record) -> float:
 
 
 @compiled
-def lock(s: Record, l: int, system: Record) -> float:
+def recontact(s: Record, l: int, system: Record) -> float:
     """Full contact from now on; returns the energy lost [J].
 
     The floors lose the cap beam's velocity u_b' and keep the relative one; the bounces that are
@@ -109,11 +103,6 @@ def is_negligible(system: Record, theta_dot: float, theta_ddot: float) -> bool:
 
     Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
     it reaches x'^2/(2 |x''|).
-
-    Parameters
-    ----------
-    theta_dot, theta_ddot
-        x' [rad/s] and x'' [rad/s2] after the impact.
     """
     least = system.recontact_tolerance * system.alpha
     return theta_ddot < 0.0 and bool(theta_dot**2 < 2.0 * abs(theta_ddot) * least)
@@ -131,7 +120,7 @@ def apply_impact(s: Record, l: int, system: Record, log: Record) -> None:
         s.creating_impacts[l] += 1
     leaving = s.side[l] * s.theta_dot[l]
     log_event(s, l, log, time_of(s, l), IMPACT, 0.0, arriving, leaving, lost)
-    s.renew[l] = AFTER_IMPACT
+    s.restart_after[l] = AFTER_IMPACT
 
 
 @compiled
@@ -140,7 +129,7 @@ def comes_to_rest(s: Record, l: int, system: Record, log: Record) -> bool:
     if not is_negligible(system, s.theta_dot[l], s.theta_ddot[l]):
         return False
     rate = s.side[l] * s.theta_dot[l]
-    lost = lock(s, l, system)
+    lost = recontact(s, l, system)
     s.energy_lost[l] += lost
     log_event(s, l, log, time_of(s, l), RECONTACT, 0.0, rate, 0.0, lost)
     s.phase[l] = FULL_CONTACT
@@ -152,13 +141,7 @@ def comes_to_rest(s: Record, l: int, system: Record, log: Record) -> bool:
 
 @compiled
 def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
-    """Set the constants of a phase of motion and the range that the tilt has in it.
-
-    Parameters
-    ----------
-    phase
-        ROLLING or ROCKING.
-    """
+    """Set the constants of a phase of motion and the range that the tilt has in it."""
     s.phase[l] = phase
     constants = system.rolling if phase == ROLLING else system.rocking
     s.phase_p[l], s.phase_q[l], s.phase_c[l] = constants[0], constants[1], constants[2]
@@ -191,13 +174,7 @@ def event_above(s: Record, l: int, system: Record) -> int:
 
 @compiled
 def uplift(s: Record, l: int, system: Record, log: Record, side: float) -> None:
-    """Leave full contact towards a side; the modes' state is set already.
-
-    Parameters
-    ----------
-    side
-        1 to the right, -1 to the left.
-    """
-    s.side[l], s.renew[l] = side, AFTER_UPLIFT
+    """Leave full contact towards a side; the modes' state is set already."""
+    s.side[l], s.restart_after[l] = side, AFTER_UPLIFT
     enter_first_phase(s, l, system)
     log_event(s, l, log, time_of(s, l), UPLIFT, 0.0, 0.0, 0.0, 0.0)

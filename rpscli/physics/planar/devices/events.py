@@ -22,19 +22,25 @@ from rpscli.physics.core.quintic import (
 )
 from rpscli.physics.core.records import ORDER, Record
 from rpscli.physics.planar.devices import with_devices
-from rpscli.physics.planar.devices.forces import cap_beam_path, opening
+from rpscli.physics.planar.devices.forces import cap_beam_path, tendon_elongation
 from rpscli.physics.planar.state import (
     AFTER_PHASE_CHANGE,
-    AFTER_TURNING,
+    AFTER_REVERSAL,
     BEYOND,
     IDLE,
     SLOTS,
     STOP,
+    STOP_DAMPING,
+    STOP_GAP,
     STOP_LEFT,
     STOP_MET,
+    STOP_STIFFNESS,
     TENDON,
+    TENDON_PRESTRESS,
     TENDON_SLACK,
+    TENDON_STIFFNESS,
     TENDON_TAUT,
+    TENDON_YIELD,
     TENDON_YIELDING,
     WORKING,
 )
@@ -54,13 +60,7 @@ def has_friction(s: Record, l: int) -> bool:
 
 @compiled
 def watch(s: Record, l: int, which: int) -> bool:
-    """Write a watched function's terms over the step to `event_terms`; False if there is none.
-
-    Parameters
-    ----------
-    which
-        Number of the function, see this module.
-    """
+    """Write a watched function's terms over the step to `event_terms`; False if there is none."""
     if which == 0:
         watched = has_friction(s, l)
         for i in range(s.devices[l]):
@@ -80,21 +80,15 @@ def watch(s: Record, l: int, which: int) -> bool:
 
 @compiled
 def watch_stop(s: Record, l: int, i: int, second: int) -> bool:
-    """Of a stop: that its gap is open, that it pushes, or does not; second, that it may again.
-
-    Parameters
-    ----------
-    second
-        1 for the second function of the device, else 0.
-    """
+    """Of a stop: that its gap is open, that it pushes, or does not; second, that it may again."""
     branch = s.device_branch[i, l]
     if second > 0 and branch != BEYOND:
         return False
-    stiffness, damping = s.device_constants[i, 1, l], s.device_constants[i, 2, l]
+    stiffness, damping = (s.law[i, STOP_STIFFNESS, l], s.law[i, STOP_DAMPING, l])
     if branch == IDLE or second > 0:
         stiffness, damping = 1.0, 0.0
     sign = 1.0 if branch == WORKING or second > 0 else -1.0
-    beyond = s.path[l] - s.device_constants[i, 0, l]
+    beyond = s.path[l] - s.law[i, STOP_GAP, l]
     s.event_terms[0, l] = sign * (stiffness * beyond + damping * s.advance_terms[0, l])
     for m in range(1, ORDER + 2):
         term = stiffness * s.step[l] / m * s.advance_terms[m - 1, l]
@@ -106,23 +100,17 @@ def watch_stop(s: Record, l: int, i: int, second: int) -> bool:
 
 @compiled
 def watch_tendon(s: Record, l: int, i: int, second: int) -> bool:
-    """Of a tendon: that it is tight, or slack; second, that it does not yield.
-
-    Parameters
-    ----------
-    second
-        1 for the second function of the device, else 0.
-    """
-    branch, limit = s.device_branch[i, l], s.device_constants[i, 2, l]
+    """Of a tendon: that it is tight, or slack; second, that it does not yield."""
+    branch, limit = s.device_branch[i, l], s.law[i, TENDON_YIELD, l]
     if branch == BEYOND or (second > 0 and (branch == IDLE or limit == math.inf)):
         return False
-    stiffness = s.device_constants[i, 1, l]
-    stretch = s.opening_terms[0, l] - s.permanent[i, l]
-    tense = s.device_constants[i, 0, l] + stiffness * stretch
+    stiffness = s.law[i, TENDON_STIFFNESS, l]
+    stretch = s.elongation_terms[0, l] - s.permanent[i, l]
+    tense = s.law[i, TENDON_PRESTRESS, l] + stiffness * stretch
     sign = -1.0 if second > 0 or branch == IDLE else 1.0
     s.event_terms[0, l] = limit - tense if second > 0 else sign * tense
     for m in range(1, ORDER + 1):
-        s.event_terms[m, l] = sign * stiffness * s.opening_terms[m, l]
+        s.event_terms[m, l] = sign * stiffness * s.elongation_terms[m, l]
     longer, last = 0.0, ORDER + 1
     for j in range(last):
         longer += s.lever_terms[0, j, l] * s.dtheta_terms[ORDER - j, l]
@@ -135,12 +123,12 @@ def watched_path(s: Record, l: int) -> Quintic:
     """The watched function over the step; what has just changed begins at zero, not below it."""
     terms = s.event_terms
     terms[0, l] = max(terms[0, l], 0.0)
-    end, slope, bend = 0.0, 0.0, 0.0
+    end, slope, curvature = 0.0, 0.0, 0.0
     for k in range(ORDER + 1, -1, -1):
         end += terms[k, l]
         slope += k * terms[k, l]
-        bend += k * (k - 1.0) * terms[k, l]
-    return quintic(1.0, terms[0, l], terms[1, l], 2.0 * terms[2, l], end, slope, bend)
+        curvature += k * (k - 1.0) * terms[k, l]
+    return quintic(1.0, terms[0, l], terms[1, l], 2.0 * terms[2, l], end, slope, curvature)
 
 
 @compiled
@@ -162,7 +150,7 @@ def check_devices(s: Record) -> None:
     for l in range(s.lanes):
         if s.devices[l] == 0:
             continue
-        if s.kinked[l] > 0.0 and s.step[l] > LEAST_STEP * s.dt[l] and meets_kink(s, l):
+        if s.nonsmooth_damper[l] > 0.0 and s.step[l] > LEAST_STEP * s.dt[l] and meets_kink(s, l):
             s.too_long[l] = 1.0
         watched = s.accepted[l] > 0.0 and s.no_event[l] == 0.0
         alarm = s.too_long[l] > 0.0
@@ -190,13 +178,7 @@ def locate_change(s: Record, l: int, block: Record) -> tuple[float, int]:
 
 @compiled
 def refined(s: Record, l: int, guess: float) -> float:
-    """The root of the watched polynomial near a guess: Newton's method within the step.
-
-    Parameters
-    ----------
-    guess
-        Fraction of the step.
-    """
+    """The root of the watched polynomial near a guess: Newton's method within the step."""
     t, terms = guess, s.event_terms
     for _ in range(12):
         value, slope = 0.0, 0.0
@@ -214,26 +196,20 @@ def refined(s: Record, l: int, guess: float) -> float:
 
 @with_devices()
 def change_law(s: Record, l: int, log: Record, which: int) -> None:
-    """What the watched function that fell below zero stands for; the lane is where it did.
-
-    Parameters
-    ----------
-    which
-        Number of the function, see this module.
-    """
-    s.renew[l] = AFTER_PHASE_CHANGE
+    """What the watched function that fell below zero stands for; the lane is where it did."""
+    s.restart_after[l] = AFTER_PHASE_CHANGE
     if which == 0:
         s.theta_dot[l] = 0.0
-        turn_tendons(s, l)
+        reset_yielded_tendons(s, l)
         if has_friction(s, l):
-            s.renew[l] = AFTER_TURNING
+            s.restart_after[l] = AFTER_REVERSAL
         return
     second = which > SLOTS
     i = which - 1 - SLOTS if second else which - 1
     branch, event = s.device_branch[i, l], -1
     if s.device_kind[i, l] == STOP:
         if branch == WORKING:
-            branch, event = BEYOND if s.device_constants[i, 2, l] > 0.0 else IDLE, STOP_LEFT
+            branch, event = (BEYOND if s.law[i, STOP_DAMPING, l] > 0.0 else IDLE, STOP_LEFT)
         elif second:
             branch = IDLE
         else:
@@ -251,11 +227,11 @@ def change_law(s: Record, l: int, log: Record, which: int) -> None:
 
 
 @compiled
-def turn_tendons(s: Record, l: int) -> None:
+def reset_yielded_tendons(s: Record, l: int) -> None:
     """Tendons that yielded are elastic again, longer by what they yielded."""
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == TENDON and s.device_branch[i, l] == BEYOND:
-            e, _, _, _ = opening(s, l, s.theta[l])
-            rise = s.device_constants[i, 2, l] - s.device_constants[i, 0, l]
-            s.permanent[i, l] = e - rise / s.device_constants[i, 1, l]
+            e, _, _, _ = tendon_elongation(s, l, s.theta[l])
+            until_yield = s.law[i, TENDON_YIELD, l] - s.law[i, TENDON_PRESTRESS, l]
+            s.permanent[i, l] = e - until_yield / s.law[i, TENDON_STIFFNESS, l]
             s.device_branch[i, l] = WORKING

@@ -6,17 +6,29 @@ from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import Floats, Record
 from rpscli.physics.core.series import NODES, WEIGHTS, integral, value
 from rpscli.physics.planar.devices import with_devices
-from rpscli.physics.planar.devices.forces import cap_beam_path, opening, resistance, tension
-from rpscli.physics.planar.devices.rest import held
+from rpscli.physics.planar.devices.forces import (
+    cap_beam_path,
+    resistance,
+    tendon_elongation,
+    tension,
+)
+from rpscli.physics.planar.devices.rest import mobilised_friction
 from rpscli.physics.planar.equation_of_motion import rotation_terms
 from rpscli.physics.planar.state import (
     BEYOND,
     FRICTION,
     FULL_CONTACT,
+    ROLLING_MOMENT,
     ROLLING_RESISTANCE,
     STOP,
+    STOP_DAMPING,
+    STOP_GAP,
+    STOP_STIFFNESS,
     STUCK,
     TENDON,
+    TENDON_PRESTRESS,
+    TENDON_STIFFNESS,
+    TENDON_YIELD,
     VISCOUS,
     WORKING,
 )
@@ -24,34 +36,28 @@ from rpscli.physics.planar.state import (
 
 @with_devices()
 def book_devices(s: Record, l: int, fraction: float) -> None:
-    """Book what the devices of a lane dissipate in the first part of its step.
-
-    Parameters
-    ----------
-    fraction
-        How much of the step is booked.
-    """
+    """Book what the devices of a lane dissipate in the first part of its step."""
     terms = rotation_terms(s, l)
     for n in range(len(NODES)):
         t = fraction * NODES[n]
         theta_dot = value(terms, t)
         theta = s.theta[l] + s.step[l] * integral(terms, t)
         path, rate, _ = cap_beam_path(s, l, theta, theta_dot)
-        _, lever, _, _ = opening(s, l, theta)
+        _, lever, _, _ = tendon_elongation(s, l, theta)
         for i in range(s.devices[l]):
             kind, power = s.device_kind[i, l], 0.0
             if kind in (VISCOUS, FRICTION):
                 power = resistance(s, l, i, path, rate) * rate
             elif kind == STOP:
                 if s.device_branch[i, l] == WORKING:
-                    power = s.device_constants[i, 2, l] * rate * rate
+                    power = s.law[i, STOP_DAMPING, l] * rate * rate
                 elif s.device_branch[i, l] == BEYOND:  # it recovers by itself
-                    beyond = path - s.device_constants[i, 0, l]
-                    power = -s.device_constants[i, 1, l] * beyond * rate
+                    beyond = path - s.law[i, STOP_GAP, l]
+                    power = -s.law[i, STOP_STIFFNESS, l] * beyond * rate
             elif kind == ROLLING_RESISTANCE:
-                power = s.direction[l] * s.device_constants[i, 0, l] * theta_dot
+                power = s.direction[l] * s.law[i, ROLLING_MOMENT, l] * theta_dot
             elif s.device_branch[i, l] == BEYOND:
-                power = s.columns[l] * s.device_constants[i, 2, l] * lever * theta_dot
+                power = s.columns[l] * s.law[i, TENDON_YIELD, l] * lever * theta_dot
             s.device_energy[i, l] += fraction * s.step[l] * WEIGHTS[n] * power
 
 
@@ -75,15 +81,9 @@ def observe_devices(s: Record, l: int) -> None:
 
 @compiled
 def raise_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
-    """Raise the largest forces and rates by those at a tilt and its rate.
-
-    Parameters
-    ----------
-    theta, theta_dot
-        Tilt x [rad] and its rate [rad/s].
-    """
+    """Raise the largest forces and rates by those at a tilt and its rate."""
     path, rate, C = cap_beam_path(s, l, theta, theta_dot)
-    e, lever, _, _ = opening(s, l, theta)
+    e, lever, _, _ = tendon_elongation(s, l, theta)
     for i in range(s.devices[l]):
         force, speed, _ = device_at(s, l, i, path, rate, C, e, lever * theta_dot)
         s.device_force[i, l] = max(s.device_force[i, l], abs(force))
@@ -98,42 +98,27 @@ def device_at(
 
     Of horizontal devices the resistance -s P with |u_b|; of a tendon the tension of one with its
     elongation; of rolling resistance the horizontal force that does the same, M/(2 R C).
-
-    Parameters
-    ----------
-    path, rate, C
-        |u_b| [m], its rate [m/s], and C.
-    e, e_rate
-        Elongation of a tendon [m] and its rate [m/s].
     """
     kind = s.device_kind[i, l]
     if kind == TENDON:
         return tension(s, l, i, e), e_rate, e
     if kind == ROLLING_RESISTANCE:
-        moment = s.direction[l] * s.device_constants[i, 0, l]
+        moment = s.direction[l] * s.law[i, ROLLING_MOMENT, l]
         return moment / (s.diameter[l] * C), rate, path
     return resistance(s, l, i, path, rate), rate, path
 
 
 @compiled
 def stored_in(s: Record, l: int, i: int, path: float, e: float) -> float:
-    """Energy stored in a device over that at the start [J]; a yielded tendon's may be negative.
-
-    Parameters
-    ----------
-    path
-        |u_b| [m].
-    e
-        Elongation of a tendon [m].
-    """
+    """Energy stored in a device over that at the start [J]; a yielded tendon's may be negative."""
     kind = s.device_kind[i, l]
     if kind == STOP:
-        beyond = max(path - s.device_constants[i, 0, l], 0.0)
-        return float(0.5 * s.device_constants[i, 1, l] * beyond * beyond)
+        beyond = max(path - s.law[i, STOP_GAP, l], 0.0)
+        return float(0.5 * s.law[i, STOP_STIFFNESS, l] * beyond * beyond)
     if kind == TENDON:
-        tense, prestress = tension(s, l, i, e), s.device_constants[i, 0, l]
+        tense, prestress = tension(s, l, i, e), s.law[i, TENDON_PRESTRESS, l]
         change = tense * tense - prestress * prestress
-        return float(0.5 * s.columns[l] * change / s.device_constants[i, 1, l])
+        return float(0.5 * s.columns[l] * change / s.law[i, TENDON_STIFFNESS, l])
     return 0.0
 
 
@@ -148,16 +133,11 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
     the tension of one goes with its elongation. Friction at rest is what equilibrium asks for while
     the storey is stuck, and counted as zero in full contact, where it cannot be told from that of
     the columns' flat ends.
-
-    Parameters
-    ----------
-    sample
-        (4, devices): written.
     """
     stuck, stands = s.phase[l] == STUCK, s.phase[l] == FULL_CONTACT
     path, rate, C = cap_beam_path(s, l, s.theta[l], s.theta_dot[l])
-    e, lever, _, _ = opening(s, l, s.theta[l])
-    share = held(s, l) if stuck else 0.0
+    e, lever, _, _ = tendon_elongation(s, l, s.theta[l])
+    share = mobilised_friction(s, l) if stuck else 0.0
     for i in range(s.devices[l]):
         kind, e_rate = s.device_kind[i, l], lever * s.theta_dot[l]
         force, _, displacement = device_at(s, l, i, path, rate, C, e, e_rate)
@@ -172,15 +152,9 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
 
 @with_devices()
 def leave_devices(s: Record, l: int, result: Record) -> None:
-    """Write what the devices of a lane leave behind at the end of its history.
-
-    Parameters
-    ----------
-    result
-        A `state.RESULT`: written.
-    """
+    """Write what the devices of a lane leave behind at the end of its history."""
     path, _, _ = cap_beam_path(s, l, s.theta[l], 0.0)
-    e, _, _, _ = opening(s, l, s.theta[l])
+    e, _, _, _ = tendon_elongation(s, l, s.theta[l])
     for i in range(s.devices[l]):
         result.device_force[i] = s.device_force[i, l]
         result.device_velocity[i] = s.device_velocity[i, l]

@@ -20,58 +20,56 @@ from rpscli.physics.planar.equation_of_motion import (
     contact_height,
     phase_constants,
 )
-from rpscli.physics.planar.state import FRICTION, IDLE, STOP, TENDON, VISCOUS, WORKING
+from rpscli.physics.planar.state import (
+    DAMPER_COEFFICIENT,
+    DAMPER_EXPONENT,
+    FRICTION,
+    FRICTION_FORCE,
+    IDLE,
+    STOP,
+    STOP_DAMPING,
+    STOP_GAP,
+    STOP_STIFFNESS,
+    TENDON,
+    TENDON_PRESTRESS,
+    TENDON_STIFFNESS,
+    TENDON_YIELD,
+    VISCOUS,
+    WORKING,
+)
 
 
 @compiled
 def resistance(s: Record, l: int, i: int, path: float, rate: float) -> float:
-    """Resistance -s P of a horizontal device, 0 of others [N].
-
-    Parameters
-    ----------
-    path, rate
-        |u_b| [m] and its rate [m/s].
-    """
+    """Resistance -s P of a horizontal device, 0 of others [N]."""
     kind = s.device_kind[i, l]
     if kind == VISCOUS:
-        exponent = s.device_constants[i, 1, l] - 1.0
+        exponent = s.law[i, DAMPER_EXPONENT, l] - 1.0
         return float(
-            s.device_constants[i, 0, l] * rate * max(abs(rate), s.linear_speed[l]) ** exponent
+            s.law[i, DAMPER_COEFFICIENT, l] * rate * max(abs(rate), s.linear_speed[l]) ** exponent
         )
     if kind == FRICTION:
-        return float(s.direction[l] * s.device_constants[i, 0, l])
+        return float(s.direction[l] * s.law[i, FRICTION_FORCE, l])
     if kind == STOP and s.device_branch[i, l] == WORKING:
-        beyond = path - s.device_constants[i, 0, l]
-        return float(s.device_constants[i, 1, l] * beyond + s.device_constants[i, 2, l] * rate)
+        beyond = path - s.law[i, STOP_GAP, l]
+        return float(s.law[i, STOP_STIFFNESS, l] * beyond + s.law[i, STOP_DAMPING, l] * rate)
     return 0.0
 
 
 @compiled
 def tension(s: Record, l: int, i: int, e: float) -> float:
-    """Tension of one tendon of a device that is one [N], at its elongation e [m]; else 0.
-
-    Parameters
-    ----------
-    e
-        Elongation of a tendon [m].
-    """
+    """Tension of one tendon of a device that is one [N], at its elongation e [m]; else 0 [e m]."""
     if s.device_kind[i, l] != TENDON or s.device_branch[i, l] == IDLE:
         return 0.0
     if s.device_branch[i, l] == WORKING:
         stretch = e - s.permanent[i, l]
-        return float(s.device_constants[i, 0, l] + s.device_constants[i, 1, l] * stretch)
-    return float(s.device_constants[i, 2, l])
+        return float(s.law[i, TENDON_PRESTRESS, l] + s.law[i, TENDON_STIFFNESS, l] * stretch)
+    return float(s.law[i, TENDON_YIELD, l])
 
 
 @compiled
 def cap_beam_path(s: Record, l: int, theta: float, theta_dot: float) -> tuple[float, float, float]:
-    """|u_b| [m], its rate [m/s], and C, at a tilt in the present phase.
-
-    Parameters
-    ----------
-    theta, theta_dot
-        Tilt x [rad] and its rate [rad/s].
-    """
+    """|u_b| [m], its rate [m/s], and C, at a tilt in the present phase."""
     sine, cosine = sine_cosine(theta)
     phase = phase_constants(s, l)
     C = contact_height(phase, cosine, sine)
@@ -81,23 +79,17 @@ def cap_beam_path(s: Record, l: int, theta: float, theta_dot: float) -> tuple[fl
 
 @with_devices()
 def set_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
-    """What the devices of a lane do at a tilt and its rate; writes `next_device`, push and pull.
-
-    Parameters
-    ----------
-    theta, theta_dot
-        Tilt x [rad] and its rate [rad/s].
-    """
+    """What the devices of a lane do at a tilt and its rate; writes `next_device`, push and pull."""
     path, rate, C = cap_beam_path(s, l, theta, theta_dot)
-    e, lever, lean, rise = opening(s, l, theta)
+    e, lever, sin_psi, cos_psi = tendon_elongation(s, l, theta)
     resisting, tense = 0.0, 0.0
     for i in range(s.devices[l]):
         resisting += resistance(s, l, i, path, rate)
         tense += s.columns[l] * tension(s, l, i, e)
     moment = tense * lever + s.direction[l] * s.friction_moment[l]
     s.next_device[l] = -s.shear_factor[l] * (C * resisting + moment / s.diameter[l])
-    s.next_push[l] = -s.side[l] * (resisting + tense * lean)
-    s.next_pull[l] = tense * rise
+    s.next_push[l] = -s.side[l] * (resisting + tense * sin_psi)
+    s.next_pull[l] = tense * cos_psi
 
 
 @with_devices()
@@ -122,14 +114,8 @@ WEIGHTS = tuple(float(0.5 * weight) for weight in _WEIGHTS)
 
 
 @compiled
-def opening(s: Record, l: int, x: float) -> tuple[float, float, float, float]:
-    """Elongation e of a tendon, de/dx, and sine and cosine of psi, at a tilt x in its phase.
-
-    Parameters
-    ----------
-    x
-        Tilt in the present phase [rad].
-    """
+def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float, float]:
+    """Elongation e of a tendon, de/dx, and sine and cosine of psi, at a tilt x in its phase."""
     sine, cosine = sine_cosine(x)
     B, r = s.half_width[l], s.arc_radius[l]
     reach = B + r * x
@@ -141,10 +127,10 @@ def opening(s: Record, l: int, x: float) -> tuple[float, float, float, float]:
         across = reach - (along * cosine + above * sine)
         upwards = along * sine - above * cosine
     distance = math.sqrt(across * across + upwards * upwards)
-    lean, rise = 0.0, 1.0
+    sin_psi, cos_psi = 0.0, 1.0
     if distance > 0.0:
-        lean, rise = across / distance, upwards / distance
-    return 2.0 * distance, 2.0 * rise * reach, lean, rise
+        sin_psi, cos_psi = across / distance, upwards / distance
+    return 2.0 * distance, 2.0 * cos_psi * reach, sin_psi, cos_psi
 
 
 @compiled
@@ -190,7 +176,7 @@ def expand_beyond_arc(s: Record, l: int) -> None:
 
 
 @compiled
-def expand_opening(s: Record, l: int) -> None:
+def expand_elongation(s: Record, l: int) -> None:
     """Write e, de/dx and the derivatives of that at the start of the step."""
     from_upright = s.phase_c[l] > 0.0 or s.arc_end[l] == 0.0
     if from_upright:
@@ -205,7 +191,7 @@ def expand_opening(s: Record, l: int) -> None:
             rest -= root[j] * root[k - j]
         root[k] = rest / (2.0 * root[0])
     x, factorial = s.theta[l], 1.0
-    s.opening_terms[0, l] = 2.0 * (x * root[0] if from_upright else root[0])
+    s.elongation_terms[0, l] = 2.0 * (x * root[0] if from_upright else root[0])
     for k in range(1, TERMS + 1):
         factorial *= k
         distance = x * root[k] + root[k - 1] if from_upright else root[k]
@@ -230,15 +216,15 @@ def begin_devices(s: Record) -> None:
         s.path[l], s.advance_terms[0, l] = path, rate
         resisting, tense, stiffness = 0.0, 0.0, 0.0
         if s.tendons[l] > 0:
-            expand_opening(s, l)
+            expand_elongation(s, l)
         for i in range(s.devices[l]):
             own = resistance(s, l, i, path, rate)
             resisting += own
             s.power_terms[i, 0, l] = own
             if s.device_kind[i, l] == TENDON:
-                tense += s.columns[l] * tension(s, l, i, s.opening_terms[0, l])
+                tense += s.columns[l] * tension(s, l, i, s.elongation_terms[0, l])
                 if s.device_branch[i, l] == WORKING:
-                    stiffness += s.columns[l] * s.device_constants[i, 1, l]
+                    stiffness += s.columns[l] * s.law[i, TENDON_STIFFNESS, l]
         s.resistance_terms[0, l], s.tension[l], s.tendon_stiffness[l] = resisting, tense, stiffness
 
 
@@ -265,7 +251,7 @@ def extend_lane(s: Record, l: int, m: int) -> None:
         if kind == VISCOUS:
             resisting += extend_power(s, l, i, m)
         elif kind == STOP and s.device_branch[i, l] == WORKING:
-            resisting += s.device_constants[i, 1, l] * path + s.device_constants[i, 2, l] * advance
+            resisting += s.law[i, STOP_STIFFNESS, l] * path + s.law[i, STOP_DAMPING, l] * advance
     s.resistance_terms[m, l] = resisting
     moment = 0.0
     for j in range(m + 1):
@@ -286,10 +272,10 @@ def extend_tendons(s: Record, l: int, m: int) -> float:
         s.lever_terms[k, m, l] = part * term
     for j in range(m):
         longer += s.lever_terms[0, j, l] * s.dtheta_terms[m - 1 - j, l]
-    s.opening_terms[m, l] = part * longer
+    s.elongation_terms[m, l] = part * longer
     turning = s.tension[l] * s.lever_terms[0, m, l]
     for j in range(1, m + 1):
-        tense = s.tendon_stiffness[l] * s.opening_terms[j, l]
+        tense = s.tendon_stiffness[l] * s.elongation_terms[j, l]
         turning += tense * s.lever_terms[0, m - j, l]
     return float(turning)
 
@@ -297,7 +283,7 @@ def extend_tendons(s: Record, l: int, m: int) -> float:
 @compiled
 def extend_power(s: Record, l: int, i: int, m: int) -> float:
     """Term of order m of a viscous damper's resistance [N]."""
-    constant, exponent = s.device_constants[i, 0, l], s.device_constants[i, 1, l]
+    constant, exponent = (s.law[i, DAMPER_COEFFICIENT, l], s.law[i, DAMPER_EXPONENT, l])
     rate, speed = s.advance_terms[0, l], s.linear_speed[l]
     if exponent == 1.0 or abs(rate) <= speed:
         return float(constant * speed ** (exponent - 1.0) * s.advance_terms[m, l])

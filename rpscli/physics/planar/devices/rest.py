@@ -9,8 +9,13 @@ from rpscli.physics.core.lanes import log_event, time_of
 from rpscli.physics.core.records import INSTANTS, Record
 from rpscli.physics.core.series import sine_cosine
 from rpscli.physics.planar.devices import with_devices
-from rpscli.physics.planar.devices.events import has_friction, turn_tendons
-from rpscli.physics.planar.devices.forces import cap_beam_path, opening, resistance, tension
+from rpscli.physics.planar.devices.events import has_friction, reset_yielded_tendons
+from rpscli.physics.planar.devices.forces import (
+    cap_beam_path,
+    resistance,
+    tendon_elongation,
+    tension,
+)
 from rpscli.physics.planar.equation_of_motion import (
     contact_arm,
     contact_height,
@@ -20,16 +25,22 @@ from rpscli.physics.planar.equation_of_motion import (
 from rpscli.physics.planar.state import (
     AFTER_PHASE_CHANGE,
     BEYOND,
+    DAMPER_EXPONENT,
     FRICTION,
+    FRICTION_FORCE,
     IDLE,
     ROCKING,
     ROLLING,
+    ROLLING_MOMENT,
     ROLLING_RESISTANCE,
     SLIDING,
     STICKING,
     STOP,
+    STOP_GAP,
     STUCK,
     TENDON,
+    TENDON_PRESTRESS,
+    TENDON_YIELD,
     VISCOUS,
     WORKING,
 )
@@ -42,7 +53,12 @@ def load_devices(s: Record, l: int, system: Record) -> None:
     s.linear_speed[l] = system.linear_speed
     s.half_width[l], s.arc_end[l] = system.R * math.sin(system.alpha), system.beta
     s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
-    s.friction_force[l], s.friction_moment[l], s.tendons[l], s.kinked[l] = 0.0, 0.0, 0, 0.0
+    s.friction_force[l], s.friction_moment[l], s.tendons[l], s.nonsmooth_damper[l] = (
+        0.0,
+        0.0,
+        0,
+        0.0,
+    )
     s.direction[l], s.next_device[l], s.next_push[l], s.next_pull[l] = 1.0, 0.0, 0.0, 0.0
     for m in range(s.device_terms.shape[0]):
         s.device_terms[m, l] = 0.0
@@ -50,19 +66,19 @@ def load_devices(s: Record, l: int, system: Record) -> None:
         kind = system.device_kind[i]
         s.device_kind[i, l], s.device_branch[i, l], s.permanent[i, l] = kind, IDLE, 0.0
         s.device_force[i, l], s.device_velocity[i, l], s.device_energy[i, l] = 0.0, 0.0, 0.0
-        for k in range(s.device_constants.shape[1]):
-            s.device_constants[i, k, l] = system.device_constants[i, k]
-        if kind == VISCOUS and system.device_constants[i, 1] != 1.0:
-            s.kinked[l] = 1.0
+        for k in range(s.law.shape[1]):
+            s.law[i, k, l] = system.device_constants[i, k]
+        if kind == VISCOUS and system.device_constants[i, DAMPER_EXPONENT] != 1.0:
+            s.nonsmooth_damper[l] = 1.0
         elif kind == FRICTION:
-            s.friction_force[l] += system.device_constants[i, 0]
+            s.friction_force[l] += system.device_constants[i, FRICTION_FORCE]
         elif kind == ROLLING_RESISTANCE:
-            s.friction_moment[l] += system.device_constants[i, 0]
+            s.friction_moment[l] += system.device_constants[i, ROLLING_MOMENT]
         elif kind == TENDON:
             s.tendons[l] += 1
             s.device_branch[i, l] = WORKING
-            s.device_force[i, l] = system.device_constants[i, 0]
-            s.next_pull[l] += system.columns * system.device_constants[i, 0]
+            s.device_force[i, l] = system.device_constants[i, TENDON_PRESTRESS]
+            s.next_pull[l] += system.columns * system.device_constants[i, TENDON_PRESTRESS]
 
 
 @with_devices()
@@ -71,34 +87,32 @@ def begin_excursion(s: Record, l: int) -> None:
     s.direction[l] = 1.0
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == STOP:
-            s.device_branch[i, l] = WORKING if s.device_constants[i, 0, l] == 0.0 else IDLE
+            s.device_branch[i, l] = WORKING if s.law[i, STOP_GAP, l] == 0.0 else IDLE
 
 
 @with_devices()
 def release_devices(s: Record, l: int) -> None:
     """Be held at a tilt: stops push, and tendons that cannot hold it have yielded."""
     path, _, _ = cap_beam_path(s, l, s.theta[l], 0.0)
-    e, _, _, _ = opening(s, l, s.theta[l])
+    e, _, _, _ = tendon_elongation(s, l, s.theta[l])
     for i in range(s.devices[l]):
-        kind, first = s.device_kind[i, l], s.device_constants[i, 0, l]
+        kind, first = s.device_kind[i, l], s.law[i, STOP_GAP, l]
         if kind == STOP and path > first:
             s.device_branch[i, l] = WORKING
-        elif kind == TENDON and tension(s, l, i, e) > s.device_constants[i, 2, l]:
+        elif kind == TENDON and tension(s, l, i, e) > s.law[i, TENDON_YIELD, l]:
             s.device_branch[i, l] = BEYOND
-    turn_tendons(s, l)
+    reset_yielded_tendons(s, l)
     s.direction[l] = 1.0
 
 
 @with_devices(otherwise=(0.0, 0.0))
-def holding(s: Record, l: int) -> tuple[float, float]:
+def force_at_rest(s: Record, l: int) -> tuple[float, float]:
     """Horizontal force at the cap beam against a tilt at rest [N].
 
-    Returns
-    -------
-    That of stops and tendons, towards smaller x, and what friction may add to either side.
+    Returns: That of stops and tendons, towards smaller x, and what friction may add to either side.
     """
     path, _, C = cap_beam_path(s, l, s.theta[l], 0.0)
-    e, lever, _, _ = opening(s, l, s.theta[l])
+    e, lever, _, _ = tendon_elongation(s, l, s.theta[l])
     arm = s.diameter[l] * C
     elastic = 0.0
     for i in range(s.devices[l]):
@@ -117,20 +131,20 @@ def arms(s: Record, l: int) -> tuple[float, float]:
 
 
 @compiled
-def held(s: Record, l: int) -> float:
+def mobilised_friction(s: Record, l: int) -> float:
     """Share of its friction that a stuck storey asks for, against growing tilts: -1 to 1.
 
     Reads V and the ground in `next_V`, `next_a_g` and `next_g_up`.
     """
     B, C = arms(s, l)
-    elastic, friction = holding(s, l)
+    elastic, friction = force_at_rest(s, l)
     action = horizontal_action(s, l, s.next_a_g[l], s.next_V[l])
     pushed = -(B / C * s.next_g_up[l] * s.weight_over_R[l] + action) / s.shear_factor[l]
     return float((pushed - elastic) / friction)
 
 
 @with_devices()
-def hold_block(s: Record, l: int, block: Record) -> None:
+def write_push_at_rest(s: Record, l: int, block: Record) -> None:
     """Write what devices push the cap beam with at all instants of a block, where it is stuck.
 
     Friction dampers and rolling resistance hold in proportion to what each could. In full contact
@@ -139,30 +153,30 @@ def hold_block(s: Record, l: int, block: Record) -> None:
     if s.phase[l] != STUCK:
         return
     path, _, _ = cap_beam_path(s, l, s.theta[l], 0.0)
-    e, _, lean, _ = opening(s, l, s.theta[l])
+    e, _, sin_psi, _ = tendon_elongation(s, l, s.theta[l])
     steady = 0.0
     for i in range(s.devices[l]):
-        steady += s.columns[l] * tension(s, l, i, e) * lean
+        steady += s.columns[l] * tension(s, l, i, e) * sin_psi
         if s.device_kind[i, l] == STOP:
             steady += resistance(s, l, i, path, 0.0)
     for k in range(INSTANTS):
         s.next_V[l], s.next_a_g[l], s.next_g_up[l] = block.V[k], block.a_g[k], block.g_up[k]
-        block.push[k] = -s.side[l] * (steady + held(s, l) * s.friction_force[l])
+        block.push[k] = -s.side[l] * (steady + mobilised_friction(s, l) * s.friction_force[l])
 
 
 @with_devices(otherwise=0.0)
-def resting_pull(s: Record, l: int) -> float:
+def pull_at_rest(s: Record, l: int) -> float:
     """What tendons pull the cap beam down with at rest [N]."""
     pull = 0.0
     if s.tendons[l] > 0:
-        e, _, _, rise = opening(s, l, s.theta[l])
+        e, _, _, cos_psi = tendon_elongation(s, l, s.theta[l])
         for i in range(s.devices[l]):
-            pull += s.columns[l] * tension(s, l, i, e) * rise
+            pull += s.columns[l] * tension(s, l, i, e) * cos_psi
     return pull
 
 
 @with_devices(otherwise=False)
-def turn(s: Record, l: int, log: Record) -> bool:
+def at_reversal(s: Record, l: int, log: Record) -> bool:
     """After x' = 0 under friction: go on to the side that is pushed to; True if neither is.
 
     The acceleration of the lane is that with friction against its direction.
@@ -177,7 +191,7 @@ def turn(s: Record, l: int, log: Record) -> bool:
     if abs(free) > held:
         s.direction[l] = 1.0 if free > 0.0 else -1.0
         if s.direction[l] != direction:
-            s.renew[l] = AFTER_PHASE_CHANGE
+            s.restart_after[l] = AFTER_PHASE_CHANGE
         return False
     rotation = s.side[l] * s.theta[l]
     s.phase[l], s.theta_ddot[l] = STUCK, 0.0
@@ -187,14 +201,8 @@ def turn(s: Record, l: int, log: Record) -> bool:
 
 @with_devices()
 def slide(s: Record, l: int, log: Record, side: float) -> None:
-    """Leave a tilt that friction held, to the right or to the left.
-
-    Parameters
-    ----------
-    side
-        1 to the right, -1 to the left.
-    """
+    """Leave a tilt that friction held, to the right or to the left."""
     s.phase[l] = ROLLING if s.phase_c[l] > 0.0 else ROCKING
-    s.direction[l], s.renew[l] = side * s.side[l], AFTER_PHASE_CHANGE
+    s.direction[l], s.restart_after[l] = side * s.side[l], AFTER_PHASE_CHANGE
     rotation = s.side[l] * s.theta[l]
     log_event(s, l, log, time_of(s, l), SLIDING, rotation, 0.0, 0.0, 0.0)

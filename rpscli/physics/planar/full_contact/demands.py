@@ -21,15 +21,7 @@ def clear_contacts(block: Record) -> None:
 
 @compiled
 def mark_samples(block: Record, first: int, last: int, each: int) -> None:
-    """Write `at_sample`: 1 at the instants first, first + each, ... up to last.
-
-    Parameters
-    ----------
-    first, last
-        Instants of the block.
-    each
-        Steps from sample to sample.
-    """
+    """Write `at_sample`: 1 at the instants first, first + each, ... up to last."""
     for k in range(INSTANTS):
         block.at_sample[k] = 0.0
     for k in range(first, last + 1, each):
@@ -38,13 +30,7 @@ def mark_samples(block: Record, first: int, last: int, each: int) -> None:
 
 @compiled
 def may_raise(block: Record, shear: float, acceleration: float) -> bool:
-    """Whether the bounds of a sample are above these, see `uplifted.demands`.
-
-    Parameters
-    ----------
-    shear, acceleration
-        Weighted squares of the modes that raise no demand.
-    """
+    """Whether the bounds of a sample are above these, see `uplifted.demands`."""
     found = 0
     for k in range(INSTANTS):
         more = (block.shear_bound[k] > shear) | (block.acceleration_bound[k] > acceleration)
@@ -56,13 +42,7 @@ def may_raise(block: Record, shear: float, acceleration: float) -> bool:
 def raise_floors_of_block(
     block: Record, system: Record, shears: Floats, accelerations: Floats
 ) -> None:
-    """Raise the largest storey shears [N] and absolute floor accelerations [m/s2], (n,) or more.
-
-    Parameters
-    ----------
-    shears, accelerations
-        (n,) or more [N, m/s2]: raised.
-    """
+    """Raise the largest storey shears [N] and absolute floor accelerations [m/s2], (n,) or more."""
     n = block.n
     threes = n - n % 3
     for i in range(n):
@@ -81,13 +61,7 @@ def raise_floors_of_block(
 
 @compiled
 def largest_at_samples(block: Record, row: Floats) -> float:
-    """Largest absolute value of a row at samples; overwrites the row.
-
-    Parameters
-    ----------
-    row
-        (INSTANTS,): overwritten.
-    """
+    """Largest absolute value of a row at samples; overwrites the row [row (INSTANTS,)]."""
     for k in range(INSTANTS):
         row[k] = block.at_sample[k] * abs(row[k])
     half = INSTANTS // 2  # halved so that the compiler compares vectors
@@ -118,13 +92,7 @@ def add_three_modes(block: Record, system: Record, i: int, r: int) -> None:
 
 @compiled
 def observe_contacts(block: Record, system: Record, pull: float) -> None:
-    """Raise friction demands and lower least normal forces, instant by instant.
-
-    Parameters
-    ----------
-    pull
-        Vertical force of tendons on the cap beam, downwards [N].
-    """
+    """Raise friction demands and lower least normal forces, instant by instant [pull N]."""
     for k in range(INSTANTS):
         top, bottom, light_top, light_bottom = contact_measures(
             system.cap_beam_mass,

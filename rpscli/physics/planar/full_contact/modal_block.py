@@ -27,16 +27,9 @@ Map: TypeAlias = tuple[float, float, float, float]
 
 @compiled
 def fill_map(block: Record, system: Record, which: int, h: float) -> None:
-    """The exact map of every mode over h [s], under the ground's acceleration.
+    """The exact map of every mode over h [s], under the ground's acceleration [h s].
 
     Writes the block's map of a WHOLE_STEP or a SHORT_STEP.
-
-    Parameters
-    ----------
-    which
-        WHOLE_STEP or SHORT_STEP.
-    h
-        Length of the step [s].
     """
     step = block.step_maps[which]
     for r in range(system.n):
@@ -53,11 +46,6 @@ def follow_modes(block: Record, system: Record, which: int) -> None:
     Reads the ground's motion and writes the modes' rows, V with its derivatives and the bounds of
     the demands. Few rows meet in each loop over instants: so the compiler finds it worth checking
     that they do not overlap, and makes vector instructions.
-
-    Parameters
-    ----------
-    which
-        WHOLE_STEP or SHORT_STEP.
     """
     for k in range(INSTANTS):
         block.V[k], block.dV[k], block.ddV[k] = 0.0, 0.0, 0.0
@@ -75,22 +63,17 @@ def follow_modes(block: Record, system: Record, which: int) -> None:
             block.acceleration_bound[k] += acceleration * (force * force)
         for k in range(INSTANTS):
             ddq = -Gamma * block.a_g[k] - block.forces[r, k]
-            rise = omega2 * block.dqs[r, k] + two_xi_omega * ddq
-            block.dV[k] += Gamma * rise
-            block.ddV[k] += Gamma * (omega2 * ddq - two_xi_omega * rise)
+            force_rate = omega2 * block.dqs[r, k] + two_xi_omega * ddq
+            block.dV[k] += Gamma * force_rate
+            block.ddV[k] += Gamma * (omega2 * ddq - two_xi_omega * force_rate)
 
 
 @compiled
 def move_modes(block: Record, step: Floats) -> None:
-    """States of all modes at all instants: each is the map of the one before.
+    """States of all modes at all instants: each is the map of the one before [step (modes, 8)].
 
     What the ground does waits for nothing and comes first, see `add_ground`. Three modes then go
     together, so that none waits for its own last step.
-
-    Parameters
-    ----------
-    step
-        (modes, 8), see `fill_map`.
     """
     n, qs, dqs, forces = block.n, block.qs, block.dqs, block.forces
     threes = n - n % 3
@@ -118,13 +101,7 @@ def move_modes(block: Record, step: Floats) -> None:
 
 @compiled
 def add_ground(block: Record, step: Floats, r: int) -> None:
-    """Write where the ground alone brings mode r in each step, and how fast, to qs and forces.
-
-    Parameters
-    ----------
-    step
-        (modes, 8), see `fill_map`.
-    """
+    """Write where the ground alone brings mode r in each step, and how fast, to qs and forces."""
     a, b, e, d = step[r, 2], step[r, 3], step[r, 6], step[r, 7]
     for k in range(INSTANTS):
         a_g, slope = block.a_g[k], block.a_g_slope[k]
@@ -133,41 +110,19 @@ def add_ground(block: Record, step: Floats, r: int) -> None:
 
 @compiled
 def map_of(step: Floats, r: int) -> Map:
-    """The map of mode r.
-
-    Parameters
-    ----------
-    step
-        (modes, 8), see `fill_map`.
-    """
+    """The map of mode r [step (modes, 8)]."""
     return step[r, 0], step[r, 1], step[r, 4], step[r, 5]
 
 
 @compiled
 def mapped(m: Map, q: float, dq: float, still: float, moving: float) -> tuple[float, float]:
-    """Displacement and velocity a step later, with what the ground does to them.
-
-    Parameters
-    ----------
-    m
-        What a step makes of the mode left alone.
-    q, dq
-        Modal displacement and velocity at its start.
-    still, moving
-        What the ground adds to either.
-    """
+    """Displacement and velocity a step later, with what the ground does to them."""
     return m[0] * q + (m[1] * dq + still), m[2] * q + (m[3] * dq + moving)
 
 
 @compiled
 def keep_state(block: Record, k: int) -> None:
-    """Make the state after k steps of the block the present one.
-
-    Parameters
-    ----------
-    k
-        Steps of the block.
-    """
+    """Make the state after k steps of the block the present one."""
     for r in range(block.n):
         block.q[r], block.dq[r] = block.qs[r, k], block.dqs[r, k]
 
@@ -181,22 +136,13 @@ each leave 1e-8 of what decays."""
 
 @compiled
 def fill_work(block: Record, system: Record, which: int, h: float) -> None:
-    """Integrals over a step of every mode's velocity v, as forms of how the step begins.
+    """Integrals over a step of every mode's velocity v, as forms of how the step begins [h s].
 
     Left to itself under a load p + p' t it is v = q0' C + q0'' S + p' P, with C = c + xi w s, S = s
     and P = (1 - C)/w^2 of `formulae.oscillator`. The integrals of v^2 (six coefficients) and of v t
     (three) are taken by Gauss's rule: over the whole step, or over parts that grow with the time
     where the velocity decays within the step. They know nothing of where the step ends, nor of
     energy, so that the audit can show something.
-
-    Parameters
-    ----------
-    block
-        Its `work` of a WHOLE_STEP or a SHORT_STEP is written.
-    which
-        The step.
-    h
-        Its length [s].
     """
     for r in range(system.n):
         work, rate = block.work[which, r], 2.0 * system.two_xi_omega[r]
@@ -223,15 +169,7 @@ def fill_work(block: Record, system: Record, which: int, h: float) -> None:
 
 @compiled
 def book_energy_of_block(block: Record, system: Record, which: int) -> None:
-    """Energy put in by the ground, -int a_g 1^T M u' dt, and damped during each step [J].
-
-    Parameters
-    ----------
-    block, system
-        Steps in full contact: `input` and `damped` are written. The structure.
-    which
-        The step, see `fill_work`.
-    """
+    """Energy put in by the ground, -int a_g 1^T M u' dt, and damped during each step [J]."""
     for k in range(INSTANTS):
         block.input[k], block.damped[k] = 0.0, 0.0
     for r in range(block.n):
@@ -261,45 +199,13 @@ def integrate_fixed_base(
     floors: NDArray[np.float64],
     largest: Floats,
 ) -> None:
-    """Follow a building from rest.
+    """The building on a fixed base, from rest: exact, for comparison and as a test.
 
-    Parameters
-    ----------
-    acceleration
-        (npts,) of the ground [m/s2], zero after the last sample.
-    dt
-        Sampling interval [s].
-    instants
-        How many samples are followed.
-    systems, blocks
-        (1,) its `state.SYSTEM`, and room for a block.
-    floors
-        (instants, 2, n): written with floor displacements [m] and velocities [m/s]; (0, 2, n) if
-        nobody asks for them.
-    largest
-        (2, n): written with the largest storey shears k_i d_i [N] and absolute floor
-        accelerations [m/s2].
+    `acceleration` is (npts,) [m/s2] with the interval `dt`, zero after the last sample; `instants`
+    samples are followed. Written are `floors` (instants, 2, n), u and u' [m, m/s], or (0, 2, n) if
+    nobody asks for them, and `largest` (2, n), storey shears [N] and absolute accelerations [m/s2].
     """
-    follow_fixed_base(acceleration, dt, instants, systems[0], blocks[0], floors, largest)
-
-
-@compiled
-def follow_fixed_base(
-    acceleration: Floats,
-    dt: float,
-    instants: int,
-    system: Record,
-    block: Record,
-    floors: NDArray[np.float64],
-    largest: Floats,
-) -> None:
-    """The same for one record each.
-
-    Parameters
-    ----------
-    acceleration, dt, instants, floors, largest
-        See `integrate_fixed_base`.
-    """
+    system, block = systems[0], blocks[0]
     n = system.n
     fill_map(block, system, WHOLE_STEP, dt)
     steps = INSTANTS - 1

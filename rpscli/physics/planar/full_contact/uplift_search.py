@@ -27,7 +27,7 @@ from rpscli.physics.core.quintic import (
     quintic,
 )
 from rpscli.physics.core.records import INSTANTS, Record
-from rpscli.physics.planar.devices.rest import arms, holding
+from rpscli.physics.planar.devices.rest import arms, force_at_rest
 from rpscli.physics.planar.equation_of_motion import load_factors, uplift_push
 from rpscli.physics.planar.full_contact.modal_block import fill_map, map_of, mapped
 from rpscli.physics.planar.state import SHORT_STEP, STUCK
@@ -38,30 +38,15 @@ whose peak is the limit itself would uplift and land again and again, without ti
 
 
 class Margin(NamedTuple):
-    """What the margin against uplift is made of.
+    """What the margin against uplift is made of."""
 
-    Parameters
-    ----------
-    ground_factor
-        1 + 2 gamma.
-    shear_share
-        2 gamma eta/M_tot [1/kg].
-    right, left
-        What multiplies g + a_v in the limit to either side: in full contact tan(alpha) (1 + 2 gamma
-        + 2 gamma eta).
-    held_right, held_left
-        What devices add to the limit [m/s2].
-    ground_damping
-        sum Gamma^2 2 xi w [kg/s]: what the slope of the ground's acceleration adds to V''.
-    """
-
-    ground_factor: float
-    shear_share: float
-    right: float
-    left: float
-    held_right: float
-    held_left: float
-    ground_damping: float
+    ground_factor: float  # 1 + 2 gamma
+    shear_share: float  # 2 gamma eta/M_tot [1/kg]
+    right: float  # times g + a_v the limit to this side: tan(alpha) (1 + 2 gamma + 2 gamma eta)
+    left: float  # likewise; both are others where it is stuck
+    held_right: float  # what devices add to the limit [m/s2]
+    held_left: float  # what devices add to the limit [m/s2]
+    ground_damping: float  # sum Gamma^2 2 xi w [kg/s]: what the ground's slope adds to V''
 
 
 @compiled
@@ -75,7 +60,7 @@ def margin_of(s: Record, l: int, system: Record) -> Margin:
     limit = math.tan(system.alpha) * (ground_factor + building)
     right, left, held_right, held_left = limit, limit, 0.0, 0.0
     if s.devices[l] > 0:
-        elastic, friction = holding(s, l)
+        elastic, friction = force_at_rest(s, l)
         elastic, friction = elastic * 2.0 / s.columns_mass[l], friction * 2.0 / s.columns_mass[l]
         held_right, held_left = elastic + friction, elastic + friction
         if s.phase[l] == STUCK:
@@ -88,15 +73,7 @@ def margin_of(s: Record, l: int, system: Record) -> Margin:
 
 @compiled
 def limit_to(margin: Margin, side: float) -> tuple[float, float]:
-    """What multiplies g + a_v in the limit to a side, and what devices hold [m/s2].
-
-    Parameters
-    ----------
-    margin
-        See `margin_of`.
-    side
-        1 to the right, -1 to the left.
-    """
+    """What multiplies g + a_v in the limit to a side, and what devices hold [m/s2]."""
     if side > 0.0:
         return margin.right, margin.held_right
     return margin.left, margin.held_left
@@ -104,17 +81,7 @@ def limit_to(margin: Margin, side: float) -> tuple[float, float]:
 
 @compiled
 def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
-    """What pushes the storey over, q(t) of this module, during the step after k others.
-
-    Parameters
-    ----------
-    margin
-        See `margin_of`.
-    h
-        Length of a step [s].
-    k
-        Steps before the one looked at.
-    """
+    """What pushes the storey over, q(t) of this module, during the step after k others [h s]."""
     factor, share, slope = margin.ground_factor, margin.shear_share, block.a_g_slope[k]
     start = block.a_g[k]
     curvature = -share * margin.ground_damping * slope
@@ -130,44 +97,23 @@ def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
 
 
 @compiled
-def margin_path(path: Quintic, limit: float, rise: float, side: float, held: float) -> Quintic:
-    """The margin against uplift to a side: the limit is linear, its coefficients rise evenly.
-
-    Parameters
-    ----------
-    path
-        Of q, see `push_path` [m/s2].
-    limit, rise
-        What q must exceed at the start of the step, and its change over it [m/s2].
-    side
-        1 to the right, -1 to the left.
-    held
-        What devices add to the limit [m/s2].
-    """
+def margin_path(path: Quintic, limit: float, change: float, side: float, held: float) -> Quintic:
+    """The margin against uplift to a side: the limit is linear, its coefficients change evenly."""
     return (
         limit - (side * path[0] - held),
-        limit + 0.2 * rise - (side * path[1] - held),
-        limit + 0.4 * rise - (side * path[2] - held),
-        limit + 0.6 * rise - (side * path[3] - held),
-        limit + 0.8 * rise - (side * path[4] - held),
-        limit + rise - (side * path[5] - held),
+        limit + 0.2 * change - (side * path[1] - held),
+        limit + 0.4 * change - (side * path[2] - held),
+        limit + 0.6 * change - (side * path[3] - held),
+        limit + 0.8 * change - (side * path[4] - held),
+        limit + change - (side * path[5] - held),
     )
 
 
 @compiled
 def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
-    """Write `alarm`: 0 for steps in which the margin surely stays positive to both sides.
+    """Write `alarm`: 0 for steps in which the margin surely stays positive to both sides [h s].
 
     Returns whether any is not 0.
-
-    Parameters
-    ----------
-    margin
-        See `margin_of`.
-    h
-        Length of a step [s].
-    least
-        Share of the limit that has to be left.
     """
     alarms = 0
     for k in range(INSTANTS):
@@ -186,30 +132,20 @@ def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
 
 @compiled
 def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float, float]:
-    """Fraction of the step after k others at which the storey uplifts, and the side (0: none).
-
-    Parameters
-    ----------
-    margin
-        See `margin_of`.
-    h
-        Length of a step [s].
-    k
-        Steps before the one looked at.
-    """
+    """Fraction of the step after k others at which the storey uplifts, and the side (0: none)."""
     path = push_path(block, margin, h, k)
     # Where gravity is lost both margins are negative at once: then the push decides.
-    lean = 0.0
+    push = 0.0
     for b in path:
-        lean = lean if lean != 0.0 else b
-    likelier = -1.0 if lean < 0.0 else 1.0
+        push = push if push != 0.0 else b
+    likelier = -1.0 if push < 0.0 else 1.0
     first, side = NO_PASSAGE, 0.0
     for sign in (likelier, -likelier):
         factor, held = limit_to(margin, sign)
         limit = factor * block.g_up[k]
-        rise = factor * (block.g_up_slope[k] * h)
+        change = factor * (block.g_up_slope[k] * h)
         beyond = limit + ROUNDING * (abs(limit) + held)
-        t = first_descent(margin_path(path, beyond, rise, sign, held), SETTLED, block.piece)
+        t = first_descent(margin_path(path, beyond, change, sign, held), SETTLED, block.piece)
         if t < first:
             first, side = t, sign
     return first, side
@@ -222,17 +158,6 @@ def margin_after(
     """Margin f against uplift to `side` and its slope, a time h into the step after k, exactly.
 
     The state at the start of that step is the present one of the block.
-
-    Parameters
-    ----------
-    margin
-        See `margin_of`.
-    h
-        Time into the step [s].
-    k
-        Steps before it.
-    side
-        1 to the right, -1 to the left.
     """
     fill_map(block, system, SHORT_STEP, h)
     start, slope, step = block.a_g[k], block.a_g_slope[k], block.step_maps[SHORT_STEP]
@@ -261,19 +186,6 @@ def locate_uplift(
 
     Newton's method on the exact margin. A margin that only grazes zero has no steep root; the
     interpolant's own root then stands.
-
-    Parameters
-    ----------
-    margin
-        See `margin_of`.
-    h
-        Length of a step [s].
-    k
-        Steps before the one looked at.
-    guess
-        Time into the step from which the search starts [s].
-    side
-        1 to the right, -1 to the left.
     """
     t = guess
     for _ in range(6):

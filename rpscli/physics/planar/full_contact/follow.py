@@ -8,8 +8,13 @@ from typing import NamedTuple
 from rpscli.physics.core.compile import compiled, kernel
 from rpscli.physics.core.lanes import enter_interval, set_ground_of_block
 from rpscli.physics.core.records import INSTANTS, NO_HISTORY, Floats, Record
-from rpscli.physics.planar.demands import set_harmless
-from rpscli.physics.planar.devices.rest import begin_excursion, hold_block, resting_pull, slide
+from rpscli.physics.planar.demands import set_below_all_maxima
+from rpscli.physics.planar.devices.rest import (
+    begin_excursion,
+    pull_at_rest,
+    slide,
+    write_push_at_rest,
+)
 from rpscli.physics.planar.full_contact.demands import (
     clear_contacts,
     hand_over_contacts,
@@ -61,24 +66,12 @@ def modes_from_block(s: Record, l: int, block: Record) -> None:
 
 
 class Plan(NamedTuple):
-    """Steps to take at once.
+    """Steps to take at once."""
 
-    Parameters
-    ----------
-    steps
-        How many.
-    h
-        Length of each [s].
-    each
-        How many lead to a sample.
-    which
-        Where their map stands, WHOLE_STEP or SHORT_STEP; that of the lane's whole steps is known.
-    """
-
-    steps: int
-    h: float
-    each: int
-    which: int
+    steps: int  # how many
+    h: float  # length of each [s]
+    each: int  # how many lead to a sample
+    which: int  # where their map stands: WHOLE_STEP, which is known, or SHORT_STEP
 
 
 FINE = 4
@@ -97,11 +90,6 @@ def plan_block(s: Record, l: int, system: Record, block: Record, finer: int) -> 
 
     They end where the ground acceleration may jump, the history ends, or is looked at to see
     whether anything can still happen.
-
-    Parameters
-    ----------
-    finer
-        Parts of a usual step.
     """
     time, step, i = s.time[l], s.contact_step[l], s.interval[l]
     if finer > 1 or time > 0.0:
@@ -128,17 +116,7 @@ def accept_block(
     taken: int,
     margin: Margin,
 ) -> bool:
-    """Make the state after some steps of the block that of the lane; True if its history ends.
-
-    Parameters
-    ----------
-    block, plan
-        The steps in full contact, and how they were planned.
-    taken
-        Steps that are accepted.
-    margin
-        See `uplift_search.margin_of`.
-    """
+    """Make the state after some steps of the block that of the lane; True if its history ends."""
     first, time = s.interval[l], s.time[l]
     passed = taken // plan.each
     if output.samples.shape[0] > 0:
@@ -168,26 +146,9 @@ def accept_block(
 
 @compiled
 def leave_contact(
-    s: Record,
-    l: int,
-    system: Record,
-    block: Record,
-    output: Output,
-    at: int,
-    h: float,
-    side: float,
+    s: Record, l: int, system: Record, block: Record, output: Output, at: int, h: float, side: float
 ) -> None:
-    """Leave full contact a time h into the step after `at` others of the block.
-
-    Parameters
-    ----------
-    at
-        Accepted steps of the block.
-    h
-        Time after them [s].
-    side
-        1 to the right, -1 to the left.
-    """
+    """Leave full contact a time h into the step after `at` others of the block [h s]."""
     block.a_g[0], block.a_g_slope[0] = block.a_g[at], block.a_g_slope[at]
     fill_map(block, system, SHORT_STEP, h)
     follow_modes(block, system, SHORT_STEP)
@@ -210,17 +171,10 @@ def leave_contact(
 def search_block(
     block: Record, margin: Margin, plan: Plan, least: float
 ) -> tuple[int, float, float, bool]:
-    """How many steps end before uplift, the fraction of the next, the side, and whether it comes.
+    """Steps that end before uplift, the fraction of the next, the side, and whether uplift comes.
 
-    Parameters
-    ----------
-    block, plan
-        The steps in full contact, and how they were planned.
-    margin
-        See `uplift_search.margin_of`.
-    least
-        Zero to locate uplift; else the steps end before the first with less of the limit left than
-        this share, and the side is zero.
+    With `least` 0 uplift is located; else the steps end before the first with less of the limit
+    left than this share, and the side is zero.
     """
     if not raise_alarms(block, margin, plan.h, least):
         return plan.steps, 0.0, 0.0, False
@@ -235,14 +189,14 @@ def search_block(
 
 
 @kernel
-def stand(
+def follow_full_contact(
     s: Record, l: int, system: Record, block: Record, acceleration: Floats, output: Output
 ) -> int:
     """Follow a lane in full contact, or stuck: GOES_ON when it begins to move, or IS_OVER."""
     if s.history[l] == NO_HISTORY:
         return IS_OVER
     margin = margin_of(s, l, system)
-    pull = resting_pull(s, l)
+    pull = pull_at_rest(s, l)
     modes_to_block(s, l, block)
     fill_map(block, system, WHOLE_STEP, s.contact_step[l])
     if output.samples.shape[0] > 0:
@@ -255,10 +209,10 @@ def stand(
         follow_modes(block, system, plan.which)
         taken, fraction, side, alarm = search_block(block, margin, plan, 0.0 if fine else NEAR)
         mark_samples(block, plan.each, taken, plan.each)
-        if may_raise(block, s.shear_harmless[l], s.acceleration_harmless[l]):
+        if may_raise(block, s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l]):
             raise_floors_of_block(block, system, s.storey_shear[l], s.floor_acceleration[l])
-            set_harmless(s, l, system)
-        hold_block(s, l, block)
+            set_below_all_maxima(s, l, system)
+        write_push_at_rest(s, l, block)
         observe_contacts(block, system, pull)
         if not math.isfinite(block.ddV[taken]):
             s.outcome[l] = FAILED_NOT_FINITE
@@ -289,11 +243,6 @@ def is_over(s: Record, l: int, system: Record, block: Record, margin: Margin) ->
     Each mode decays from its present energy, which bounds every demand and the push that could
     uplift the storey again. While uplifted a history is never over: impacts excite the building
     until the storey is down.
-
-    Parameters
-    ----------
-    margin
-        See `uplift_search.margin_of`.
     """
     free = s.interval[l] + 1 - s.npts[l]
     if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
@@ -309,13 +258,7 @@ def modal_speed(system: Record, block: Record, r: int) -> float:
 
 @compiled
 def stays_down(system: Record, block: Record, margin: Margin) -> bool:
-    """Whether the freely vibrating building can never again push hard enough to uplift.
-
-    Parameters
-    ----------
-    margin
-        See `uplift_search.margin_of`.
-    """
+    """Whether the freely vibrating building can never again push hard enough to uplift."""
     largest = 0.0
     for r in range(system.n):
         force = system.omega[r] + system.two_xi_omega[r]
