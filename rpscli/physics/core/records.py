@@ -124,10 +124,10 @@ def scratch(fields: tuple[Field, ...]) -> Record:
 
     A state is 1.5 MB: made anew for each short history, it would take as long as the history.
     """
-    kept = vars(_kept)
-    if (found := kept.get(id(fields))) is None:  # tables live as long as the program
-        found = kept[id(fields)] = records(fields)
-    return found
+    kept, table = vars(_kept), str(id(fields))  # tables live as long as the program
+    if table not in kept:
+        kept[table] = records(fields)
+    return kept[table]
 
 
 def describe(fields: tuple[Field, ...]) -> str:

@@ -13,7 +13,7 @@ import math
 
 from rpscli.physics.core.compile import compiled, kernel
 from rpscli.physics.core.lanes import set_ground
-from rpscli.physics.core.records import LANES, NO_HISTORY, Record
+from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
 from rpscli.physics.planar.demands import observe_ends, raise_contacts, raise_floors
 from rpscli.physics.planar.devices.events import check_devices
 from rpscli.physics.planar.devices.flows import book_devices, leave_devices, observe_devices
@@ -23,12 +23,12 @@ from rpscli.physics.planar.equation_of_motion import load_factors
 from rpscli.physics.planar.events import go_on_restarted, next_interval, raise_peak, resolve_step
 from rpscli.physics.planar.full_contact.follow import follow_full_contact
 from rpscli.physics.planar.run import Output, Run
-from rpscli.physics.core.records import scratch
-from rpscli.physics.planar.state import BLOCK, EQUIPPED_STATE, STATE
 from rpscli.physics.planar.samples import store_sample
 from rpscli.physics.planar.state import (
     AFTER_RELEASE,
     AT_REST,
+    BLOCK,
+    EQUIPPED_STATE,
     EVENT_KINDS,
     FOLLOW_CONTACT,
     FULL_CONTACT,
@@ -39,6 +39,7 @@ from rpscli.physics.planar.state import (
     ROCKING,
     ROLLING,
     RUNNING,
+    STATE,
     SURVIVED,
     UPLIFT,
 )
