@@ -90,8 +90,7 @@ def _drawn(given: CaseInput, output: OutputRequest, look: Look, terminal: Termin
     from rpscli.report.bundles import bearing_files
 
     folder = case_folder(given, output, "check")
-    for name, content in bearing_files(given.case.structure, given.case.title, look):
-        folder.add(name, content)
+    folder.add_all(bearing_files(given.case.structure, given.case.title, look))
     write(folder, terminal)
     return folder.files
 

@@ -20,7 +20,7 @@ from rpscli.commands.shell.options import (
     terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.study import SweepChoices, compute, show_dry_run, study_heading, warn
+from rpscli.commands.study import SweepChoices, compute, show_dry_run, study_heading
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
@@ -97,7 +97,7 @@ def command(
         store.require()
         write(folder, terminal)
     notes = [*rounds.notes(answer, confirmations), *study.warnings, *found.notes]
-    warn(notes, terminal)
+    terminal.warn_first(notes, "with --json")
     document = {
         **heading(),
         "command": "design",

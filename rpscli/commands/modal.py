@@ -53,8 +53,7 @@ def command(
     from rpscli.report.bundles import modal_files
 
     result = modal(given.case.structure)
-    for name, content in modal_files(result, given.case.title, look):
-        folder.add(name, content)
+    folder.add_all(modal_files(result, given.case.title, look))
     if film is not None:
         from rpscli.report.figures.animation import modes_film
 

@@ -64,8 +64,7 @@ def command(
         result = pushover(given.case.structure, patterns=asked)
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
-    for name, content in pushover_files(result, given.case.title, look):
-        folder.add(name, content)
+    folder.add_all(pushover_files(result, given.case.title, look))
     write(folder, terminal)
     document = {
         **heading(),

@@ -129,8 +129,7 @@ def command(
         ),
         force=output.force,
     )
-    for name, content in selection_files(selection, place, look):
-        folder.add(name, content)
+    folder.add_all(selection_files(selection, place, look))
     terminal.warn(warning for one in selection.chosen for warning in one.motion.warnings)
     write(folder, terminal)
     document = {**heading(), "command": "record select", **selection_document(selection)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,15 +21,13 @@ from rpscli.errors import UsageError
 from rpscli.report.documents import heading, versions
 from rpscli.report.figures.look import Look
 from rpscli.report.files import RUN_FILE
-from rpscli.report.html.page import Block, Notice
+from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
 from rpscli.report.table import Table
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.case.conditions import Condition
     from rpscli.errors import RpsError
-    from rpscli.report.html.page import Block, Section
-
 
 SUMMARY = "summary.json"
 HISTORY, SWEEP = "timehistory", "sweep"
@@ -152,8 +151,6 @@ def case_page(
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
         sections = _sections(given, motion, None, look, ())
         return PageDone(case.title, "Structure", sections, concluded(document, None), None)
-    from rpscli.report.html.page import page_look
-
     # A place for the files, which are not written there.
     (request,) = history_requests([given], [motion], OutputRequest(Path(), force=True))
     announce_compilation(terminal, moving=True)
@@ -173,9 +170,9 @@ def _sections(
     look: Look,
     stored: Sequence[Block],
 ) -> list[Section]:
+    from rpscli.commands.record import record_tables
+    from rpscli.records.measures import intensity_measures
     from rpscli.report.html import sections as shared
-    from rpscli.report.html.page import Section
-    from rpscli.report.html.sections import motion_pictures
 
     case = given.case
     made = [
@@ -188,24 +185,16 @@ def _sections(
         made.insert(0, Section("In short", [text, *notices(case.warnings)]))
     else:
         request, done, result = history
-        ground = [*_record_tables(result)]
-        ground += [motion_pictures(each, look) for each in request.ground.named.values()]
+        ground: list[Block] = [*record_tables(result.record, intensity_measures(result.record))]
+        ground += [shared.motion_pictures(each, look) for each in request.ground.named.values()]
         made.insert(0, Section("In short", list(_in_short(done, result))))
         made += [Section("Ground motion", ground), Section("Response", _response(request, result))]
     repeat: list[Block] = [*_repeat(given, motion), *stored]
     return [*made, shared.hidden_section(), Section("How to repeat it", repeat)]
 
 
-def _record_tables(result: TimeHistoryResult) -> Iterator[Any]:
-    from rpscli.commands.record import record_tables
-    from rpscli.records.measures import intensity_measures
-
-    return record_tables(result.record, intensity_measures(result.record))
-
-
 def _in_short(done: HistoryResult, result: TimeHistoryResult) -> Iterator[Block]:
     from rpscli.commands.timehistory_tables import limits_table, outcome_text
-    from rpscli.report.html.page import Notice
 
     yield f"Outcome: {outcome_text(result)}."
     if result.failure:
@@ -222,14 +211,11 @@ def _in_short(done: HistoryResult, result: TimeHistoryResult) -> Iterator[Block]
 
 def notices(texts: Sequence[str]) -> Iterator[Block]:
     """What must be read before the numbers are used."""
-    from rpscli.report.html.page import Notice
-
     return (Notice(f"Warning: {text}") for text in texts)
 
 
 def _response(request: HistoryRequest, result: TimeHistoryResult) -> list[Block]:
     from rpscli.commands.timehistory_tables import outcome_table, storeys_table
-    from rpscli.report.html.page import Picture, pictures
 
     tables = [outcome_table(result)]
     if result.structure.storeys:
@@ -266,8 +252,6 @@ def programs() -> str:
 
 
 def _repeat(given: CaseInput, motion: MotionRequest) -> Iterator[Block]:
-    from rpscli.report.html.page import Code
-
     words = [given.request.source]
     for override in given.request.overrides:
         words += ["--set", override]
@@ -288,10 +272,6 @@ def _repeat(given: CaseInput, motion: MotionRequest) -> Iterator[Block]:
 
 def _stored(earlier: Earlier, request: HistoryRequest, done: HistoryResult) -> list[Block]:
     """Whether case, record and results are those of the stored results."""
-    import hashlib
-
-    from rpscli.report.html.page import Notice
-
     found: list[Block] = []
     file = earlier.file
     known = earlier.run["inputs"]["record"]["horizontal"]["sha256"]

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from rpscli.sweep.statistics.verdicts import Verdict
 
 
-WARNINGS_SHOWN = 5
 POINTS_SHOWN = 3
 """At each end of a study."""
 GUESSED_POINT_SECONDS = 0.01
@@ -125,13 +124,6 @@ def study_heading(layout: StudyPoints) -> dict[str, str]:
     """The study in a JSON document."""
     study = layout.study
     return {"name": study.name, "title": study.title, "source": study.source}
-
-
-def warn(notes: list[str], terminal: Terminal) -> None:
-    """Say the first of the warnings, and how many there are besides."""
-    terminal.warn(notes[:WARNINGS_SHOWN])
-    if len(notes) > WARNINGS_SHOWN:
-        terminal.note(f"... and {len(notes) - WARNINGS_SHOWN} more with --json")
 
 
 def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> None:

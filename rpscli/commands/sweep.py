@@ -31,7 +31,6 @@ from rpscli.commands.study import (
     study_heading,
     summary_tables,
     verdict_table,
-    warn,
 )
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
@@ -97,7 +96,7 @@ def command(
         store.require()
         write(folder, terminal)
     notes = [*given.warnings, *found.notes]
-    warn(notes, terminal)
+    terminal.warn_first(notes, "with --json")
     document = {
         **heading(),
         "command": "sweep",

@@ -131,11 +131,9 @@ def compute(
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):
         result = time_history(case.structure, ground, case.analysis)
-    for name, content in timehistory_files(result, case.title, look):
-        request.folder.add(name, content)
+    request.folder.add_all(timehistory_files(result, case.title, look))
     if request.floor_spectra:
-        for name, content in floor_spectra_files(result, case.title, look):
-            request.folder.add(name, content)
+        request.folder.add_all(floor_spectra_files(result, case.title, look))
     found = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
     demands = {name: math.nan if each is None else float(each) for name, each in found.items()}
     document = _document(request, result)

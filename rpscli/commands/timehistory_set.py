@@ -45,7 +45,6 @@ from rpscli.sweep.statistics.verdicts import Verdict, judged_records
 if TYPE_CHECKING:
     from rpscli.analyses.result_quantities import ResultQuantity
 
-WARNINGS_SHOWN = 5
 DIGITS = 4
 A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
@@ -92,7 +91,12 @@ def run_all(
     folders = [_set_folder(group, output, alone=len(cases) == 1) for group in cases]
     computed = []
     for group, folder in zip(cases, folders, strict=True):
-        histories = [_written(request, conditions, look, terminal) for request in group]
+        histories = []
+        for request in group:
+            done, _ = compute(request, conditions, look, terminal)
+            add_summary(request, done)
+            request.folder.write()
+            histories.append(done)
         outcomes = [history.document["outcome"] for history in histories]
         records = Records.of(outcomes, [history.demands for history in histories])
         judged = group[0].given.case
@@ -102,29 +106,17 @@ def run_all(
     error = _error(computed)
     document = _document(computed, error)
     for case in computed:
-        if case.folder is not None:
-            _add_set(case)
-            write(case.folder, terminal)
-        else:
+        if case.folder is None:
             terminal.note(f"written to {case.requests[0].folder.folder}")
-    warnings = document["warnings"]
-    terminal.warn(warnings[:WARNINGS_SHOWN])
-    if len(warnings) > WARNINGS_SHOWN:
-        terminal.note(f"... and {len(warnings) - WARNINGS_SHOWN} more in the documents")
+            continue
+        scalars = [history.document for history in case.histories]
+        case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
+        case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
+        case.folder.add("summary.json", json_text({**heading(), **_set_document(case)}))
+        write(case.folder, terminal)
+    terminal.warn_first(document["warnings"], "in the documents")
     terminal.result(document, _tables(computed))
     leave(error)
-
-
-def _written(
-    request: HistoryRequest,
-    conditions: Sequence[Condition],
-    look: Look,
-    terminal: Terminal,
-) -> HistoryResult:
-    done, _ = compute(request, conditions, look, terminal)
-    add_summary(request, done)
-    request.folder.write()
-    return done
 
 
 def _set_folder(
@@ -140,14 +132,6 @@ def _set_folder(
     if output.place is not None:
         place = output.place if alone else output.place / first.case_label
     return case_folder(first.given, OutputRequest(place, output.force), COMMAND, record_source=name)
-
-
-def _add_set(case: Computed) -> None:
-    assert case.folder is not None, "the case has several records"
-    scalars = [history.document for history in case.histories]
-    case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
-    case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
-    case.folder.add("summary.json", json_text({**heading(), **_set_document(case)}))
 
 
 def _error(computed: Sequence[Computed]) -> RpsError | None:
@@ -220,11 +204,12 @@ def _tables(computed: Sequence[Computed]) -> Iterator[Part]:
 
 
 def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:
-    rows = [
-        [label, _word(history.document["outcome"])]
-        + [shown(large(history.document[q.name], q.unit)[0], DIGITS) for q in quantities]
-        for label, history in zip(case.labels, case.histories, strict=True)
-    ]
+    rows = []
+    for label, history in zip(case.labels, case.histories, strict=True):
+        found, outcome = history.document, str(history.document["outcome"])
+        word = "overturned" if outcome.startswith("overturned") else outcome.replace("_", " ")
+        values = [large(found[q.name], q.unit)[0] for q in quantities]
+        rows.append([label, word, *(shown(value, DIGITS) for value in values)])
     if len(case.requests) > 1:
         words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
         for name, label in words.items():
@@ -232,12 +217,6 @@ def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> 
             rows.append([label, "", *(shown(value, DIGITS) for value in values)])
     heads = [f"{q.label} {large(None, q.unit)[1]}".strip() for q in quantities]
     return Table.of_texts(["record", "", *heads], rows, words=2)
-
-
-def _word(outcome: str) -> str:
-    return (
-        outcome.partition("_")[0] if outcome.startswith("overturned") else outcome.replace("_", " ")
-    )
 
 
 def _verdict_table(computed: Sequence[Computed]) -> Table:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rich.table import Table as RichTable
     from rich.text import Text
 
+WARNINGS_SHOWN = 5
 PLAIN_WIDTH = 100
 """Columns where the output is no terminal and COLUMNS is not set."""
 LONGEST_WORD, LONGEST_HEAD = 30, 14
@@ -46,6 +47,12 @@ class Terminal:
             if text not in self.told:
                 self.told.add(text)
                 self.note(f"warning: {text}")
+
+    def warn_first(self, texts: Sequence[str], where: str) -> None:
+        """The first warnings, and how many there are besides."""
+        self.warn(texts[:WARNINGS_SHOWN])
+        if len(texts) > WARNINGS_SHOWN:
+            self.note(f"... and {len(texts) - WARNINGS_SHOWN} more {where}")
 
     def result(self, document: Mapping[str, Any], tables: Iterable[Part] = ()) -> None:
         """The result, as a document or as tables."""

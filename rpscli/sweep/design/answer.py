@@ -71,20 +71,10 @@ def demands_of(table: Table, name: str) -> Array:
 class Judged:
     """What became of each design.
 
-    Parameters
-    ----------
-    requirements
-        In the order of the rows below.
-    values
-        (requirements, weightings, designs) share of an event, or the demand that no more than the
-        admissible records exceed.
-    excess
-        (requirements, designs) records beyond the limit less those that may be, over all of them;
-        a requirement is met where it is not positive.
-    met
-        (requirements, weightings, designs)
-    objectives
-        (objectives, weightings, designs)
+    `values` and `met` are (requirements, weightings, designs): the share of an event, or the demand
+    that no more than the admissible records exceed, and whether that is enough. `excess`
+    (requirements, designs) are records beyond the limit less those that may be, over all of them;
+    `objectives` are (objectives, weightings, designs).
     """
 
     requirements: tuple[Requirement, ...]
@@ -171,18 +161,9 @@ class Interval(NamedTuple):
 class Answer:
     """All that a search found.
 
-    Parameters
-    ----------
-    task
-        What was looked for.
-    places, values
-        (designs, unknowns) in the unit cube and (designs, keys) in SI units.
-    valid
-        (designs,) which are valid cases.
-    judged
-        What became of them.
-    resamples
-        Number of bootstrap samples of the records, the weightings after that of all as they are.
+    `places` are (designs, unknowns) in the unit cube, `values` (designs, keys) in SI units, `valid`
+    says which are valid cases. `resamples` is the number of bootstrap samples of the records: the
+    weightings after that of all as they are.
     """
 
     task: DesignTask

@@ -86,18 +86,9 @@ def next_places(
     the neighbours of the best design, and between designs one of which passes and the other would
     be better.
 
-    Parameters
-    ----------
-    places
-        (designs, unknowns) of those that are known.
-    passes
-        (resamples, designs) verdicts; the first row is that of all records.
-    objectives
-        (designs,) what is to be least, infinite where there is none.
-    best
-        Place of the best design, or of the least violated one.
-    resolution
-        Distance below which neighbours are not parted.
+    `places` (designs, unknowns) are known, with verdicts `passes` (resamples, designs), the first
+    of all records, and `objectives` (designs,); `best` is the best or least violated of them.
+    Neighbours nearer than `resolution` are not parted.
     """
     first, second = neighbours(places)
     length = np.linalg.norm(places[first] - places[second], axis=1)
@@ -137,13 +128,7 @@ ROUNDS = 4
 
 
 class Search:
-    """Designs that are known, and where to look next.
-
-    Parameters
-    ----------
-    task
-        What is looked for.
-    """
+    """Designs that are known, and where to look next."""
 
     def __init__(self, task: DesignTask) -> None:
         search, unknowns = task.file.search, len(task.unknowns)
@@ -198,13 +183,7 @@ class Search:
         return found
 
     def require(self, layout: StudyPoints) -> None:
-        """Take the requirements from the first designs that are laid out.
-
-        Raises
-        ------
-        CaseError
-            If there are none, or an objective needs a result that the structure cannot have.
-        """
+        """Take the requirements from the first designs that are laid out; refuse what cannot be."""
         document = self.task.study.document
         (measure,) = shown_keys(layout, (INTENSITY,))
         several = len(layout.scales) > 1
