@@ -226,7 +226,17 @@ class Study(Shown):
         return StudyRun(self.layout, self.context, store, **choices)
 
     def folder(self, place: Path, command: str = "sweep", *, force: bool = False) -> OutputFolder:
-        """The folder of its results, claimed for a command."""
+        """The folder of its results, claimed for a command.
+
+        Parameters
+        ----------
+        place
+            Of the results.
+        command
+            That writes them.
+        force
+            Overwrite what is in the way.
+        """
         return study_folder(self.layout, place, self.overrides, command, force=force)
 
 

@@ -50,28 +50,19 @@ EVENT_NAMES: tuple[EventKind, ...] = get_args(EventKind)
 
 @dataclass(frozen=True)
 class Event:
-    """One event of a history.
-
-    Parameters
-    ----------
-    time
-        Since the start of the record [s].
-    kind
-        What happened.
-    rotation
-        theta [rad].
-    rotation_rate_before, rotation_rate_after
-        theta' [rad/s].
-    energy_lost
-        [J], negative where an impact created energy.
-    """
+    """One event of a history."""
 
     time: float
+    """Since the start of the record [s]."""
     kind: EventKind
+    """What happened."""
     rotation: float
+    """theta [rad]."""
     rotation_rate_before: float
     rotation_rate_after: float
+    """theta' [rad/s]."""
     energy_lost: float
+    """[J], negative where an impact created energy."""
 
 
 def event_list(log: Record) -> tuple[Event, ...]:

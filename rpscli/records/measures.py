@@ -43,27 +43,19 @@ def displacement(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.flo
 
 @dataclass(frozen=True)
 class IntensityMeasures:
-    """Measures of one motion; peaks are unsigned and taken at the samples.
-
-    Attributes
-    ----------
-    pga, pgv, pgd : float [m/s2, m/s, m]
-        Peak ground acceleration, velocity and displacement; the ground starts from rest and no
-        baseline is corrected.
-    arias : float [m/s]
-        Arias intensity, pi/(2 g) times the integral of the squared acceleration.
-    cav : float [m/s]
-        Cumulative absolute velocity, the integral of the absolute acceleration.
-    d5_95 : float [s]
-        Significant duration, from 5 % to 95 % of the Arias intensity.
-    """
+    """Measures of one motion; peaks are unsigned and taken at the samples."""
 
     pga: float
     pgv: float
     pgd: float
+    """Peak ground acceleration, velocity and displacement; the ground starts from rest and no
+    baseline is corrected [m/s2, m/s, m]."""
     arias: float
+    """Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s]."""
     cav: float
+    """Cumulative absolute velocity, the integral of the absolute acceleration [m/s]."""
     d5_95: float
+    """Significant duration, from 5 % to 95 % of the Arias intensity [s]."""
 
 
 def intensity_measures(motion: GroundMotion) -> IntensityMeasures:

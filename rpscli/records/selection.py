@@ -77,27 +77,19 @@ class Selection:
 
 @dataclass(frozen=True)
 class SelectionRequest:
-    """What is wanted of a choice.
-
-    Parameters
-    ----------
-    count : int
-        Number of motions.
-    periods : tuple of float [s]
-        Range in which spectra are compared.
-    factors : tuple of float
-        Least and largest factor on a motion.
-    per_event : int
-        At most so many motions of one earthquake.
-    pgv : float, optional [m/s]
-        Bring every motion to this peak velocity, in place of the factor that fits it best.
-    """
+    """What is wanted of a choice."""
 
     count: int
+    """Number of motions."""
     periods: tuple[float, float]
+    """Range in which spectra are compared [s]."""
     factors: tuple[float, float] = (0.25, 4.0)
+    """Least and largest factor on a motion."""
     per_event: int = 2
+    """At most so many motions of one earthquake."""
     pgv: float | None = None
+    """Bring every motion to this peak velocity, in place of the factor that fits it best
+    [m/s]."""
 
     def __post_init__(self) -> None:
         (short, long), (low, high) = self.periods, self.factors

@@ -24,26 +24,18 @@ _FINEST = 64  # parts of a step; oscillators with periods below a step just foll
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ResponseSpectrum(Shown):
-    """Peak responses of linear oscillators, unsigned, each of shape (n,).
-
-    Attributes
-    ----------
-    periods : array [s]
-    damping : float
-        Share of critical damping.
-    displacement : array [m]
-        Relative to the ground.
-    pseudo_acceleration : array [m/s2]
-        (2 pi/T)^2 times the displacement; the PGA at T = 0.
-    total_acceleration : array [m/s2]
-        Of the mass, in the inertial frame; the PGA at T = 0.
-    """
+    """Peak responses of linear oscillators, unsigned, each of shape (n,)."""
 
     periods: NDArray[np.float64]
+    """[s]."""
     damping: float
+    """Share of critical damping."""
     displacement: NDArray[np.float64]
+    """Relative to the ground [m]."""
     pseudo_acceleration: NDArray[np.float64]
+    """(2 pi/T)^2 times the displacement; the PGA at T = 0 [m/s2]."""
     total_acceleration: NDArray[np.float64]
+    """Of the mass, in the inertial frame; the PGA at T = 0 [m/s2]."""
 
 
 def response_spectrum(

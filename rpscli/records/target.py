@@ -23,33 +23,22 @@ AMPLIFICATION = 1.65
 
 @dataclass(frozen=True)
 class TargetSpectrum:
-    """What the response spectra of motions are compared with.
-
-    Parameters
-    ----------
-    name : str
-        Short, for figures.
-    source : str
-        As the user wrote it.
-    damping : float
-        Share of critical damping.
-    span : tuple of float [s]
-        Periods between which it is defined.
-    shape : callable
-        Periods (n,) [s] to pseudo-accelerations (n,) [m/s2].
-    pgv : float, optional [m/s]
-        Peak ground velocity that goes with it; None if it cannot be told.
-    pgd : float, optional [m]
-        Peak ground displacement; None if the code gives none.
-    """
+    """What the response spectra of motions are compared with."""
 
     name: str
+    """Short, for figures."""
     source: str
+    """As the user wrote it."""
     damping: float
+    """Share of critical damping."""
     span: tuple[float, float]
+    """Periods between which it is defined [s]."""
     shape: Callable[[Array], Array]
+    """Periods (n,) [s] to pseudo-accelerations (n,) [m/s2]."""
     pgv: float | None
+    """Peak ground velocity that goes with it; None if it cannot be told [m/s]."""
     pgd: float | None
+    """Peak ground displacement; None if the code gives none [m]."""
 
     def acceleration(self, periods: Array) -> Array:
         """Pseudo-acceleration at periods (n,) [s], (n,) [m/s2]."""

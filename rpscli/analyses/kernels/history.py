@@ -96,30 +96,20 @@ def follow(run: Run, lanes: int) -> None:
 
 @dataclass(frozen=True, eq=False)
 class SampledHistory:
-    """A history with its samples and events, records of `physics.planar.state`.
-
-    Parameters
-    ----------
-    history
-        A `state.RESULT`: what is left behind at the end.
-    motion
-        Of the ground.
-    samples
-        (intervals + 1,).
-    floors
-        (intervals + 1, 2, n) displacements [m] and velocities [m/s] relative to the ground.
-    log
-        (events,).
-    devices
-        (intervals + 1, 4, devices), see `physics.planar.run.Output`.
-    """
+    """A history with its samples and events, records of `physics.planar.state`."""
 
     history: Record
+    """A `state.RESULT`: what is left behind at the end."""
     motion: MotionComponents
+    """Of the ground."""
     samples: Record
+    """(intervals + 1,)."""
     floors: NDArray[np.float64]
+    """(intervals + 1, 2, n) displacements [m] and velocities [m/s] relative to the ground."""
     log: Record
+    """(events,)."""
     devices: NDArray[np.float64]
+    """(intervals + 1, 4, devices), see `physics.planar.run.Output`."""
 
 
 def longest_history(settings: TimeHistorySettings, motion: MotionComponents) -> int:

@@ -33,30 +33,20 @@ _MARKUP = re.compile(rb"\s*<(?:!doctype|html|head|\?xml)", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class RecordText:
-    """Lines of a record file, and the options that came with its source.
-
-    Parameters
-    ----------
-    path : Path
-        Where the lines were read.
-    source : str
-        The source as the user wrote it.
-    lines : tuple of str
-        Without line ends; a stray carriage return counts as part of a line end.
-    dt : float, optional [s]
-        Sampling interval that the user gave.
-    units : str, optional
-        Canonical unit of acceleration that the user gave.
-    channel : int, optional
-        The channel wanted from a file that holds several, from 1.
-    """
+    """Lines of a record file, and the options that came with its source."""
 
     path: Path
+    """Where the lines were read."""
     source: str
+    """The source as the user wrote it."""
     lines: tuple[str, ...]
+    """Without line ends; a stray carriage return counts as part of a line end."""
     dt: float | None = None
+    """Sampling interval that the user gave [s]."""
     units: str | None = None
+    """Canonical unit of acceleration that the user gave."""
     channel: int | None = None
+    """The channel wanted from a file that holds several, from 1."""
 
     @cached_property
     def heads(self) -> tuple[str, ...]:
