@@ -206,7 +206,7 @@ def _checked(document: Document) -> tuple[CaseFile, PartialCase]:
     check = schema_check(CaseFile, document)
     partial = PartialCase(document, check)
     faults = [*check.faults, *(fault for rule in RULES for fault in rule(partial))]
-    document.refuse(fault for fault in faults if not check.meant.intersection(fault.needs))
+    document.refuse(fault for fault in faults if not check.suggested.intersection(fault.needs))
     assert check.read is not None, "without faults the file is read"
     return check.read, partial
 

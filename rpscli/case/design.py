@@ -400,8 +400,8 @@ def _name_faults(file: DesignFile) -> Iterator[Fault]:
         if name in sampled and not file.whole_histories:
             text = f"{name} needs `whole_histories: true`; add it"
         elif name not in keys and name not in results:
-            meant = hint(name, [*keys, *results], f"use {listed(keys)}, or a result")
-            text = f"{name} is neither a result nor a key that `variables` changes; {meant}"
+            suggestion = hint(name, [*keys, *results], f"use {listed(keys)}, or a result")
+            text = f"{name} is neither a result nor a key that `variables` changes; {suggestion}"
         elif name in keys and any(n == name and "fractile" in t.model_fields_set for n, t in terms):
             text = f"{name} is a key, without fractiles; take it out"
         else:

@@ -113,7 +113,7 @@ def test_studies_say_paths_and_refuse_numbers_that_are_none() -> None:
             study.run(jobs=jobs)
     with pytest.raises(CaseError, match="finite"):
         load_study(STUDY | {"vary": [{"podium.bearing.slenderness": [math.nan]}]})
-    with pytest.raises(KeyError, match="no column"):
+    with pytest.raises(KeyError, match="not a column"):
         study.run()[3]  # type: ignore[index]
 
 

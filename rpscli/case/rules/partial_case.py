@@ -46,7 +46,7 @@ class PartialCase:
 
     def has(self, path: Path) -> bool:
         """Whether a key is written, or an unknown key was taken for it."""
-        return self.document.has(path) or path in self.check.meant
+        return self.document.has(path) or path in self.check.suggested
 
     def is_mapping(self, path: Path) -> bool:
         """Whether a mapping is written at a path."""

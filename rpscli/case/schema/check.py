@@ -21,7 +21,7 @@ class SchemaCheck(NamedTuple, Generic[Model]):
     """Faults of a document, known keys taken for unknown ones, sound content, and what was read."""
 
     faults: list[Fault]
-    meant: set[Path]
+    suggested: set[Path]
     sound: dict[str, Any]
     read: Model | None
 
@@ -31,10 +31,10 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     later = {key for key, f in fields_of(model).items() if CHECKED_BY_ITSELF in f.metadata}
     content = {key: value for key, value in document.content.items() if key not in later}
     empty = dict.fromkeys(_nulls(content, ()))
-    told = {fault.path for fault in document.faults}
+    announced = {fault.path for fault in document.faults}
     check: SchemaCheck[Model] = SchemaCheck([*document.faults], set(), {}, None)
     for path in empty:
-        if path not in told:
+        if path not in announced:
             _empty_value(check, model, path)
     content = document.pruned(empty)
     read, errors = _read(model, content)
@@ -58,7 +58,7 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
             check.faults.append(Fault(path, text, at_key=True, needs=(path,)))
             continue
         bad.append(path)
-    faults = [fault for fault in check.faults if not check.meant.intersection(fault.needs)]
+    faults = [fault for fault in check.faults if not check.suggested.intersection(fault.needs)]
     return check._replace(faults=faults, sound=document.pruned(bad))
 
 
@@ -67,10 +67,10 @@ def _unknown(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> Non
     if len(check.faults) > MOST_FAULTS:
         check.faults.append(Fault(path, f"{dotted(path)} is not a key of the format", at_key=True))
         return
-    fault, guess = unknown_key(model, path)
+    fault, suggestion = unknown_key(model, path)
     check.faults.append(fault)
-    if guess:
-        check.meant.add(guess)
+    if suggestion:
+        check.suggested.add(suggestion)
 
 
 def _empty_value(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
@@ -118,8 +118,8 @@ def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
     kind = error["type"]
     if kind == "literal_error":
         words = re.findall(r"'([^']*)'", error["ctx"]["expected"])
-        guess = nearest(str(error["input"]), words)
-        return f"must be {listed(words)}" + (f"; did you mean {guess}?" if guess else "")
+        suggestion = nearest(str(error["input"]), words)
+        return f"must be {listed(words)}" + (f"; did you mean {suggestion}?" if suggestion else "")
     if kind in {"model_type", "model_attributes_type"}:
         section = section_at(model, path)
         names = listed(fields_of(section), "and") if section else ""

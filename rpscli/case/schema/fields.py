@@ -106,9 +106,9 @@ class Quantity:
         return f"must be {kind}{words}"
 
     def _with_unit(self, text: str) -> float:
-        guess = nearest(text, self.words)
-        if guess:
-            refuse(f"{self._not_a_number}; did you mean {guess}?")
+        suggestion = nearest(text, self.words)
+        if suggestion:
+            refuse(f"{self._not_a_number}; did you mean {suggestion}?")
         if self.unit == PLAIN:
             refuse(f"is text; it {self._not_a_number}, without unit and without quotes")
         try:

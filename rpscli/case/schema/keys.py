@@ -108,7 +108,7 @@ def known_paths(model: type[BaseModel]) -> tuple[Path, ...]:
     return tuple(below(model, ()))
 
 
-def meant(model: type[BaseModel], path: Path) -> Path | None:
+def suggestion_for(model: type[BaseModel], path: Path) -> Path | None:
     """The known key that an unknown one was probably meant to be.
 
     The same word under another parent comes first, then a similar word under the same parent,
@@ -120,26 +120,26 @@ def meant(model: type[BaseModel], path: Path) -> Path | None:
     if str(key) in anywhere:
         return anywhere[str(key)]
     for names in (siblings, anywhere):
-        guess = nearest(str(key), names)
-        if guess:
-            return names[guess]
+        suggestion = nearest(str(key), names)
+        if suggestion:
+            return names[suggestion]
     return None
 
 
 def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]:
     """The fault of an unknown key, and the known key it was taken for."""
-    guess = meant(model, path)
+    suggestion = suggestion_for(model, path)
     text = f"{dotted(path)} is not a key of the format"
-    if guess is None:
+    if suggestion is None:
         section = section_at(model, path[:-1])
         names = listed(fields_of(section), "and") if section else ""
         return Fault(path, f"{text}; known here: {names}", at_key=True), None
-    if guess[-1] == path[-1]:
-        parent = dotted(guess[:-1])
+    if suggestion[-1] == path[-1]:
+        parent = dotted(suggestion[:-1])
         hint = f"{path[-1]} belongs under {parent}" if parent else "it belongs at the top level"
     else:
-        hint = f"did you mean {dotted(guess)}?"
-    return Fault(path, f"{text}; {hint}", at_key=True), guess
+        hint = f"did you mean {dotted(suggestion)}?"
+    return Fault(path, f"{text}; {hint}", at_key=True), suggestion
 
 
 @lru_cache(maxsize=1024)

@@ -132,10 +132,10 @@ def _title_faults(
             yield _fault(name, line, f"the column {shown(column)} stands twice; take one out")
         if column not in (*known, *results):
             varied = f"the study varies {listed(known, 'and')}"
-            meant = hint(column, (*known, *results), varied)
+            suggestion = hint(column, (*known, *results), varied)
             yield _fault(
                 name, line,
-                f"the column {shown(column)} is neither a varied key nor a result; {meant}",
+                f"the column {shown(column)} is neither a varied key nor a result; {suggestion}",
             )  # fmt: skip
         elif (reason := _wrong_unit(column, unit)) is not None:
             yield _fault(name, line, f"{shown(column)} [{unit}] {reason}")

@@ -100,8 +100,8 @@ def requests_of(
         else:
             continue  # told with the other keys
         if kind not in kinds:
-            meant = hint(kind, kinds, f"known are {listed(kinds, 'and')}")
-            text = f"reports.{index}: there is no report {shown(kind)}; {meant}"
+            suggestion = hint(kind, kinds, f"known are {listed(kinds, 'and')}")
+            text = f"reports.{index}: there is no report {shown(kind)}; {suggestion}"
             faults.append(Fault(path, text))
             continue
         if given is not None and not isinstance(given, dict):
