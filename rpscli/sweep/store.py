@@ -160,13 +160,7 @@ class Store:
         return found.st_dev, found.st_ino
 
     def require(self) -> None:
-        """Refuse to go on without the file, which SQLite would do unseen.
-
-        Raises
-        ------
-        OutputError
-            If it was deleted or replaced since it was opened.
-        """
+        """Refuse to go on without the file, which SQLite would do unseen."""
         if self._identity != self._file():
             raise OutputError(
                 f"{self.path} was deleted or replaced while rps worked on it, and what was stored"

@@ -22,30 +22,20 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Table(Frozen):
-    """Outcomes and scalar results of all points.
-
-    Parameters
-    ----------
-    layout
-        The study, laid out.
-    outcomes
-        (points,) words.
-    scale
-        (points,) factors on the records; NaN where it is not known.
-    columns
-        (points,) of each scalar result under its name; NaN where there is none.
-    messages
-        Why points failed, by their number.
-    storey_shears
-        (points, most storeys) largest storey shears from the bottom [N], NaN above the roof.
-    """
+    """Outcomes and scalar results of all points."""
 
     layout: StudyPoints
+    """The study, laid out."""
     outcomes: NDArray[np.str_]
+    """(points,) words."""
     scale: Array
+    """(points,) factors on the records; NaN where it is not known."""
     columns: dict[str, Array]
+    """(points,) of each scalar result under its name; NaN where there is none."""
     messages: dict[int, str]
+    """Why points failed, by their number."""
     storey_shears: Array
+    """(points, most storeys) largest storey shears from the bottom [N], NaN above the roof."""
 
     def __len__(self) -> int:
         return len(self.outcomes)
@@ -108,15 +98,7 @@ class Group(NamedTuple):
 
 
 def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = None) -> list[Group]:
-    """Points grouped by the values of keys, in the order in which the keys are named.
-
-    Parameters
-    ----------
-    keys
-        Varied keys, ``record`` or ``scale``; without any there is one group.
-    within
-        Points to be grouped; all of them by default.
-    """
+    """Points grouped by the values of keys, in the order in which the keys are named."""
     known, shape = dimensions(layout), layout.shape
     numbers = np.arange(len(layout)) if within is None else within
     places = np.unravel_index(numbers, shape)

@@ -85,13 +85,7 @@ def spectra_figure(spectra: Sequence[ResponseSpectrum], title: str) -> bytes:
 
 
 def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
-    """Pseudo-acceleration against period: each record thin, the median thick.
-
-    Parameters
-    ----------
-    spectra
-        At the same periods and damping.
-    """
+    """Pseudo-acceleration against period: each record thin, the median thick."""
     if not spectra:
         raise UsageError("no spectra to be drawn; give `response_spectrum` of a record at least")
     periods, damping = spectra[0].periods, spectra[0].damping

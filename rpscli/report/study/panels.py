@@ -76,19 +76,7 @@ def panel_figure(
     limits: Callable[[Axes], object] | None = None,
     note: str = "",
 ) -> bytes:
-    """A figure with one panel for each group.
-
-    Parameters
-    ----------
-    draw
-        Fills the axes of a panel.
-    share
-        Axes that all panels have in common.
-    limits
-        Sets the limits that shared axes have in common; each panel would set them for all others.
-    note
-        A remark after the title: what was left out.
-    """
+    """A figure with one panel for each group."""
     width = style.room(style.WIDTH)
     shown = panels[:MOST_PANELS]
     columns = layout.columns if width >= style.WIDTH else min(2, layout.columns)

@@ -72,13 +72,7 @@ class RecordCache:
         self._intensities: Recent[tuple[object, ...], float] = Recent(1e6)
 
     def motion(self, request: RecordRequest) -> MotionComponents:
-        """The motion of a request.
-
-        Raises
-        ------
-        RecordError
-            If it cannot be read; the same error each time, without trying again.
-        """
+        """The motion of a request."""
         found = self._motions.value(request, lambda: _load(request))
         if isinstance(found, str):
             raise RecordError(found)
@@ -201,13 +195,7 @@ class StudyContext:
         self.systems = Systems(plan)
 
     def factor(self, point: Point) -> float:
-        """Factor on the record of a point.
-
-        Raises
-        ------
-        RpsError
-            If the record cannot be read, or cannot be scaled to the measure.
-        """
+        """Factor on the record of a point."""
         measure = self.plan.measure
         if measure is None:
             return point.scale * point.scale_change

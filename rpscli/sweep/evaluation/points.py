@@ -44,34 +44,23 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """Everything besides the points that a process needs to evaluate them.
-
-    Parameters
-    ----------
-    analysis
-        What is done at every point.
-    keys
-        Dotted keys of the values of a point.
-    base
-        The case at the base, as plain values.
-    base_name, base_folder
-        Where it comes from, for messages and relative file names.
-    measure
-        What the records are scaled to, if not by factors.
-    whole
-        Whether histories are followed with all their samples.
-    solver
-        Version of the solver that all results must come from.
-    """
+    """Everything besides the points that a process needs to evaluate them."""
 
     analysis: Analysis
+    """What is done at every point."""
     keys: tuple[str, ...]
+    """Dotted keys of the values of a point."""
     base: dict[str, Any]
+    """The case at the base, as plain values."""
     base_name: str
     base_folder: str
+    """Where it comes from, for messages and relative file names."""
     measure: MeasureScale | None
+    """What the records are scaled to, if not by factors."""
     whole: bool
+    """Whether histories are followed with all their samples."""
     solver: str
+    """Version of the solver that all results must come from."""
 
 
 SOLVING = (

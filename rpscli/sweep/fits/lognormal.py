@@ -232,8 +232,6 @@ def probit_fit(
 ) -> Probit:
     """Fit every row of weights, with or without the penalty.
 
-    Notes
-    -----
     Fisher scoring, halving steps that lower the objective. Adjustment of the score for the
     penalty: h/2 times the logarithmic derivative of the working weight, h being the leverage.
     Data with a single x have no slope even so: they do not converge.

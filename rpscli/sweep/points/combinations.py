@@ -24,8 +24,6 @@ Array = NDArray[np.float64]
 def sample(section: SampleSection) -> Array:
     """The sample, (size, keys), in the order of the section's keys.
 
-    Notes
-    -----
     A scrambled Sobol sequence, or a Latin hypercube; the seed fixes both. Each column goes through
     the inverse of its distribution function.
     """
@@ -104,18 +102,12 @@ def changes(section: PerturbSection | None) -> tuple[Change, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Combinations(Frozen):
-    """Values of the varied and sampled keys of each system.
-
-    Parameters
-    ----------
-    study
-        Whose axes they are.
-    drawn
-        The sample, (size, keys); (1, 0) if nothing is sampled.
-    """
+    """Values of the varied and sampled keys of each system."""
 
     study: Study
+    """Whose axes they are."""
     drawn: Array
+    """The sample, (size, keys); (1, 0) if nothing is sampled."""
 
     def __len__(self) -> int:
         return math.prod(self.shape)

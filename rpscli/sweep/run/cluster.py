@@ -32,13 +32,7 @@ _lock = Lock()
 
 
 def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
-    """Results of a batch; runs on a worker, which keeps what it has read for the next one.
-
-    Raises
-    ------
-    RpsError
-        If the worker would compute other numbers.
-    """
+    """Results of a batch; runs on a worker, which keeps what it has read for the next one."""
     if plan.solver != solver_version():
         raise RpsError(
             f"a worker runs rps {solver_version()}, but the study was laid out by {plan.solver};"

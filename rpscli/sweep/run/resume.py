@@ -43,39 +43,24 @@ def all_keys(layout: StudyPoints, context: StudyContext) -> list[bytes]:
 
 @dataclass(frozen=True, eq=False)
 class Resume:
-    """Where a run begins.
-
-    Parameters
-    ----------
-    keys
-        Of all points, in the order of the study.
-    pending
-        Points to be computed, in the order of the study; equal points are computed once.
-    kept, failed
-        Points that are stored, and those of them that failed and are not tried again.
-    unused
-        Stored points that are not in the study any more. They stay in the file, for the case
-        that the study is changed back.
-    notes
-        What changed since the last run, for the user.
-    """
+    """Where a run begins."""
 
     keys: list[bytes]
+    """Of all points, in the order of the study."""
     pending: list[int]
+    """Points to be computed, in the order of the study; equal points are computed once."""
     kept: int
     failed: int
+    """Points that are stored, and those of them that failed and are not tried again."""
     unused: int
+    """Stored points that are not in the study any more. They stay in the file, for the case
+    that the study is changed back."""
     notes: tuple[str, ...]
+    """What changed since the last run, for the user."""
 
 
 def resume(layout: StudyPoints, keys: list[bytes], store: Store, *, retry_failed: bool) -> Resume:
-    """Compare a study with its store.
-
-    Raises
-    ------
-    Refused
-        If the store holds the results of another study.
-    """
+    """Compare a study with its store."""
     known = store.outcomes()
     wanted = set(keys)
     done = {key for key, failed in known.items() if not (failed and retry_failed)}

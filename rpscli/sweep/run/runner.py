@@ -19,26 +19,19 @@ from rpscli.sweep.store import Store
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study is.
-
-    Parameters
-    ----------
-    total, kept, computed, failed
-        Points of the study, stored before, of this run, and those of it that failed.
-    seconds
-        Since the run began.
-    first, first_seconds
-        Points that the first batch brought, and when: kernels may have been compiled before, which
-        says nothing about the rate of the others.
-    """
+    """How far a study is."""
 
     total: int
     kept: int
     computed: int
     failed: int
+    """Points of the study, stored before, of this run, and those of it that failed."""
     seconds: float
+    """Since the run began."""
     first: int = 0
     first_seconds: float = 0.0
+    """Points that the first batch brought, and when: kernels may have been compiled before,
+    which says nothing about the rate of the others."""
 
     @property
     def done(self) -> int:
