@@ -80,15 +80,7 @@ class Collected:
 
 
 def require_results(layout: StudyPoints, conditions: Iterable[Condition]) -> None:
-    """Refuse limits on results that systems do not have, and reports that cannot be drawn.
-
-    Raises
-    ------
-    CaseError
-        At the place of the limit or the report.
-    UsageError
-        If `--fail-on` names the result.
-    """
+    """Refuse limits on results that systems do not have, and reports that cannot be drawn."""
     layout.study.document.refuse(requirement_faults(layout))
     for condition in conditions:
         if layout.plan.analysis != "timehistory":
@@ -130,10 +122,8 @@ class StudyRun:
     ) -> Finish:
         """Compute what is not stored yet; each point is stored as it ends.
 
-        Raises
-        ------
-        StudyInterrupted
-            After Ctrl-C: the first one is told to `announce` and lets the points under way end.
+        The first Ctrl-C calls `announce` and lets the points under way end; then, and after the
+        second, `StudyInterrupted` is raised.
         """
         remember(self.layout, self.store)
         finish = Finish(0, 0, 0.0, interrupted=False)

@@ -26,21 +26,10 @@ LIMITS = {quantity.name: quantity for quantity in LIMITED}
 
 @dataclass(frozen=True)
 class Condition:
-    """One condition.
+    """A limit on an event or a result [SI], and who asks for it; 0 for an event.
 
-    Parameters
-    ----------
-    name
-        Of an event or a result.
-    limit
-        The value that no record may exceed, or fall below where small values are bad, SI units; 0
-        for an event.
-    source
-        Who asks for it, in words.
-    share
-        Share of the records of a study that may exceed it.
-    fractile
-        Fractile of the results that must keep it, in place of the share.
+    Of the records of a study a `share` may exceed it, or fall below where small values are bad; or
+    the `fractile` of the results must keep it.
     """
 
     name: str
@@ -70,13 +59,6 @@ def parse_condition(text: str) -> Condition:
 
     An event may have the share of the records of a study that is admissible: ``overturning=0.1``.
 
-    Raises
-    ------
-    UsageError
-        If the name is not known, or the value is missing or no number.
-
-    Examples
-    --------
     >>> parse_condition("rotation_ratio=0.5")
     Condition(name='rotation_ratio', limit=0.5, source='--fail-on', share=0.0, fractile=None)
     """

@@ -23,9 +23,7 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
-    figure_options,
-    output_options,
-    terminal_options,
+    result_options,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import RecordError, UsageError
@@ -47,9 +45,7 @@ if TYPE_CHECKING:
     help="Also draw the bearing with its dimensions: at rest, where rolling ends, at the critical"
     " rotation, and the restoring force; the figure bearing.",
 )
-@figure_options
-@output_options
-@terminal_options
+@result_options
 def command(
     request: CaseRequest, output: OutputRequest, terminal: Terminal, look: Look, *, draw: bool
 ) -> None:

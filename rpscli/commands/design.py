@@ -13,11 +13,9 @@ from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
     OutputRequest,
-    figure_options,
-    output_options,
     overrides_option,
+    result_options,
     run_options,
-    terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, compute, show_dry_run, study_heading
@@ -40,9 +38,7 @@ if TYPE_CHECKING:
 @click.argument("design", metavar="DESIGN", type=FILE)
 @overrides_option("Override a value of the file (--set search.most=64) or of its base case")
 @run_options
-@figure_options
-@output_options
-@terminal_options
+@result_options
 def command(
     design: str,
     overrides: tuple[str, ...],

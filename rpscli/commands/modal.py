@@ -13,10 +13,8 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
-    figure_options,
     film_options,
-    output_options,
-    terminal_options,
+    result_options,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import counted
@@ -33,9 +31,7 @@ if TYPE_CHECKING:
 @click.command("modal")
 @case_options
 @film_options
-@figure_options
-@output_options
-@terminal_options
+@result_options
 def command(
     request: CaseRequest,
     output: OutputRequest,

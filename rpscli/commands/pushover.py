@@ -13,9 +13,7 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     case_options,
-    figure_options,
-    output_options,
-    terminal_options,
+    result_options,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
@@ -37,9 +35,7 @@ if TYPE_CHECKING:
     help="Floor forces: uniform, triangular, first_mode, or f1,f2,... from the bottom; repeatable."
     " All three named ones by default.",
 )
-@figure_options
-@output_options
-@terminal_options
+@result_options
 def command(
     request: CaseRequest,
     output: OutputRequest,

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from rpscli.case.conditions import parse_condition
+from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import FACTOR, RESULTS, MotionRequest, read_case
 from rpscli.commands.report_case import (
     HISTORY,
@@ -23,6 +23,7 @@ from rpscli.commands.report_case import (
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     CaseRequest,
+    fail_on_option,
     overrides_option,
     style_option,
     terminal_options,
@@ -49,13 +50,7 @@ from rpscli.report.files import require_writable, write_whole
 @click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
 @click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
 @click.option("--scale-to", metavar="MEASURE=VALUE", help="Scale to a measure, as PGA=0.4g.")
-@click.option(
-    "--fail-on",
-    "fail_on",
-    multiple=True,
-    metavar="WHAT",
-    help="A limit besides those of the case or study, as in `rps timehistory`; repeatable.",
-)
+@fail_on_option("A limit besides those of the case or study, as in `rps timehistory`; repeatable.")
 @style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
 @terminal_options
@@ -63,7 +58,7 @@ def command(
     subject: str,
     place: Path | None,
     overrides: tuple[str, ...],
-    fail_on: tuple[str, ...],
+    conditions: list[Condition],
     style_file: Path | None,
     terminal: Terminal,
     *,
@@ -77,7 +72,6 @@ def command(
     prints on A4. The history of a CASE is computed; so are points of a STUDY that are not stored
     yet. That of a FOLDER is computed again and held against what is stored.
     """
-    conditions = [parse_condition(text) for text in fail_on]
     look = Look(style={} if style_file is None else read_style(style_file))
     request, asked = CaseRequest(subject, overrides), MotionRequest(**motion)
     earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None

@@ -7,19 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.case.conditions import parse_condition
+from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
     CaseRequest,
     OutputRequest,
-    condition_names,
-    figure_options,
-    output_options,
+    fail_on_option,
     overrides_option,
+    result_options,
     run_options,
-    terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import (
@@ -47,26 +45,19 @@ if TYPE_CHECKING:
     " (--set podium.bearing.slenderness=0.2)"
 )
 @run_options
-@click.option(
-    "--fail-on",
-    "fail_on",
-    multiple=True,
-    metavar="WHAT",
-    shell_complete=condition_names,
-    help="End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
+@fail_on_option(
+    "End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
     " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
-    " units); repeatable. The limits of study and case count as well.",
+    " units); repeatable. The limits of study and case count as well."
 )
 @click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
-@figure_options
-@output_options
-@terminal_options
+@result_options
 def command(
     study: str,
     overrides: tuple[str, ...],
     output: OutputRequest,
     terminal: Terminal,
-    fail_on: tuple[str, ...],
+    conditions: list[Condition],
     look: Look,
     **choices: Any,
 ) -> None:
@@ -77,7 +68,6 @@ def command(
     is 10 if a limit of the study, of its base case or of --fail-on is exceeded.
     """
     chosen = SweepChoices(**choices)
-    conditions = [parse_condition(text) for text in fail_on]
     given = read(CaseRequest(study, overrides), conditions, terminal)
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)

@@ -10,20 +10,18 @@ from typing import Any
 import click
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.conditions import Condition, parse_condition
+from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import FACTOR, MotionRequest, read_cases, single_motions, write
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     FILE,
     CaseRequest,
     OutputRequest,
-    condition_names,
-    figure_options,
+    fail_on_option,
     film_options,
     film_part_options,
-    output_options,
+    result_options,
     several_cases_options,
-    terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, counted
@@ -57,14 +55,9 @@ from rpscli.report.figures.look import Look, drawn_with
     metavar="MEASURE=VALUE",
     help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', PGD, CAV or Arias.",
 )
-@click.option(
-    "--fail-on",
-    "fail_on",
-    multiple=True,
-    metavar="WHAT",
-    shell_complete=condition_names,
-    help="End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
-    f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units); repeatable.",
+@fail_on_option(
+    "End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
+    f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units); repeatable."
 )
 @film_part_options
 @film_options
@@ -73,15 +66,13 @@ from rpscli.report.figures.look import Look, drawn_with
     is_flag=True,
     help="Also spectra of equipment on every floor, beside those on a fixed base.",
 )
-@figure_options
-@output_options
-@terminal_options
+@result_options
 def command(
     requests: list[CaseRequest],
     records: tuple[str, ...],
     output: OutputRequest,
     terminal: Terminal,
-    fail_on: tuple[str, ...],
+    conditions: list[Condition],
     film: FilmRequest | None,
     look: Look,
     *,
@@ -93,7 +84,6 @@ def command(
     Overturning is a result, not an error: see --fail-on. The limits of the case count as well.
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
-    conditions = [parse_condition(text) for text in fail_on]
     motions = list(single_motions(records, MotionRequest(**motion)))
     cases = read_cases(requests, terminal)
     histories = [

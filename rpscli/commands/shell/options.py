@@ -11,6 +11,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
+from rpscli.case.conditions import parse_condition
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint
@@ -274,3 +275,29 @@ def output_options(function: Command) -> Command:
         function(output=OutputRequest(place, force), **rest)
 
     return command
+
+
+def result_options(function: Command) -> Command:
+    """What every command that draws and writes takes: `look`, `output` and `terminal`."""
+    return figure_options(output_options(terminal_options(function)))
+
+
+def fail_on_option(meaning: str) -> Callable[[Command], Command]:
+    """--fail-on, with what it does for the command, as `conditions`."""
+
+    def decorate(function: Command) -> Command:
+        @click.option(
+            "--fail-on",
+            "fail_on",
+            multiple=True,
+            metavar="WHAT",
+            shell_complete=condition_names,
+            help=meaning,
+        )
+        @functools.wraps(function)
+        def command(*, fail_on: tuple[str, ...], **rest: Any) -> None:
+            function(conditions=[parse_condition(text) for text in fail_on], **rest)
+
+        return command
+
+    return decorate

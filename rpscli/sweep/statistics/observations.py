@@ -35,12 +35,7 @@ class Pairs(NamedTuple):
 def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
     """Pair every point with the observation of its record and system.
 
-    Parameters
-    ----------
-    layout
-        A study with a list of records.
-    observed
-        Its observations; a record goes by its source, its file's name, or that without its suffix.
+    A record goes by its source, its file's name, or that without its suffix.
     """
     records = _record_numbers(layout)
     rows = {
