@@ -58,7 +58,6 @@ from rpscli.sweep.table import Table
 if TYPE_CHECKING:
     from rpscli.case.study.reports import ReportRequest
     from rpscli.report.figures.style import Target
-    from rpscli.report.files import OutputFolder
 
 
 def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] = ()) -> Study:
@@ -215,7 +214,7 @@ class Study(Shown):
             raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
         keeper = _Temporary() if folder is None else None
         place = keeper.place if keeper else Path(folder or "")
-        self.folder(place)
+        study_folder(self.layout, place, self.overrides)
         with Store(place, fresh=fresh) as store:
             run = self.opened(store, jobs=jobs, scheduler=scheduler, retry_failed=retry_failed)
             run.compute(progress)
@@ -224,20 +223,6 @@ class Study(Shown):
     def opened(self, store: Store, **choices: Any) -> StudyRun:
         """Its run in a store that is open."""
         return StudyRun(self.layout, self.context, store, **choices)
-
-    def folder(self, place: Path, command: str = "sweep", *, force: bool = False) -> OutputFolder:
-        """The folder of its results, claimed for a command.
-
-        Parameters
-        ----------
-        place
-            Of the results.
-        command
-            That writes them.
-        force
-            Overwrite what is in the way.
-        """
-        return study_folder(self.layout, place, self.overrides, command, force=force)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -390,7 +375,8 @@ class StudyResult(Shown):
         if folder is None and self._keeper:
             raise UsageError("name a folder: that of the store ends with the result")
         look = Look(tuple(figures), columns, read_style(Path(style)) if style else {})
-        made = self.study.folder(Path(folder or self.folder), force=force)
+        place = Path(folder or self.folder)
+        made = study_folder(self.study.layout, place, self.study.overrides, force=force)
         with self._run.reopened():
             found = self._run.collect(made.folder, look)
         made.add_all(found.files.items())

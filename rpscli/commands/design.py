@@ -59,6 +59,7 @@ def command(
     from rpscli.case.design import read_design
     from rpscli.report.design import answer_document, design_columns, figures
     from rpscli.report.figures.look import figure_files
+    from rpscli.report.study.folder import study_folder
     from rpscli.report.study.statistics import verdict_columns, verdict_document
     from rpscli.sweep.design.search import Search
     from rpscli.sweep.store import Store
@@ -72,7 +73,7 @@ def command(
         show_dry_run(first, chosen, terminal)
         return
     place = output.place or RESULTS / first.layout.study.name / "design"
-    folder = first.folder(place, "design", force=output.force)
+    folder = study_folder(first.layout, place, overrides, "design", force=output.force)
     with Store(place, fresh=chosen.fresh) as store:
         answer = rounds.run(first, store)
         confirmations = list(rounds.confirm(answer, store))

@@ -59,10 +59,12 @@ def study_page(
     terminal: Terminal,
 ) -> PageDone:
     """Compute the points that are not stored yet, and put all in order."""
+    from rpscli.report.study.folder import study_folder
     from rpscli.sweep.store import Store
 
     look, layout = page_look(look), study.layout
-    folder = study.folder(place or RESULTS / layout.study.name / "sweep").folder
+    folder = place or RESULTS / layout.study.name / "sweep"
+    study_folder(layout, folder, study.overrides)
     with Store(folder) as store:
         run = study.opened(store, conditions=conditions)
         # What is in a folder is shown, not added to.

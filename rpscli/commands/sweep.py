@@ -72,10 +72,11 @@ def command(
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)
         return
+    from rpscli.report.study.folder import study_folder
     from rpscli.sweep.store import Store
 
     place = output.place or RESULTS / given.layout.study.name / "sweep"
-    folder = given.folder(place, force=output.force)
+    folder = study_folder(given.layout, place, given.overrides, force=output.force)
     with Store(place, fresh=chosen.fresh) as store:
         run = given.opened(store, conditions=conditions, **chosen.of_run)
         begin(run, terminal, report_only=chosen.report_only)
