@@ -20,7 +20,7 @@ from rpscli.errors import UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder, Run
-from rpscli.report.table import Part, Table, shown
+from rpscli.report.table import Column, Part, Table, picked, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -148,20 +148,13 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
 
 
 def _tables(selection: Selection) -> Iterator[Part]:
-    heads = ("motion", "event", "factor", "PGV [m/s]", "PGD [m]", "misfit")
-    rows = [
-        (
-            one.motion.name,
-            one.event,
-            f"{one.factor:.4g}",
-            shown(one.factor * one.pgv, 3),
-            shown(one.factor * one.pgd, 3),
-            f"{one.misfit:.3f}",
-        )
-        for one in selection.chosen
-    ]
+    from rpscli.report.tables.motions import selection_columns
+
+    columns = selection_columns(selection)
+    motion = Column("motion", "-", [one.motion.name for one in selection.chosen], "motion")
+    shown_columns = picked(columns, "event", "factor", "pgv", "pgd", "misfit")
     target = selection.target
-    yield Table.of_texts(heads, rows, words=2)
+    yield Table([motion, *shown_columns], words=2)
     yield Table.listing(
         [
             ("target", target.name),

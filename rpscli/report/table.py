@@ -153,6 +153,12 @@ def columns_of(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[
     return [Column(*head, values) for head, values in zip(heads.items(), cells, strict=True)]
 
 
+def picked(columns: Iterable[Column], *names: str) -> list[Column]:
+    """The columns of these names, in this order."""
+    known = {column.name: column for column in columns}
+    return [known[name] for name in names]
+
+
 def csv_text(columns: Sequence[Column]) -> str:
     """The columns as CSV; numbers with ten significant digits, quotes where a cell needs them.
 

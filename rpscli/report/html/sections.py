@@ -18,7 +18,7 @@ from rpscli.report.figures.look import Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
-from rpscli.report.table import Table
+from rpscli.report.table import Column, Table
 from rpscli.report.tables.derivation import derivations, first_shape
 
 if TYPE_CHECKING:
@@ -112,18 +112,15 @@ def _storeys(structure: PodiumStructure) -> Table:
     building = structure.superstructure
     assert building is not None, "there are storeys"
     shape, heights = first_shape(building), building.storey_heights
-    rows = [
-        (
-            str(storey + 1),
-            "-" if heights is None else _number(heights[storey]),
-            _number(building.masses[storey]),
-            _number(building.stiffnesses[storey]),
-            _number(shape[storey]),
-        )
-        for storey in reversed(range(building.storeys))
-    ]
-    heads = ("storey", "height [m]", "mass m_i [kg]", "stiffness k_i [N/m]", "first mode φ_i")
-    return Table.of_texts(heads, rows, words=1)
+    count = building.storeys
+    columns = {
+        "storey": np.arange(count) + 1,
+        "height [m]": [None] * count if heights is None else heights,
+        "mass m_i [kg]": building.masses,
+        "stiffness k_i [N/m]": building.stiffnesses,
+        "first mode φ_i": shape,
+    }
+    return Table([Column(name, "-", each[::-1], name, _number) for name, each in columns.items()])
 
 
 def input_table(content: Mapping[str, Any]) -> Table:
@@ -202,5 +199,5 @@ def _plain(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
-def _number(value: float) -> str:
-    return f"{value:.{DIGITS}g}"
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.{DIGITS}g}"

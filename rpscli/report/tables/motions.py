@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
 from rpscli.records.selection import Candidate, Selection
 from rpscli.records.spectrum import ResponseSpectrum
-from rpscli.report.table import Column
+from rpscli.report.table import Column, picked, records, shown
 
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:
@@ -62,6 +63,8 @@ def two_column_text(motion: GroundMotion) -> str:
 def selection_document(selection: Selection) -> dict[str, Any]:
     """What was chosen, beside the target; SI units."""
     target = selection.target
+    names = ("source", "factor", "event", "pgv", "pgd", "misfit")
+    columns = picked(selection_columns(selection), *names)
     return {
         "target": {
             "name": target.name,
@@ -77,31 +80,23 @@ def selection_document(selection: Selection) -> dict[str, Any]:
         "least_ratio": selection.least_ratio,
         "mean_pgv": selection.mean_pgv,
         "mean_pgd": selection.mean_pgd,
-        "motions": [
-            {
-                "source": one.motion.source,
-                "factor": one.factor,
-                "event": one.event,
-                "pgv": one.factor * one.pgv,
-                "pgd": one.factor * one.pgd,
-                "misfit": one.misfit,
-            }
-            for one in selection.chosen
-        ],
+        "motions": records(columns),
     }
 
 
 def selection_columns(selection: Selection) -> list[Column]:
     """`selection.csv`: one row a motion, its peaks scaled."""
     chosen = selection.chosen
+    three = partial(shown, digits=3)
+    pgv, pgd = ([one.factor * getattr(one, name) for one in chosen] for name in ("pgv", "pgd"))
     return [
         Column("source", "-", [one.motion.source for one in chosen]),
-        Column("factor", "-", [one.factor for one in chosen]),
-        Column("event", "-", [one.event for one in chosen]),
+        Column("factor", "-", [one.factor for one in chosen], "factor", "{:.4g}".format),
+        Column("event", "-", [one.event for one in chosen], "event"),
         Column("pga", "m/s2", [one.factor * one.motion.pga for one in chosen]),
-        Column("pgv", "m/s", [one.factor * one.pgv for one in chosen]),
-        Column("pgd", "m", [one.factor * one.pgd for one in chosen]),
-        Column("misfit", "-", [one.misfit for one in chosen]),
+        Column("pgv", "m/s", pgv, "PGV [m/s]", three),
+        Column("pgd", "m", pgd, "PGD [m]", three),
+        Column("misfit", "-", [one.misfit for one in chosen], "misfit", "{:.3f}".format),
     ]
 
 
