@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from oracles import devices as oracle_kinds
 from oracles.storey_lagrangian import OracleSystem
 
-from rpscli.analyses.kernels.step_lengths import uplifted_rate
+from rpscli.analyses.kernels.systems import uplifted_rate
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper

@@ -10,8 +10,7 @@ import numpy as np
 
 from rpscli.analyses.kernels.history import Request as HistoryRequest
 from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
-from rpscli.analyses.kernels.step_lengths import longest_time
-from rpscli.analyses.kernels.systems import stacked_systems
+from rpscli.analyses.kernels.systems import longest_time, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.frozen import frozen

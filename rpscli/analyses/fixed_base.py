@@ -43,15 +43,6 @@ def fixed_base_response(
 ) -> FixedBaseResponse:
     """Run the building of a structure on a fixed base for a number of sampling intervals.
 
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    record
-        Horizontal ground acceleration.
-    intervals
-        How many sampling intervals are followed; zero acceleration after the record.
-
     Raises
     ------
     ValueError
@@ -75,15 +66,7 @@ def fixed_base_response(
 def fixed_base_shears(
     building: Superstructure, record: GroundMotion, intervals: int
 ) -> NDArray[np.float64]:
-    """Largest storey shears (n,) [N] from the bottom, without all that needs every sample.
-
-    Parameters
-    ----------
-    building
-        On a fixed base.
-    record, intervals
-        See `fixed_base_response`.
-    """
+    """Largest storey shears (n,) [N] from the bottom, without all that needs every sample."""
     nowhere = np.empty((0, 2, building.storeys))
     shears: NDArray[np.float64] = _follow(building, record, intervals, nowhere)[0]
     return shears
@@ -118,15 +101,7 @@ def _accelerations(building: Superstructure, floors: NDArray[np.float64]) -> NDA
 
 
 def largest_velocities(relative: NDArray[np.float64], record: GroundMotion) -> NDArray[np.float64]:
-    """Largest absolute velocities of floors at the samples (n,) [m/s].
-
-    Parameters
-    ----------
-    relative
-        (samples, n) to the ground [m/s].
-    record
-        The ground starts at rest; after the record it keeps its last velocity.
-    """
+    """Largest absolute velocities of floors at the samples (n,) [m/s]."""
     ground = velocity(record.acceleration, record.dt)[: len(relative)]
     ground = np.pad(ground, (0, len(relative) - len(ground)), mode="edge")
     return np.array([np.max(np.abs(floor + ground)) for floor in relative.T])

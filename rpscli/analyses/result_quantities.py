@@ -72,13 +72,6 @@ class ResultQuantity(NamedTuple):
     def in_unit(self, unit: str, symbol: str = "") -> str:
         """The label of an axis in another unit.
 
-        Parameters
-        ----------
-        unit
-            That the numbers have; none for words.
-        symbol
-            In place of the words.
-
         Examples
         --------
         >>> STOREY_SHEARS.in_unit("kN")
@@ -100,15 +93,7 @@ NEEDS = {
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:
-    """Values of quantities by name: numbers, lists of them, and None for what is not finite.
-
-    Parameters
-    ----------
-    result
-        Has the attributes that the quantities name.
-    quantities
-        Of the table of results.
-    """
+    """Values of quantities by name: numbers, lists of them, and None for what is not finite."""
     return {quantity.name: plain(getattr(result, quantity.name)) for quantity in quantities}
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from paper_structures import needs_compiled_kernels
 
 from hunt.trials import hunt, shares
-from rpscli.analyses.kernels.step_lengths import contact_rate, most_seconds, uplifted_rate
+from rpscli.analyses.kernels.systems import contact_rate, most_seconds, uplifted_rate
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history

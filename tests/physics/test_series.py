@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rpscli.analyses.kernels.step_lengths import highest_frequency
+from rpscli.analyses.kernels.systems import highest_frequency
 from rpscli.physics.core.quintic import NO_PASSAGE
 from rpscli.physics.core.records import ORDER
 from rpscli.physics.planar.steps import end_step_at, fraction_at

@@ -16,7 +16,7 @@ from paper_structures import (
     waves,
 )
 
-from rpscli.analyses.kernels.step_lengths import fastest_decay, highest_frequency
+from rpscli.analyses.kernels.systems import fastest_decay, highest_frequency
 from rpscli.analyses.modal import modal
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings

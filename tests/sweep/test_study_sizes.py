@@ -7,7 +7,7 @@ import pytest
 from paper_structures import building, ground, podium, stillness
 
 from rpscli.analyses.kernels.history import MOST_STEPS
-from rpscli.analyses.kernels.step_lengths import most_steps
+from rpscli.analyses.kernels.systems import most_steps
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.study.rules import MOST_POINTS, MOST_SYSTEMS

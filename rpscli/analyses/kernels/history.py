@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.compilation import compiled
-from rpscli.analyses.kernels.step_lengths import most_steps
-from rpscli.analyses.kernels.systems import stacked_systems
+from rpscli.analyses.kernels.systems import most_steps, stacked_systems
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
@@ -120,13 +119,7 @@ def longest_history(settings: TimeHistorySettings, motion: MotionComponents) -> 
 
 
 def numbers_of_a_sample(structure: PodiumStructure) -> int:
-    """What is known at each sample of a history with everything that follows from it.
-
-    Parameters
-    ----------
-    structure
-        Podium, bearings and building.
-    """
+    """What is known at each sample of a history with everything that follows from it."""
     # Of a floor u, u', u'', drift and shear, and u, u'' on a fixed base; of the podium time,
     # ground, u_b, v_b, moment, four forces of all columns and of one, and what is stored.
     return 7 * structure.storeys + len(SAMPLE) + 14 + 4 * len(structure.devices)

@@ -80,7 +80,7 @@ def watched(what: str, terminal: Terminal, numbers: range) -> Iterator[int]:
 
 def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContextManager[None]:
     """Around a history under a record of a duration [s]: what a long one costs is said before."""
-    from rpscli.analyses.kernels.step_lengths import most_seconds, most_steps
+    from rpscli.analyses.kernels.systems import most_seconds, most_steps
 
     seconds = most_seconds(case.structure, case.analysis, duration)
     if seconds < LONG:

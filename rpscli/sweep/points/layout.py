@@ -163,13 +163,7 @@ def identifying_columns(layout: StudyPoints) -> tuple[str, ...]:
 
 
 def reproduction(layout: StudyPoints, context: StudyContext, point: Point, base_file: Path) -> str:
-    """One line for the shell that computes the point alone.
-
-    Parameters
-    ----------
-    base_file
-        The case at the base of the study.
-    """
+    """One line for the shell that computes the point alone."""
     words = ["rps", layout.plan.analysis, str(base_file)]
     for text in (*_overrides(layout, point), *_restitution(layout, point)):
         words += ["--set", text]
