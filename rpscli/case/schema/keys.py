@@ -20,15 +20,26 @@ def fields_of(section: type[BaseModel]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in section.model_fields.items()}
 
 
+def _inside(annotation: Any) -> Iterator[Any]:
+    """An annotation or a field, and all types and marks that it is made of."""
+    yield annotation
+    field = isinstance(annotation, FieldInfo)
+    parts = (annotation.annotation, *annotation.metadata) if field else get_args(annotation)
+    for part in parts:
+        yield from _inside(part)
+
+
+def _is_section(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+
+
 def sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
     """The models inside an annotation (``Model | None``) or a field."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    elif isinstance(annotation, Several):
-        yield from [ValueRange] * annotation.spaced
-    else:
-        for part in _parts(annotation):
-            yield from sections_of(part)
+    for part in _inside(annotation):
+        if _is_section(part):
+            yield part
+        elif isinstance(part, Several) and part.spaced:
+            yield ValueRange
 
 
 def section_of(annotation: Any) -> type[BaseModel] | None:
@@ -38,19 +49,12 @@ def section_of(annotation: Any) -> type[BaseModel] | None:
 
 def _chosen_by_user(annotation: Any) -> Any:
     """What stands at keys that the user chooses, if the annotation holds such a mapping."""
-    if get_origin(annotation) is dict:
-        return get_args(annotation)[1]
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        # Further options, which may be equally spaced numbers.
-        return ValueRange if annotation.model_config.get("extra") == "allow" else None
-    found = (_chosen_by_user(part) for part in _parts(annotation))
-    return next((values for values in found if values is not None), None)
-
-
-def _parts(annotation: Any) -> tuple[Any, ...]:
-    if isinstance(annotation, FieldInfo):
-        return (annotation.annotation, *annotation.metadata)
-    return get_args(annotation)
+    for part in _inside(annotation):
+        if get_origin(part) is dict:
+            return get_args(part)[1]
+        if _is_section(part) and part.model_config.get("extra") == "allow":
+            return ValueRange  # further options, which may be equally spaced numbers
+    return None
 
 
 def annotation_at(model: type[BaseModel], path: Path) -> Any:
@@ -76,17 +80,6 @@ def _keys_in(annotation: Any) -> dict[str, FieldInfo]:
 def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:
     """The model of the mapping at a path, or None if there is no mapping in the format."""
     return section_of(annotation_at(model, path))
-
-
-def marks_of(field: FieldInfo) -> list[object]:
-    """What a field's annotation says besides its type, in any branch of a union."""
-
-    def inside(annotation: Any) -> Iterator[object]:
-        yield from getattr(annotation, "__metadata__", ())
-        for part in get_args(annotation):
-            yield from inside(part)
-
-    return [*field.metadata, *inside(field.annotation)]
 
 
 def field_at(model: type[BaseModel], path: Path) -> FieldInfo | None:
@@ -165,7 +158,7 @@ def is_whole(key: str) -> bool:
 def _marks_of(key: str) -> list[object]:
     path = tuple(part for part in key.split(".") if not part.isdecimal())
     field = field_at(CaseFile, path)
-    return marks_of(field) if field else []
+    return list(_inside(field))
 
 
 SECTIONS = {
@@ -214,9 +207,11 @@ def key_references(model: type[BaseModel]) -> Iterator[KeyReference]:
 
 
 def _reference(key: str, field: FieldInfo) -> KeyReference:
-    marks = marks_of(field)
+    marks = list(_inside(field))
     quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
     whole = next((mark for mark in marks if isinstance(mark, Whole)), None)
+    literals = (get_args(part) for part in marks if get_origin(part) is Literal)
+    words = (word for literal in literals for word in literal if isinstance(word, str))
     section = section_of(field.annotation)
     single = quantity is not None and not (section and "at_most" not in section.model_fields)
     default = field.get_default()
@@ -226,7 +221,7 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
         symbol=quantity.symbol if quantity and single else "",
         unit=quantity.unit.replace(PLAIN, "-") if quantity and single else "",
         bounds=(quantity.rule if quantity and single else "") or (whole.rule if whole else ""),
-        words=tuple(dict.fromkeys([*(quantity.words if quantity else ()), *_words(field)])),
+        words=tuple(dict.fromkeys([*(quantity.words if quantity else ()), *words])),
         default=default if isinstance(default, str | int | float) else None,
         required=field.is_required(),
         keys=tuple(fields_of(section)) if section else (),
@@ -238,16 +233,3 @@ def _sections(key: str) -> str:
     parts = key.split(".")
     parents = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
     return next((SECTIONS[parent] for parent in parents if parent in SECTIONS), "")
-
-
-def _words(field: FieldInfo) -> Iterator[str]:
-    """Words of the literals of a field."""
-
-    def below(annotation: Any) -> Iterator[str]:
-        if get_origin(annotation) is Literal:
-            yield from (word for word in get_args(annotation) if isinstance(word, str))
-            return
-        for part in get_args(annotation):
-            yield from below(part)
-
-    yield from below(field.annotation)
