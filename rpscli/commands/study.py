@@ -249,7 +249,7 @@ def _head(quantity: ResultQuantity) -> str:
 
 
 def _spread(spread: Spread, quantity: ResultQuantity) -> str:
-    values = [large(value, quantity.unit)[0] for value in spread]
+    values = [large(value, quantity.unit)[0] for value in spread[:3]]  # the mean is in JSON
     return " / ".join(shown(value, DIGITS) for value in values)
 
 

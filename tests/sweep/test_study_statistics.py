@@ -14,7 +14,9 @@ from click.testing import Result
 from scipy.stats import beta
 
 from rpscli.case.conditions import Condition
+from rpscli.commands.study import summary_tables
 from rpscli.report.study.statistics import summary_columns, summary_document
+from rpscli.report.table import Table as ShownTable
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.statistics.fractiles import fractiles, share
 from rpscli.sweep.statistics.grouping import own_keys, pooled
@@ -98,6 +100,14 @@ def test_an_overturned_history_is_larger_than_any_demand(study_of: Make) -> None
     # 0.1, 0.2, 0.4, 0.5 without the failed one; 84 % of four are more than three.
     assert spread_of(result, 4, "rotation_ratio") == pytest.approx((0.2, 0.5, 0.5))
     assert spread_of(result, 3, "rotation_ratio") == pytest.approx((0.3, 0.5, 0.5))
+
+
+def test_tables_show_median_fractile_and_worst(study_of: Make) -> None:
+    _, result = made(study_of)
+    tables = [part for part in summary_tables(result) if isinstance(part, ShownTable)]
+    cells = [cell for table in tables for row in table.rows for cell in row if "/" in cell]
+    assert "0.300 / inf / inf" in cells
+    assert {cell.count("/") for cell in cells} == {2}
 
 
 def test_an_overturned_history_is_less_than_any_least_force(study_of: Make) -> None:
