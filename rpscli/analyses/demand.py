@@ -92,15 +92,20 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
     systems = _Distinct[tuple[PodiumStructure, TimeHistorySettings]]()
     motions = _Distinct[MotionComponents]()
     given, of_structure = [], []
+    known: dict[int, int] = {}  # by the object, which most requests share
     for r in requests:
         of_structure.append(structures.number(id(r.structure), r.structure))
         system = systems.number((id(r.structure), r.settings), (r.structure, r.settings))
-        motion = motions.number(tuple(map(id, r.motion.named.values())), r.motion)
+        if (motion := known.get(id(r.motion))) is None:
+            motion = motions.number(tuple(map(id, r.motion.named.values())), r.motion)
+            known[id(r.motion)] = motion
         given.append(HistoryRequest(system, motion, r.scale))
     stacked = stacked_systems(systems.items)
     rates = stacked["uplifted_rate"].tolist()
+    durations = [motion.duration for motion in motions.items]
     for r, history in zip(requests, given, strict=True):
-        refuse_steps(longest_time(r.settings, r.motion.duration) * rates[history.system])
+        seconds = longest_time(r.settings, durations[history.motion])
+        refuse_steps(seconds * rates[history.system])
     run = run_of(stacked, motions.items, given)
     lanes = LANES if len(requests) >= worth_lanes else 1
     follow(run, lanes)

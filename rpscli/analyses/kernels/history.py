@@ -55,13 +55,15 @@ def run_of(
     first = systems.view(np.ndarray)
     n, devices = int(first["n"][0]), int(first["devices"].max())
     starts = [0, *accumulate(motion.samples.size for motion in motions)]
+    placed = []
+    for motion, start in zip(motions, starts, strict=False):
+        up = motion.row("vertical")
+        above = NO_RECORD if up is None else start + up * motion.npts
+        placed.append((start, above, motion.npts, motion.dt))
     given = np.zeros(len(requests), record_type(REQUEST))
     for row, (system, number, scale) in zip(given, requests, strict=True):
-        motion, start = motions[number], starts[number]
-        up = motion.row("vertical")
-        row["system"], row["record"], row["npts"] = system, start, motion.npts
-        row["vertical"] = NO_RECORD if up is None else start + up * motion.npts
-        row["dt"], row["scale"] = motion.dt, scale
+        row["system"], row["scale"] = system, scale
+        row["record"], row["vertical"], row["npts"], row["dt"] = placed[number]
     return Run(
         systems=systems,
         requests=given.view(np.recarray),
