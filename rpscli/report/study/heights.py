@@ -109,7 +109,6 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
             " too"
         )
     in_kn = options.unit == "kN"
-    apart = break_if_narrow()
 
     def draw(axes: Axes, profile: Profile) -> None:
         edges = np.arange(len(profile.shears[0]) + 1)
@@ -126,7 +125,7 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
         axes.locator_params(axis="y", integer=True)
         survivors, every = len(profile.histories.survivors), len(profile.histories)
         axes.text(
-            0.96, 0.95, f"{survivors} survivors{apart}of {every}",
+            0.96, 0.95, f"{survivors} survivors{break_if_narrow()}of {every}",
             transform=axes.transAxes, ha="right", va="top", fontsize=0.9 * style.small(),
         )  # fmt: skip
 

@@ -58,14 +58,14 @@ class ScatterOptions(DemandOptions):
 
 
 COEFFICIENTS = (
-    ("saturation_{x}", "break_x"),
-    ("saturation_{y}", "break_y"),
-    ("k_s", "slope_after"),
-    ("slope_before", "slope"),
-    ("{y}_at_uplift", "start"),
-    ("residual", "residual"),
+    ("saturation_{x}", "break_x", "x"),
+    ("saturation_{y}", "break_y", "y"),
+    ("k_s", "slope_after", "y/x"),
+    ("slope_before", "slope", "y/x"),
+    ("{y}_at_uplift", "start", "y"),
+    ("residual", "residual", "y"),
 )
-"""Names of what a bilinear curve is made of in tables, and its attributes."""
+"""Names of what a bilinear curve is made of in tables, its attributes, and their units."""
 
 
 class Cloud(NamedTuple):
@@ -117,8 +117,6 @@ def _scatter(
         clouds.append(Cloud(group.values, group, shown, fit))
     every = np.concatenate([cloud.shown.points for cloud in clouds])
     highest, top = (float(values[every].max(initial=0.0)) for values in (x, y))
-    across = np.linspace(0.3, 1.0, 8) * highest
-    apart = break_if_narrow()
 
     def draw(axes: Axes, cloud: Cloud) -> None:
         for place, part in enumerate(cloud.shown.parts(series)):
@@ -126,24 +124,8 @@ def _scatter(
                 x[part.points], y[part.points], ls="", marker=marker(place), ms=2.4, alpha=0.55,
                 mew=0.0, color=colour(place), label=labels(series_keys, part.values) or None,
             )  # fmt: skip
-        if not curved:
-            return
-        text = "no curve: too few points"
-        if (fit := cloud.fit) is not None:
-            ends = np.array([0.0, fit.break_x, max(highest, fit.break_x)])
-            axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
-            text = (
-                f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
-                f"\nslope kₛ{apart}{fit.slope_after:.2f} beyond"
-            )
-        # Where the curve runs through the lower right, the upper left is free.
-        rising = fit is not None and bool(np.min(fit(across)) < 0.25 * top)
-        axes.text(
-            0.04 if rising else 0.96, 0.95 if rising else 0.05, text, transform=axes.transAxes,
-            ha="left" if rising else "right", va="top" if rising else "bottom",
-            fontsize=0.9 * style.small(),
-            bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
-        )  # fmt: skip
+        if curved:
+            _draw_curve(axes, cloud.fit, highest, top, plain=plain)
 
     def limits(axes: Axes) -> None:
         axes.set_xlim(0.0, 1.04 * highest or 1.0)
@@ -184,6 +166,33 @@ def _scatter(
     )
 
 
+def _draw_curve(
+    axes: Axes, fit: Bilinear | None, highest: float, top: float, *, plain: bool
+) -> None:
+    """The curve with its numbers, where it leaves room for them."""
+    apart, text, rising = break_if_narrow(), "no curve: too few points", False
+    if fit is not None:
+        ends = np.array([0.0, fit.break_x, max(highest, fit.break_x)])
+        axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
+        text = (
+            f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
+            f"\nslope kₛ{apart}{fit.slope_after:.2f} beyond"
+        )
+        if plain:
+            text = (
+                f"break at{apart}{fit.break_x:.3g}, {fit.break_y:.3g}"
+                f"\nslope{apart}{fit.slope_after:.3g} beyond"
+            )
+        # Where the curve runs through the lower right, the upper left is free.
+        rising = bool(np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.25 * top)
+    axes.text(
+        0.04 if rising else 0.96, 0.95 if rising else 0.05, text, transform=axes.transAxes,
+        ha="left" if rising else "right", va="top" if rising else "bottom",
+        fontsize=0.9 * style.small(),
+        bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
+    )  # fmt: skip
+
+
 def _too_few(x: Array, cloud: Cloud) -> str:
     points = len(np.unique(x[cloud.shown.points]))
     return f"{points} different rotations of survivors; the curve needs {2 * FEWEST}"
@@ -197,12 +206,14 @@ def _fits(
     for cloud in clouds:
         resting = cloud.histories.table.outcomes[cloud.histories.points] == "at_rest"
         counts = len(cloud.shown), int(resting.sum()), cloud.histories.overturned.number
-        fitted = (getattr(cloud.fit, attribute, None) for _, attribute in COEFFICIENTS)
+        fitted = (getattr(cloud.fit, attribute, None) for _, attribute, _ in COEFFICIENTS)
         note = None if cloud.fit else _too_few(x, cloud)
         rows.append((cloud.values, *fitted, *counts, cloud.histories.failed, note))
-    names = [name.format(x=x_name, y=y_name) for name, _ in COEFFICIENTS]
-    heads = [*names, "counted", "at_rest", "overturned", "failed", "note"]
-    return keyed(keys, dict.fromkeys(heads, "-"), rows)
+    x_unit, y_unit = (SCALARS["timehistory"][name].unit for name in (x_name, y_name))
+    units = {"x": x_unit, "y": y_unit, "y/x": "-" if x_unit == y_unit else "SI"}
+    heads = {name.format(x=x_name, y=y_name): units[unit] for name, _, unit in COEFFICIENTS}
+    heads |= dict.fromkeys(("counted", "at_rest", "overturned", "failed", "note"), "-")
+    return keyed(keys, heads, rows)
 
 
 PULSE_OPTIONS = (

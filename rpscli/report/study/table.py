@@ -115,10 +115,12 @@ def statistic_table(study: StudyResults, options: TableOptions) -> Found:
 
     quantity = SCALARS["timehistory"][options.result]
     words = f"{quantity.axis_label}: {statistic_words(options.statistic)}"
-    shown = Shown(
-        options.result, quantity.unit, words, numbers, texts,
-        lambda cell: min(statistic(cell) / largest, 1.0),
-    )  # fmt: skip
+
+    def shade(cell: Histories) -> float:
+        found = statistic(cell)
+        return 0.8 if np.isinf(found) else float(0.6 * found / largest)
+
+    shown = Shown(options.result, quantity.unit, words, numbers, texts, shade)
     return _table(study, options, shown)
 
 
