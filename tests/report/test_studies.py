@@ -221,7 +221,7 @@ def test_folders_of_others_are_left_alone(
     study = result.study
     Path("taken").mkdir()
     Path("taken", "run.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(rpscli.RpsError, match="no description of a run of rps"):
+    with pytest.raises(rpscli.RpsError, match="not a description of a run of rps"):
         study.run("taken")
     assert not Path("taken", "study.sqlite").exists()
     Path("other.yaml").write_text(json.dumps(SMALL | {"scale": [3.0]}), encoding="utf-8")
