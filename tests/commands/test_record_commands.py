@@ -127,7 +127,7 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     assert measures.pgv == pytest.approx(first["pgv"], rel=1e-9)
     assert measures.pgd == pytest.approx(first["pgd"], rel=1e-9)
     said = " ".join(rps(*SELECT, "pool", "-o", "made/inside").stdout.split())
-    assert "Sa(T1) is the wrong aim for rocking" in said
+    assert "Sa(T1) is the wrong objective for rocking" in said
     by_pgv = rps_json(*SELECT, "pool", "-o", "made/inside", "--scale-by", "PGV", "--pgv", "0.2")
     assert by_pgv["mean_pgv"] == pytest.approx(0.2, rel=1e-5)
 
