@@ -264,3 +264,22 @@ def test_tables_are_no_wider_than_a_narrow_terminal(monkeypatch: pytest.MonkeyPa
         assert max(map(len, lines)) <= int(columns)
         assert sum(line.startswith("farfield_1_a") for line in lines) == tables
         assert all(word in " ".join(lines) for word in rows[0])
+
+
+def test_a_table_that_is_cut_repeats_its_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "50")
+    heads = ["R m", "limit", "", "requirement", "result"]
+    rows = [["1.5", "rotation_ratio", "EXCEEDED", "at most 0.3", "2 of 2 (95 %: above 0.22)"]]
+    lines = rendered([Table.of_texts(heads, rows, words=4, keys=2)]).splitlines()
+    parts = [line for line in lines if line.startswith("1.5   rotation_ratio")]
+    assert len(parts) == 2
+    assert max(map(len, lines)) <= 50
+
+
+def test_room_is_taken_from_words_before_a_table_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    heads = ["record", "rotation ratio", "base shear kN", "floor acceleration m/s2"]
+    rows = [["mean of all maxima of records", "0.1074", "2255", "12.68"]]
+    lines = rendered([Table.of_texts(heads, rows)]).splitlines()
+    assert max(map(len, lines)) <= 60
+    assert sum("0.1074" in line and "12.68" in line for line in lines) == 1
