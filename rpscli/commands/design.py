@@ -264,7 +264,7 @@ def answer_tables(
             (
                 design,
                 verdict.condition.name,
-                "EXCEEDED" if verdict.exceeded else "met",
+                verdict.word,
                 condition_text(verdict.condition),
                 verdict_text(verdict),
             )

@@ -263,7 +263,7 @@ def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
         [
             *system,
             verdict.condition.name,
-            "EXCEEDED" if verdict.exceeded else "met",
+            verdict.word,
             condition_text(verdict.condition),
             verdict_text(verdict),
         ]

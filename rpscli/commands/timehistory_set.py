@@ -231,7 +231,7 @@ def _verdict_table(computed: Sequence[Computed]) -> Table:
                 [
                     case.label,
                     verdict.condition.name,
-                    "EXCEEDED" if verdict.exceeded else "met",
+                    verdict.word,
                     condition_text(verdict.condition),
                     f"{verdict.beyond.number} of {verdict.beyond.of} beyond{largest}",
                 ]

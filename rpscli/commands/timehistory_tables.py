@@ -177,7 +177,7 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
     rows = []
     for verdict in verdicts:
         condition, value = verdict.condition, shown(verdict.value)
-        row = (condition.name, "EXCEEDED" if verdict.exceeded else "met", condition.source)
+        row = (condition.name, verdict.word, condition.source)
         if condition.name in EVENTS:
             rows.append((*row, "", ""))
         else:

@@ -34,6 +34,11 @@ class Verdict:
     fractile: float | None
     exceeded: bool
 
+    @property
+    def word(self) -> str:
+        """As tables say it."""
+        return "EXCEEDED" if self.exceeded else "met"
+
 
 class Judgement(NamedTuple):
     """(weightings, rows) histories that are counted, that exceed a limit, and that may."""
