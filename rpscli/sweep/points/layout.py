@@ -23,33 +23,22 @@ from rpscli.sweep.points.combinations import Change, Combinations, changes, comb
 
 @dataclass(frozen=True, eq=False)
 class StudyPoints:
-    """Systems, records, scales and perturbations; the last of them runs fastest.
-
-    Parameters
-    ----------
-    study
-        What is laid out.
-    plan
-        The part of it that evaluates points.
-    combinations
-        The systems.
-    properties
-        Of every system, in order.
-    records
-        The records; None stands for the one of each system's own case, or for no record.
-    scales
-        Factors, or values of the measure; None stands for the factor of the case.
-    members
-        Changes of the perturbation.
-    """
+    """Systems, records, scales and perturbations; the last of them runs fastest."""
 
     study: Study
+    """What is laid out."""
     plan: Plan
+    """The part of it that evaluates points."""
     combinations: Combinations
+    """The systems."""
     properties: tuple[SystemProperties, ...]
+    """Of every system, in order."""
     records: tuple[RecordRequest | None, ...]
+    """The records; None stands for the one of each system's own case, or for no record."""
     scales: tuple[float | None, ...]
+    """Factors, or values of the measure; None stands for the factor of the case."""
     members: tuple[Change, ...]
+    """Changes of the perturbation."""
 
     def __len__(self) -> int:
         return math.prod(self.shape)
@@ -103,13 +92,7 @@ class StudyPoints:
 
 
 def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
-    """The points of a study; all its systems are examined on the way, in the hands of `watched`.
-
-    Raises
-    ------
-    CaseError
-        If a system is no valid case.
-    """
+    """The points of a study; all its systems are examined on the way, in the hands of `watched`."""
     file, combinations = study.file, combinations_of(study)
     scale = study.scale
     measure = scale if isinstance(scale, MeasureScale) else None
