@@ -16,25 +16,11 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
-from rpscli.case.schema.fields import (
-    LARGEST,
-    Quantity,
-    Section,
-    Whole,
-    is_finite,
-    must_be,
-    refuse,
-)
+from rpscli.case.schema.fields import LARGEST, Quantity, Section, Whole, is_finite, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
 from rpscli.case.study.axes import Axis, sources_of
-from rpscli.case.study.rules import (
-    fixed_faults,
-    record_rules,
-    twice,
-    unknown_keys,
-    varied_paths,
-)
+from rpscli.case.study.rules import fixed_faults, record_rules, twice, unknown_keys, varied_paths
 from rpscli.case.study.schema import Seed, Sources, StudyParts
 from rpscli.case.study.study import Study, shared_out, study_of
 from rpscli.case.text.document import Document, Fault, is_case, is_design
@@ -48,12 +34,7 @@ PLUS = "plus"
 """What is added to a linear sum."""
 
 
-OLD_WORDS = {
-    "find": "variables",
-    "ties": "linked",
-    "least": "minimise",
-    "confirm": "validate",
-}
+OLD_WORDS = {"find": "variables", "ties": "linked", "least": "minimise", "confirm": "validate"}
 """Keys of designs that had other names; understood, with a note, in this version only."""
 
 Array = NDArray[np.float64]

@@ -38,11 +38,7 @@ _FILE_OPTIONS = re.compile(r"(.+?)\?([A-Za-z_]\w*=[^&?]*(?:&[A-Za-z_]\w*=[^&?]*)
 
 
 def load_record(
-    source: str,
-    *,
-    folder: Path | None = None,
-    dt: float | None = None,
-    units: str | None = None,
+    source: str, *, folder: Path | None = None, dt: float | None = None, units: str | None = None
 ) -> GroundMotion:
     """Load one ground motion.
 

@@ -161,16 +161,12 @@ class BearingSection(Section):
         Annotated[
             float | Literal["critical"],
             Quantity(
-                symbol="rho = r/2H",
-                at_least=0,
-                remedy="use 0 for flat ends",
-                words=("critical",),
+                symbol="rho = r/2H", at_least=0, remedy="use 0 for flat ends", words=("critical",)
             ),
         ]
         | None
     ) = Field(
-        None,
-        description="rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2",
+        None, description="rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2"
     )
     dimensions: DimensionsSection | None = Field(
         None, description="sizes in place of the four keys above"

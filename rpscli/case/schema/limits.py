@@ -54,8 +54,7 @@ def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whethe
     fields: Any = {key: (number, Field(description="admissible value"))}
     rule = create_model(f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, **fields)
     return Annotated[
-        Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")],
-        Discriminator(_form),
+        Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")], Discriminator(_form)
     ]
 
 

@@ -42,8 +42,7 @@ from rpscli.records.measures import Measure
 Number = Annotated[float, Quantity()]
 Seed = Annotated[int, Whole(0)]
 Share = Annotated[
-    float,
-    Quantity(symbol="share of the value", at_least=0, below=1, remedy="1 % is 0.01"),
+    float, Quantity(symbol="share of the value", at_least=0, below=1, remedy="1 % is 0.01")
 ]
 PositiveNumber = Annotated[float, Quantity(above=0)]
 

@@ -51,10 +51,7 @@ FORMATS = (
 )
 """In the order of recognition; plain columns accept most, so they come last."""
 
-_OTHER_QUANTITIES = {
-    ".vt2": "velocity",
-    ".dt2": "displacement",
-}
+_OTHER_QUANTITIES = {".vt2": "velocity", ".dt2": "displacement"}
 _STRONGEST, _WEAKEST = 4.0, 1e-3  # g
 _NONSENSE = 1e9  # g; raw counts taken for g have a hundredth, and squares stay finite
 _FINEST, _COARSEST = 1e-4, 0.1  # s
