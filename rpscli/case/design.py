@@ -46,10 +46,10 @@ DIGITS = 6
 class Term(Section):
     """One term of what is minimised."""
 
-    times: Annotated[float, Quantity()] = Field(1.0, description="factor, in SI units")
-    fractile: Fractile = Field(
-        0.5, description="of a result over the records; its median by default"
-    )
+    times: Annotated[float, Quantity()] = 1.0
+    """factor, in SI units"""
+    fractile: Fractile = 0.5
+    """of a result over the records; its median by default"""
 
     @model_validator(mode="before")
     @classmethod
@@ -147,29 +147,27 @@ Sums = dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSc
 class SearchSection(Section):
     """How many designs are looked at; what is left out follows from the number of unknowns."""
 
-    first: Annotated[int, Whole(4, 65_536)] | None = Field(
-        None, description="designs of the first, even sample"
-    )
-    most: Annotated[int, Whole(4, 65_536)] | None = Field(
-        None, description="designs in all; four times the first ones by default"
-    )
-    resolution: Annotated[float, Quantity(above=0, below=1)] = Field(
-        0.005, description="distance to which designs close in, as a share of each range"
-    )
-    resamples: Annotated[int, Whole(0, 10_000)] = Field(
-        500, description="bootstrap samples of the records; 0 = none"
-    )
-    seed: Seed = Field(1, description="of the sample and the bootstrap")
+    first: Annotated[int, Whole(4, 65_536)] | None = None
+    """designs of the first, even sample"""
+    most: Annotated[int, Whole(4, 65_536)] | None = None
+    """designs in all; four times the first ones by default"""
+    resolution: Annotated[float, Quantity(above=0, below=1)] = 0.005
+    """distance to which designs close in, as a share of each range"""
+    resamples: Annotated[int, Whole(0, 10_000)] = 500
+    """bootstrap samples of the records; 0 = none"""
+    seed: Seed = 1
+    """of the sample and the bootstrap"""
 
 
 class ValidateSection(Section):
     """Motions that the search does not see."""
 
-    records: Sources | None = Field(None, description="record sources, as in a study")
-    share: Annotated[float, Quantity(above=0, below=1)] | None = Field(
-        None, description="share of the design's own records that is held out, in place of them"
-    )
-    seed: Seed = Field(1, description="of the draw of what is held out")
+    records: Sources | None = None
+    """record sources, as in a study"""
+    share: Annotated[float, Quantity(above=0, below=1)] | None = None
+    """share of the design's own records that is held out, in place of them"""
+    seed: Seed = 1
+    """of the draw of what is held out"""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Self:
@@ -181,20 +179,19 @@ class ValidateSection(Section):
 class DesignFile(StudyParts):
     """A design: the values of some keys of a case that meet the limits and minimise something."""
 
-    variables: Variables = Field(
-        description="dotted case keys with [least, largest]: what may change"
-    )
+    variables: Variables
+    """dotted case keys with [least, largest]: what may change"""
     linked: Sums = Field(
         {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
     )
-    minimise: Objectives = Field(
-        description="what is minimised: a result, a key, or a sum of them; two for their front"
-    )
+    minimise: Objectives
+    """what is minimised: a result, a key, or a sum of them; two for their front"""
     # pydantic's models have a method validate.
     validation: ValidateSection | None = Field(
         None, alias="validate", description="motions to validate the design with"
     )
-    search: SearchSection = Field(SearchSection(), description="how many designs are looked at")
+    search: SearchSection = SearchSection()
+    """how many designs are looked at"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,33 +50,27 @@ class DeviceSection(Section):
         description="viscous or friction damper, elastic stop, unbonded tendon in the axis of each"
         " column, or the resistance of the columns to rolling"
     )
-    coefficient: Annotated[float, Quantity("N s/m", symbol="c", above=0)] | None = Field(
-        None, description="viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"
-    )
+    coefficient: Annotated[float, Quantity("N s/m", symbol="c", above=0)] | None = None
+    """viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"""
     exponent: (
         Annotated[
             float, Quantity(symbol="a", at_least=0.2, at_most=2, remedy="1 is a linear damper")
         ]
         | None
-    ) = Field(None, description="viscous: a of P = c |u_b'|^a; 1 if left out")
-    force: Annotated[float, Quantity("N", symbol="F_d", above=0)] | None = Field(
-        None, description="friction: F_d, at which the damper slides"
-    )
-    gap: Annotated[float, Quantity("m", symbol="d", at_least=0)] | None = Field(
-        None, description="stop: d, the cap beam's displacement at which it is met, on both sides"
-    )
-    stiffness: Annotated[float, Quantity("N/m", above=0)] | None = Field(
-        None, description="stop: k_s; tendon: k_t of one"
-    )
-    damping: Annotated[float, Quantity("N s/m", symbol="c_s", at_least=0)] | None = Field(
-        None, description="stop: c_s beside its stiffness; it never pulls; 0 if left out"
-    )
-    prestress: Annotated[float, Quantity("N", symbol="P_0", at_least=0)] | None = Field(
-        None, description="tendon: P_0 of one, while the structure stands"
-    )
-    yield_force: Annotated[float, Quantity("N", symbol="P_y", above=0)] | None = Field(
-        None, description="tendon: P_y of one; left out: it never yields"
-    )
+    ) = None
+    """viscous: a of P = c |u_b'|^a; 1 if left out"""
+    force: Annotated[float, Quantity("N", symbol="F_d", above=0)] | None = None
+    """friction: F_d, at which the damper slides"""
+    gap: Annotated[float, Quantity("m", symbol="d", at_least=0)] | None = None
+    """stop: d, the cap beam's displacement at which it is met, on both sides"""
+    stiffness: Annotated[float, Quantity("N/m", above=0)] | None = None
+    """stop: k_s; tendon: k_t of one"""
+    damping: Annotated[float, Quantity("N s/m", symbol="c_s", at_least=0)] | None = None
+    """stop: c_s beside its stiffness; it never pulls; 0 if left out"""
+    prestress: Annotated[float, Quantity("N", symbol="P_0", at_least=0)] | None = None
+    """tendon: P_0 of one, while the structure stands"""
+    yield_force: Annotated[float, Quantity("N", symbol="P_y", above=0)] | None = None
+    """tendon: P_y of one; left out: it never yields"""
     lever: Annotated[float, Quantity("m", symbol="f", above=0)] | None = Field(
         None,
         description="rolling_resistance: f, by which the normal force runs ahead of the contact;"
@@ -100,7 +94,8 @@ Profile = Literal["sine", "uniform", "linear", "flexural"]
 class DampingSection(Section):
     """Damping of the building on a fixed base: Rayleigh if modes are named, else modal."""
 
-    ratio: DampingRatio = Field(description="critical damping ratio")
+    ratio: DampingRatio
+    """critical damping ratio"""
     modes: ModePair | None = Field(
         None,
         description="the two modes of Rayleigh damping, counted from 1; left out: the same ratio"
@@ -111,52 +106,49 @@ class DampingSection(Section):
 class SuperstructureSection(Section):
     """The building on the cap beam: a shear building."""
 
-    storeys: Annotated[int, Whole(0, MOST_STOREYS, remedy="0 = no building, a rigid frame")] = (
-        Field(description="number of storeys; 0 = none, a rigid rolling or rocking frame")
-    )
-    storey_mass: Masses | None = Field(
-        None, description="floor mass: one value, or a list from the bottom"
-    )
-    storey_height: Lengths | None = Field(
-        None, description="storey height, for drift ratios and pictures: one value, or a list"
-    )
-    period: Time | None = Field(
-        None, description="first period on a fixed base; scales the profile"
-    )
+    storeys: Annotated[int, Whole(0, MOST_STOREYS, remedy="0 = no building, a rigid frame")]
+    """number of storeys; 0 = none, a rigid rolling or rocking frame"""
+    storey_mass: Masses | None = None
+    """floor mass: one value, or a list from the bottom"""
+    storey_height: Lengths | None = None
+    """storey height, for drift ratios and pictures: one value, or a list"""
+    period: Time | None = None
+    """first period on a fixed base; scales the profile"""
     profile: Profile | None = Field(
         None,
         description="what distributes the stiffness: a sine, linear or flexural first mode, or"
         " uniform stiffness; sine if a period is given without it",
     )
-    stiffness: Stiffnesses | None = Field(
-        None, description="storey stiffness in place of period and profile: one value, or a list"
-    )
-    damping: DampingSection | None = Field(None, description="on a fixed base")
+    stiffness: Stiffnesses | None = None
+    """storey stiffness in place of period and profile: one value, or a list"""
+    damping: DampingSection | None = None
+    """on a fixed base"""
 
 
 class DimensionsSection(Section):
     """Full sizes of the column, in place of semi_diagonal and the ratios."""
 
-    height: Length = Field(description="2H, between the flat parts of the two ends")
-    width: Length = Field(description="2B, of the flat part")
-    wedge_width: Length | None = Field(
-        None, description="2B', across the outer edges of the arcs; ignored for flat ends"
-    )
+    height: Length
+    """2H, between the flat parts of the two ends"""
+    width: Length
+    """2B, of the flat part"""
+    wedge_width: Length | None = None
+    """2B', across the outer edges of the arcs; ignored for flat ends"""
     radius: Annotated[
         float, Quantity("m", symbol="r, of the arcs", at_least=0, remedy="use 0 for flat ends")
-    ] = Field(description="r of the arcs; 0 = flat ends")
+    ]
+    """r of the arcs; 0 = flat ends"""
 
 
 class BearingSection(Section):
     """Shape of one column."""
 
-    semi_diagonal: Length | None = Field(
-        None, description="R = sqrt(H^2 + B^2), half height and half width of the flat part"
-    )
-    slenderness: PositiveRatio | None = Field(None, description="tan(alpha) = B/H")
-    wedge_slenderness: PositiveRatio | None = Field(
-        None, description="tan(alpha') = B'/H; ignored for flat ends"
-    )
+    semi_diagonal: Length | None = None
+    """R = sqrt(H^2 + B^2), half height and half width of the flat part"""
+    slenderness: PositiveRatio | None = None
+    """tan(alpha) = B/H"""
+    wedge_slenderness: PositiveRatio | None = None
+    """tan(alpha') = B'/H; ignored for flat ends"""
     curvature_ratio: (
         Annotated[
             float | Literal["critical"],
@@ -165,12 +157,10 @@ class BearingSection(Section):
             ),
         ]
         | None
-    ) = Field(
-        None, description="rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2"
-    )
-    dimensions: DimensionsSection | None = Field(
-        None, description="sizes in place of the four keys above"
-    )
+    ) = None
+    """rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2"""
+    dimensions: DimensionsSection | None = None
+    """sizes in place of the four keys above"""
     inertia_ratio: Annotated[
         float,
         Quantity(
@@ -178,7 +168,8 @@ class BearingSection(Section):
             at_least=1,
             remedy="4/3 is a rectangular block",
         ),
-    ] = Field(4.0 / 3.0, description="I_o/(m_c R^2), I_o about an edge of the flat part")
+    ] = 4.0 / 3.0
+    """I_o/(m_c R^2), I_o about an edge of the flat part"""
 
 
 class ImpactSection(Section):
@@ -191,7 +182,8 @@ class ImpactSection(Section):
     )
     restitution: (
         Annotated[float, Quantity(symbol="velocity after over before", above=0, at_most=1)] | None
-    ) = Field(None, description="e of the law value")
+    ) = None
+    """e of the law value"""
     loss: Annotated[
         float, Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5)
     ] = Field(
@@ -199,7 +191,8 @@ class ImpactSection(Section):
         description="kappa: part of the law's loss at an impact, 1 - e = kappa (1 - e of the law);"
         " 1 = impulse at the edges, 0.3 to 0.5 = spread over plane ends on a damped bed",
     )
-    factor: PositiveRatio = Field(1.0, description="multiplies the restitution of the law")
+    factor: PositiveRatio = 1.0
+    """multiplies the restitution of the law"""
 
 
 def _law_alone(value: object) -> object:
@@ -209,19 +202,16 @@ def _law_alone(value: object) -> object:
 class PodiumMasses(Section):
     """Masses of columns and cap beam, directly or as ratios."""
 
-    cap_beam_mass_ratio: Ratio | None = Field(
-        None, description="gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"
-    )
-    superstructure_mass_ratio: PositiveRatio | None = Field(
-        None, description="eta = M_tot/m_b, building over cap beam"
-    )
-    cap_beam_mass: Annotated[float, Quantity("kg", symbol="m_b", at_least=0)] | None = Field(
-        None, description="m_b; in place of a ratio"
-    )
-    column_mass: Mass | None = Field(
-        None, description="m_c of one column; in place of cap_beam_mass_ratio"
-    )
-    columns: Annotated[int, Whole(1, 100_000)] | None = Field(None, description="their number N")
+    cap_beam_mass_ratio: Ratio | None = None
+    """gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"""
+    superstructure_mass_ratio: PositiveRatio | None = None
+    """eta = M_tot/m_b, building over cap beam"""
+    cap_beam_mass: Annotated[float, Quantity("kg", symbol="m_b", at_least=0)] | None = None
+    """m_b; in place of a ratio"""
+    column_mass: Mass | None = None
+    """m_c of one column; in place of cap_beam_mass_ratio"""
+    columns: Annotated[int, Whole(1, 100_000)] | None = None
+    """their number N"""
 
     @property
     def without_cap_beam(self) -> bool:
@@ -232,38 +222,34 @@ class PodiumMasses(Section):
 class PodiumSection(PodiumMasses):
     """Columns and cap beam."""
 
-    bearing: BearingSection = Field(description="shape of one column")
-    impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = Field(
-        ImpactSection(), description="impact law; a law's name alone may stand here"
-    )
+    bearing: BearingSection
+    """shape of one column"""
+    impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = ImpactSection()
+    """impact law; a law's name alone may stand here"""
     friction: (
         Annotated[float, Quantity(symbol="of friction, at both ends of the columns", above=0)]
         | None
-    ) = Field(
-        None,
-        description="coefficient of friction at both ends of the columns; the friction demand is"
-        " then judged",
-    )
-    devices: tuple[DeviceSection, ...] = Field(
-        (), description="dampers, stops and tendons between ground and cap beam, at most 8"
-    )
+    ) = None
+    """coefficient of friction at both ends of the columns; the friction demand is then judged"""
+    devices: tuple[DeviceSection, ...] = ()
+    """dampers, stops and tendons between ground and cap beam, at most 8"""
 
 
 class RecordSection(Section):
     """The ground motion."""
 
-    source: Text = Field(description="a file, a member of a record set, or a pulse")
-    scale: Annotated[float, Quantity()] = Field(
-        1.0, description="factor on the horizontal and the vertical acceleration"
-    )
-    scale_to: ScaleToSection | None = Field(
-        None, description="value of an intensity measure, in place of scale"
-    )
-    vertical: Text | None = Field(None, description="source of the vertical component")
-    dt: Time | None = Field(None, description="time step of a file that does not state it")
-    units: Text | None = Field(
-        None, description="unit of the values of a file that does not state it, such as g"
-    )
+    source: Text
+    """a file, a member of a record set, or a pulse"""
+    scale: Annotated[float, Quantity()] = 1.0
+    """factor on the horizontal and the vertical acceleration"""
+    scale_to: ScaleToSection | None = None
+    """value of an intensity measure, in place of scale"""
+    vertical: Text | None = None
+    """source of the vertical component"""
+    dt: Time | None = None
+    """time step of a file that does not state it"""
+    units: Text | None = None
+    """unit of the values of a file that does not state it, such as g"""
 
 
 class AnalysisSection(Section):
@@ -272,30 +258,27 @@ class AnalysisSection(Section):
     free_vibration: Annotated[
         float | Literal["auto"],
         Quantity("s", symbol="after the record's end", at_least=0, words=("auto",)),
-    ] = Field(
-        "auto", description="time after the record; auto = until rest or no new maximum is possible"
-    )
-    recontact_tolerance: Annotated[float, Quantity(above=0, below=1)] = Field(
-        1e-6, description="an excursion below this part of alpha after an impact is contact"
-    )
+    ] = "auto"
+    """time after the record; auto = until rest or no new maximum is possible"""
+    recontact_tolerance: Annotated[float, Quantity(above=0, below=1)] = 1e-6
+    """an excursion below this part of alpha after an impact is contact"""
     recontact_rule: Literal["limit", "relative"] = Field(
         "limit",
         description="limit: floors get at re-contact what ever smaller bounces would have given"
         " them; relative: they keep their velocity relative to the cap beam (converges slower)",
     )
-    initial_rotation: Annotated[float, Quantity(symbol="rad")] = Field(
-        0.0, description="rotation from which the structure is released at rest; 0 = full contact"
-    )
+    initial_rotation: Annotated[float, Quantity(symbol="rad")] = 0.0
+    """rotation from which the structure is released at rest; 0 = full contact"""
     overturning_limit: Annotated[
         float, Quantity(symbol="times the critical rotation", at_least=1)
-    ] = Field(2.0, description="rotation that counts as overturned, over theta_cr")
-    gravity: Annotated[float, Quantity("m/s2", above=0)] = Field(STANDARD_GRAVITY, description="g")
-    accuracy: PositiveRatio = Field(
-        1.0, description="time steps are 1/accuracy times the default size"
-    )
-    max_events: Annotated[int, Whole(1, 1_000_000_000)] = Field(
-        100_000, description="uplifts, impacts and phase changes after which the analysis gives up"
-    )
+    ] = 2.0
+    """rotation that counts as overturned, over theta_cr"""
+    gravity: Annotated[float, Quantity("m/s2", above=0)] = STANDARD_GRAVITY
+    """g"""
+    accuracy: PositiveRatio = 1.0
+    """time steps are 1/accuracy times the default size"""
+    max_events: Annotated[int, Whole(1, 1_000_000_000)] = 100_000
+    """uplifts, impacts and phase changes after which the analysis gives up"""
 
 
 class CaseFile(Section):
@@ -303,12 +286,17 @@ class CaseFile(Section):
 
     rps: Annotated[
         int, Whole(FORMAT_VERSION, FORMAT_VERSION, "this program reads version 1 of the format")
-    ] = Field(description="version of the format; write `rps: 1`")
-    title: Text | None = Field(None, description="heading of reports and plots")
-    superstructure: SuperstructureSection = Field(description="the building on the cap beam")
-    podium: PodiumSection = Field(description="columns and cap beam")
-    record: RecordSection | None = Field(None, description="the ground motion")
-    analysis: AnalysisSection = Field(AnalysisSection(), description="how to compute")
-    limits: LimitsSection = Field(
-        LimitsSection(), description="exceeding one of them ends with exit code 10"
-    )
+    ]
+    """version of the format; write `rps: 1`"""
+    title: Text | None = None
+    """heading of reports and plots"""
+    superstructure: SuperstructureSection
+    """the building on the cap beam"""
+    podium: PodiumSection
+    """columns and cap beam"""
+    record: RecordSection | None = None
+    """the ground motion"""
+    analysis: AnalysisSection = AnalysisSection()
+    """how to compute"""
+    limits: LimitsSection = LimitsSection()
+    """exceeding one of them ends with exit code 10"""

@@ -15,7 +15,6 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
-    Field,
     GetCoreSchemaHandler,
     PlainValidator,
     WithJsonSchema,
@@ -28,9 +27,14 @@ from rpscli.units import KINDS, si_value
 
 
 class Section(BaseModel):
-    """A mapping of the file: unknown keys are refused, and nothing changes later."""
+    """A mapping of the file: unknown keys are refused, and nothing changes later.
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    The text below a key is its description; validators are built when they are first used.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, use_attribute_docstrings=True, defer_build=True
+    )
 
 
 SMALLEST, LARGEST = 1e-15, 1e15
@@ -238,10 +242,14 @@ def must_be(kinds: type | tuple[type, ...], text: str, *, filled: bool = False) 
 class ValueRange(Section):
     """Equally spaced values in place of a list."""
 
-    low: Annotated[float, Quantity()] = Field(description="first value")
-    high: Annotated[float, Quantity()] = Field(description="last value")
-    count: Annotated[int, Whole(2, 1_000_000)] = Field(description="how many, both ends included")
-    spacing: Literal["linear", "log"] = Field("linear", description="equal steps or equal ratios")
+    low: Annotated[float, Quantity()]
+    """first value"""
+    high: Annotated[float, Quantity()]
+    """last value"""
+    count: Annotated[int, Whole(2, 1_000_000)]
+    """how many, both ends included"""
+    spacing: Literal["linear", "log"] = "linear"
+    """equal steps or equal ratios"""
 
     @model_validator(mode="after")
     def _has_ratios(self) -> Self:

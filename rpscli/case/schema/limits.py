@@ -20,7 +20,7 @@ Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1"
 Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
 
 
-class LimitRule(Section):
+class LimitRule(Section, use_attribute_docstrings=False):
     """A limit for the records of a study together; a single history must keep it anyway."""
 
     share: Admissible | None = Field(
@@ -70,7 +70,13 @@ _FIELDS: Any = {
 }
 
 
-class LimitsSection(create_model("Limits", __base__=Section, **_FIELDS)):  # type: ignore[misc]
+_WITHOUT_SOURCE = {"use_attribute_docstrings": False}
+"""Of models that no class statement defines: looking for it takes long."""
+
+
+class LimitsSection(  # type: ignore[misc]
+    create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)
+):
     """Acceptance limits."""
 
     overturning: Admissible | None = Field(

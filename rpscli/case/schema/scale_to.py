@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
-    Field,
     PlainValidator,
     ValidationError,
     ValidationInfo,
@@ -49,14 +48,14 @@ of_sa = AfterValidator(_of_sa)
 class ScaleToSection(Section):
     """A value of an intensity measure of the horizontal record, in place of a factor."""
 
-    measure: Measure = Field(
-        description="PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"
-    )
-    value: MeasuredValue = Field(description="what it is to be, SI or with a unit, such as 0.4 g")
-    period: Annotated[Annotated[float, Quantity("s", above=0)] | None, of_sa] = Field(
-        None, description="of Sa; left out: the fixed-base first period of the building"
-    )
-    damping: DampingRatio = Field(0.05, description="of Sa")
+    measure: Measure
+    """PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"""
+    value: MeasuredValue
+    """what it is to be, SI or with a unit, such as 0.4 g"""
+    period: Annotated[Annotated[float, Quantity("s", above=0)] | None, of_sa] = None
+    """of Sa; left out: the fixed-base first period of the building"""
+    damping: DampingRatio = 0.05
+    """of Sa"""
 
 
 def scale_to_of(text: str) -> ScaleToSection:

@@ -6,8 +6,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, get_args
 
-from pydantic import Field
-
 from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.fields import Section, Text
 from rpscli.case.study.axes import Axis
@@ -41,8 +39,10 @@ def _is_varied(annotation: Any) -> bool:
 class ReportOptions(Section):
     """Options that every report has."""
 
-    name: Text | None = Field(None, description="stem of its files; the report's kind by default")
-    title: Text | None = Field(None, description="heading of the figure; the study's by default")
+    name: Text | None = None
+    """stem of its files; the report's kind by default"""
+    title: Text | None = None
+    """heading of the figure; the study's by default"""
 
 
 @dataclass(frozen=True)

@@ -102,14 +102,14 @@ Analysis = Literal["timehistory", "modal", "pushover"]
 class MeasureScale(Section):
     """Every record scaled to given values of an intensity measure."""
 
-    measure: Measure = Field(
-        description="PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"
-    )
-    values: MeasuredValues = Field(description="values to scale to, SI or with a unit")
-    period: Annotated[Time | None, of_sa] = Field(
-        None, description="of Sa; left out: the fixed-base first period of each system"
-    )
-    damping: DampingRatio = Field(0.05, description="of Sa")
+    measure: Measure
+    """PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"""
+    values: MeasuredValues
+    """values to scale to, SI or with a unit"""
+    period: Annotated[Time | None, of_sa] = None
+    """of Sa; left out: the fixed-base first period of each system"""
+    damping: DampingRatio = 0.05
+    """of Sa"""
 
 
 def _kind_of_scale(value: object) -> str:
@@ -127,13 +127,16 @@ Scale = Annotated[
 class RangeSection(Section):
     """What an uncertain parameter may be: uniform between bounds, or a distribution."""
 
-    low: Number | None = Field(None, description="lower bound of a uniform distribution")
-    high: Number | None = Field(None, description="upper bound of a uniform distribution")
-    distribution: Literal["uniform", "normal", "lognormal"] = Field(
-        "uniform", description="its kind; all but bounds need mean and cov"
-    )
-    mean: Number | None = Field(None, description="mean value")
-    cov: PositiveRatio | None = Field(None, description="standard deviation over mean")
+    low: Number | None = None
+    """lower bound of a uniform distribution"""
+    high: Number | None = None
+    """upper bound of a uniform distribution"""
+    distribution: Literal["uniform", "normal", "lognormal"] = "uniform"
+    """its kind; all but bounds need mean and cov"""
+    mean: Number | None = None
+    """mean value"""
+    cov: PositiveRatio | None = None
+    """standard deviation over mean"""
 
     @classmethod
     def __get_pydantic_json_schema__(
@@ -179,21 +182,27 @@ Ranges = Annotated[
 class SampleSection(Section):
     """A sample of uncertain parameters, by a low-discrepancy or stratified sequence."""
 
-    method: Literal["sobol", "latin_hypercube"] = Field("sobol", description="kind of sequence")
-    size: Annotated[int, Whole(1)] = Field(description="number of sampled systems")
-    seed: Seed = Field(1, description="of the scrambling; the same seed gives the same sample")
-    ranges: Ranges = Field(description="dotted case keys with [low, high] or a distribution")
+    method: Literal["sobol", "latin_hypercube"] = "sobol"
+    """kind of sequence"""
+    size: Annotated[int, Whole(1)]
+    """number of sampled systems"""
+    seed: Seed = 1
+    """of the scrambling; the same seed gives the same sample"""
+    ranges: Ranges
+    """dotted case keys with [low, high] or a distribution"""
 
 
 class PerturbSection(Section):
     """An ensemble of small perturbations around every point."""
 
-    scale: Share = Field(0.01, description="largest change of the record's scale, relative")
-    restitution: Share = Field(0.01, description="largest change of the restitution, relative")
-    members: Annotated[int, Whole(2)] = Field(
-        20, description="points in place of one; the first is the unperturbed one"
-    )
-    seed: Seed = Field(1, description="of the perturbations, which are the same at every point")
+    scale: Share = 0.01
+    """largest change of the record's scale, relative"""
+    restitution: Share = 0.01
+    """largest change of the restitution, relative"""
+    members: Annotated[int, Whole(2)] = 20
+    """points in place of one; the first is the unperturbed one"""
+    seed: Seed = 1
+    """of the perturbations, which are the same at every point"""
 
 
 class RecordPattern(Section):
@@ -202,7 +211,8 @@ class RecordPattern(Section):
     model_config = ConfigDict(extra="allow", frozen=True)
     __pydantic_extra__: dict[str, Annotated[tuple[Any, ...], Several(Option)]]
 
-    source: Text = Field(description="a pulse or a synthetic motion, without the varied options")
+    source: Text
+    """a pulse or a synthetic motion, without the varied options"""
 
 
 Source = Annotated[
@@ -243,35 +253,37 @@ class StudyParts(Section):
 
     rps: Annotated[
         int, Whole(FORMAT_VERSION, FORMAT_VERSION, "this program reads version 1 of the format")
-    ] = Field(description="version of the format; write `rps: 1`")
-    title: Text | None = Field(None, description="heading of reports and plots")
-    base: Base = Field(description="a case file, seen from the study's folder, or the case itself")
-    records: Sources | None = Field(
-        None, description="record sources, folders, globs; left out: the record of the case"
-    )
-    scale: Scale | None = Field(
-        None, description="factors on the records, or values of a measure to scale them to"
-    )
+    ]
+    """version of the format; write `rps: 1`"""
+    title: Text | None = None
+    """heading of reports and plots"""
+    base: Base
+    """a case file, seen from the study's folder, or the case itself"""
+    records: Sources | None = None
+    """record sources, folders, globs; left out: the record of the case"""
+    scale: Scale | None = None
+    """factors on the records, or values of a measure to scale them to"""
     whole_histories: bool = Field(
         default=False,
         description="follow each history by itself, with all its samples: roof displacement, floor"
         " velocity, forces of a column, base shear over that of the fixed base; far slower",
     )
-    limits: LimitsSection | None = Field(
-        None, description="judge the study in place of those of its base; exceeded: exit code 10"
-    )
+    limits: LimitsSection | None = None
+    """judge the study in place of those of its base; exceeded: exit code 10"""
 
 
 class StudyFile(StudyParts):
     """A study of rps: many points from one case."""
 
-    analysis: Analysis = Field("timehistory", description="what is done at every point")
-    vary: Axes = Field((), description="axes of a product; the keys of one axis go together")
-    sample: SampleSection | None = Field(None, description="uncertain parameters; one more axis")
-    perturb: PerturbSection | None = Field(
-        None, description="small perturbations around every point"
-    )
-    observed: Text | None = Field(
-        None, description="CSV file of what was observed under records; for the report comparison"
-    )
-    reports: Reports = Field((), description="names of reports, or `name: {option: value}`")
+    analysis: Analysis = "timehistory"
+    """what is done at every point"""
+    vary: Axes = ()
+    """axes of a product; the keys of one axis go together"""
+    sample: SampleSection | None = None
+    """uncertain parameters; one more axis"""
+    perturb: PerturbSection | None = None
+    """small perturbations around every point"""
+    observed: Text | None = None
+    """CSV file of what was observed under records; for the report comparison"""
+    reports: Reports = ()
+    """names of reports, or `name: {option: value}`"""
