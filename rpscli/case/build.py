@@ -6,7 +6,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.schema.case_file import (
@@ -118,26 +117,20 @@ def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
 
 def building(section: SuperstructureSection) -> Superstructure | None:
     """The shear building; None for no storeys."""
-    n = section.storeys
+    n, given, height = section.storeys, section.damping, section.storey_height
     if n == 0:
         return None
-    masses = _array(section.storey_mass, n)
-    if section.period is None:
-        stiffnesses = _array(section.stiffness, n)
-    else:
-        profile = section.profile or "sine"
-        stiffnesses = profile_stiffnesses(masses, section.period, profile)
-    heights = None if section.storey_height is None else _array(section.storey_height, n)
-    return Superstructure(masses, stiffnesses, damping(section), heights)
-
-
-def damping(section: SuperstructureSection) -> RayleighDamping | ModalDamping:
-    """Rayleigh damping if two modes are named, else the ratio in every mode."""
-    given = section.damping
     assert given is not None, "the rules of the case make sure that damping is given"
-    if given.modes is None:
-        return ModalDamping(given.ratio)
-    return RayleighDamping(given.ratio, given.modes)
+    masses = np.array(each_storey(section.storey_mass, n))
+    if section.period is None:
+        stiffnesses = np.array(each_storey(section.stiffness, n))
+    else:
+        stiffnesses = profile_stiffnesses(masses, section.period, section.profile or "sine")
+    heights = None if height is None else np.array(each_storey(height, n))
+    damping: RayleighDamping | ModalDamping = ModalDamping(given.ratio)
+    if given.modes is not None:
+        damping = RayleighDamping(given.ratio, given.modes)
+    return Superstructure(masses, stiffnesses, damping, heights)
 
 
 def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[float]:
@@ -148,10 +141,6 @@ def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[f
     """
     assert value is not None, "the rules of the case make sure that the value is given"
     return list(value) if isinstance(value, tuple) else [value] * storeys
-
-
-def _array(value: float | tuple[float, ...] | None, storeys: int) -> NDArray[np.float64]:
-    return np.array(each_storey(value, storeys))
 
 
 def building_mass(section: SuperstructureSection) -> float:
@@ -180,13 +169,7 @@ def podium_masses(section: PodiumMasses, building_mass: float) -> tuple[float, f
 
 def time_history_settings(section: AnalysisSection) -> TimeHistorySettings:
     """Settings of the time history; gravity belongs to the structure."""
-    auto = isinstance(section.free_vibration, str)
-    return TimeHistorySettings(
-        free_vibration=None if auto else float(section.free_vibration),
-        recontact_tolerance=section.recontact_tolerance,
-        recontact_rule=section.recontact_rule,
-        initial_rotation=section.initial_rotation,
-        overturning_limit=section.overturning_limit,
-        accuracy=section.accuracy,
-        max_events=section.max_events,
-    )
+    given = section.model_dump(exclude={"gravity"})
+    if given["free_vibration"] == "auto":
+        given["free_vibration"] = None
+    return TimeHistorySettings(**given)

@@ -51,22 +51,22 @@ def apply_overrides(
         try:
             _put(changed, override, model)
         except _CannotBeSet as error:
-            faults.append(Fault(error.path, str(error), place=override.place))
+            path, text = error.args
+            faults.append(Fault(path, text, place=override.place))
     changed.refuse(faults)
     return changed
 
 
 class _CannotBeSet(ValueError):
-    def __init__(self, path: Path, text: str) -> None:
-        super().__init__(text)
-        self.path = path
+    """A path, and why nothing can be put there."""
 
 
 def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
     if isinstance(overrides, Mapping):
         for rank, (key, value) in enumerate(overrides.items(), start=1):
             plain = _plain(value)
-            yield Override(key, plain, Place(f"{label} {key}={_written(plain)}", rank=rank))
+            written = plain if isinstance(plain, str) else shown(plain)
+            yield Override(key, plain, Place(f"{label} {key}={written}", rank=rank))
         return
     for rank, text in enumerate(overrides, start=1):
         if isinstance(text, Override):
@@ -85,10 +85,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
     return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
-
-
-def _written(value: Any) -> str:
-    return value if isinstance(value, str) else shown(value)
 
 
 def _put(document: Document, override: Override, model: type[BaseModel]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -66,15 +65,9 @@ def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
         falling *= np.minimum(1.0, T_D / np.maximum(T, T_D))
         return a_g * S * np.where(T_B > T, rising, falling)
 
-    return TargetSpectrum(
-        name=f"EN 1998-1 type {kind}, ground {soil}",
-        source=source,
-        damping=damping,
-        span=(0.0, EN1998_LONGEST),
-        shape=shape,
-        pgv=velocity_of(lambda T: shape(T, 1.0)),
-        pgd=0.025 * a_g * S * T_C * T_D,
-    )
+    name = f"EN 1998-1 type {kind}, ground {soil}"
+    pgv, pgd = velocity_of(lambda T: shape(T, 1.0)), 0.025 * a_g * S * T_C * T_D
+    return TargetSpectrum(name, source, shape, pgv, pgd, damping, (0.0, EN1998_LONGEST))
 
 
 ASCE7_LEVELS = {"design": 1.0, "mcer": 1.5}
@@ -111,15 +104,8 @@ def asce7_spectrum(rest: str, source: str) -> TargetSpectrum:
         falling = long / np.maximum(T, T_S) * np.minimum(1.0, T_L / np.maximum(T, T_L))
         return np.where(T_0 > T, rising, falling)
 
-    return TargetSpectrum(
-        name=f"ASCE 7, {'MCE_R' if level == 'mcer' else 'design'}",
-        source=source,
-        damping=0.05,
-        span=(0.0, np.inf),
-        shape=shape,
-        pgv=velocity_of(shape),
-        pgd=None,
-    )
+    name = f"ASCE 7, {'MCE_R' if level == 'mcer' else 'design'}"
+    return TargetSpectrum(name, source, shape, velocity_of(shape))
 
 
 SP14_CORNERS = {"I": 0.4, "II": 0.4, "III": 0.8, "IV": 0.8}
@@ -154,22 +140,10 @@ def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
         falling = 2.5 * np.sqrt(corner / np.maximum(T, corner))
         return A * np.where(T <= 0.1, 1.0 + 15.0 * T, np.maximum(falling, SP14_LEAST))
 
-    return TargetSpectrum(
-        name=f"SP 14.13330, soil {soil}",
-        source=source,
-        damping=0.05,
-        span=(0.0, np.inf),
-        shape=shape,
-        pgv=velocity_of(shape),
-        pgd=None,
-    )
+    return TargetSpectrum(f"SP 14.13330, soil {soil}", source, shape, velocity_of(shape))
 
 
-_CODES: dict[str, Callable[[str, str], TargetSpectrum]] = {
-    "en1998": en1998_spectrum,
-    "asce7": asce7_spectrum,
-    "sp14": sp14_spectrum,
-}
+_CODES = {"en1998": en1998_spectrum, "asce7": asce7_spectrum, "sp14": sp14_spectrum}
 
 
 def load_target(source: str) -> TargetSpectrum:

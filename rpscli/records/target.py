@@ -29,16 +29,16 @@ class TargetSpectrum:
     """Short, for figures."""
     source: str
     """As the user wrote it."""
-    damping: float
-    """Share of critical damping."""
-    span: tuple[float, float]
-    """Periods between which it is defined [s]."""
     shape: Callable[[Array], Array]
     """Periods (n,) [s] to pseudo-accelerations (n,) [m/s2]."""
     pgv: float | None
     """Peak ground velocity that goes with it; None if it cannot be told [m/s]."""
-    pgd: float | None
+    pgd: float | None = None
     """Peak ground displacement; None if the code gives none [m]."""
+    damping: float = 0.05
+    """Share of critical damping."""
+    span: tuple[float, float] = (0.0, math.inf)
+    """Periods between which it is defined [s]."""
 
     def acceleration(self, periods: Array) -> Array:
         """Pseudo-acceleration at periods (n,) [s], (n,) [m/s2]."""
@@ -86,16 +86,8 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
     query = parse_query(options, source, ("damping",))
     damping = query.quantity("damping", "ratio", 0.05)
     first, last = float(pairs[0, 0]), float(pairs[-1, 0])
-    has_pgv = damping == 0.05 and first <= 1.0 <= last
-    return TargetSpectrum(
-        name=path.stem,
-        source=source,
-        damping=damping,
-        span=(first, last),
-        shape=shape,
-        pgv=velocity_of(shape) if has_pgv else None,
-        pgd=None,
-    )
+    pgv = velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None
+    return TargetSpectrum(path.stem, source, shape, pgv, damping=damping, span=(first, last))
 
 
 def _acceleration_unit(head: list[str], path: Path) -> float:

@@ -279,7 +279,7 @@ def test_maxima_beside_observed_ones(compared: dict[str, Axes]) -> None:
 
 def test_a_selection_beside_its_target() -> None:
     periods, wanted = np.array([0.1, 0.5, 2.0]), np.array([3.0, 6.0, 1.5])
-    target = TargetSpectrum("EN 1998", "", 0.05, (0.1, 2.0), lambda _: wanted, 0.5, 0.2)
+    target = TargetSpectrum("EN 1998", "", lambda _: wanted, 0.5, 0.2, span=(0.1, 2.0))
     motion = cast("GroundMotion", None)
     chosen = (
         Candidate(motion, "one", 0.2, 0.03, np.array([1.0, 2.0, 0.5]), 2.0, 0.0),

@@ -11,7 +11,6 @@ from rpscli.case.rules.partial_case import BEARING, DEVICES, IMPACT, PODIUM, Par
 from rpscli.case.schema.case_file import (
     DEVICE_KEYS,
     AnalysisSection,
-    BearingSection,
     DeviceSection,
     ImpactSection,
 )
@@ -43,30 +42,21 @@ def bearing_rules(case: PartialCase) -> Iterator[Fault]:
                 at_key=True,
             )
     elif ratios:
-        yield from _missing_ratios(case)
+        for name, meaning in MEANINGS.items():
+            yield from case.missing((*BEARING, name), meaning)
     elif case.is_mapping(BEARING):
         names = "semi_diagonal, slenderness, wedge_slenderness and curvature_ratio"
         text = f"podium.bearing has no shape: give {names}, or dimensions"
         yield Fault(BEARING, text, at_key=True, needs=((*BEARING, "semi_diagonal"), DIMENSIONS))
     bearing = case.bearing
     if bearing and not (ratios and case.has(DIMENSIONS)):
-        yield from _missing_wedge(case, bearing)
+        sizes = bearing.dimensions
+        path = (*DIMENSIONS, "wedge_width") if sizes else (*BEARING, "wedge_slenderness")
+        if sizes.radius if sizes else bearing.curvature_ratio:
+            meaning = "2B', across the outer edges of the arcs" if sizes else "tan(alpha') = B'/H"
+            yield from case.missing(path, f"{meaning}; only flat ends do without")
         if case.shape and case.shape.curvature_ratio:
             yield from _arc(case, case.shape)
-
-
-def _missing_ratios(case: PartialCase) -> Iterator[Fault]:
-    for name, meaning in MEANINGS.items():
-        yield from case.missing((*BEARING, name), meaning)
-
-
-def _missing_wedge(case: PartialCase, bearing: BearingSection) -> Iterator[Fault]:
-    sizes = bearing.dimensions
-    curved = sizes.radius if sizes else bearing.curvature_ratio
-    path = (*DIMENSIONS, "wedge_width") if sizes else (*BEARING, "wedge_slenderness")
-    if curved:
-        meaning = "2B', across the outer edges of the arcs" if sizes else "tan(alpha') = B'/H"
-        yield from case.missing(path, f"{meaning}; only flat ends do without")
 
 
 def _arc(case: PartialCase, shape: Shape) -> Iterator[Fault]:

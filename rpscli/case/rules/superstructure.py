@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.rules.partial_case import LIMITS, PODIUM, SUPERSTRUCTURE, PartialCase
-from rpscli.case.schema.case_file import PodiumMasses
 from rpscli.case.text.document import MISSING, Fault, Path, shown
 from rpscli.errors import listed
 
@@ -18,7 +17,10 @@ def superstructure_rules(case: PartialCase) -> Iterator[Fault]:
     """A building needs masses, stiffness and damping, each given once."""
     if not case.storeys:
         return
-    yield from _masses_and_damping(case)
+    meaning = "floor mass, one value or a list from the bottom, as in '200 t'"
+    yield from case.missing((*SUPERSTRUCTURE, "storey_mass"), meaning)
+    meaning = "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every mode)"
+    yield from case.missing((*SUPERSTRUCTURE, "damping"), meaning)
     yield from _stiffness(case)
     yield from _list_lengths(case)
     yield from _modes(case)
@@ -29,13 +31,6 @@ def ignored_keys(case: PartialCase) -> list[str]:
     return case.present(SUPERSTRUCTURE, *BUILDING_KEYS) if case.storeys == 0 else []
 
 
-def _masses_and_damping(case: PartialCase) -> Iterator[Fault]:
-    meaning = "floor mass, one value or a list from the bottom, as in '200 t'"
-    yield from case.missing((*SUPERSTRUCTURE, "storey_mass"), meaning)
-    meaning = "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every mode)"
-    yield from case.missing((*SUPERSTRUCTURE, "damping"), meaning)
-
-
 def _stiffness(case: PartialCase) -> Iterator[Fault]:
     period, profile, stiffness = ((*SUPERSTRUCTURE, n) for n in ("period", "profile", "stiffness"))
     if not case.has(stiffness) and not case.has(period):
@@ -43,12 +38,9 @@ def _stiffness(case: PartialCase) -> Iterator[Fault]:
         yield Fault(SUPERSTRUCTURE, text, at_key=True, needs=(period, stiffness))
     for path, name in ((period, "period"), (profile, "profile")):
         if case.document.has(stiffness) and case.document.has(path):
-            yield Fault(
-                stiffness,
-                f"superstructure.stiffness and superstructure.{name}{case.where(path)} both fix"
-                f" the storey stiffnesses; keep one of them",
-                at_key=True,
-            )
+            both = f"superstructure.stiffness and superstructure.{name}{case.where(path)}"
+            text = f"{both} both fix the storey stiffnesses; keep one of them"
+            yield Fault(stiffness, text, at_key=True)
 
 
 def _list_lengths(case: PartialCase) -> Iterator[Fault]:
@@ -82,20 +74,13 @@ def limits_rules(case: PartialCase) -> Iterator[Fault]:
     if case.storeys == 0:
         of_buildings = (q.name for q in LIMITED if "superstructure" in q.needs)
         for name in case.present(LIMITS, *of_buildings):
-            yield Fault(
-                (*LIMITS, name),
-                f"limits.{name} needs a building, but superstructure.storeys ="
-                f" 0{case.where(STOREYS)}; take the limit out",
-                at_key=True,
-            )
+            text = f"needs a building, but superstructure.storeys = 0{case.where(STOREYS)}"
+            fault = f"limits.{name} {text}; take the limit out"
+            yield Fault((*LIMITS, name), fault, at_key=True)
     height = (*SUPERSTRUCTURE, "storey_height")
     if case.storeys and case.has((*LIMITS, "drift_ratio")) and not case.has(height):
-        yield Fault(
-            (*LIMITS, "drift_ratio"),
-            "limits.drift_ratio needs superstructure.storey_height, which is missing",
-            at_key=True,
-            needs=(height,),
-        )
+        text = "limits.drift_ratio needs superstructure.storey_height, which is missing"
+        yield Fault((*LIMITS, "drift_ratio"), text, at_key=True, needs=(height,))
 
 
 def ignored_text(names: list[str]) -> str:
@@ -116,7 +101,14 @@ def masses_rules(case: PartialCase) -> Iterator[Fault]:
         yield from _one_of(case, "the mass of the cap beam", ETA, BEAM)
         yield from _one_of(case, "the mass of the columns", GAMMA, COLUMN)
         yield from _number_of_columns(case)
-        yield from _beam_under_building(case)
+        for name in (GAMMA, BEAM):
+            if case.masses and getattr(case.masses, name) == 0.0:
+                yield Fault(
+                    _path(name),
+                    f"podium.{name} = 0 must be > 0: the superstructure{case.where(STOREYS)} stands"
+                    " on the cap beam; 0 is for free-standing columns, with"
+                    " superstructure.storeys: 0",
+                )
     else:
         yield from _frame(case)
 
@@ -128,7 +120,7 @@ def _path(name: str) -> Path:
 def _one_of(case: PartialCase, what: str, *names: str) -> Iterator[Fault]:
     given = case.present(PODIUM, *names)
     if not given:
-        needs = tuple(_path(name) for name in names)
+        needs = tuple(map(_path, names))
         text = f"podium leaves {what} open: give {listed(names)}"
         yield Fault(PODIUM, text, at_key=True, needs=needs)
     written = case.written(PODIUM, *names)
@@ -142,27 +134,13 @@ def _twice(case: PartialCase, what: str, given: list[str]) -> Fault:
     *others, last = [n for _, n in sorted(order, key=lambda o: (o[0].rank, o[0].line, o[0].column))]
     named = listed((f"podium.{name}{case.where(_path(name))}" for name in others), "and")
     both = "both" if len(others) == 1 else "together"
-    return Fault(
-        _path(last),
-        f"podium.{last} and {named} {both} fix {what}; take one of them out",
-        at_key=True,
-    )
+    text = f"podium.{last} and {named} {both} fix {what}; take one of them out"
+    return Fault(_path(last), text, at_key=True)
 
 
 def _number_of_columns(case: PartialCase) -> Iterator[Fault]:
     if case.has(_path(COLUMN)):
         yield from case.missing(_path(COLUMNS), "the number of columns, each of column_mass")
-
-
-def _beam_under_building(case: PartialCase) -> Iterator[Fault]:
-    masses = case.masses
-    for name in (GAMMA, BEAM):
-        if masses and getattr(masses, name) == 0.0:
-            yield Fault(
-                _path(name),
-                f"podium.{name} = 0 must be > 0: the superstructure{case.where(STOREYS)} stands"
-                " on the cap beam; 0 is for free-standing columns, with superstructure.storeys: 0",
-            )
 
 
 def _frame(case: PartialCase) -> Iterator[Fault]:
@@ -179,35 +157,24 @@ def _frame(case: PartialCase) -> Iterator[Fault]:
     written = case.written(PODIUM, BEAM, GAMMA, COLUMN)
     if len(written) > len((BEAM, COLUMN)):
         yield _twice(case, "the masses of cap beam and columns", written)
-    elif masses and masses.without_cap_beam:
-        yield from _free_standing(case, masses)
-    else:
-        yield from _too_few(given)
-        yield from _number_of_columns(case)
-
-
-def _too_few(given: list[str]) -> Iterator[Fault]:
-    if len(given) < 2:
-        open_names = [name for name in (BEAM, GAMMA, COLUMN) if name not in given]
-        number = "one" if given else "two"
-        yield Fault(
-            PODIUM,
-            f"podium leaves the masses of cap beam and columns open: give {number} of"
-            f" {listed(open_names)} (column_mass with columns)",
-            at_key=True,
-            needs=tuple(_path(name) for name in open_names),
-        )
-
-
-def _free_standing(case: PartialCase, masses: PodiumMasses) -> Iterator[Fault]:
-    if masses.cap_beam_mass_ratio or masses.cap_beam_mass:
+    elif (
+        masses and masses.without_cap_beam and (masses.cap_beam_mass_ratio or masses.cap_beam_mass)
+    ):
         yield Fault(
             _path(BEAM),
             f"podium.{BEAM} and podium.{GAMMA}{case.where(_path(GAMMA))} contradict each other:"
             " one says that there is no cap beam; give column_mass instead of one of them",
         )
-    else:
+    elif masses and masses.without_cap_beam:
         yield from case.missing(_path(COLUMN), "without a cap beam it is the only mass")
+    else:
+        if len(given) < 2:
+            open_names = [name for name in (BEAM, GAMMA, COLUMN) if name not in given]
+            number = "one" if given else "two"
+            text = f"podium leaves the masses of cap beam and columns open: give {number} of"
+            text += f" {listed(open_names)} (column_mass with columns)"
+            yield Fault(PODIUM, text, at_key=True, needs=tuple(map(_path, open_names)))
+        yield from _number_of_columns(case)
 
 
 SCALE: Path = ("record", "scale")

@@ -68,14 +68,12 @@ _FIELDS: Any = {
     quantity.name: (_limit(quantity) | None, Field(None, description=described(quantity)))
     for quantity in LIMITED
 }
-
-
 _WITHOUT_SOURCE = {"use_attribute_docstrings": False}
 """Of models that no class statement defines: looking for it takes long."""
 
 
-class LimitsSection(  # type: ignore[misc]
-    create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)
+class LimitsSection(
+    create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)  # type: ignore[misc]
 ):
     """Acceptance limits."""
 

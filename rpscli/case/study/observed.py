@@ -27,6 +27,9 @@ _YES = {"1": 1.0, "true": 1.0, "yes": 1.0, "0": 0.0, "false": 0.0, "no": 0.0}
 _TITLE = re.compile(r"\s*([^\s\[]+)\s*(?:\[\s*([^\]]*?)\s*\])?\s*")
 _UNITLESS = {"", "-", "1"}
 
+Title = tuple[str, str]
+"""Name and unit of a column."""
+
 
 class Observation(NamedTuple):
     """One line: under which record, of which system, and what was seen.
@@ -49,11 +52,6 @@ class Observed:
     keys: tuple[str, ...]
     quantities: tuple[str, ...]
     rows: tuple[Observation, ...]
-
-
-class _Title(NamedTuple):
-    name: str
-    unit: str
 
 
 def comparable(key: str, value: object) -> str:
@@ -90,17 +88,18 @@ def observed_of(
     if len(rows) < 2:
         return None, [Fault(PATH, f"observed: {written} must have a line of titles and more lines")]
     (first, heads), *rest = rows
-    titles = [_title(head) for head in heads]
+    found = [(_TITLE.fullmatch(head), head.strip()) for head in heads]
+    titles = [(match[1], match[2] or "") if match else (head, "") for match, head in found]
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]
     faults = list(_title_faults(written, first, titles, known))
     if not faults:
-        found = [_observation(written, line, titles, row) for line, row in rest]
-        faults = [item for item in found if isinstance(item, Fault)]
-        seen = [item for item in found if isinstance(item, Observation)]
+        observations = [_observation(written, line, titles, row) for line, row in rest]
+        faults = [item for item in observations if isinstance(item, Fault)]
+        seen = [item for item in observations if isinstance(item, Observation)]
         faults += _twice(written, seen)
     if faults:
         return None, faults
-    names = [title.name for title in titles]
+    names = [name for name, _ in titles]
     quantities = tuple(name for name in names if name in {OVERTURNED, *_UNITS})
     keys = tuple(name for name in names if name not in {RECORD, *quantities})
     return Observed(written, keys, quantities, tuple(seen)), []
@@ -110,16 +109,11 @@ def _fault(name: str, line: int, text: str) -> Fault:
     return Fault(PATH, text, place=Place(name, line, 1, rank=1))
 
 
-def _title(head: str) -> _Title:
-    match = _TITLE.fullmatch(head)
-    return _Title(match[1], match[2] or "") if match else _Title(head.strip(), "")
-
-
 def _title_faults(
-    name: str, line: int, titles: Sequence[_Title], known: Sequence[str]
+    name: str, line: int, titles: Sequence[Title], known: Sequence[str]
 ) -> Iterator[Fault]:
     """Columns that are missing, unknown or twice there, and units of another kind."""
-    names = [title.name for title in titles]
+    names = [name for name, _ in titles]
     results = [OVERTURNED, *_UNITS]
     if RECORD not in names:
         yield _fault(name, line, "has no column `record`, which names the ground motion; add it")
@@ -160,7 +154,7 @@ def _wrong_unit(column: str, unit: str) -> str | None:
 
 
 def _observation(
-    name: str, line: int, titles: Sequence[_Title], row: Sequence[str]
+    name: str, line: int, titles: Sequence[Title], row: Sequence[str]
 ) -> Observation | Fault:
     """A line, or what is wrong with it."""
     if len(row) != len(titles):

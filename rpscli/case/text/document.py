@@ -155,7 +155,10 @@ class Document:
 
     def refuse(self, faults: Iterable[Fault]) -> None:
         """Raise all faults together, one a line, in the order of their places."""
-        placed = [(self._fault_place(fault), fault.text) for fault in faults]
+        placed = [
+            (f.place or (self.key_place if f.at_key else self.value_place)(f.path), f.text)
+            for f in faults
+        ]
         placed.sort(key=lambda item: (item[0].rank, item[0].line, item[0].column))
         if placed:
             lines = list(dict.fromkeys(f"{place}: {text}" for place, text in placed))
@@ -164,11 +167,6 @@ class Document:
                 lines = lines[:MOST_FAULTS]
                 lines.append(f"{self.name}: {more} more faults; correct these first")
             raise CaseError("\n".join(lines))
-
-    def _fault_place(self, fault: Fault) -> Place:
-        if fault.place:
-            return fault.place
-        return self.key_place(fault.path) if fault.at_key else self.value_place(fault.path)
 
 
 def is_study(document: Document) -> bool:
