@@ -66,6 +66,11 @@ def test_a_study_reads_its_case_axes_and_records(study_of: Make) -> None:
         ("scale:", "reports: [rotation: {reference: 7}]\nscale:", ("7", "takes", "critical")),
         ("scale:", "reports: [lines: {x: scale, y: max_rotatio}]\nscale:", ("max_rotation?",)),
         ("scale: [0.5, 1.0]", "reports: [ida]", ("several intensities",)),
+        (
+            "curvature_ratio: [critical, 0.5, 0]",
+            "curvature_ratio: [0.5]\nreports: [rotation]",
+            ("report rotation", "curvature_ratio has one value"),
+        ),
         ("scale:", SAMPLE.replace("[5, 10]", "[10, 5]") + "scale:", ("must be <",)),
         ("scale:", SAMPLE.replace("[5, 10]", "{mean: 5}") + "scale:", ("mean and cov",)),
         ("scale:", SAMPLE.replace("size: 4, ", "") + "scale:", ("sample.size is missing",)),

@@ -336,6 +336,12 @@ def unknown_reference(
         return
     place = axis.keys.index(options.key) if options.key else 0
     values = [row[place] for row in axis.rows]
+    if len({repr(value) for value in values}) < 2:
+        yield Fault(
+            request.path,
+            f"the report {request.kind} compares systems, but {axis.keys[place]} has one value;"
+            " give it another one, or the report another `key`",
+        )
     for option in ("reference", "value"):
         given = getattr(options, option, None)
         if given is not None and given not in values:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from textwrap import fill
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.figures import style
+from rpscli.report.figures.look import SMALL
 from rpscli.report.study.labels import key_columns, label, labels, plain
 from rpscli.report.study.panels import left_out, over
 from rpscli.report.study.report import DemandName, Found, Report, Statistic
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_ROWS = 60
+SMALLER = 0.75
+"""Second texts of cells, as a part of small letters."""
 
 
 class OverturningOptions(ReportOptions):
@@ -114,7 +118,7 @@ def statistic_table(study: StudyResults, options: TableOptions) -> Found:
         return words, f"{fallen} of {len(cell)} overturned"
 
     quantity = SCALARS["timehistory"][options.result]
-    words = f"{quantity.axis_label}: {statistic_words(options.statistic)}"
+    words = f"{quantity.in_unit(quantity.unit)}: {statistic_words(options.statistic)}"
 
     def shade(cell: Histories) -> float:
         found = statistic(cell)
@@ -148,32 +152,42 @@ def _table(study: StudyResults, options: OverturningOptions, shown: Shown) -> Fo
     written.append(Column("counted", "-", [len(row) for row in rows.groups]))
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
+    heads = [style.typeset("\n".join(map(label, column_keys, at)) or "all") for at in columns]
+    names = [style.typeset(labels(rows.keys, row.values)) for row in rows.groups[:MOST_ROWS]]
+    drawn = cells[:MOST_ROWS]
+    shades = [[shown.shade(cell) if cell else np.nan for cell in row] for row in drawn]
+    texts = [[shown.texts(cell) if cell else ("-", "") for cell in row] for row in drawn]
+    width = min(style.WIDTH, 3.4 + 1.25 * len(columns))
+
     def picture(title: str) -> bytes:
+        beside = 0.3 + max(map(len, names), default=0) / style.LETTERS_PER_INCH
+        letters = int(style.LETTERS_PER_INCH * (style.room(width) - beside) / len(columns))
+        # What would run into the next column, or off the figure, goes on in further lines.
+        above = ["\n".join(fill(line, letters) for line in head.split("\n")) for head in heads]
+        below = [[fill(text, int(letters / SMALLER)) for _, text in row] for row in texts]
+        further = max((text.count("\n") for row in below for text in row), default=0)
+        height = 0.34 + 0.11 * further  # of a row
+
         def draw(figure: Figure) -> None:
             notes = [left_out(rows.failed)]
             if len(cells) > MOST_ROWS:
                 notes.append(f"the first {MOST_ROWS} of {len(cells)} rows")
             style.heading(figure, title, over(rows.pooled), shown.words, *notes)
             axes = figure.subplots()
-            full = [[cell or nothing for cell in row] for row in cells[:MOST_ROWS]]
-            shades = [[shown.shade(cell) if len(cell) else np.nan for cell in row] for row in full]
             axes.imshow(shades, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto", alpha=0.75)
-            small = 0.75 * style.small()
-            for y, row in enumerate(full):
-                for x, cell in enumerate(row):
-                    first, second = shown.texts(cell) if len(cell) else ("-", "")
-                    inside: dict[str, Any] = {"ha": "center", "in_layout": False}
-                    axes.text(x, y, first, va="bottom", **inside)
-                    axes.text(x, y + 0.08, second, va="top", fontsize=small, **inside)
-            heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
-            axes.set_xticks(range(len(columns)), [style.typeset(head) for head in heads])
-            names = [labels(rows.keys, row.values) for row in rows.groups[:MOST_ROWS]]
-            axes.set_yticks(range(len(full)), [style.typeset(name) for name in names])
+            small, inside = style.small(), {"ha": "center", "in_layout": False}
+            for y, x in np.ndindex(len(texts), len(columns)):
+                first, middle = texts[y][x][0], y - 0.055 * further / height
+                size = small * min(1.0 / SMALL, letters / len(first))
+                axes.text(x, middle, first, va="bottom", fontsize=size, **inside)
+                second = below[y][x]
+                axes.text(x, middle + 0.08, second, va="top", fontsize=SMALLER * small, **inside)
+            axes.set_xticks(range(len(columns)), above)
+            axes.set_yticks(range(len(names)), names)
             axes.tick_params(length=0, labeltop=True, labelbottom=False)
             axes.grid(visible=False)
 
-        height = 1.1 + 0.34 * min(len(cells), MOST_ROWS)
-        return style.picture(draw, height, min(style.WIDTH, 3.4 + 1.25 * len(columns)))
+        return style.picture(draw, 1.1 + height * len(texts), width)
 
     return Found({"": written}, picture, rows.notes)
 
