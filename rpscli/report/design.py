@@ -316,8 +316,7 @@ def _draw_designs(axes: Axes, answer: Answer, x: int, y: int) -> None:
                 **of_mark,
             )
     _mark(axes, answer, answer.values[:, [x, y]])
-    axes.set_xlabel(axis_label(answer.task.keys[x]))
-    axes.set_ylabel(axis_label(answer.task.keys[y]))
+    axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
 
 
 def front_figure(answer: Answer, title: str) -> bytes:
@@ -346,8 +345,7 @@ def front_figure(answer: Answer, title: str) -> bytes:
             label="Pareto front",
         )
         _mark(axes, answer, objectives.T)
-        axes.set_xlabel(labels[0])
-        axes.set_ylabel(labels[1])
+        axes.set(xlabel=labels[0], ylabel=labels[1])
         style.legend_above(axes, 4)
 
     return style.picture(draw, 4.2, 6.0)

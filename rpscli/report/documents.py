@@ -66,11 +66,7 @@ ONE_DIRECTION = "one horizontal direction at a time, which is not conservative: 
 
 def heading(status: str = "ok") -> Document:
     """The keys with which every document begins."""
-    return {
-        "schema_version": SCHEMA_VERSION,
-        "rps_version": program_version(),
-        "status": status,
-    }
+    return {"schema_version": SCHEMA_VERSION, "rps_version": program_version(), "status": status}
 
 
 def failure_document(kind: str, message: str, exit_code: int) -> Document:

@@ -80,8 +80,7 @@ class Scene:
         axes.set_xlim(-0.5 * height / BOX_ASPECT, 0.5 * height / BOX_ASPECT)
         axes.set_ylim(-0.06 * top, height - 0.06 * top)
         axes.set_box_aspect(BOX_ASPECT)  # with these limits, a metre is as high as it is wide
-        axes.set_yticks([])
-        axes.set_xticks([])
+        axes.set(yticks=[], xticks=[])
         axes.grid(visible=False)
 
     def show(self, sample: int) -> None:
@@ -173,10 +172,7 @@ def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
 
 
 def history_film(
-    result: TimeHistoryResult,
-    title: str,
-    wanted: FilmRequest,
-    progress: Progress = lambda *_: None,
+    result: TimeHistoryResult, title: str, wanted: FilmRequest, progress: Progress = lambda *_: None
 ) -> bytes:
     """The structure, a column's end enlarged, and the record below.
 
@@ -230,7 +226,5 @@ def _draw_record(axes: Axes, result: TimeHistoryResult, plan: Plan) -> Any:
     trace = result.trace
     axes.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.6)
     first, last = trace.time[plan.samples[0]], trace.time[plan.samples[-1]]
-    axes.set_xlim(first, last)
-    axes.set_ylabel("$a_g$ [m/s²]")
-    axes.set_xlabel("time [s]")
+    axes.set(xlim=(first, last), ylabel="$a_g$ [m/s²]", xlabel="time [s]")
     return axes.axvline(first, color=style.RED, lw=1.2)

@@ -102,8 +102,7 @@ class BearingView:
         self.contacts = axes.plot([], [], "o", **look)[0]
         self.thrust = axes.plot([], [], ls=(0, (5, 3)), lw=0.7, color=style.RED)[0]
         self.devices = SceneDevices(axes, structure.devices, np.zeros(1), self.half, self.height)
-        axes.set_xticks([])
-        axes.set_yticks([])
+        axes.set(xticks=[], yticks=[])
         axes.grid(visible=False)
 
     @property
@@ -282,8 +281,7 @@ def _frame(
         width = max(width, (top - bottom) / upwards / aspect)
     start = 0.5 * (left + right) - width * (room[0] + 0.5 * across)
     floor = bottom - room[2] * aspect * width
-    axes.set_xlim(start, start + width)
-    axes.set_ylim(floor, floor + aspect * width)
+    axes.set(xlim=(start, start + width), ylim=(floor, floor + aspect * width))
     axes.set_box_aspect(aspect)
 
 

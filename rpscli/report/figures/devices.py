@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.model.devices import (
-    FrictionDamper,
-    RollingResistance,
-    Stop,
-    Tendon,
-    ViscousDamper,
-)
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device
 from rpscli.report.figures import style
 
@@ -79,8 +73,7 @@ def draw_device(axes: Axes, result: TimeHistoryResult, index: int) -> None:
     axes.axhline(0.0, color=style.BLACK, lw=0.5)
     axes.axvline(0.0, color=style.BLACK, lw=0.5)
     axes.set_title(f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small())
-    axes.set_xlabel(drawn.stroke)
-    axes.set_ylabel(f"{drawn.force} [{prefix}N]")
+    axes.set(xlabel=drawn.stroke, ylabel=f"{drawn.force} [{prefix}N]")
     axes.locator_params(axis="x", nbins=5)
 
 

@@ -164,8 +164,7 @@ def draw_floor_spectrum(
         )  # fmt: skip
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.set_xlim(isolated.periods[0], isolated.periods[-1])
-    axes.set_xlabel("period [s]")
+    axes.set(xlim=(isolated.periods[0], isolated.periods[-1]), xlabel="period [s]")
     words = {
         "pseudo_acceleration": "pseudo-acceleration [m/s²]",
         "displacement": "spectral displacement [m]",

@@ -112,8 +112,7 @@ def _draw_floors(
     for floor, colour in zip(shown_floors(storeys), FLOOR_COLOURS, strict=False):
         name = floor_name(floor, storeys)
         axes.plot(time, values[:, floor - 1], color=colour, label=name, **look)
-    axes.set_xlim(0.0, time[-1])
-    axes.set_xlabel("time [s]")
+    axes.set(xlim=(0.0, time[-1]), xlabel="time [s]")
 
 
 def shown_floors(storeys: int) -> list[int]:
@@ -180,8 +179,7 @@ def draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
     for sign in (1.0, -1.0):
         axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
     axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
-    axes.set_ylabel("ground\nacceleration [m/s²]")
-    axes.set_xlabel("time [s]")
+    axes.set(ylabel="ground\nacceleration [m/s²]", xlabel="time [s]")
     style.legend_above(axes, 1)
 
 
@@ -200,8 +198,7 @@ def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
     axes.plot(trace.time, trace.rotation, color=style.BLUE)
     for symbol, value, line, colour in levels:
         _level(axes, value, line, colour, symbol)
-    axes.set_ylabel("rotation $\\theta$ [rad]")
-    axes.set_xlabel("time [s]")
+    axes.set(ylabel="rotation $\\theta$ [rad]", xlabel="time [s]")
     ratio = axes.secondary_yaxis("right", functions=style.over(critical))
     ratio.set_ylabel("$\\theta/\\theta_{cr}$ [-]")
     style.legend_above(axes, 4)
@@ -312,7 +309,5 @@ def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
         axes.fill_between(trace.time, below, above, color=colour, lw=0.0, label=name, alpha=0.8)
         below = above
     axes.plot(trace.time, factor * trace.energy_input, color=style.BLACK, label="input")
-    axes.set_xlim(0.0, trace.time[-1])
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"energy [{prefix}J]")
+    axes.set(xlim=(0.0, trace.time[-1]), xlabel="time [s]", ylabel=f"energy [{prefix}J]")
     style.legend_above(axes, 3 if result.structure.devices else 4)

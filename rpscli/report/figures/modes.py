@@ -68,9 +68,7 @@ def draw_mode(axes: Axes, result: ModalResult, state: str, mode: int) -> None:
         elastic = [0.0, *(shape[1:] - shape[0])]
         axes.plot(elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label="elastic shape")
     axes.axvline(0.0, color=style.GREY, lw=0.5)
-    axes.set_xlabel("shape [-]")
-    axes.set_ylabel("height [m]")
-    axes.set_ylim(-0.02 * levels[-1], 1.03 * levels[-1])
+    axes.set(xlabel="shape [-]", ylabel="height [m]", ylim=(-0.02 * levels[-1], 1.03 * levels[-1]))
     if mode == 0:
         axes.set_title(f"storey: $p_{{ext}}$ = {modes.frequency_parameter:#.3g} rad/s")
     else:

@@ -57,9 +57,7 @@ def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "accelera
     kept = extremes(values)
     axes.plot(time[kept], values[kept], color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
-    axes.set_xlim(0.0, motion.duration)
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"{quantity}\n[{unit}]")
+    axes.set(xlim=(0.0, motion.duration), xlabel="time [s]", ylabel=f"{quantity}\n[{unit}]")
     axes.set_title(
         f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s", loc="right", fontsize=style.small()
     )

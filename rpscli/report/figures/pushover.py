@@ -61,8 +61,7 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
     critical = f"$\\theta_{{cr}}$ = {result.critical_rotation:.3f} rad"
     _mark(axes, u[-1], F[-1], critical, (-44.0, 3.0))
     _limits(axes, u[-1], F.max(), min(0.0, back.min()) if returns else 0.0)
-    axes.set_xlabel(DISPLACEMENT)
-    axes.set_ylabel(f"force at the cap beam [{prefix}N]")
+    axes.set(xlabel=DISPLACEMENT, ylabel=f"force at the cap beam [{prefix}N]")
     ratio = axes.secondary_yaxis(
         "right", functions=style.over(factor * result.structure.uplift_force)
     )
@@ -76,9 +75,7 @@ def draw_lift(axes: Axes, result: PushoverResult) -> None:
         axes.plot(
             result.curve.displacement[inside], 1e3 * result.curve.lift[inside], color=colour, lw=2.0
         )
-    axes.set_ylim(bottom=0.0)
-    axes.set_ylabel("lift [mm]")
-    axes.set_xlabel(DISPLACEMENT)
+    axes.set(ylim=(0.0, None), ylabel="lift [mm]", xlabel=DISPLACEMENT)
 
 
 def _phases(result: PushoverResult) -> Iterator[tuple[NDArray[np.bool_], str, str]]:
@@ -102,8 +99,7 @@ def _mark(axes: Axes, x: float, y: float, text: str, offset: tuple[float, float]
 
 
 def _limits(axes: Axes, end: float, top: float, bottom: float) -> None:
-    axes.set_xlim(-0.02 * end, 1.04 * end)
-    axes.set_ylim(1.1 * bottom, 1.18 * top)
+    axes.set(xlim=(-0.02 * end, 1.04 * end), ylim=(1.1 * bottom, 1.18 * top))
 
 
 LOOKS = ((style.BLUE, "-"), (style.RED, "--"), (style.GREEN, "-."), (style.PINK, ":"))
@@ -121,8 +117,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
         close.set_xlim(0.0, 3.0 * uplift)
         close.locator_params(axis="x", nbins=5)
         whole.set_xlabel(style.folded(figure, "roof displacement [m]"))
-        close.set_xlabel(style.folded(figure, "near uplift [m]"))
-        close.set_ylabel("")
+        close.set(xlabel=style.folded(figure, "near uplift [m]"), ylabel="")
         columns = 5 if style.inches(figure)[0] >= style.WIDTH else 2
         legend = close.get_legend_handles_labels()
         figure.legend(*legend, loc="outside lower center", ncols=columns)

@@ -238,11 +238,9 @@ def _draw_maxima(axes: Axes, report: ComparisonReport, each: Compared, found: Ma
     if found.overturned:
         line += f"\n{found.overturned} overturned (triangles)"
     axes.set_title(_heading_of(report, each, line), fontsize=style.small())
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     name = QUANTITIES[each.quantity].axis_label
-    axes.set_xlabel(f"observed {name}")
-    axes.set_ylabel(f"computed {name}")
+    axes.set(xlabel=f"observed {name}", ylabel=f"computed {name}")
 
 
 def findings(report: ComparisonReport) -> list[tuple[str, str]]:

@@ -20,15 +20,7 @@ from rpscli.case.study.schema import PositiveNumbers, Seed
 from rpscli.records.measures import Measure
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import (
-    Layout,
-    colour,
-    left_out,
-    marker,
-    over,
-    panel_figure,
-    remarks,
-)
+from rpscli.report.study.panels import Layout, colour, left_out, marker, over, panel_figure, remarks
 from rpscli.report.study.report import Found, Report
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.intensities import Intensity

@@ -415,8 +415,5 @@ def demand_sample_figure(
 STOREY_SHEAR = Report(StoreyShearOptions, storey_shear, requires=unlike_buildings)
 FLOOR_SPECTRA = Report(FloorSpectraOptions, floor_spectra, requires=without_floors)
 DEMAND_SAMPLE = Report(
-    DemandSampleOptions,
-    demand_sample,
-    results=lambda _: ["drift_ratio"],
-    requires=without_floors,
+    DemandSampleOptions, demand_sample, results=lambda _: ["drift_ratio"], requires=without_floors
 )

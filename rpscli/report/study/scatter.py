@@ -128,8 +128,7 @@ def _scatter(
             _draw_curve(axes, cloud.fit, highest, top, plain=plain)
 
     def limits(axes: Axes) -> None:
-        axes.set_xlim(0.0, 1.04 * highest or 1.0)
-        axes.set_ylim(bottom=0.0)
+        axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None))
 
     quantities = SCALARS["timehistory"]
     fallen = f"{found.overturned} overturned points left out" if found.overturned else ""
@@ -240,8 +239,7 @@ class SpectrumOptions(ReportOptions):
     panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
     series: VariedKeys | None = Field(None, description="varied keys, one colour for each value")
     pulses: dict[str, PulseSection] = Field(
-        {},
-        description="period and amplitude of records that are files, by source or name",
+        {}, description="period and amplitude of records that are files, by source or name"
     )
 
 
@@ -290,8 +288,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
             axes.plot(*boundary, color=style.BLACK, lw=1.2, label="least that overturns")
 
     def limits(axes: Axes) -> None:
-        axes.set_xlim(left=0.0)
-        axes.set_ylim(bottom=0.0)
+        axes.set(xlim=(0.0, None), ylim=(0.0, None))
 
     heads = {
         "frequency_over_p": frequency, "amplitude_over_g_tan_alpha": amplitude,

@@ -18,12 +18,7 @@ from rpscli.report.study.report import DemandName, Found, Report, Statistic
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation.results import SCALARS
-from rpscli.sweep.statistics.grouping import (
-    Histories,
-    grouping,
-    shown_keys,
-    statistic_words,
-)
+from rpscli.sweep.statistics.grouping import Histories, grouping, shown_keys, statistic_words
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import groups, leading_keys
 

@@ -127,8 +127,7 @@ def _of_shape(bearing: Bearing, given: Mapping[str, Any]) -> dict[str, str]:
         else "tan_alpha / (1 - 2 * rho_cr) = tan(asin((tan_alpha_w - tan_alpha) / (2 * rho_cr)))",
         "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
         "critical_rotation_paper": _critical(
-            flat=flat,
-            rolls=bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper,
+            flat=flat, rolls=bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper
         ),
     } | ({"curvature_ratio": first_order} if given.get("curvature_ratio") == "critical" else {})
 
