@@ -58,7 +58,9 @@ class Scene:
         self.clock = axes.set_title("", loc="right", fontsize=style.small())
         axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
-        axes.set_xlabel(self._legend(speed), fontsize=style.small())
+        drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
+        legend = f"bearings to scale{drifts}; {_pace(speed)}"
+        axes.set_xlabel(legend, fontsize=style.small())
         self._frame(axes)
 
     @property
@@ -66,10 +68,6 @@ class Scene:
         """What `show` moves."""
         parts = [*self.columns, self.beam, *self.sides, *self.floors, *self.devices.moving]
         return [*parts, self.clock]
-
-    def _legend(self, speed: float) -> str:
-        drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
-        return f"bearings to scale{drifts}; {_pace(speed)}"
 
     def _frame(self, axes: Axes) -> None:
         trace = self.result.trace
@@ -100,9 +98,7 @@ class Scene:
             drift = trace.floor_displacements[sample] - shift
             x = np.concatenate([[shift], shift + self.magnification * drift])
             y = self.levels + lift + self.thickness
-            for floor, (at, height) in zip(
-                self.floors, zip(x[1:], y[1:], strict=True), strict=True
-            ):
+            for floor, at, height in zip(self.floors, x[1:], y[1:], strict=True):
                 floor.set_data([at - half, at + half], [height, height])
             for side, line in zip((-half, half), self.sides, strict=True):
                 line.set_data(x + side, y)
@@ -189,13 +185,17 @@ def history_film(
         end = BearingView(panels["end"], result.structure)
         frame_end(panels["end"], result.structure.bearing)
         panels["end"].set_title("lower end of a column, enlarged", fontsize=style.small())
-        cursor = _draw_record(panels["record"], result, plan)
+        trace, record = result.trace, panels["record"]
+        record.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.6)
+        first, last = trace.time[plan.samples[[0, -1]]]
+        record.set(xlim=(first, last), ylabel="$a_g$ [m/s²]", xlabel="time [s]")
+        cursor = record.axvline(first, color=style.RED, lw=1.2)
 
         def show(frame: int) -> None:
             sample = int(plan.samples[frame])
             scene.show(sample)
-            end.show(float(result.trace.rotation[sample]))
-            cursor.set_xdata([result.trace.time[sample]] * 2)
+            end.show(float(trace.rotation[sample]))
+            cursor.set_xdata([trace.time[sample]] * 2)
 
         return Motion(len(plan.samples), show, [*scene.moving, *end.moving, cursor])
 
@@ -220,11 +220,3 @@ def modes_film(
         return Motion(frames, show, lines)
 
     return film(draw, *modes_size(result), wanted, progress)
-
-
-def _draw_record(axes: Axes, result: TimeHistoryResult, plan: Plan) -> Any:
-    trace = result.trace
-    axes.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.6)
-    first, last = trace.time[plan.samples[0]], trace.time[plan.samples[-1]]
-    axes.set(xlim=(first, last), ylabel="$a_g$ [m/s²]", xlabel="time [s]")
-    return axes.axvline(first, color=style.RED, lw=1.2)

@@ -42,11 +42,8 @@ def upright_outline(bearing: Bearing) -> Array:
     """
     H, B, r = bearing.half_height, bearing.half_width, bearing.radius
     turn = np.linspace(0.0, bearing.beta, ARC_POINTS if bearing.beta > 0.0 else 1)
-    x = B + r * np.sin(turn)
-    y = -H + r * (1.0 - np.cos(turn))
-    corner = np.column_stack([x, y])  # bottom right, outwards
-    upper = corner[::-1] * (1.0, -1.0)
-    right = np.vstack([corner, upper])
+    corner = np.column_stack([B + r * np.sin(turn), -H + r * (1.0 - np.cos(turn))])
+    right = np.vstack([corner, corner[::-1] * (1.0, -1.0)])  # upwards
     return np.vstack([right, -right])
 
 

@@ -44,8 +44,8 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
             draw_one(axes, result)
             axes.set_xlabel(style.folded(figure, axes.get_xlabel()))
             axes.label_outer()
-        handles, names = panels[-1].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=3)
+        entries = panels[-1].get_legend_handles_labels()
+        figure.legend(*entries, loc="outside lower center", ncols=3)
 
     return style.picture(draw, 4.2)
 
@@ -105,6 +105,10 @@ def _levels(axes: Axes, storeys: int) -> None:
     axes.set_xlim(left=0.0)
 
 
+SPECTRA = {
+    "pseudo_acceleration": "pseudo-acceleration [m/s²]",
+    "displacement": "spectral displacement [m]",
+}
 MOST_FLOORS = 3
 """In the picture; the table has all."""
 
@@ -129,15 +133,15 @@ def floor_spectra_figure(
         style.heading(figure, title, record, f"{style.percent(isolated.damping)} damping")
         grid = figure.subplots(2, len(floors), squeeze=False, sharex=True, sharey="row")
         for column, floor in enumerate(floors):
-            for row, name in enumerate(("pseudo_acceleration", "displacement")):
+            for row, name in enumerate(SPECTRA):
                 draw_floor_spectrum(grid[row, column], isolated, fixed, floor, name)
             grid[0, column].set_title(f"floor {floor}")
         for axes in grid.flat:
             axes.label_outer()
         for axes in grid[:, 0]:  # once all are drawn, since a row shares its limits
             axes.set_ylim(bottom=0.0)
-        grid[0, 0].set_ylabel(style.folded(figure, "pseudo-acceleration [m/s²]"))
-        grid[1, 0].set_ylabel("spectral displacement [m]")
+            axes.set_ylabel(axes.get_ylabel().partition(", ")[2])
+        grid[0, 0].set_ylabel(style.folded(figure, grid[0, 0].get_ylabel()))
         handles, names = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, names, loc="outside lower center", ncols=2)
 
@@ -165,8 +169,4 @@ def draw_floor_spectrum(
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set(xlim=(isolated.periods[0], isolated.periods[-1]), xlabel="period [s]")
-    words = {
-        "pseudo_acceleration": "pseudo-acceleration [m/s²]",
-        "displacement": "spectral displacement [m]",
-    }
-    axes.set_ylabel(f"floor {floor}, {words[name]}")
+    axes.set_ylabel(f"floor {floor}, {SPECTRA[name]}")

@@ -53,17 +53,12 @@ def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
         trace.driving_moment, trace.energy_input, trace.energy_stored,
         *trace.floor_displacements.T[floors], *trace.devices.force.T, *trace.devices.displacement.T,
     )  # fmt: skip
-    few = trace.at(kept)
+    few, fixed = trace.at(kept), result.fixed_base
     few = replace(few, floor_velocities=np.full_like(few.floor_velocities, np.nan))
-    return replace(result, trace=few, fixed_base=_without_histories(result))
-
-
-def _without_histories(result: TimeHistoryResult) -> Any:
-    fixed = result.fixed_base
-    if fixed is None:
-        return None
-    none = np.empty((0, result.structure.storeys))
-    return replace(fixed, floor_displacements=none, acceleration_histories=none)
+    if fixed is not None:
+        none = np.empty((0, result.structure.storeys))
+        fixed = replace(fixed, floor_displacements=none, acceleration_histories=none)
+    return replace(result, trace=few, fixed_base=fixed)
 
 
 FLOOR_COLOURS = (style.RED, style.ORANGE, style.GREEN)
@@ -110,7 +105,7 @@ def _draw_floors(
     """Some columns of (samples, n), with time below."""
     time, storeys = result.trace.time, result.structure.storeys
     for floor, colour in zip(shown_floors(storeys), FLOOR_COLOURS, strict=False):
-        name = floor_name(floor, storeys)
+        name = "roof" if floor == storeys else f"floor {floor}"
         axes.plot(time, values[:, floor - 1], color=colour, label=name, **look)
     axes.set(xlim=(0.0, time[-1]), xlabel="time [s]")
 
@@ -123,11 +118,6 @@ def shown_floors(storeys: int) -> list[int]:
     """
     third = storeys / 3.0
     return sorted({round(third * k) for k in (1, 2, 3)} - {0}, reverse=True)
-
-
-def floor_name(floor: int, storeys: int) -> str:
-    """How a floor is called in a legend."""
-    return "roof" if floor == storeys else f"floor {floor}"
 
 
 EventRow = tuple[tuple[str, ...], str, str]
@@ -194,35 +184,24 @@ def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
     top = 1.12 * max(largest, *near) if near else 1.12 * largest
     axes.set_ylim(-top, top)
     for code, name, shade in PHASES:
-        _shade(axes, trace.time, trace.phase == code, shade, name)
+        if (inside := trace.phase == code).any():
+            axes.fill_between(
+                trace.time, 0.0, 1.0, where=inside, step="post", color=shade, lw=0.0, label=name,
+                transform=axes.get_xaxis_transform(),
+            )  # fmt: skip
     axes.plot(trace.time, trace.rotation, color=style.BLUE)
     for symbol, value, line, colour in levels:
-        _level(axes, value, line, colour, symbol)
+        # Outside the axes, their value stands in the legend alone.
+        label = f"${symbol}$ = {value:.3f} rad"
+        if value > axes.get_ylim()[1]:
+            axes.plot([], [], color=colour, ls=line, label=f"{label} (outside)")
+            continue
+        axes.axhline(value, color=colour, ls=line, label=label)
+        axes.axhline(-value, color=colour, ls=line)
     axes.set(ylabel="rotation $\\theta$ [rad]", xlabel="time [s]")
     ratio = axes.secondary_yaxis("right", functions=style.over(critical))
     ratio.set_ylabel("$\\theta/\\theta_{cr}$ [-]")
     style.legend_above(axes, 4)
-
-
-def _shade(
-    axes: Axes, time: NDArray[np.float64], inside: NDArray[np.bool_], colour: str, name: str
-) -> None:
-    """Vertical bands where `inside` holds; one entry in the legend."""
-    if inside.any():
-        axes.fill_between(
-            time, 0.0, 1.0, where=inside, step="post", color=colour, lw=0.0, label=name,
-            transform=axes.get_xaxis_transform(),
-        )  # fmt: skip
-
-
-def _level(axes: Axes, value: float, line: str, colour: str, symbol: str) -> None:
-    """A pair of horizontal lines; outside the axes, their value in the legend alone."""
-    label = f"${symbol}$ = {value:.3f} rad"
-    if value > axes.get_ylim()[1]:
-        axes.plot([], [], color=colour, ls=line, label=f"{label} (outside)")
-        return
-    axes.axhline(value, color=colour, ls=line, label=label)
-    axes.axhline(-value, color=colour, ls=line)
 
 
 def draw_events(axes: Axes, result: TimeHistoryResult) -> None:
@@ -240,12 +219,7 @@ def draw_events(axes: Axes, result: TimeHistoryResult) -> None:
 
 def moment_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Moment against rotation."""
-
-    def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name)
-        draw_moment(figure.subplots(), result)
-
-    return style.picture(draw, 4.2, 6.0)
+    return style.single(draw_moment, result, (title, result.record.name), 4.2, 6.0)
 
 
 def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
@@ -257,11 +231,10 @@ def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
         trace.rotation, factor * trace.driving_moment, color=style.BLUE, lw=0.7,
         label="driving moment (ground and building)",
     )  # fmt: skip
-    for k, side in enumerate((-1.0, 1.0)):
+    for side, name in ((-1.0, "restoring moment of the weight"), (1.0, None)):
         rotation = side * np.linspace(1e-9, reach, 300)
         static = factor * result.restoring_moment(rotation)
-        label = "restoring moment of the weight" if k == 0 else None
-        axes.plot(rotation, static, color=style.RED, lw=2.5, zorder=1.5, label=label)
+        axes.plot(rotation, static, color=style.RED, lw=2.5, zorder=1.5, label=name)
     axes.axhline(0.0, color=style.BLACK, lw=0.5)
     axes.axvline(0.0, color=style.BLACK, lw=0.5)
     axes.set_xlim(-reach, reach)
@@ -276,12 +249,7 @@ DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)
 
 def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Input and where it went."""
-
-    def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name)
-        draw_energy(figure.subplots(), result)
-
-    return style.picture(draw, 3.4)
+    return style.single(draw_energy, result, (title, result.record.name), 3.4)
 
 
 def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:

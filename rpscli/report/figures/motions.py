@@ -74,12 +74,7 @@ def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
 
 def spectra_figure(spectra: Sequence[ResponseSpectrum], title: str) -> bytes:
     """Spectra of several records under a title."""
-
-    def draw(figure: Figure) -> None:
-        style.heading(figure, title)
-        draw_spectra(figure.subplots(), spectra)
-
-    return style.picture(draw, 3.2)
+    return style.single(draw_spectra, spectra, (title,), 3.2)
 
 
 def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:

@@ -60,7 +60,8 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
         _mark(axes, u[at], F[at], f"$\\beta$ = {beta:.3f} rad", side)
     critical = f"$\\theta_{{cr}}$ = {result.critical_rotation:.3f} rad"
     _mark(axes, u[-1], F[-1], critical, (-44.0, 3.0))
-    _limits(axes, u[-1], F.max(), min(0.0, back.min()) if returns else 0.0)
+    low = min(0.0, back.min()) if returns else 0.0
+    axes.set(xlim=(-0.02 * u[-1], 1.04 * u[-1]), ylim=(1.1 * low, 1.18 * F.max()))
     axes.set(xlabel=DISPLACEMENT, ylabel=f"force at the cap beam [{prefix}N]")
     ratio = axes.secondary_yaxis(
         "right", functions=style.over(factor * result.structure.uplift_force)
@@ -96,10 +97,6 @@ def _mark(axes: Axes, x: float, y: float, text: str, offset: tuple[float, float]
         text, (x, y), offset, textcoords="offset points", fontsize=style.small(),
         ha="left" if offset[0] > 0.0 else "right", va="bottom" if offset[1] > 0.0 else "top",
     )  # fmt: skip
-
-
-def _limits(axes: Axes, end: float, top: float, bottom: float) -> None:
-    axes.set(xlim=(-0.02 * end, 1.04 * end), ylim=(1.1 * bottom, 1.18 * top))
 
 
 LOOKS = ((style.BLUE, "-"), (style.RED, "--"), (style.GREEN, "-."), (style.PINK, ":"))

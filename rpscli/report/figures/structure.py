@@ -13,7 +13,6 @@ from rpscli.report.figures.bearing import BEAM, COLUMN, leaning_outline, measure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from rpscli.model.podium import PodiumStructure
 
@@ -41,13 +40,7 @@ MOST_LEVELS = 20
 
 def structure_figure(structure: PodiumStructure, title: str) -> bytes:
     """Elevation with heights and masses."""
-
-    def draw(figure: Figure) -> None:
-        style.heading(figure, title)
-        axes = figure.subplots()
-        draw_structure(axes, structure)
-
-    return style.picture(draw, 4.4, 5.0)
+    return style.single(draw_structure, structure, (title,), 4.4, 5.0)
 
 
 def draw_structure(axes: Axes, structure: PodiumStructure) -> None:
@@ -70,7 +63,9 @@ def draw_structure(axes: Axes, structure: PodiumStructure) -> None:
         axes.set_title(columns, fontsize=style.small())
         return
     thickness = 0.12 * height
-    _beam(axes, width, height, thickness)
+    left, top = -0.5 * width, height + thickness
+    corners = [(left, height), (-left, height), (-left, top), (left, top)]
+    axes.fill(*zip(*corners, strict=True), fc=BEAM, ec=style.BLACK, lw=0.7)
     for at, text in (
         (0.5 * height, columns),
         (height + 0.5 * thickness, f"cap beam: {_tonnes(structure.cap_beam_mass)}"),
@@ -94,12 +89,6 @@ def draw_structure(axes: Axes, structure: PodiumStructure) -> None:
     if building.storey_heights is None:
         scale = "storey heights are not given: drawn as 3 m"
     axes.set_title(scale, fontsize=style.small(), color=style.GREY)
-
-
-def _beam(axes: Axes, width: float, height: float, thickness: float) -> None:
-    left, top = -0.5 * width, height + thickness
-    corners = [(left, height), (-left, height), (-left, top), (left, top)]
-    axes.fill(*zip(*corners, strict=True), fc=BEAM, ec=style.BLACK, lw=0.7)
 
 
 def _tonnes(mass: float) -> str:

@@ -61,12 +61,12 @@ STYLE: dict[str, Any] = {
 Entry = TypeVar("Entry")
 Target: TypeAlias = "Figure | SubFigure"
 
-METADATA: dict[str, dict[str, None]] = {
-    "png": {"Software": None},
-    "svg": {"Date": None},
-    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+SAVED: dict[str, dict[str, Any]] = {
+    "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": COMPRESSION}},
+    "svg": {"metadata": {"Date": None}},
+    "pdf": {"metadata": dict.fromkeys(("CreationDate", "Creator", "Producer"))},
 }
-"""What matplotlib would say about itself and the time in a file: it tells nothing of the data."""
+"""What is left out of files: all that matplotlib would say about itself and the time."""
 
 
 def picture(
@@ -97,11 +97,24 @@ def picture(
             engine.execute(figure)
             figure.set_layout_engine(None)
         buffer = io.BytesIO()
-        compressed: dict[str, Any] = (
-            {"pil_kwargs": {"compress_level": COMPRESSION}} if now.ending == "png" else {}
-        )
-        figure.savefig(buffer, format=now.ending, metadata=METADATA[now.ending], **compressed)
+        figure.savefig(buffer, format=now.ending, **SAVED[now.ending])
     return buffer.getvalue()
+
+
+def single(
+    draw: Callable[[Axes, Any], None],
+    shown: Any,
+    words: Sequence[str],
+    height: float,
+    width: float = WIDTH,
+) -> bytes:
+    """The file of a figure of one picture under a heading."""
+
+    def fill(figure: Figure) -> None:
+        heading(figure, *words)
+        draw(figure.subplots(), shown)
+
+    return picture(fill, height, width)
 
 
 @dataclass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from textwrap import fill
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -170,7 +170,8 @@ def _table(study: StudyResults, options: OverturningOptions, shown: Shown) -> Fo
             style.heading(figure, title, over(rows.pooled), shown.words, *notes)
             axes = figure.subplots()
             axes.imshow(shades, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto", alpha=0.75)
-            small, inside = style.small(), {"ha": "center", "in_layout": False}
+            small = style.small()
+            inside: dict[str, Any] = {"ha": "center", "in_layout": False}
             for y, x in np.ndindex(len(texts), len(columns)):
                 first, middle = texts[y][x][0], y - 0.055 * further / height
                 size = small * min(1.0 / SMALL, letters / len(first))
