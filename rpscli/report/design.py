@@ -19,7 +19,7 @@ from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
-from rpscli.sweep.design.answer import NONE, ROBUST, Answer, Interval, Requirement
+from rpscli.sweep.design.answer import NONE, ROBUST, Answer, Requirement
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.table import Array, Indices
@@ -92,8 +92,17 @@ def answer_document(answer: Answer) -> dict[str, Any]:
             "resamples": answer.resamples,
             "without_answer": answer.unanswered,
             "passing_share_of_best": None if found is None else answer.passing_share[found],
-            "intervals": dict(_intervals(answer)),
-            "without_one": _without_one(answer),
+            "intervals": {
+                **{key: answer.interval(place) for place, key in enumerate(answer.task.keys)},
+                objective_label(answer.task.file.minimise[0]): answer.objective_interval,
+            },
+            # The best design when one record is left out, in the order of the records.
+            "without_one": [
+                {"record": source, "best": None if place == NONE else _design(answer, place)}
+                for source, place in zip(
+                    answer.task.study.sources, answer.without_record.tolist(), strict=False
+                )
+            ],
         },
         "bracket": answer.bracket if found is not None and len(answer.task.unknowns) == 1 else None,
     }
@@ -112,43 +121,25 @@ def _design(answer: Answer, place: int) -> dict[str, Any]:
     }
 
 
-def _intervals(answer: Answer) -> list[tuple[str, Interval]]:
-    keys = [(key, answer.interval(place)) for place, key in enumerate(answer.task.keys)]
-    return [*keys, (objective_label(answer.task.file.minimise[0]), answer.objective_interval)]
-
-
-def _without_one(answer: Answer) -> list[dict[str, Any]]:
-    """The best design when one record is left out, in the order of the records."""
-    sources = answer.task.study.sources
-    rows = []
-    for source, place in zip(sources, answer.without_record.tolist(), strict=False):
-        design = None if place == NONE else _design(answer, place)
-        rows.append({"record": source, "best": design})
-    return rows
-
-
 def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
     """Each requirement at the best design, or at the least violated one."""
     judged, place = answer.judged, answer.closest
     without = {each.requirement: each for each in answer.without}
-    rows = []
-    for row, requirement in enumerate(judged.requirements):
-        each = without.get(row)
-        rows.append(
-            {
-                "requirement": requirement_label(requirement),
-                **asdict(requirement.condition),
-                "level": requirement.level,
-                "value": float(judged.values[row, 0, place]),
-                "bound": requirement.bound,
-                "records_too_many": float(judged.excess[row, place]),
-                "met": bool(judged.met[row, 0, place]),
-                "designs_that_meet_it": int(judged.met[row, 0].sum()),
-                "binds": None if each is None else each.binds,
-                "aim_without_it": None if each is None else each.objective,
-            }
-        )
-    return rows
+    return [
+        {
+            "requirement": requirement_label(requirement),
+            **asdict(requirement.condition),
+            "level": requirement.level,
+            "value": float(judged.values[row, 0, place]),
+            "bound": requirement.bound,
+            "records_too_many": float(judged.excess[row, place]),
+            "met": bool(judged.met[row, 0, place]),
+            "designs_that_meet_it": int(judged.met[row, 0].sum()),
+            "binds": without[row].binds if row in without else None,
+            "aim_without_it": without[row].objective if row in without else None,
+        }
+        for row, requirement in enumerate(judged.requirements)
+    ]
 
 
 def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Column]:
@@ -179,6 +170,9 @@ def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Colu
     return columns
 
 
+MARKS = (
+    ("no valid case", "x", style.GREY), ("fails", "v", style.RED), ("passes", "o", style.BLUE),
+)  # fmt: skip
 MOST_PAIRS = 6
 SHARES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 """Of the resamples, between which the region that passes changes its colour."""
@@ -191,14 +185,11 @@ BEST: dict[str, Any] = {
 
 def figures(answer: Answer, title: str) -> Mapping[str, Draw]:
     """What there is to draw, by the names of the files."""
-    found: dict[str, Draw] = {}
-    if len(answer.task.unknowns) == 1:
-        found["requirements"] = partial(requirements_figure, answer, title)
-    else:
-        found["region"] = partial(region_figure, answer, title)
+    one = len(answer.task.unknowns) == 1
+    found = {"requirements": requirements_figure} if one else {"region": region_figure}
     if len(answer.front) > 1:
-        found["front"] = partial(front_figure, answer, title)
-    return found
+        found["front"] = front_figure
+    return {name: partial(draw, answer, title) for name, draw in found.items()}
 
 
 def axis_label(key: str) -> str:
@@ -279,7 +270,9 @@ def region_figure(answer: Answer, title: str) -> bytes:
             axes.locator_params(nbins=MOST_TICKS)
             if len(pairs) == 1 and answer.resamples:
                 _draw_shares(figure, axes, answer)
-            _draw_designs(axes, answer, x, y)
+            _draw_designs(axes, answer, answer.values[:, [x, y]], MARKS, clip_on=False)
+            _mark(axes, answer, answer.values[:, [x, y]])
+            axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
         handles = grid[0][0].get_legend_handles_labels()
         figure.legend(*handles, loc="outside lower center", ncols=2 if narrow else 5)
 
@@ -299,24 +292,14 @@ def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
     figure.colorbar(filled, ax=axes, label="share of resamples of the records that pass")
 
 
-def _draw_designs(axes: Axes, answer: Answer, x: int, y: int) -> None:
-    for chosen, mark in (
-        (~answer.valid, {"marker": "x", "color": style.GREY, "label": "no valid case"}),
-        (answer.valid & ~answer.passes, {"marker": "v", "color": style.RED, "label": "fails"}),
-        (answer.passes, {"marker": "o", "color": style.BLUE, "label": "passes"}),
-    ):
-        if chosen.any():
-            of_mark: dict[str, Any] = mark
-            axes.plot(
-                answer.values[chosen, x],
-                answer.values[chosen, y],
-                ls="",
-                ms=3.2,
-                clip_on=False,
-                **of_mark,
-            )
-    _mark(axes, answer, answer.values[:, [x, y]])
-    axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
+def _draw_designs(
+    axes: Axes, answer: Answer, at: Array, marks: Sequence[tuple[str, str, str]], **look: Any
+) -> None:
+    """What became of the designs, at their rows of (designs, 2)."""
+    became = np.where(answer.passes, "passes", np.where(answer.valid, "fails", "no valid case"))
+    for name, marker, colour in marks:
+        if len(chosen := at[became == name]):
+            axes.plot(*chosen.T, ls="", ms=3.2, marker=marker, color=colour, label=name, **look)
 
 
 def front_figure(answer: Answer, title: str) -> bytes:
@@ -332,18 +315,9 @@ def front_figure(answer: Answer, title: str) -> bytes:
     def draw(figure: Figure) -> None:
         style.heading(figure, title, f"{len(answer.front)} designs on the Pareto front")
         axes = figure.subplots()
-        for chosen, mark in (
-            (answer.valid & ~answer.passes, {"marker": "v", "color": style.RED, "label": "fails"}),
-            (answer.passes, {"marker": "o", "color": style.BLUE, "label": "passes"}),
-        ):
-            of_mark: dict[str, Any] = mark
-            axes.plot(*objectives[:, chosen], ls="", ms=3.2, alpha=0.6, **of_mark)
-        axes.plot(
-            *objectives[:, answer.front],
-            color=style.BLACK,
-            drawstyle="steps-post",
-            label="Pareto front",
-        )
+        _draw_designs(axes, answer, objectives.T, MARKS[1:], alpha=0.6)
+        front: dict[str, Any] = {"drawstyle": "steps-post", "label": "Pareto front"}
+        axes.plot(*objectives[:, answer.front], color=style.BLACK, **front)
         _mark(axes, answer, objectives.T)
         axes.set(xlabel=labels[0], ylabel=labels[1])
         style.legend_above(axes, 4)

@@ -60,6 +60,9 @@ def _installed(package: str) -> str | None:
 
 Document = dict[str, Any]
 
+OF_RECORD = ("name", "source", "npts", "dt", "pga")
+"""What the document of a history says of its record."""
+
 ONE_DIRECTION = "one horizontal direction at a time, which is not conservative: see the README"
 """What has to be known wherever results of histories are read."""
 
@@ -91,13 +94,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
 
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
     return {
-        "record": {
-            "name": result.record.name,
-            "source": result.record.source,
-            "npts": result.record.npts,
-            "dt": result.record.dt,
-            "pga": result.record.pga,
-        },
+        "record": {name: getattr(result.record, name) for name in OF_RECORD},
         "failure": result.failure,
         **result.scalars(),
         **values_of(result, SAMPLED),

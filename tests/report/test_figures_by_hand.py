@@ -34,7 +34,7 @@ from rpscli.report.study.comparison import comparison_figure
 from rpscli.report.study.comparison_numbers import Compared, ComparisonReport, Curve, Outcomes
 from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
 from rpscli.report.study.heights import DemandSample, demand_sample_figure
-from rpscli.report.study.risk import Contributions, Risk, risk_figure
+from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design.answer import Answer, Judged, Requirement
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
 from rpscli.sweep.intensities import Intensity
@@ -132,8 +132,7 @@ def test_what_a_rate_comes_from() -> None:
     ) -> Risk:
         observed = Observed(nothing, nothing, np.empty(0, dtype=np.int64))
         fragility = Fragility(values, limit, fit_of(nothing), nothing, observed, 9, 3, 0, 0)
-        parts = Contributions(edges, np.array(rates))
-        return Risk(fragility, sum(rates), NOTHING, parts, half, ())
+        return Risk(fragility, sum(rates), NOTHING, edges, np.array(rates), half, ())
 
     risks = (
         risk((0.5,), drift, [0.001, 0.003, 0.004, 0.002], 3.0),

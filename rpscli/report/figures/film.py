@@ -171,8 +171,7 @@ def _mp4(frames: Iterator[Image], rate: int) -> bytes:
                     encoder.stdin.write(frame.tobytes())
             _, complaint = encoder.communicate()
         if encoder.returncode:
-            reason = (
-                complaint.decode(errors="replace").strip() or f"it ends with {encoder.returncode}"
-            )
+            reason = complaint.decode(errors="replace").strip()
+            reason = reason or f"it ends with {encoder.returncode}"
             raise OutputError(f"{ENCODER} could not make the film: {reason}")
         return file.read_bytes()

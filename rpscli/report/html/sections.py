@@ -14,7 +14,7 @@ from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import ResponseSpectrum, response_spectrum
 from rpscli.report.bundles import bearing_files
 from rpscli.report.figures import style
-from rpscli.report.figures.look import Look, figure_files
+from rpscli.report.figures.look import Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
@@ -33,12 +33,17 @@ MOST_SPECTRA = 200
 
 def motion_pictures(motion: GroundMotion, look: Look) -> Picture:
     """Acceleration, velocity, displacement and response spectrum of a motion."""
-    files = figure_files({"r": lambda: record_figure(motion, _spectrum(motion))}, page_look(look))
-    return Picture(
-        {name.removeprefix("r."): content for name, content in files.items()},
+    return _picture(
+        lambda: record_figure(motion, _spectrum(motion)),
+        look,
         f"{motion.name}: acceleration, velocity and displacement of the ground, and the response"
         f" spectrum at {style.percent(DAMPING)} of critical damping.",
     )
+
+
+def _picture(draw: Draw, look: Look, caption: str) -> Picture:
+    ((_, files),) = pictures(figure_files({"figure": draw}, page_look(look)).items())
+    return Picture(files, caption)
 
 
 def motions_section(
@@ -49,14 +54,10 @@ def motions_section(
     if motions:
         blocks.append(_table(motions[:MOST_ROWS]))
         shown = motions[:MOST_SPECTRA]
-        files = figure_files(
-            {"s": lambda: spectra_figure([_spectrum(each) for each in shown], title)},
-            page_look(look),
-        )
-        files = {name.removeprefix("s."): content for name, content in files.items()}
         blocks.append(
-            Picture(
-                files,
+            _picture(
+                lambda: spectra_figure([_spectrum(each) for each in shown], title),
+                look,
                 f"Response spectra of {len(shown)} records before they are scaled, at"
                 f" {style.percent(DAMPING)} of critical damping, with their median.",
             )
@@ -167,11 +168,8 @@ def hidden_section(*more: Block) -> Section:
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
     lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
     head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
-    return Section("What the model leaves out", [Table.of_texts(head, _bare(rows), words=2), *more])
-
-
-def _bare(rows: Sequence[Sequence[str]]) -> list[list[str]]:
-    return [[cell.replace("`", "") for cell in row] for row in rows]
+    bare = [[cell.replace("`", "") for cell in row] for row in rows]
+    return Section("What the model leaves out", [Table.of_texts(head, bare, words=2), *more])
 
 
 def listing(*rows: tuple[str, str | None]) -> Table:
@@ -186,9 +184,7 @@ def _leaves(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
         if isinstance(value, dict) and value:
             yield from _leaves(value, f"{key}.")
         elif isinstance(value, list) and any(isinstance(part, dict) for part in value):
-            yield from _leaves(
-                dict(zip(map(str, range(len(value))), value, strict=True)), f"{key}."
-            )
+            yield from _leaves({str(n): part for n, part in enumerate(value)}, f"{key}.")
         else:
             yield key, value
 

@@ -197,7 +197,6 @@ def contrast(study: StudyResults, options: ContrastOptions) -> Found:
     found = grouping(table, (*panels, *inner), (key,), reference.points)
     mine = dict(zip(reference.points.tolist(), system.points.tolist(), strict=True))
     cells = [_cell(table, options, group, mine) for group in found.groups]
-    words = ("overturned", "reference_overturned")
     columns = keyed(
         found.keys, {"pairs": "-", "failed": "-"},
         [(cell.values, cell.pairs, cell.failed) for cell in cells],
@@ -208,7 +207,7 @@ def contrast(study: StudyResults, options: ContrastOptions) -> Found:
             columns.append(Column(f"ratio of {name}; {fractile}", "-", ratios))
         behind = [cell.behind[place] for cell in cells]
         columns.append(Column(f"ratio of {name}; pairs", "-", behind))
-    for place, name in enumerate(words):
+    for place, name in enumerate(("overturned", "reference_overturned")):
         columns += share_columns(name, [cell.overturned[place] for cell in cells])
     about = f"{plain(system.values[0])} over {plain(reference.values[0])}, median over the motions"
     counts = sorted({cell.pairs for cell in cells})
@@ -343,8 +342,7 @@ def unknown_reference(
             " give it another one, or the report another `key`",
         )
     for option in ("reference", "value"):
-        given = getattr(options, option, None)
-        if given is not None and given not in values:
+        if (given := getattr(options, option, None)) is not None and given not in values:
             path: Path = (*request.path, request.kind, option)
             text = f"{dotted(path)} = {shown(given)} is no value of {axis.keys[place]}"
             yield Fault(path, f"{text}, which takes {listed(map(shown, values), 'and')}")

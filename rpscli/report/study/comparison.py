@@ -131,10 +131,8 @@ def _pair_rows(report: ComparisonReport) -> Iterator[tuple[Any, ...]]:
             point = int(report.pairs.points[place])
             request = report.table.layout[point].record
             assert request is not None, "points of histories have a record"
-            observed, computed = (
-                report.pairs.values[quantity, place],
-                report.computed[quantity, place],
-            )
+            observed = report.pairs.values[quantity, place]
+            computed = report.computed[quantity, place]
             told = TOLD[int(observed), int(computed)] if each.quantity == OVERTURNED else None
             intensity = report.intensity.values[point]
             yield (
@@ -167,10 +165,9 @@ def comparison_figure(report: ComparisonReport, title: str) -> bytes:
     return style.picture(draw, 0.6 + 3.1 * down, style.WIDTH if across > 1 else 0.7 * style.WIDTH)
 
 
-def _heading_of(report: ComparisonReport, each: Compared, line: str) -> str:
-    chosen = labels(report.fit_keys, each.chosen)
-    system = ", ".join(filter(None, [labels(report.system_keys, each.values), chosen]))
-    return f"{system}\n{line}" if system else line
+def _head(axes: Axes, report: ComparisonReport, each: Compared, line: str) -> None:
+    system = labels((*report.system_keys, *report.fit_keys), (*each.values, *each.chosen))
+    axes.set_title(f"{system}\n{line}" if system else line, fontsize=style.small())
 
 
 def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: Outcomes) -> None:
@@ -203,7 +200,7 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
     percent = 100.0 * (counts.agreed.fraction or 0.0)
     line = f"{percent:.1f} % of {counts.counted} agree"
     line += f"; overturned {counts.computed}, observed {counts.observed}"
-    axes.set_title(_heading_of(report, each, line), fontsize=style.small())
+    _head(axes, report, each, line)
     axes.set_xscale("log")
     log_ticks(axes.xaxis)
     axes.set_ylim(-0.1, 1.1)
@@ -237,7 +234,7 @@ def _draw_maxima(axes: Axes, report: ComparisonReport, each: Compared, found: Ma
     )
     if found.overturned:
         line += f"\n{found.overturned} overturned (triangles)"
-    axes.set_title(_heading_of(report, each, line), fontsize=style.small())
+    _head(axes, report, each, line)
     axes.set(xscale="log", yscale="log")
     name = QUANTITIES[each.quantity].axis_label
     axes.set(xlabel=f"observed {name}", ylabel=f"computed {name}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -229,13 +230,8 @@ def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[st
     if not keys or named:
         which = f"{listed(named, 'and')} tells what was observed" if named else "no key is left"
         yield f"fit: {which}, and cannot be chosen; vary another key, and name it in fit.keys"
-    elif len(observed_records(observed_pairs(layout, observed))) < 2:
+    elif len(np.unique(observed_pairs(layout, observed).records)) < 2:
         yield "fit: less than two records have an observation, and one part must be held out"
-
-
-def observed_records(pairs: Pairs) -> Indices:
-    """Numbers of the records with an observation."""
-    return np.unique(pairs.records)
 
 
 def _leading(layout: StudyPoints) -> tuple[str, ...]:
@@ -258,33 +254,32 @@ def _same_axis(layout: StudyPoints, key: str, keys: Iterable[str]) -> bool:
     return bool(set(axis_keys(layout, key)) & set(keys))
 
 
+@dataclass(frozen=True, eq=False)
 class _Work:
     """What all comparisons of a report share."""
 
-    def __init__(
-        self,
-        table: Table,
-        options: ComparisonOptions,
-        measured: Intensity,
-        baselines: Sequence[Intensity],
-        quantities: Sequence[str],
-        pairs: Pairs,
-    ) -> None:
-        self._table, self._options, self._pairs = table, options, pairs
-        self._measured, self._baselines, self._quantities = measured, baselines, quantities
-        self.computed = np.array([self._of(name) for name in quantities])
-        self._parts: Mapping[str, Flags] = self._drawn()
+    _table: Table
+    _options: ComparisonOptions
+    _measured: Intensity
+    _baselines: Sequence[Intensity]
+    _quantities: Sequence[str]
+    _pairs: Pairs
 
-    def _of(self, quantity: str) -> Array:
-        """Computed values of all pairs; NaN of failed points."""
-        points, table = self._pairs.points, self._table
-        if quantity == OVERTURNED:
-            return np.where(table.failed, np.nan, table.overturned)[points]
-        return demand(table, table.columns[quantity])[points]
+    @cached_property
+    def computed(self) -> Array:
+        """(quantities, pairs) computed values; NaN of failed points."""
+        table = self._table
+        fallen = np.where(table.failed, np.nan, table.overturned)
+        values = [
+            fallen if name == OVERTURNED else demand(table, table.columns[name])
+            for name in self._quantities
+        ]
+        return np.array(values)[:, self._pairs.points]
 
-    def _drawn(self) -> Mapping[str, Flags]:
+    @cached_property
+    def _parts(self) -> Mapping[str, Flags]:
         """Pairs of each part of the records."""
-        records, fit = observed_records(self._pairs), self._options.fit
+        records, fit = np.unique(self._pairs.records), self._options.fit
         if fit is None:
             return {ALL: np.ones(len(self._pairs.points), dtype=bool)}
         count = min(max(round(fit.share * len(records)), 1), len(records) - 1)
@@ -319,13 +314,11 @@ class _Work:
                 known = places[~np.isnan(self.computed[quantity][places])]
                 if not len(places):
                     continue
-                found: Outcomes | Maxima
-                if name == OVERTURNED:
-                    found = self._outcomes(best.points, known, quantity)
-                else:
-                    found = maxima(
-                        self.computed[quantity][known], self._pairs.values[quantity][known]
-                    )
+                found = (
+                    self._outcomes(best.points, known, quantity)
+                    if name == OVERTURNED
+                    else maxima(self.computed[quantity, known], self._pairs.values[quantity, known])
+                )
                 failed = len(places) - len(known)
                 yield Compared(values, best.values, part, name, found, known, failed)
 

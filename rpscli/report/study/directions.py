@@ -89,32 +89,16 @@ def directions(study: StudyResults, options: DirectionsOptions) -> Found:
     drawn = next(quantity for quantity in DEMANDS if quantity.name == options.result)
     panels = [_panel(group, known, drawn) for group in found.groups]
     spreads = [
-        (
-            panel.values,
-            quantity.name,
-            quantity.unit,
-            len(panel.curves),
-            sum(curve.overturned > 0 for curve in panel.curves),
-            *(reached(float(value)) for both in spread for value in both),
-        )
+        (panel.values, q.name, q.unit, *counts, *map(reached, np.ravel(both).tolist()))
         for panel in panels
-        for quantity, spread in panel.spreads.items()
+        for counts in [(len(panel.curves), sum(curve.overturned > 0 for curve in panel.curves))]
+        for q, both in panel.spreads.items()
     ]
     pairs = [
-        (
-            panel.values,
-            curve.pair,
-            len(curve.angles),
-            curve.overturned,
-            curve.failed,
-            quantity.name,
-            quantity.unit,
-            reached(result.worst),
-            result.angle,
-            reached(result.rotd50),
-        )
+        (panel.values, *of_pair, quantity.name, quantity.unit, *map(reached, result))
         for panel in panels
         for curve in panel.curves
+        for of_pair in [(curve.pair, len(curve.angles), curve.overturned, curve.failed)]
         for quantity, result in curve.results.items()
     ]
     spread_heads = dict.fromkeys(("result", "unit", "pairs", "overturned"), "-")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
@@ -255,19 +256,8 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     found = fragilities(study, options)
     keys, measure, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
     curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
-    fits = [
-        (
-            *of,
-            measure,
-            *fit_cells(curve.fit),
-            curve.counted,
-            curve.exceeded,
-            curve.overturned,
-            curve.failed,
-            curve.fit.note,
-        )
-        for of, curve in curves
-    ]
+    counted = attrgetter("counted", "exceeded", "overturned", "failed", "fit.note")
+    fits = [(*of, measure, *fit_cells(curve.fit), *counted(curve)) for of, curve in curves]
     counts = ("counted", "exceeded", "overturned_among_them", "failed", "note")
     fit_heads = {"limit": "-", "intensity": "-", **fit_units(unit), **dict.fromkeys(counts, "-")}
     lines = [
@@ -312,27 +302,25 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
 
     Curves that could not be fitted are not drawn, nor are limit states without any.
     """
-    values = list(dict.fromkeys(c.values for c in report.curves))
-    place_of, count = {each: place for place, each in enumerate(values)}, len(values)
+    values = dict.fromkeys(c.values for c in report.curves)
+    place_of = {each: place for place, each in enumerate(values)}
     limits = [limit for limit in report.limits if report.fitted(limit)]
     panels = [report.fitted(limit) for limit in limits]
-
-    def shade(place: int) -> str:
-        return colour(place, count)
 
     def draw(axes: Axes, curves: list[Fragility]) -> None:
         for curve in curves:
             place = place_of[curve.values]
+            shade = colour(place, len(place_of))
             dashes = "--" if curve.fit.method == "penalised" else "-"
             axes.plot(
-                curve.grid, curve.fit.curve, dashes, color=shade(place), lw=1.4,
+                curve.grid, curve.fit.curve, dashes, color=shade, lw=1.4,
                 marker=marker(place), ms=3.2, markevery=[],  # the legend shows both
                 label=labels(report.systems.keys, curve.values) or None,
             )  # fmt: skip
             if len(curves) <= MOST_BANDS:
-                axes.fill_between(curve.grid, *curve.fit.band, color=shade(place), alpha=0.15, lw=0)
+                axes.fill_between(curve.grid, *curve.fit.band, color=shade, alpha=0.15, lw=0)
             axes.plot(
-                curve.observed.intensity, curve.observed.share, ls="", color=shade(place),
+                curve.observed.intensity, curve.observed.share, ls="", color=shade,
                 marker=marker(place), ms=3.2, alpha=0.8,
             )  # fmt: skip
         axes.set_ylim(-0.02, 1.02)

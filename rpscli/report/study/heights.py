@@ -85,17 +85,11 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
     found = grouping(study.table, options.panels)
     profiles = [profile for group in found.groups if (profile := profile_of(study, group))]
     rows = [
-        (
-            profile.values,
-            storey + 1,
-            *(float(shear[storey]) for shear in profile.shears),
-            *(float(shear[storey] * profile.static) for shear in profile.shears),
-            len(profile.histories.survivors),
-            profile.histories.overturned.number,
-            profile.histories.failed,
-        )
-        for profile in profiles
-        for storey in range(len(profile.shears[0]))
+        (one.values, storey, *ratios, *(ratio * one.static for ratio in ratios), *counts)
+        for one in profiles
+        for of in [one.histories]
+        for counts in [(len(of.survivors), of.overturned.number, of.failed)]
+        for storey, ratios in enumerate(np.transpose(one.shears).tolist(), start=1)
     ]
     heads = {f"{name}_shear_ratio": "-" for name, *_ in SHEARS}
     heads |= {f"{name}_shear": "N" for name, *_ in SHEARS}
@@ -216,20 +210,11 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
         for share in FRACTILES
     }
     rows = [
-        (
-            one.values,
-            floor + 1,
-            float(period),
-            *(
-                reached(float(one.fractiles[row, state, name, floor, place]))
-                for state in range(len(STATES))
-                for name in range(len(SPECTRA))
-                for row in range(len(FRACTILES))
-            ),
-        )
+        (one.values, floor, float(period), *map(reached, cells.ravel().tolist()))
         for one in floors
-        for floor in range(one.fractiles.shape[3])
-        for place, period in enumerate(PERIODS)
+        # by floors and periods, then states, kinds of spectrum and fractiles
+        for floor, of_floor in enumerate(one.fractiles.transpose(3, 4, 1, 2, 0), start=1)
+        for period, cells in zip(PERIODS, of_floor, strict=True)
     ]
     note = remarks(
         over(found.pooled),

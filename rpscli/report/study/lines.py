@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -99,18 +100,11 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
     names = (*options.y, *options.dashed)
     found = grouping(study.table, panel_keys, (*series, options.x))
     values = _collected(study, names if together else (*names, options.x))
-    panels = [
-        Panel(
-            group.values,
-            [
-                line
-                for name in names
-                for part in group.parts(series)
-                for line in _lines(values, options, part, name)
-            ],
-        )
-        for group in found.groups
-    ]
+    panels = []
+    for group in found.groups:
+        parts = itertools.product(names, group.parts(series))
+        of_group = [line for name, part in parts for line in _lines(values, options, part, name)]
+        panels.append(Panel(group.values, of_group))
     every = [line for panel in panels for line in panel.lines]
     single = all(c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True))
     statistic = "" if single else statistic_words(options.statistic)

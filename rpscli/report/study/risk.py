@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from pydantic import Field
@@ -60,17 +60,11 @@ class RiskOptions(FragilityOptions):
     )
 
 
-class Contributions(NamedTuple):
-    """Annual rates (bins,) from motions between edges (bins + 1,); the last edge is infinite."""
-
-    edges: Array
-    rates: Array
-
-
 @dataclass(frozen=True, eq=False)
 class Risk:
     """Annual rate of one limit state of one group of systems; NaN without a fragility.
 
+    `rates` (bins,) are from motions between `edges` (bins + 1,), the last of which is infinite.
     `band` encloses the confidence asked for over the bootstrap samples of the fragility; `half` is
     the intensity that half of the rate comes from below.
     """
@@ -78,7 +72,8 @@ class Risk:
     fragility: Fragility
     rate: float
     band: Band
-    contributions: Contributions
+    edges: Array
+    rates: Array
     half: float
     notes: tuple[str, ...]
 
@@ -145,11 +140,8 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     parts = [
         (each.fragility.values, each.fragility.limit.label, low, high, rate, rate / each.rate)
         for each in known
-        for low, high, rate in zip(
-            each.contributions.edges, each.contributions.edges[1:], each.contributions.rates,
-            strict=False,
-        )
-    ]  # fmt: skip
+        for low, high, rate in zip(each.edges, each.edges[1:], each.rates, strict=False)
+    ]
     notes = dict.fromkeys(
         f"{found.named(each.fragility)}: {note}" for each in risks for note in each.notes
     )
@@ -165,8 +157,8 @@ def risk_of(fragility: Fragility, hazard: Hazard, confidence: float) -> Risk:
     low, high = hazard.intensity[[0, -1]]
     edges = np.append(np.geomspace(low, high, BINS + 1), math.inf)
     if not fragility.fit.fitted:
-        nothing = Contributions(edges, np.full(BINS + 1, math.nan))
-        return Risk(fragility, math.nan, NOTHING, nothing, math.nan, ())
+        none = np.full(BINS + 1, math.nan)
+        return Risk(fragility, math.nan, NOTHING, edges, none, math.nan, ())
     fit = fragility.fit
     above = np.append(rates_above(hazard, fit.median, fit.beta, edges[:-1]), 0.0)
     tails = (50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence))
@@ -181,7 +173,8 @@ def risk_of(fragility: Fragility, hazard: Hazard, confidence: float) -> Risk:
         fragility=fragility,
         rate=float(above[0]),
         band=percentiles(np.array(sampled), tails),
-        contributions=Contributions(edges, -np.diff(above)),
+        edges=edges,
+        rates=-np.diff(above),
         half=_half(hazard, fragility),
         notes=tuple(_notes(fragility, hazard, above, lost)),
     )
@@ -200,8 +193,9 @@ def _half(hazard: Hazard, fragility: Fragility) -> float:
 
 
 def _notes(fragility: Fragility, hazard: Hazard, above: Array, lost: int) -> Iterator[str]:
-    at_first = (hazard.rate[0] * _probability(fragility, hazard.intensity[0])) / above[0]
-    if at_first > CLEARLY:
+    first = math.log(hazard.intensity[0] / fragility.fit.median)
+    probable = 0.5 * math.erfc(-first / fragility.fit.beta / math.sqrt(2.0))
+    if hazard.rate[0] * probable / above[0] > CLEARLY:
         yield (
             "the fragility is not negligible at the first intensity of the hazard curve, below"
             " which nothing is counted; begin the curve with weaker motions"
@@ -218,11 +212,6 @@ def _notes(fragility: Fragility, hazard: Hazard, above: Array, lost: int) -> Ite
         )
 
 
-def _probability(fragility: Fragility, intensity: float) -> float:
-    fit = fragility.fit
-    return 0.5 * math.erfc(-math.log(intensity / fit.median) / fit.beta / math.sqrt(2.0))
-
-
 def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: str) -> bytes:
     """One panel a limit state: what share of its rate comes from which intensities."""
     limits = [limit for limit in found.limits if found.fitted(limit)]
@@ -233,9 +222,9 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
             if each.fragility.limit != limit:
                 continue
             place = values.index(each.fragility.values)
-            shade, (edges, rates) = colour(place, len(values)), each.contributions
+            shade = colour(place, len(values))
             axes.stairs(
-                100.0 * rates[:-1] / each.rate, edges[:-1], color=shade, lw=1.4,
+                100.0 * each.rates[:-1] / each.rate, each.edges[:-1], color=shade, lw=1.4,
                 label=labels(found.systems.keys, each.fragility.values) or None,
             )  # fmt: skip
             axes.axvline(each.half, color=shade, lw=0.8, ls="--")
@@ -267,10 +256,9 @@ def _shown(risks: Sequence[Risk]) -> tuple[float, float]:
     """The intensities from which more than a hundredth of the largest share comes."""
     lows, highs = [], []
     for each in risks:
-        edges, rates = each.contributions
-        counting = np.flatnonzero(rates[:-1] >= 0.01 * rates[:-1].max())
-        lows.append(float(edges[counting[0]]))
-        highs.append(float(edges[counting[-1] + 1]))
+        counting = np.flatnonzero(each.rates[:-1] >= 0.01 * each.rates[:-1].max())
+        lows.append(float(each.edges[counting[0]]))
+        highs.append(float(each.edges[counting[-1] + 1]))
     return 0.9 * min(lows), 1.1 * max(highs)
 
 

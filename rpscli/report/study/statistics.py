@@ -26,11 +26,10 @@ FROM_BELOW = {"84": "16", "largest": "least"}
 
 def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
     """Count, share and interval; `name` is what is counted."""
+    endings = {"": "number", "_share": "fraction", "_low": "low", "_high": "high"}
     return [
-        Column(name, "-", [share.number for share in shares]),
-        Column(f"{name}_share", "-", [share.fraction for share in shares]),
-        Column(f"{name}_low", "-", [share.low for share in shares]),
-        Column(f"{name}_high", "-", [share.high for share in shares]),
+        Column(name + ending, "-", [getattr(share, attribute) for share in shares])
+        for ending, attribute in endings.items()
     ]
 
 

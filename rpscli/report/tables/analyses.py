@@ -78,14 +78,12 @@ def storey_curve_columns(curve: StoreyCurve) -> list[Column]:
 
 def capacity_columns(curves: tuple[CapacityCurve, ...]) -> list[Column]:
     """`capacity.csv`: the points of one load pattern after those of the other."""
-    names = [curve.pattern for curve in curves for _ in curve.sum_of_floor_forces]
+    patterns = [curve.pattern for curve in curves for _ in curve.sum_of_floor_forces]
+    heads = {"roof_displacement": "m", "cap_beam_displacement": "m", "sum_of_floor_forces": "N"}
+    values = {name: np.concatenate([getattr(each, name) for each in curves]) for name in heads}
     return [
-        Column("pattern", "-", names),
-        Column("roof_displacement", "m", np.concatenate([c.roof_displacement for c in curves])),
-        Column(
-            "cap_beam_displacement", "m", np.concatenate([c.cap_beam_displacement for c in curves])
-        ),
-        Column("sum_of_floor_forces", "N", np.concatenate([c.sum_of_floor_forces for c in curves])),
+        Column("pattern", "-", patterns),
+        *(Column(name, unit, values[name]) for name, unit in heads.items()),
     ]
 
 
@@ -145,6 +143,9 @@ def _columns(prefix: str, demands: StoreyDemands, count: int) -> Iterator[Column
         yield Column(f"{prefix}{quantity.column}", quantity.unit, known)
 
 
+ENERGIES = ("energy_input", "energy_damped", "energy_impact", "energy_stored")
+
+
 def history_columns(result: TimeHistoryResult) -> list[Column]:
     """`timehistory.csv`: one row a sample; floors and storeys are counted from the bottom.
 
@@ -170,10 +171,7 @@ def history_columns(result: TimeHistoryResult) -> list[Column]:
         Column("column_shear_bottom", "N", t.shear_bottom / columns),
         Column("column_force_top", "N", t.normal_top / columns),
         Column("column_force_bottom", "N", t.normal_bottom / columns),
-        Column("energy_input", "J", t.energy_input),
-        Column("energy_damped", "J", t.energy_damped),
-        Column("energy_impact", "J", t.energy_impact),
-        Column("energy_stored", "J", t.energy_stored),
+        *(Column(name, "J", getattr(t, name)) for name in ENERGIES),
         *_devices(result),
         Column("phase", "-", t.phase),
     ]

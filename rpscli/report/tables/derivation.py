@@ -97,7 +97,9 @@ EDGES = {
 def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
     """Expressions by the names of the quantities; empty for what the case gives."""
     return {**_of_shape(structure.bearing, podium["bearing"]), **_of_masses(structure, podium)} | {
-        "restitution": _restitution(structure),
+        "restitution": "f * e_given"
+        if structure.impact_law.kind == "value"
+        else "f * (1 - kappa * (1 - e_edge))",
         "uplift_acceleration": "g * tan_alpha",
         "uplift_force": "W * tan_alpha",
         "static_base_shear": "M * g * tan_alpha",
@@ -160,13 +162,6 @@ def _critical(*, flat: bool, rolls: bool) -> str:
     if rolls:
         return "atan(tan_alpha / (1 - 2 * rho))"
     return "atan(tan_alpha_w / (1 - 2 * rho * (1 - cos(beta))))"
-
-
-def _restitution(structure: PodiumStructure) -> str:
-    law = structure.impact_law
-    if law.kind == "value":
-        return "f * e_given"
-    return "f * (1 - kappa * (1 - e_edge))"
 
 
 def _letters(structure: PodiumStructure) -> dict[str, float]:

@@ -17,14 +17,9 @@ from rpscli.report.table import Column, picked, records, shown
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:
     """What was read, and its intensity measures in SI units."""
+    told = ("name", "source", "format", "description", "npts", "dt", "duration")
     return {
-        "name": motion.name,
-        "source": motion.source,
-        "format": motion.format,
-        "description": motion.description,
-        "npts": motion.npts,
-        "dt": motion.dt,
-        "duration": motion.duration,
+        **{name: getattr(motion, name) for name in told},
         **asdict(measures),
         "sha256": motion.digest,
         "warnings": motion.warnings,
@@ -62,24 +57,14 @@ def two_column_text(motion: GroundMotion) -> str:
 
 def selection_document(selection: Selection) -> dict[str, Any]:
     """What was chosen, beside the target; SI units."""
-    target = selection.target
     names = ("source", "factor", "event", "pgv", "pgd", "misfit")
     columns = picked(selection_columns(selection), *names)
+    of_target = ("name", "source", "damping", "pgv", "pgd")
+    numbers = ("candidates", "refused", "misfit", "least_ratio", "mean_pgv", "mean_pgd")
     return {
-        "target": {
-            "name": target.name,
-            "source": target.source,
-            "damping": target.damping,
-            "pgv": target.pgv,
-            "pgd": target.pgd,
-        },
+        "target": {name: getattr(selection.target, name) for name in of_target},
         "periods": [float(selection.periods[0]), float(selection.periods[-1])],
-        "candidates": selection.candidates,
-        "refused": selection.refused,
-        "misfit": selection.misfit,
-        "least_ratio": selection.least_ratio,
-        "mean_pgv": selection.mean_pgv,
-        "mean_pgd": selection.mean_pgd,
+        **{name: getattr(selection, name) for name in numbers},
         "motions": records(columns),
     }
 
