@@ -98,7 +98,7 @@ def read_study(
         )
     layout = lay_out(study, watched)
     require_results(layout, conditions)
-    return Study(layout, StudyContext(layout.plan), tuple(overrides))
+    return Study(layout, StudyContext(layout.plan, layout.examined), tuple(overrides))
 
 
 def _as_in_a_file(value: object) -> object:

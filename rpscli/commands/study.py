@@ -140,7 +140,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
     points: dict[int, dict[str, Any]] = {}
     for number in sorted({*first, *last}):
         point = layout[number]
-        points[number] = {"point": number + 1, **described(layout, point)}
+        points[number] = {"point": number + 1, **described(layout, number)}
         if histories and layout.plan.measure is None:  # no measure decides about the factor
             points[number]["scale"] = point.scale * point.scale_change
     if histories and not is_ready():

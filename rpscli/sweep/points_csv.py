@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.points.layout import StudyPoints, described, identifying_columns
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.table import Array, Table
 from rpscli.units import in_si
 
@@ -27,21 +27,23 @@ LINES_A_PIECE = 1000
 
 def points_csv(table: Table) -> Iterator[str]:
     """The text, in pieces. Numbers have all their digits; what does not exist is empty."""
-    layout = table.layout
+    layout, scales, names = table.layout, _scales(table), units_of_columns(table.layout)
+    units = dict(names)
+    known = [
+        (layout.places[of], [_cell(value, units[name]) for value in values])
+        for name, (of, values) in layout.identifying.items()
+    ]
     results = [(table.columns[name], q.whole) for name, q in SCALARS[layout.plan.analysis].items()]
-    names, cell = units_of_columns(layout), _cells(dict(units_of_columns(layout)))
-    scales = _scales(table)
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(f"{name} [{of}]" for name, of in names)
     for first in range(0, len(table), LINES_A_PIECE):
         piece = slice(first, first + LINES_A_PIECE)
-        points = (layout[number] for number in range(len(table))[piece])
-        known = [[cell(*item) for item in described(layout, point).items()] for point in points]
-        columns = [] if scales is None else [_numbers(scales[piece])]
+        columns = [[cells[i] for i in places[piece].tolist()] for places, cells in known]
+        columns += [] if scales is None else [_numbers(scales[piece])]
         columns.append(table.outcomes[piece].tolist())
         columns += [_numbers(column[piece], whole=whole) for column, whole in results]
-        writer.writerows([*start, *rest] for start, *rest in zip(known, *columns, strict=True))
+        writer.writerows(zip(*columns, strict=True))
         yield buffer.getvalue()
         buffer.seek(0)
         buffer.truncate()
@@ -49,7 +51,7 @@ def points_csv(table: Table) -> Iterator[str]:
 
 def units_of_columns(layout: StudyPoints) -> list[tuple[str, str]]:
     """Names and units of all columns."""
-    columns = [(name, unit_of(name)) for name in identifying_columns(layout)]
+    columns = [(name, unit_of(name)) for name in layout.identifying]
     if layout.plan.analysis == "timehistory":
         columns.append(("scale", "-"))
     columns.append(("outcome", "-"))
@@ -59,12 +61,15 @@ def units_of_columns(layout: StudyPoints) -> list[tuple[str, str]]:
 
 def _scales(table: Table) -> Array | None:
     """Factors on the records; known beforehand unless a measure decides about them."""
-    plan = table.layout.plan
+    layout, plan = table.layout, table.layout.plan
     if plan.analysis != "timehistory":
         return None
     if plan.measure is not None:
         return table.scale
-    return np.array([point.scale * point.scale_change for point in table.layout])
+    systems, _, scales, members = layout.places
+    own = np.array([properties.scale for properties in layout.properties])[systems]
+    given = own if layout.scales == (None,) else np.array(layout.scales, np.float64)[scales]
+    return np.asarray(given * np.array([change.scale for change in layout.members])[members])
 
 
 def point_columns(table: Table) -> Columns:
@@ -74,8 +79,10 @@ def point_columns(table: Table) -> Columns:
     """
     layout, scales = table.layout, _scales(table)
     units = dict(units_of_columns(layout))
-    rows = [described(layout, point) for point in layout]
-    columns = {name: array([in_si(row[name], units[name]) for row in rows]) for name in rows[0]}
+    columns = {
+        name: array([in_si(value, units[name]) for value in values])[layout.places[of]]
+        for name, (of, values) in layout.identifying.items()
+    }
     if scales is not None:
         columns["scale"] = scales
     return {**columns, "outcome": table.outcomes, **table.columns}
@@ -103,22 +110,6 @@ def _numbers(values: Array, *, whole: bool = False) -> list[str]:
     if whole:
         return [str(int(v)) if ok else "" for v, ok in zip(values.tolist(), finite, strict=True)]
     return [repr(v) if ok else "" for v, ok in zip(values.tolist(), finite, strict=True)]
-
-
-def _cells(units: dict[str, str]) -> Callable[[str, object], str]:
-    """What writes a value of a column; each is looked at once."""
-    known: dict[tuple[str, type, object], str] = {}
-
-    def cell(name: str, value: object) -> str:
-        key = name, type(value), value
-        try:
-            if key not in known:
-                known[key] = _cell(value, units[name])
-            return known[key]
-        except TypeError:  # lists and mappings
-            return _cell(value, units[name])
-
-    return cell
 
 
 def _cell(value: object, unit: str) -> str:

@@ -18,7 +18,7 @@ from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext, resolved
 from rpscli.sweep.evaluation.results import SCALARS, PointResults, at_path
 from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.run.resume import point_key
+from rpscli.sweep.run.resume import all_keys
 from sweep.small_studies import STUDY, Make
 
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
@@ -81,7 +81,7 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
         told = {quantity.name: getattr(single, quantity.name) for quantity in SAMPLED}
         assert {name: row.get(name) for name in told} == told
         assert set(row) - set(without) <= set(told)
-    assert point_key(brief, context, brief[3]) != point_key(whole, more, whole[3])
+    assert all_keys(brief, context)[3] != all_keys(whole, more)[3]
 
 
 def test_whole_histories_tell_when_columns_slide(study_of: Make) -> None:

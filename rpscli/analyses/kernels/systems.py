@@ -25,6 +25,9 @@ LEAST_SHAKEN = 1e-3
 SYSTEMS_KEPT = 128
 """Records of systems that are kept: to make one takes longer than to copy what of it is used."""
 
+STACKS_KEPT = 4
+"""Records of many systems that are kept: the batches of a study share them."""
+
 _PLAIN = record_type(SYSTEM)
 _SQUARE = ("phi", "storey_shear_of")
 """Matrices of modes, most of a record, which stand together; of few storeys little is used."""
@@ -34,6 +37,11 @@ def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings
     """Structures with the same number of storeys, each with its settings: (S,) records to read."""
     if len(systems) == 1:
         return _system(*systems[0])
+    return _stacked(tuple(systems))
+
+
+@lru_cache(STACKS_KEPT)
+def _stacked(systems: tuple[tuple[PodiumStructure, TimeHistorySettings], ...]) -> Record:
     stacked = records(SYSTEM, count=len(systems))
     n, rows = systems[0][0].storeys, stacked.view(_PLAIN, np.ndarray)
     places = [_PLAIN.fields[name][1] for name in _SQUARE]  # type: ignore[index]

@@ -166,8 +166,7 @@ def _pair_columns(
     names: tuple[str, ...] = ()
     for each in pairs:
         for mine, theirs in zip(each.points.tolist(), each.references.tolist(), strict=True):
-            point = layout[mine]
-            named = described(layout, point) | ({INTENSITY: point.scale} if factors else {})
+            named = described(layout, mine) | ({INTENSITY: layout[mine].scale} if factors else {})
             names = tuple(named)
             ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
             rows.append((tuple(named.values()), *ours, reference, *other))

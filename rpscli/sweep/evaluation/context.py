@@ -169,15 +169,16 @@ def resolved(plan: Plan, values: Sequence[Any]) -> Case:
 
 
 class Systems:
-    """The systems of a plan, resolved when they are first needed and kept for a while."""
+    """The systems of a plan, resolved when they are needed, if not `examined`; kept for a while."""
 
-    def __init__(self, plan: Plan) -> None:
-        self._plan = plan
+    def __init__(self, plan: Plan, examined: Mapping[int, System]) -> None:
+        self._plan, self._examined = plan, examined
         self._recent: Recent[int, System] = Recent(SYSTEMS_KEPT)
 
     def __getitem__(self, point: Point) -> System:
         """The system of a point."""
-        return self._recent.value(
+        known = self._examined.get(point.system)
+        return known or self._recent.value(
             point.system, lambda: system_of(resolved(self._plan, point.values))
         )
 
@@ -189,10 +190,10 @@ PEAKS: tuple[Measure, ...] = ("PGA", "PGV")
 class StudyContext:
     """Systems and ground motions of a plan, shared by all batches of a process."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, examined: Mapping[int, System] | None = None) -> None:
         self.plan = plan
         self.records = RecordCache()
-        self.systems = Systems(plan)
+        self.systems = Systems(plan, examined or {})
 
     def factor(self, point: Point) -> float:
         """Factor on the record of a point."""

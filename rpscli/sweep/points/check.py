@@ -20,7 +20,13 @@ from rpscli.case.text.document import Fault, Path, Place
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.sweep.evaluation.context import digest_of, record_request, resolved
+from rpscli.sweep.evaluation.context import (
+    SYSTEMS_KEPT,
+    System,
+    record_request,
+    resolved,
+    system_of,
+)
 from rpscli.sweep.evaluation.points import Plan, RecordRequest
 from rpscli.sweep.points.combinations import Change, Combinations
 
@@ -62,8 +68,8 @@ def check_systems(
     combinations: Combinations,
     members: Sequence[Change],
     watched: Watched = iter,
-) -> tuple[SystemProperties, ...]:
-    """SystemProperties of all systems, in order; `watched` goes through their numbers.
+) -> tuple[tuple[SystemProperties, ...], dict[int, System]]:
+    """Properties of all systems and the first systems; `watched` goes through their numbers.
 
     Raises
     ------
@@ -71,6 +77,7 @@ def check_systems(
         If one is no valid case, at the places of its values. Unknown keys are among them.
     """
     properties: list[SystemProperties] = []
+    examined: dict[int, System] = {}
     known: dict[RecordRequest, RecordRequest] = {}
     complaints: dict[str, None] = {}
     faulty = 0
@@ -78,7 +85,10 @@ def check_systems(
         values = combinations.values(system)
         try:
             case = resolved(plan, values)
-            properties.append(_properties(study, values, case, known))
+            found = system_of(case)
+            properties.append(_properties(study, values, case, found.digest, known))
+            if system < SYSTEMS_KEPT:
+                examined[system] = found
             _refuse_restitution(study, case, members)
             _refuse_missing(study, plan, case)
         except CaseError as error:
@@ -89,11 +99,15 @@ def check_systems(
                 break
     if complaints:
         raise CaseError("\n".join(complaints))
-    return tuple(properties)
+    return tuple(properties), examined
 
 
 def _properties(
-    study: Study, values: Values, case: Case, known: dict[RecordRequest, RecordRequest]
+    study: Study,
+    values: Values,
+    case: Case,
+    digest: bytes,
+    known: dict[RecordRequest, RecordRequest],
 ) -> SystemProperties:
     structure, building = case.structure, case.structure.superstructure
     request = record_request(case)
@@ -101,7 +115,7 @@ def _properties(
         request = known.setdefault(request, request)
     return SystemProperties(
         values=values,
-        digest=digest_of(case.document),
+        digest=digest,
         storeys=structure.storeys,
         period=None if building is None else float(building.periods[0]),
         alpha=structure.bearing.alpha,

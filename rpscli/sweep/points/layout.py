@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import math
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
@@ -17,6 +19,7 @@ from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RpsError
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
+from rpscli.sweep.evaluation.results import Indices
 from rpscli.sweep.points.check import SystemProperties, Watched, check_systems
 from rpscli.sweep.points.combinations import Change, Combinations, changes, combinations_of
 
@@ -39,6 +42,8 @@ class StudyPoints:
     """Factors, or values of the measure; None stands for the factor of the case."""
     members: tuple[Change, ...]
     """Changes of the perturbation."""
+    examined: Mapping[int, System]
+    """The first systems, as they were examined: they need not be resolved again."""
 
     def __len__(self) -> int:
         return math.prod(self.shape)
@@ -77,18 +82,48 @@ class StudyPoints:
             member=member,
             scale_change=change.scale,
             restitution_change=change.restitution,
-            period=self._period_of_measure(properties),
+            period=self.period_of_measure(properties),
         )
 
-    def _period_of_measure(self, properties: SystemProperties) -> float | None:
+    @cached_property
+    def places(self) -> tuple[Indices, ...]:
+        """(points,) places of all points among systems, records, scales and members."""
+        shape = (len(self.properties), *self._within)
+        return np.unravel_index(np.arange(len(self)), shape)
+
+    @cached_property
+    def identifying(self) -> dict[str, tuple[int, Sequence[Any]]]:
+        """What tells points from others: for each column which of `places`, and the values there.
+
+        `scale` is missing: it is a result where records are scaled to a measure.
+        """
+        of_systems = zip(*(properties.values for properties in self.properties), strict=True)
+        columns: dict[str, tuple[int, Sequence[Any]]] = {
+            key: (0, values) for key, values in zip(self.plan.keys, of_systems, strict=True)
+        }
+        if len(self.members) > 1:
+            columns["member"] = 3, range(len(self.members))
+            columns["restitution_change"] = 3, [change.restitution for change in self.members]
+        if self.plan.measure is not None:
+            columns[self.plan.measure.measure] = 2, self.scales
+        if self.plan.analysis == "timehistory":
+            own, records = self.records == (None,), self.records
+            if own:
+                records = tuple(properties.record for properties in self.properties)
+            columns["record"] = 0 if own else 1, [record.source for record in records if record]
+        return columns
+
+    def period_of_measure(self, properties: SystemProperties) -> float | None:
+        """Period of Sa at which the records of a system are scaled; None unless they are [s]."""
         measure = self.plan.measure
         if measure is None or measure.measure != "Sa":
             return None
         return measure.period or properties.period
 
     def system(self, index: int) -> System:
-        """One of the systems, resolved anew."""
-        return system_of(resolved(self.plan, self.properties[index].values))
+        """One of the systems."""
+        known = self.examined.get(index)
+        return known or system_of(resolved(self.plan, self.properties[index].values))
 
 
 def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
@@ -108,14 +143,16 @@ def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
     )
     members = changes(file.perturb)
     folder = str(study.folder)
+    properties, examined = check_systems(study, plan, combinations, members, watched)
     return StudyPoints(
         study=study,
         plan=plan,
         combinations=combinations,
-        properties=check_systems(study, plan, combinations, members, watched),
+        properties=properties,
         records=tuple(RecordRequest(source, folder) for source in study.sources) or (None,),
         scales=_scales(scale),
         members=members,
+        examined=examined,
     )
 
 
@@ -125,24 +162,10 @@ def _scales(scale: MeasureScale | Sequence[float] | None) -> tuple[float | None,
     return tuple(scale.values if isinstance(scale, MeasureScale) else scale)
 
 
-def described(layout: StudyPoints, point: Point) -> dict[str, Any]:
-    """What tells the point from the others: columns of `points.csv` before the results.
-
-    `scale` is missing: it is a result where records are scaled to a measure.
-    """
-    columns = dict(zip(layout.plan.keys, point.values, strict=True))
-    if len(layout.members) > 1:
-        columns |= {"member": point.member, "restitution_change": point.restitution_change}
-    if layout.plan.measure is not None:
-        columns[layout.plan.measure.measure] = point.scale
-    if point.record is not None and layout.plan.analysis == "timehistory":
-        columns["record"] = point.record.source
-    return columns
-
-
-def identifying_columns(layout: StudyPoints) -> tuple[str, ...]:
-    """Names of these columns."""
-    return tuple(described(layout, layout[0]))
+def described(layout: StudyPoints, number: int) -> dict[str, Any]:
+    """What tells a point from the others: columns of `points.csv` before the results."""
+    places = [place[number] for place in layout.places]
+    return {name: values[places[of]] for name, (of, values) in layout.identifying.items()}
 
 
 def reproduction(layout: StudyPoints, context: StudyContext, point: Point, base_file: Path) -> str:

@@ -17,28 +17,38 @@ from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Store
 
 
-def point_key(layout: StudyPoints, context: StudyContext, point: Point) -> bytes:
-    """Digest of resolved case, record content, scale, perturbation and solver version.
+def all_keys(layout: StudyPoints, context: StudyContext) -> list[bytes]:
+    """Digests of resolved case, record content, scale, perturbation and solver of all points."""
+    plan, keys, of_system = layout.plan, list[bytes](), layout.points_of_system
+    tails, before = list[bytes](), None
+    for system, properties in enumerate(layout.properties):
+        begun = hashlib.sha256(plan.solver.encode() + plan.analysis.encode() + properties.digest)
+        own = properties.record, properties.scale, layout.period_of_measure(properties)
+        if own != before:
+            first, before = system * of_system, own
+            points = (layout[number] for number in range(first, first + of_system))
+            tails = [_of_motion(context, point) for point in points]
+        for tail in tails:
+            digest = begun.copy()
+            digest.update(tail)
+            keys.append(digest.digest())
+    return keys
+
+
+def _of_motion(context: StudyContext, point: Point) -> bytes:
+    """Content of the record, scale and perturbation.
 
     A record that cannot be read counts by the reason, so that a repaired one is a new point.
     """
-    digest = hashlib.sha256(layout.plan.solver.encode())
-    digest.update(layout.plan.analysis.encode())
-    digest.update(layout.properties[point.system].digest)
-    if layout.plan.analysis == "timehistory":
-        assert point.record is not None, "points of histories have a record"
-        digest.update(context.records.digest(point.record))
-        try:
-            factor = context.factor(point)
-        except RpsError:
-            factor = point.scale
-        digest.update(struct.pack("<2d?", factor, point.restitution_change, layout.plan.whole))
-    return digest.digest()
-
-
-def all_keys(layout: StudyPoints, context: StudyContext) -> list[bytes]:
-    """Keys of all points, in the order of the study."""
-    return [point_key(layout, context, point) for point in layout]
+    if context.plan.analysis != "timehistory":
+        return b""
+    assert point.record is not None, "points of histories have a record"
+    try:
+        factor = context.factor(point)
+    except RpsError:
+        factor = point.scale
+    change = struct.pack("<2d?", factor, point.restitution_change, context.plan.whole)
+    return context.records.digest(point.record) + change
 
 
 @dataclass(frozen=True, eq=False)
