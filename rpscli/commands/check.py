@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.model.podium import PodiumStructure
 
+RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "pga")
+"""What the document says of a ground motion."""
+
 
 @click.command("check")
 @case_options
@@ -100,18 +103,9 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RecordError | None]:
     except RecordError as error:
         return None, error
     found = motion.horizontal
-    return {
-        "name": found.name,
-        "source": found.source,
-        "format": found.format,
-        "description": found.description,
-        "npts": found.npts,
-        "dt": found.dt,
-        "duration": found.duration,
-        "pga": found.pga,
-        "scale": motion.scale,
-        "warnings": [*found.warnings, *motion.warnings],
-    }, None
+    warnings = [*found.warnings, *motion.warnings]
+    known = {name: getattr(found, name) for name in RECORD}
+    return {**known, "scale": motion.scale, "warnings": warnings}, None
 
 
 def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> Iterator[Part]:
@@ -125,21 +119,17 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
             texts.append((row.label, row.symbol, shown(value), unit))
         yield Table.of_texts(heads, texts, words=2)
     if record := document["record"]:
-        yield _record_table(record)
+        lines = [
+            ("record", record["name"]),
+            ("", record["description"]),
+            ("format", record["format"]),
+            ("samples", f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s"),
+            ("peak acceleration", f"{shown(record['pga'])} m/s2"),
+            ("scale", f"{record['scale']:g}"),
+        ]
+        yield Table.listing(row for row in lines if row[1])
     if limits:
         yield Table.of_texts(("limit", ""), [(c.name, condition_text(c)) for c in limits], words=2)
-
-
-def _record_table(record: Mapping[str, Any]) -> Table:
-    rows = [
-        ("record", record["name"]),
-        ("", record["description"]),
-        ("format", record["format"]),
-        ("samples", f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s"),
-        ("peak acceleration", f"{shown(record['pga'])} m/s2"),
-        ("scale", f"{record['scale']:g}"),
-    ]
-    return Table.listing(row for row in rows if row[1])
 
 
 def device_tables(structure: PodiumStructure) -> Iterator[Part]:

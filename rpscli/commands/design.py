@@ -246,7 +246,7 @@ def answer_tables(
     confirmation: Mapping[str, Sequence[Verdict]],
 ) -> Iterator[Part]:
     """Best design, requirements, what the records do to it, and what confirms which design."""
-    from rpscli.report.study.statistics import verdict_text
+    from rpscli.report.study.statistics import VERDICT, verdict_texts
 
     counts = document["designs"]
     best = document["best"]
@@ -261,18 +261,11 @@ def answer_tables(
     if confirmation:
         yield Heading(f"confirmation with {len(answer.task.confirming)} records that were not used")
         rows = [
-            (
-                design,
-                verdict.condition.name,
-                verdict.word,
-                condition_text(verdict.condition),
-                verdict_text(verdict),
-            )
+            (design, *verdict_texts(verdict))
             for design, verdicts in confirmation.items()
             for verdict in verdicts
         ]
-        heads = ("design", "limit", "", "requirement", "result")
-        yield Table.of_texts(heads, rows, words=5, keys=2)
+        yield Table.of_texts(("design", *VERDICT), rows, words=5, keys=2)
     yield ONE_DIRECTION
 
 

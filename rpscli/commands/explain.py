@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from importlib import resources
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -18,6 +19,8 @@ from rpscli.report.documents import heading
 from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
+    from pydantic import BaseModel
+
     from rpscli.case.schema.keys import KeyReference
 
 BEARING = """\
@@ -45,10 +48,16 @@ def command(word: str, terminal: Terminal) -> None:
     Keys are named in full (podium.bearing.slenderness), by their end (slenderness) or by their
     symbol (rho).
     """
+    # pydantic is slow.
+    from rpscli.case.schema.keys import key_references
+    from rpscli.report.study.registry import REPORTS
+
     keys = _keys(word)
     results = [quantity for quantity in _results() if quantity.name == word]
     words = [row for row in glossary() if word.lower() in _names(row[0])]
-    reports, options = _reports(word), _report_options(word)
+    report = REPORTS.get(word)
+    reports = [] if report is None else [(word, (report.options.__doc__ or "").split("\n")[0])]
+    options = [] if report is None else list(key_references(report.options))
     if not (keys or results or words or options):
         raise UsageError(f"explain {word}: {_hint(word)}")
     document = {
@@ -64,26 +73,26 @@ def command(word: str, terminal: Terminal) -> None:
     terminal.result(document, _tables(keys, results, words, reports, options))
 
 
-def _formats() -> Iterator[KeyReference]:
+def _formats() -> list[KeyReference]:
+    """Every key of the three formats, once."""
     # pydantic is slow.
     from rpscli.case.design import DesignFile
     from rpscli.case.schema.case_file import CaseFile
     from rpscli.case.schema.keys import key_references
     from rpscli.case.study.schema import StudyFile
 
-    known = set()
-    for model in (CaseFile, StudyFile, DesignFile):
-        for reference in key_references(model):
-            if reference.key not in known:
-                known.add(reference.key)
-                yield reference
+    known: dict[str, KeyReference] = {}
+    models: tuple[type[BaseModel], ...] = (CaseFile, StudyFile, DesignFile)
+    for reference in chain.from_iterable(map(key_references, models)):
+        known.setdefault(reference.key, reference)
+    return list(known.values())
 
 
 def _keys(word: str) -> list[KeyReference]:
     """Keys that are called so: in full, else by their end, else by their symbol."""
     from rpscli.case.design import OLD_WORDS
 
-    found, word = list(_formats()), OLD_WORDS.get(word, word)
+    found, word = _formats(), OLD_WORDS.get(word, word)
     for called in (
         lambda key: key.key == word,
         lambda key: key.key.endswith(f".{word}"),
@@ -94,30 +103,14 @@ def _keys(word: str) -> list[KeyReference]:
     return []
 
 
-def _reports(word: str) -> list[tuple[str, str]]:
-    """The report of a name, and what it is."""
-    from rpscli.report.study.registry import REPORTS
-
-    found = REPORTS.get(word)
-    return [] if found is None else [(word, (found.options.__doc__ or "").split("\n")[0])]
-
-
-def _report_options(word: str) -> list[KeyReference]:
-    """Options of the report of a name."""
-    from rpscli.case.schema.keys import key_references
-    from rpscli.report.study.registry import REPORTS
-
-    return list(key_references(REPORTS[word].options)) if word in REPORTS else []
-
-
-def _results() -> Iterator[ResultQuantity]:
+def _results() -> list[ResultQuantity]:
     """Every quantity of the table of results, once."""
-    known = set()
+    known: dict[str, ResultQuantity] = {}
     for value in vars(result_quantities).values():
         for quantity in value if type(value) is tuple else (value,):
-            if isinstance(quantity, ResultQuantity) and quantity.name not in known:
-                known.add(quantity.name)
-                yield quantity
+            if isinstance(quantity, ResultQuantity):
+                known.setdefault(quantity.name, quantity)
+    return list(known.values())
 
 
 def _of_result(quantity: ResultQuantity) -> dict[str, Any]:
@@ -170,11 +163,9 @@ def _tables(
         if quantity.from_below:
             rows.append(("limits", "are at_least, since small values are bad"))
         yield Table.listing(rows)
-    for name, meaning in words:
+    named = [(f"{name}, a report of studies", meaning) for name, meaning in reports]
+    for name, meaning in (*words, *named):
         yield Heading(name)
-        yield meaning
-    for name, meaning in reports:
-        yield Heading(f"{name}, a report of studies")
         yield meaning
     for option in options:
         yield Heading(f"option {option.key}")

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.case.conditions import Condition, condition_text
+from rpscli.case.conditions import Condition
 from rpscli.commands.shell.failure import INTERRUPTED
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, duration, progress_report, watched
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
-from rpscli.report.table import Heading, Part, Table, large, shown
+from rpscli.report.table import Heading, Part, Table, headed, large, shown
 
 if TYPE_CHECKING:
-    from rpscli.analyses.result_quantities import ResultQuantity
     from rpscli.studies import Study
     from rpscli.study_run import StudyRun
     from rpscli.sweep.points.layout import StudyPoints
@@ -195,31 +194,23 @@ A_TABLE = 3
 def summary_tables(summary: Summary) -> Iterator[Part]:
     """Outcomes; then median, 84 % fractile and largest value of the main demands."""
     rows = summary.rows[:MOST_ROWS]
-    heads, cells = _system_columns(summary, [row.values for row in rows])
-    shares = [(row.failed, row.overturned) for row in rows]
-    outcomes = [
-        [str(over.of), str(failed), str(over.number), over.interval] for failed, over in shares
-    ]
-    yield Table.of_texts(
-        [*heads, "counted", "failed", "overturned", "95 % interval"],
-        [[*system, *outcome] for system, outcome in zip(cells, outcomes, strict=True)],
-        words=len(heads),
-        keys=len(heads),
-    )
+    systems = [row.values for row in rows]
+    outcomes = []
+    for row in rows:
+        over = row.overturned
+        outcomes.append([str(over.of), str(row.failed), str(over.number), over.interval])
+    heads = ["counted", "failed", "overturned", "95 % interval"]
+    yield _of_systems(summary, systems, heads, outcomes)
     main = [place for place, quantity in enumerate(summary.quantities) if quantity.demand]
     for first in range(0, len(main), A_TABLE):
         places = main[first : first + A_TABLE]
-        named = [_head(summary.quantities[place]) for place in places]
+        quantities = [summary.quantities[place] for place in places]
+        named = [headed(quantity.label, quantity.unit) for quantity in quantities]
         spreads = [
-            [_spread(row.spreads[place], summary.quantities[place]) for place in places]
+            [_spread(row.spreads[place], summary.quantities[place].unit) for place in places]
             for row in rows
         ]
-        yield Table.of_texts(
-            [*heads, *named],
-            [[*system, *spread] for system, spread in zip(cells, spreads, strict=True)],
-            words=len(heads),
-            keys=len(heads),
-        )
+        yield _of_systems(summary, systems, named, spreads)
     yield (
         "demands: median / 84 % fractile / largest; an overturned history is larger than any"
         " demand (inf)"
@@ -230,45 +221,39 @@ def summary_tables(summary: Summary) -> Iterator[Part]:
         yield f"the first {len(rows)} of {len(summary.rows)} rows; all are in statistics.csv"
 
 
-def _system_columns(
-    summary: Summary, rows: Sequence[tuple[object, ...]]
-) -> tuple[list[str], list[list[str]]]:
+def _of_systems(
+    summary: Summary,
+    systems: Iterable[tuple[object, ...]],
+    heads: Sequence[str],
+    cells: Iterable[Sequence[str]],
+    *,
+    words: int = 0,
+    keys: int = 0,
+) -> Table:
+    """A table whose rows begin with a system and an intensity."""
     from rpscli.report.study.labels import plain, symbol
     from rpscli.sweep.intensities import unit_of
     from rpscli.units import in_si
 
     units = [unit_of(key) for key in summary.keys]
     named = zip(map(symbol, summary.keys), units, strict=True)
-    heads = [name if unit == "-" else f"{name} {unit}" for name, unit in named]
-    return heads, [[plain(in_si(*cell)) for cell in zip(row, units, strict=True)] for row in rows]
+    own = [name if unit == "-" else f"{name} {unit}" for name, unit in named]
+    rows = [
+        [*(plain(in_si(*cell)) for cell in zip(system, units, strict=True)), *others]
+        for system, others in zip(systems, cells, strict=True)
+    ]
+    return Table.of_texts([*own, *heads], rows, words=len(own) + words, keys=len(own) + keys)
 
 
-def _head(quantity: ResultQuantity) -> str:
-    _, unit = large(None, quantity.unit)
-    return f"{quantity.label} {unit}".strip()
-
-
-def _spread(spread: Spread, quantity: ResultQuantity) -> str:
-    values = [large(value, quantity.unit)[0] for value in spread[:3]]  # the mean is in JSON
+def _spread(spread: Spread, unit: str) -> str:
+    values = [large(value, unit)[0] for value in spread[:3]]  # the mean is in JSON
     return " / ".join(shown(value, DIGITS) for value in values)
 
 
 def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
     """Every limit of each system and intensity; those that are exceeded first."""
-    from rpscli.report.study.statistics import verdict_text
+    from rpscli.report.study.statistics import VERDICT, verdict_texts
 
     ordered = sorted(verdicts, key=lambda verdict: not verdict.exceeded)[:MOST_ROWS]
-    heads, cells = _system_columns(summary, [verdict.values for verdict in ordered])
-    rows = [
-        [
-            *system,
-            verdict.condition.name,
-            verdict.word,
-            condition_text(verdict.condition),
-            verdict_text(verdict),
-        ]
-        for system, verdict in zip(cells, ordered, strict=True)
-    ]
-    keys = len(heads) + 1
-    heads += ["limit", "", "requirement", "result"]
-    return Table.of_texts(heads, rows, words=keys + 2, keys=keys)
+    systems = [verdict.values for verdict in ordered]
+    return _of_systems(summary, systems, VERDICT, map(verdict_texts, ordered), words=3, keys=1)

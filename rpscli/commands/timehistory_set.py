@@ -37,7 +37,7 @@ from rpscli.report.study.statistics import (
     verdict_document,
     verdict_lines,
 )
-from rpscli.report.table import Heading, Part, Table, csv_text, large, shown
+from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.summary import Records, Summary, summary_of_records
 from rpscli.sweep.statistics.verdicts import Verdict, judged_records
@@ -215,7 +215,7 @@ def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> 
         for name, label in words.items():
             values = [large(getattr(each, name), q.unit)[0] for q, each in quantities.items()]
             rows.append([label, "", *(shown(value, DIGITS) for value in values)])
-    heads = [f"{q.label} {large(None, q.unit)[1]}".strip() for q in quantities]
+    heads = [headed(q.label, q.unit) for q in quantities]
     return Table.of_texts(["record", "", *heads], rows, words=2)
 
 

@@ -53,6 +53,15 @@ def large(value: float | None, unit: str) -> tuple[float | None, str]:
     return value, "" if unit == "-" else unit
 
 
+def headed(label: str, unit: str) -> str:
+    """What stands above values in the unit in which people read them.
+
+    >>> headed("base shear", "N"), headed("rotation ratio", "-")
+    ('base shear kN', 'rotation ratio')
+    """
+    return f"{label} {large(None, unit)[1]}".strip()
+
+
 def measured(value: float | None, unit: str) -> str:
     """A value in SI as text with its unit.
 

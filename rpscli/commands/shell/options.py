@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,7 @@ def condition_names(
 
 
 Command = Callable[..., None]
+Decorator = Callable[[Command], Command]
 
 
 @dataclass(frozen=True)
@@ -74,21 +76,38 @@ class OutputRequest:
     force: bool
 
 
-def terminal_options(function: Command) -> Command:
-    """--json and --quiet, as `terminal`."""
+def _gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decorator:
+    """Options whose values reach the command as one argument, which is made of them."""
+    taken = tuple(signature(make).parameters)
 
-    @click.option(
+    def decorate(function: Command) -> Command:
+        @functools.wraps(function)
+        def command(**given: Any) -> None:
+            made = make(**{key: given.pop(key) for key in taken})
+            function(**{name: made}, **given)
+
+        return _all(*options)(command)
+
+    return decorate
+
+
+def _all(*options: Decorator) -> Decorator:
+    """Options in the order in which the help lists them."""
+    return lambda function: functools.reduce(lambda f, option: option(f), options[::-1], function)
+
+
+terminal_options = _gathered(
+    "terminal",
+    Terminal,
+    click.option(
         "--json", "as_json", is_flag=True, help="Print one JSON document in place of tables."
-    )
-    @click.option("-q", "--quiet", is_flag=True, help="Print errors only (and --json).")
-    @functools.wraps(function)
-    def command(*, as_json: bool, quiet: bool, **rest: Any) -> None:
-        function(terminal=Terminal(as_json=as_json, quiet=quiet), **rest)
-
-    return command
+    ),
+    click.option("-q", "--quiet", is_flag=True, help="Print errors only (and --json)."),
+)
+"""--json and --quiet, as `terminal`."""
 
 
-def overrides_option(meaning: str) -> Callable[[Command], Command]:
+def overrides_option(meaning: str) -> Decorator:
     """--set, with what it does for the command, as `overrides`."""
     return click.option(
         "--set",
@@ -113,41 +132,16 @@ style_option = click.option(
 )
 
 
-def case_options(function: Command) -> Command:
-    """CASE and --set, as `request`."""
-
-    @click.argument("case", metavar="CASE", type=FILE)
-    @_overrides
-    @functools.wraps(function)
-    def command(*, case: str, overrides: tuple[str, ...], **rest: Any) -> None:
-        function(request=CaseRequest(case, overrides), **rest)
-
-    return command
+case_options = _gathered(
+    "request", CaseRequest, click.argument("source", metavar="CASE", type=FILE), _overrides
+)
+"""CASE and --set, as `request`."""
 
 
-def figure_options(function: Command) -> Command:
-    """--figures, --columns and --style, as `look`."""
-
-    @click.option(
-        "--figures",
-        metavar="FORMATS",
-        help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none.",
-    )
-    @click.option(
-        "--columns",
-        type=click.Choice(("1", "2")),
-        help="Make figures as wide as one column of a journal (89 mm), or two (178 mm).",
-    )
-    @style_option
-    @functools.wraps(function)
-    def command(
-        *, figures: str | None, columns: str | None, style_file: Path | None, **rest: Any
-    ) -> None:
-        formats = None if figures is None else _formats(figures)
-        style = {} if style_file is None else read_style(style_file)
-        function(look=Look(formats, None if columns is None else int(columns), style), **rest)
-
-    return command
+def _look(figures: str | None, columns: str | None, style_file: Path | None) -> Look:
+    formats = None if figures is None else _formats(figures)
+    style = {} if style_file is None else read_style(style_file)
+    return Look(formats, None if columns is None else int(columns), style)
 
 
 def _formats(text: str) -> tuple[str, ...]:
@@ -164,6 +158,24 @@ def _formats(text: str) -> tuple[str, ...]:
             meant = hint(word, (*FORMATS, "none"), "write png, svg, pdf, svg,pdf or none", 0.6)
             raise UsageError(f"--figures {text}: {word or 'nothing'} is not a format; {meant}")
     return tuple(dict.fromkeys(words))
+
+
+figure_options = _gathered(
+    "look",
+    _look,
+    click.option(
+        "--figures",
+        metavar="FORMATS",
+        help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none.",
+    ),
+    click.option(
+        "--columns",
+        type=click.Choice(("1", "2")),
+        help="Make figures as wide as one column of a journal (89 mm), or two (178 mm).",
+    ),
+    style_option,
+)
+"""--figures, --columns and --style, as `look`."""
 
 
 def film_options(function: Command) -> Command:
@@ -197,107 +209,89 @@ def film_options(function: Command) -> Command:
     return command
 
 
-def film_part_options(function: Command) -> Command:
-    """Speed and part of a history; above `film_options`."""
-    second = click.FloatRange(min=0.0)
-    for decorate in (
-        click.option(
-            "--animate-to", "animate_last", type=second, metavar="S", help="Its end, in seconds."
-        ),
-        click.option(
-            "--animate-from",
-            "animate_first",
-            type=second,
-            metavar="S",
-            help="Its beginning, in seconds; where the motion begins by default.",
-        ),
-        click.option(
-            "--animate-speed",
-            type=click.FloatRange(min=0.0, min_open=True),
-            metavar="FACTOR",
-            help="Times real time: 0.5 shows it half as fast; by default it fits 9 s.",
-        ),
-    ):
-        function = decorate(function)
-    return function
+_SECOND = click.FloatRange(min=0.0)
+film_part_options = _all(
+    click.option(
+        "--animate-speed",
+        type=click.FloatRange(min=0.0, min_open=True),
+        metavar="FACTOR",
+        help="Times real time: 0.5 shows it half as fast; by default it fits 9 s.",
+    ),
+    click.option(
+        "--animate-from",
+        "animate_first",
+        type=_SECOND,
+        metavar="S",
+        help="Its beginning, in seconds; where the motion begins by default.",
+    ),
+    click.option(
+        "--animate-to", "animate_last", type=_SECOND, metavar="S", help="Its end, in seconds."
+    ),
+)
+"""Speed and part of a history; above `film_options`."""
+
+run_options = _all(
+    click.option(
+        "--jobs",
+        type=click.IntRange(1, MOST_JOBS),
+        metavar="N",
+        help="Threads; all cores by default.",
+    ),
+    click.option(
+        "--scheduler", metavar="ADDRESS", help="Use a Dask cluster, as in tcp://head:8786."
+    ),
+    click.option(
+        "--dry-run", is_flag=True, help="Check the file; show its points and an estimate."
+    ),
+    click.option("--fresh", is_flag=True, help="Discard stored results."),
+    click.option("--retry-failed", is_flag=True, help="Recompute failed points."),
+)
+"""How the points of a study are computed, as the keywords of `SweepChoices`."""
 
 
-def run_options(function: Command) -> Command:
-    """How the points of a study are computed, as the keywords of `SweepChoices`."""
-    for option in (
-        click.option("--retry-failed", is_flag=True, help="Recompute failed points."),
-        click.option("--fresh", is_flag=True, help="Discard stored results."),
-        click.option(
-            "--dry-run", is_flag=True, help="Check the file; show its points and an estimate."
-        ),
-        click.option(
-            "--scheduler", metavar="ADDRESS", help="Use a Dask cluster, as in tcp://head:8786."
-        ),
-        click.option(
-            "--jobs",
-            type=click.IntRange(1, MOST_JOBS),
-            metavar="N",
-            help="Threads; all cores by default.",
-        ),
-    ):
-        function = option(function)
-    return function
+def _case_requests(cases: tuple[str, ...], overrides: tuple[str, ...]) -> list[CaseRequest]:
+    if cases.count("-") > 1:
+        raise UsageError("the standard input, -, can be read once only")
+    return [CaseRequest(case, overrides) for case in cases]
 
 
-def several_cases_options(function: Command) -> Command:
-    """CASE... and --set, as `requests`."""
+several_cases_options = _gathered(
+    "requests",
+    _case_requests,
+    click.argument("cases", metavar="CASE...", nargs=-1, required=True, type=FILE),
+    _overrides,
+)
+"""CASE... and --set, as `requests`."""
 
-    @click.argument("cases", metavar="CASE...", nargs=-1, required=True, type=FILE)
-    @_overrides
-    @functools.wraps(function)
-    def command(*, cases: tuple[str, ...], overrides: tuple[str, ...], **rest: Any) -> None:
-        if cases.count("-") > 1:
-            raise UsageError("the standard input, -, can be read once only")
-        function(requests=[CaseRequest(case, overrides) for case in cases], **rest)
-
-    return command
-
-
-def output_options(function: Command) -> Command:
-    """-o and --force, as `output`."""
-
-    @click.option(
+output_options = _gathered(
+    "output",
+    OutputRequest,
+    click.option(
         "-o",
         "--output",
         "place",
         type=click.Path(path_type=Path, readable=False),
         metavar="DIR",
         help="Folder of the results; results/<name>/<command> by default.",
-    )
-    @click.option("--force", is_flag=True, help="Overwrite files that this command did not write.")
-    @functools.wraps(function)
-    def command(*, place: Path | None, force: bool, **rest: Any) -> None:
-        function(output=OutputRequest(place, force), **rest)
+    ),
+    click.option("--force", is_flag=True, help="Overwrite files that this command did not write."),
+)
+"""-o and --force, as `output`."""
 
-    return command
-
-
-def result_options(function: Command) -> Command:
-    """What every command that draws and writes takes: `look`, `output` and `terminal`."""
-    return figure_options(output_options(terminal_options(function)))
+result_options = _all(figure_options, output_options, terminal_options)
+"""What every command that draws and writes takes: `look`, `output` and `terminal`."""
 
 
-def fail_on_option(meaning: str) -> Callable[[Command], Command]:
+def fail_on_option(meaning: str) -> Decorator:
     """--fail-on, with what it does for the command, as `conditions`."""
-
-    def decorate(function: Command) -> Command:
-        @click.option(
+    return _gathered(
+        "conditions",
+        lambda fail_on: [parse_condition(text) for text in fail_on],
+        click.option(
             "--fail-on",
-            "fail_on",
             multiple=True,
             metavar="WHAT",
             shell_complete=condition_names,
             help=meaning,
-        )
-        @functools.wraps(function)
-        def command(*, fail_on: tuple[str, ...], **rest: Any) -> None:
-            function(conditions=[parse_condition(text) for text in fail_on], **rest)
-
-        return command
-
-    return decorate
+        ),
+    )

@@ -167,6 +167,16 @@ def verdict_text(verdict: Verdict) -> str:
     return f"{verdict.beyond}{fallen}"
 
 
+VERDICT = ("limit", "", "requirement", "result")
+"""Heads of `verdict_texts`."""
+
+
+def verdict_texts(verdict: Verdict) -> tuple[str, str, str, str]:
+    """A verdict as a row of a table."""
+    condition = verdict.condition
+    return condition.name, verdict.word, condition_text(condition), verdict_text(verdict)
+
+
 def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[str]:
     """Each exceeded limit in a line."""
     lines = []

@@ -7,9 +7,7 @@ bearings alone share it.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
-from typing import NamedTuple
 
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
@@ -25,14 +23,6 @@ FixedBaseReferences = dict[tuple[int, RecordRequest], Array]
 """Largest storey shears (n,) [N] of a system on a fixed base, under an unscaled record."""
 
 
-class Run(NamedTuple):
-    """One building under one record."""
-
-    key: bytes
-    structure: PodiumStructure
-    motion: GroundMotion
-
-
 def fixed_base_references(
     layout: StudyPoints, context: StudyContext, store: Store, jobs: int
 ) -> FixedBaseReferences:
@@ -42,7 +32,7 @@ def fixed_base_references(
     """
     known = store.fixed_base()
     keys: dict[tuple[int, RecordRequest], bytes] = {}
-    runs: dict[bytes, Run] = {}
+    runs: dict[bytes, tuple[PodiumStructure, GroundMotion]] = {}
     structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
     for system, properties in enumerate(layout.properties):
         if not properties.building:
@@ -55,11 +45,13 @@ def fixed_base_references(
                     motion = context.records.motion(request).horizontal
                     if properties.building not in structures:
                         structures[properties.building] = layout.system(system).structure
-                    runs[key] = Run(key, structures[properties.building], motion)
+                    runs[key] = structures[properties.building], motion
             except RecordError:
                 continue
             keys[system, request] = key
-    new = _computed(runs.values(), jobs)
+    with ThreadPoolExecutor(jobs) as pool:
+        shears = pool.map(lambda run: reference_shears(*run), runs.values())
+        new = dict(zip(runs, shears, strict=True))
     store.add_fixed_base(new)
     known |= new
     return {place: known[key] for place, key in keys.items()}
@@ -72,12 +64,3 @@ def _key(
     digest.update(building)
     digest.update(context.records.digest(request))
     return digest.digest()
-
-
-def _computed(runs: Iterable[Run], jobs: int) -> dict[bytes, Array]:
-    with ThreadPoolExecutor(jobs) as pool:
-        return dict(pool.map(_response, runs))
-
-
-def _response(run: Run) -> tuple[bytes, Array]:
-    return run.key, reference_shears(run.structure, run.motion)
