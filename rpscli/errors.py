@@ -6,7 +6,11 @@ knows about terminals: the command line turns these into text and an exit status
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
+Item = TypeVar("Item")
+Made = TypeVar("Made")
 
 
 class RpsError(Exception):
@@ -111,6 +115,21 @@ def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7)
     """
     meant = nearest(word, known, likeness)
     return f"did you mean {meant}?" if meant else otherwise
+
+
+def all_made(
+    make: Callable[[Item], Made], items: Iterable[Item], fault: type[RpsError]
+) -> list[Made]:
+    """What is made of each item; faults of this kind are raised together, a line for each."""
+    made, complaints = [], []
+    for item in items:
+        try:
+            made.append(make(item))
+        except fault as error:
+            complaints.append(str(error))
+    if complaints:
+        raise fault("\n".join(complaints))
+    return made
 
 
 def listed(words: Iterable[str], last: str = "or") -> str:

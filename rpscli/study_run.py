@@ -172,6 +172,11 @@ class StudyRun:
             return None
         return summary(self.table, self.results.fixed_base)
 
+    @property
+    def keys_of_rows(self) -> tuple[str, ...]:
+        """That tell apart the rows of statistics and verdicts."""
+        return self.summary.keys if self.summary else ()
+
     @cached_property
     def verdicts(self) -> list[Verdict]:
         """On every limit of each system at each intensity."""
@@ -179,8 +184,7 @@ class StudyRun:
 
     def collect(self, place: Path, look: Look) -> Collected:
         """All files for a folder. A report that fails does not take the others with it."""
-        found = Collected()
-        found.files["points.csv"] = "".join(points_csv(self.table))
+        found = Collected({"points.csv": "".join(points_csv(self.table))})
         found.failures += self._failures(place, found)
         if found.failures:
             found.files["failed.csv"] = csv_text(
@@ -231,7 +235,7 @@ class StudyRun:
                 lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
             lines += _and_more(failures, "failed.csv")
             errors.append(StudyIncomplete("\n".join(lines)))
-        if limits and self.summary and (lines := verdict_lines(self.summary.keys, self.verdicts)):
+        if limits and (lines := verdict_lines(self.keys_of_rows, self.verdicts)):
             told = [f"limit exceeded: {line}" for line in lines[:FAILURES_SHOWN]]
             errors.append(LimitExceeded("\n".join([*told, *_and_more(lines, "verdicts.csv")])))
         return type(errors[0])("\n".join(map(str, errors))) if errors else None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from rpscli.study_run import StudyRun
     from rpscli.sweep.design.answer import Answer
     from rpscli.sweep.design.search import Search
-    from rpscli.sweep.statistics.verdicts import Verdict
     from rpscli.sweep.store import Store
 
 
@@ -76,7 +76,7 @@ def command(
     folder = study_folder(first.layout, place, overrides, "design", force=output.force)
     with Store(place, fresh=chosen.fresh) as store:
         answer = rounds.run(first, store)
-        confirmations = list(rounds.confirm(answer, store))
+        confirmations = dict(rounds.confirm(answer, store))
         study, run = rounds.everything(answer, first, store)
         found = run.collect(place, look)
         folder.add_all(found.files.items())
@@ -84,13 +84,14 @@ def command(
         if len(answer.front):
             folder.add("front.csv", csv_text(design_columns(answer, answer.front)))
         if confirmations:
-            verdicts = [verdict for each in confirmations for verdict in each.run.verdicts]
-            columns = verdict_columns(confirmations[0].keys, verdicts)
+            verdicts = [verdict for each in confirmations.values() for verdict in each.verdicts]
+            columns = verdict_columns(confirmations["best"].keys_of_rows, verdicts)
             folder.add("confirmation.csv", csv_text(columns))
         drawn = figures(answer, run.layout.study.title)
         folder.add_all(figure_files(drawn, look).items())
         # Designs that exceed limits are what was looked for, not what went wrong.
-        error = run.error(found, limits=False) or _limits(answer) or _unconfirmed(confirmations)
+        error = run.error(found, limits=False) or nothing_passes(answer)
+        error = error or _unconfirmed(confirmations.values())
         store.require()
         write(folder, terminal)
     notes = [*rounds.notes(answer, confirmations), *study.warnings, *found.notes]
@@ -102,46 +103,32 @@ def command(
         "note": ONE_DIRECTION,
         "points": {"total": len(run.table), "failed": len(found.failures)},
         **answer_document(answer),
-        "confirmed": not confirmations[0].exceeded if confirmations else None,
+        "confirmed": _keeps_limits(confirmations["best"]) if confirmations else None,
         "confirmation": {
-            each.design: [verdict_document(each.keys, verdict) for verdict in each.run.verdicts]
-            for each in confirmations
+            name: [verdict_document(each.keys_of_rows, verdict) for verdict in each.verdicts]
+            for name, each in confirmations.items()
         },
         "warnings": notes,
         "files": [str(store.path), *folder.files],
     }
-    confirmation = {each.design: each.run.verdicts for each in confirmations}
-    tables = answer_tables(document, answer, confirmation)
+    tables = answer_tables(document, answer, confirmations)
     terminal.result(concluded(document, error), tables)
     leave(error)
 
 
-class Confirmation(NamedTuple):
-    """A design under motions that the search did not see."""
-
-    design: str
-    run: StudyRun
-
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """That tell apart what verdicts are on."""
-        return self.run.summary.keys if self.run.summary else ()
-
-    @property
-    def exceeded(self) -> bool:
-        """Whether a limit is, or there is no history by which to judge."""
-        verdicts = self.run.verdicts
-        return not verdicts or any(verdict.exceeded for verdict in verdicts)
+def _keeps_limits(run: StudyRun) -> bool:
+    """Whether there are histories by which to judge, and none exceeds a limit."""
+    return bool(run.verdicts) and not any(verdict.exceeded for verdict in run.verdicts)
 
 
+@dataclass(frozen=True)
 class Rounds:
     """The rounds of a search, computed as studies into one store."""
 
-    def __init__(
-        self, search: Search, overrides: tuple[str, ...], choices: SweepChoices, terminal: Terminal
-    ) -> None:
-        self.search, self.overrides = search, overrides
-        self.choices, self.terminal = choices, terminal
+    search: Search
+    overrides: tuple[str, ...]
+    choices: SweepChoices
+    terminal: Terminal
 
     def first(self) -> Study:
         """The first round, laid out; with it the file is checked to its end."""
@@ -173,7 +160,7 @@ class Rounds:
             number += 1
         return search.answer()
 
-    def confirm(self, answer: Answer, store: Store) -> Iterator[Confirmation]:
+    def confirm(self, answer: Answer, store: Store) -> Iterator[tuple[str, StudyRun]]:
         """Judge the best and the robust design under other motions, if there are any."""
         from rpscli.sweep.design.answer import NONE
 
@@ -182,14 +169,14 @@ class Rounds:
             if task.confirming and place != NONE:
                 study = self._laid_out(task.study_of(answer.values[[place]], task.confirming))
                 self.terminal.note(f"confirmation of the {name} design")
-                yield Confirmation(name, self._computed(study, store))
+                yield name, self._computed(study, store)
 
     def everything(self, answer: Answer, first: Study, store: Store) -> tuple[Study, StudyRun]:
         """All valid designs as one study, whose points are in the store."""
         study = self._laid_out(answer.task.study_of(answer.values[answer.valid]), first)
         return study, self._computed(study, store)
 
-    def notes(self, answer: Answer, confirmations: list[Confirmation]) -> Iterator[str]:
+    def notes(self, answer: Answer, confirmations: Mapping[str, StudyRun]) -> Iterator[str]:
         """What the user should know about the answer."""
         from rpscli.sweep.design.answer import NONE
 
@@ -201,9 +188,9 @@ class Rounds:
         if answer.best != NONE and (ends := list(answer.at_bounds)):
             words = " and ".join(f"the {end} {key}" for key, end in ends)
             yield f"the best design has {words} of the range; a wider one may have a better design"
-        for each in confirmations:
-            if each.exceeded:
-                yield f"the {each.design} design does not keep its limits under the other motions"
+        for name, run in confirmations.items():
+            if not _keeps_limits(run):
+                yield f"the {name} design does not keep its limits under the other motions"
 
     def _laid_out(self, checked: CheckedStudy, earlier: Study | None = None) -> Study:
         """A study with its points; records are shared with an earlier one."""
@@ -224,16 +211,11 @@ class Rounds:
         return run
 
 
-def _unconfirmed(confirmations: list[Confirmation]) -> RpsError | None:
+def _unconfirmed(runs: Iterable[StudyRun]) -> RpsError | None:
     """Histories of the confirmation that failed."""
-    texts = (text for each in confirmations for text in each.run.table.messages.values())
+    texts = (text for run in runs for text in run.table.messages.values())
     lines = list(dict.fromkeys(f"confirmation: {text}" for text in texts))
     return StudyIncomplete("\n".join(lines)) if lines else None
-
-
-def _limits(answer: Answer) -> RpsError | None:
-    text = nothing_passes(answer)
-    return LimitExceeded(text) if text else None
 
 
 DIGITS = 4
@@ -241,9 +223,7 @@ RECORDS_SHOWN = 3
 
 
 def answer_tables(
-    document: dict[str, Any],
-    answer: Answer,
-    confirmation: Mapping[str, Sequence[Verdict]],
+    document: dict[str, Any], answer: Answer, confirmations: Mapping[str, StudyRun]
 ) -> Iterator[Part]:
     """Best design, requirements, what the records do to it, and what confirms which design."""
     from rpscli.report.study.statistics import VERDICT, verdict_texts
@@ -258,18 +238,18 @@ def answer_tables(
         yield Table.listing(list(_records(document)))
     if len(answer.front):
         yield f"Pareto front of both objectives: {len(answer.front)} designs, in front.csv"
-    if confirmation:
+    if confirmations:
         yield Heading(f"confirmation with {len(answer.task.confirming)} records that were not used")
         rows = [
             (design, *verdict_texts(verdict))
-            for design, verdicts in confirmation.items()
-            for verdict in verdicts
+            for design, run in confirmations.items()
+            for verdict in run.verdicts
         ]
         yield Table.of_texts(("design", *VERDICT), rows, words=5, keys=2)
     yield ONE_DIRECTION
 
 
-def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> Table:
+def _values(document: dict[str, Any], design: dict[str, Any], title: str) -> Table:
     from rpscli.report.study.labels import symbol
     from rpscli.sweep.intensities import unit_of
 
@@ -283,18 +263,12 @@ def _values(document: dict[str, Any], design: dict[str, Any], head: str) -> Tabl
         end = f"{ends[key]} of its range" if key in ends else least
         rows.append((name, end, shown(value, DIGITS), _interval(intervals[key])))
     for objective, value in _further_objectives(document, design):
-        name, interval = objective["aim"], intervals.get(objective["aim"], ())
-        limits = [large(end, objective["unit"])[0] or 0.0 for end in interval]
+        name = objective["aim"]
+        interval = [large(end, objective["unit"])[0] or 0.0 for end in intervals.get(name, ())]
         number, unit = large(value, objective["unit"])
-        rows.append(
-            (
-                f"{name} [{unit}]" if unit else name,
-                "minimised",
-                shown(number, DIGITS),
-                _interval(limits),
-            )
-        )
-    return Table.of_texts(("", "", head, "95 % of resamples"), rows, words=2)
+        head = f"{name} [{unit}]" if unit else name
+        rows.append((head, "minimised", shown(number, DIGITS), _interval(interval)))
+    return Table.of_texts(("", "", title, "95 % of resamples"), rows, words=2)
 
 
 def _further_objectives(
@@ -322,14 +296,9 @@ def _requirements(document: dict[str, Any], answer: Answer) -> Table:
             remark = f"binds; without it {measured(row['aim_without_it'], unit)}"
         else:
             remark = "" if row["met"] else "NOT MET"
+        result, met_by = shown(row["value"], DIGITS), f"{row['designs_that_meet_it']} designs"
         rows.append(
-            (
-                row["requirement"],
-                condition_text(requirement.condition),
-                remark,
-                shown(row["value"], DIGITS),
-                f"{row['designs_that_meet_it']} designs",
-            )
+            (row["requirement"], condition_text(requirement.condition), remark, result, met_by)
         )
     heads = ("limit", "requirement", "", "result", "met by")
     return Table.of_texts(heads, rows, words=3)
@@ -375,13 +344,13 @@ def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield f"without {record}", f"{objective} {measured(value, unit)}"
 
 
-def nothing_passes(answer: Answer) -> str:
+def nothing_passes(answer: Answer) -> LimitExceeded | None:
     """Which requirement stands in the way least, if no design passes; else nothing."""
     from rpscli.report.design import requirement_label
     from rpscli.sweep.design.answer import NONE
 
     if answer.best != NONE:
-        return ""
+        return None
     judged, place = answer.judged, answer.closest
     rows = [row for row in range(len(judged.requirements)) if not judged.met[row, 0, place]]
     lines = [f"no design of {len(answer.places)} meets all requirements"]
@@ -393,4 +362,4 @@ def nothing_passes(answer: Answer) -> str:
             f" the least violated design, {100.0 * judged.excess[row, place]:.3g} % of the"
             f" records too many; {int(judged.met[row, 0].sum())} designs meet it"
         )
-    return "\n".join(lines)
+    return LimitExceeded("\n".join(lines))

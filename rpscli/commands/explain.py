@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from importlib import resources
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -65,7 +65,7 @@ def command(word: str, terminal: Terminal) -> None:
         "command": "explain",
         "word": word,
         "keys": [key._asdict() for key in keys],
-        "results": [_of_result(quantity) for quantity in results],
+        "results": [{name: value for name, value in q._asdict().items() if value} for q in results],
         "words": [{"word": name, "meaning": meaning} for name, meaning in words],
         "reports": [{"report": name, "meaning": meaning} for name, meaning in reports],
         "options": [key._asdict() for key in options],
@@ -113,10 +113,6 @@ def _results() -> list[ResultQuantity]:
     return list(known.values())
 
 
-def _of_result(quantity: ResultQuantity) -> dict[str, Any]:
-    return {name: value for name, value in quantity._asdict().items() if value}
-
-
 def glossary() -> list[tuple[str, str]]:
     """Words and meanings of the glossary."""
     text = resources.files("rpscli").joinpath("GLOSSARY.md").read_text(encoding="utf-8")
@@ -150,47 +146,45 @@ def _tables(
 ) -> Iterator[Part]:
     for key in keys:
         yield Heading(key.key)
-        yield Table.listing(list(_lines(key)))
+        yield _lines(key)
         drawing = next((DRAWINGS[place] for place in DRAWINGS if key.key.startswith(place)), None)
         if drawing:
             yield drawing
     for quantity in results:
         yield Heading(f"{quantity.name}, a result")
-        shown = _of_result(quantity)
-        names = {"limit": "limit, as in", "needs": "needs", "meaning": "is"}
-        rows = [("means", quantity.label), ("unit", quantity.unit or "none")]
-        rows += [(names[name], str(shown[name])) for name in names if name in shown]
-        if quantity.from_below:
-            rows.append(("limits", "are at_least, since small values are bad"))
-        yield Table.listing(rows)
+        rows = {
+            "means": quantity.label,
+            "unit": quantity.unit or "none",
+            "limit, as in": quantity.limit,
+            "needs": quantity.needs,
+            "is": quantity.meaning,
+            "limits": "are at_least, since small values are bad" if quantity.from_below else "",
+        }
+        yield Table.listing((name, str(text)) for name, text in rows.items() if text)
     named = [(f"{name}, a report of studies", meaning) for name, meaning in reports]
     for name, meaning in (*words, *named):
         yield Heading(name)
         yield meaning
     for option in options:
         yield Heading(f"option {option.key}")
-        yield Table.listing(list(_lines(option)))
+        yield _lines(option)
 
 
-def _lines(key: KeyReference) -> Iterator[tuple[str, str]]:
-    yield "means", key.meaning
-    if key.symbol:
-        yield "symbol", key.symbol
-    if key.unit:
-        yield "unit", key.unit if key.unit != "-" else "none"
-    if key.bounds:
-        yield "must be", key.bounds
-    if key.words:
-        yield "words", ", ".join(key.words)
-    if key.key.split(".")[-1] == "reports":
-        from rpscli.report.study.registry import REPORTS
+def _lines(key: KeyReference) -> Table:
+    """What is known of a key."""
+    from rpscli.report.study.registry import REPORTS
 
-        yield "names", f"{', '.join(REPORTS)}; `rps explain NAME` lists the options of one"
-    if key.keys:
-        yield "keys", ", ".join(key.keys)
-    if key.default is not None:
-        yield "left out", str(key.default)
-    elif key.required:
-        yield "left out", "cannot be, where its section stands"
-    if key.sections:
-        yield "enters", f"THEORY.md, section {key.sections}"
+    needed = "cannot be, where its section stands" if key.required else ""
+    names = f"{', '.join(REPORTS)}; `rps explain NAME` lists the options of one"
+    rows = {
+        "means": key.meaning,
+        "symbol": key.symbol,
+        "unit": "none" if key.unit == "-" else key.unit,
+        "must be": key.bounds,
+        "words": ", ".join(key.words),
+        "names": names if key.key.split(".")[-1] == "reports" else "",
+        "keys": ", ".join(key.keys),
+        "left out": needed if key.default is None else str(key.default),
+        "enters": f"THEORY.md, section {key.sections}" if key.sections else "",
+    }
+    return Table.listing((name, text) for name, text in rows.items() if text or name == "means")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import click
 
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import CaseError, UsageError
+from rpscli.errors import UsageError
 from rpscli.report.files import OutputFolder, Run
 
 if TYPE_CHECKING:
@@ -45,19 +45,6 @@ def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
     case = load_case(request.source, request.overrides)
     terminal.warn(case.warnings)
     return CaseInput(case, request)
-
-
-def read_cases(requests: Iterable[CaseRequest], terminal: Terminal) -> list[CaseInput]:
-    """Read and check several cases; the faults of all are raised together."""
-    cases, complaints = [], []
-    for request in requests:
-        try:
-            cases.append(read_case(request, terminal))
-        except CaseError as error:
-            complaints.append(str(error))
-    if complaints:
-        raise CaseError("\n".join(complaints))
-    return cases
 
 
 def case_folder(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -91,20 +91,14 @@ def earlier_case(earlier: Earlier) -> tuple[CaseInput, MotionRequest]:
     case = parse_case(json.dumps(run["inputs"]["case"]), name=name, folder=folder)
     case = replace(case, digest=run["sha256"])
     request = CaseRequest(name, tuple(run["inputs"]["overrides"]))
-    return CaseInput(case, request), _motion(earlier, None if not case.record else case.record)
-
-
-def _motion(earlier: Earlier, own: Any) -> MotionRequest:
-    given = earlier.run["inputs"]["record"]
-    sources = {
-        name: None if given[name] is None else str(given[name]["source"])
+    given, own = run["inputs"]["record"], case.record
+    horizontal, vertical = (
+        None if given[name] is None else str(given[name]["source"])
         for name in ("horizontal", "vertical")
-    }
-    horizontal, vertical = sources["horizontal"], sources["vertical"]
+    )
     if own is not None and own.source == horizontal:
-        other = None if vertical == own.vertical else vertical
-        return MotionRequest(None, other, given["scale"])
-    return MotionRequest(horizontal, vertical, given["scale"])
+        horizontal, vertical = None, None if vertical == own.vertical else vertical
+    return CaseInput(case, request), MotionRequest(horizontal, vertical, given["scale"])
 
 
 def _shortened(path: Path) -> Path:
@@ -251,10 +245,13 @@ def programs() -> str:
     return ", ".join(f"{name} {version}" for name, version in versions().items() if version)
 
 
+def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
+    """A case or a study on a command line, with what is put over it."""
+    return [source, *(word for override in overrides for word in ("--set", override))]
+
+
 def _repeat(given: CaseInput, motion: MotionRequest) -> Iterator[Block]:
-    words = [given.request.source]
-    for override in given.request.overrides:
-        words += ["--set", override]
+    words = subject_words(given.request.source, given.request.overrides)
     options = {
         "--record": motion.record,
         "--vertical": motion.vertical,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rpscli.commands.inputs import RESULTS
-from rpscli.commands.report_case import Earlier, PageDone, notices, programs
+from rpscli.commands.report_case import Earlier, PageDone, notices, programs, subject_words
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import Terminal
@@ -102,9 +102,9 @@ def _sections(
     drawn: list[Block] = [
         Picture(each, _caption(study, stem)) for stem, each in pictures(found.files.items())
     ]
-    statistics = list(summary_tables(run.summary)) if run.summary else []
-    ground = Section("Ground motions", [])
+    statistics, ground = list[Block](), Section("Ground motions", [])
     if run.summary:
+        statistics += summary_tables(run.summary)
         ground = motions_section(*_motions(study), study.title, look)
     return [
         Section("In short", list(_in_short(run, found, notes))),
@@ -121,8 +121,7 @@ def _sections(
 
 def _of_first(section: Section, study: Study) -> Section:
     """A section about one system says which."""
-    layout = study.layout
-    systems = len(layout.combinations)
+    layout, systems = study.layout, len(study.layout.combinations)
     if systems == 1:
         return section
     values = zip(layout.plan.keys, layout[0].values, strict=True)
@@ -151,21 +150,18 @@ def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator
 def _motions(study: Study) -> tuple[list[GroundMotion], list[str]]:
     """The records before they are scaled, and why some cannot be read."""
     layout, motions, reasons = study.layout, [], []
-    own = [properties.record for properties in layout.properties]
-    requests = [record for record in (*layout.records, *own) if record is not None]
-    if None not in layout.records:
-        requests = [record for record in layout.records if record is not None]
-    for request in dict.fromkeys(requests):
+    own = [properties.record for properties in layout.properties if None in layout.records]
+    for request in dict.fromkeys((*layout.records, *own)):
         try:
-            motions.append(study.context.records.motion(request).horizontal)
+            if request is not None:
+                motions.append(study.context.records.motion(request).horizontal)
         except RecordError as error:
             reasons.append(str(error))
     return motions, reasons
 
 
 def _caption(study: Study, stem: str) -> str:
-    request = study.reports.get(stem)
-    if request is None:
+    if (request := study.reports.get(stem)) is None:
         return stem
     title = request.options.title
     return f"{request.kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
@@ -189,9 +185,7 @@ def _input(study: Study, first: Case) -> Iterator[Block]:
 
 
 def _repeat(study: Study, folder: Path) -> Iterator[Block]:
-    words = [study.layout.study.source]
-    for override in study.overrides:
-        words += ["--set", override]
+    words = subject_words(study.layout.study.source, study.overrides)
     yield "From the folder in which this page was made, with the same versions:"
     yield Code(f"{shlex.join(['rps', 'sweep', *words])}\n{shlex.join(['rps', 'report', *words])}")
     yield (

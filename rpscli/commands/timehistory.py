@@ -11,7 +11,7 @@ import click
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
-from rpscli.commands.inputs import FACTOR, MotionRequest, read_cases, single_motions, write
+from rpscli.commands.inputs import FACTOR, MotionRequest, read_case, single_motions, write
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     FILE,
@@ -31,7 +31,7 @@ from rpscli.commands.timehistory_run import (
     compute,
     history_requests,
 )
-from rpscli.errors import UsageError
+from rpscli.errors import CaseError, UsageError, all_made
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 
@@ -85,7 +85,7 @@ def command(
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
     motions = list(single_motions(records, MotionRequest(**motion)))
-    cases = read_cases(requests, terminal)
+    cases = all_made(lambda request: read_case(request, terminal), requests, CaseError)
     histories = [
         replace(history, floor_spectra=floor_spectra)
         for history in history_requests(cases, motions, output)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.analyses.result_quantities import LIMITED, NEEDS
@@ -23,7 +24,7 @@ from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import patience
-from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
+from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
 from rpscli.report.documents import ONE_DIRECTION, heading, json_text, timehistory_document
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
@@ -68,7 +69,7 @@ def history_requests(
     requests = []
     case_labels = unique([given.case.name for given in cases])
     for given, case_label in zip(cases, case_labels, strict=True):
-        grounds = list(_grounds(given, motions))
+        grounds = all_made(partial(load_motion, given.case), motions, RecordError)
         labels = unique([_label(ground) for ground in grounds])
         for motion, ground, label in zip(motions, grounds, labels, strict=True):
             place = RESULTS / case_label / COMMAND / label
@@ -84,17 +85,6 @@ def history_requests(
             )
             requests.append(HistoryRequest(given, case_label, ground, label, folder))
     return requests
-
-
-def _grounds(given: CaseInput, motions: Iterable[MotionRequest]) -> Iterator[MotionComponents]:
-    complaints = []
-    for motion in motions:
-        try:
-            yield load_motion(given.case, motion)
-        except RecordError as error:
-            complaints.append(str(error))
-    if complaints:
-        raise RecordError("\n".join(complaints))
 
 
 def _label(ground: MotionComponents) -> str:

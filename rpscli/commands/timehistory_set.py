@@ -12,7 +12,6 @@ from rpscli.case.conditions import (
     EVENTS,
     Condition,
     case_conditions,
-    condition_text,
     with_friction,
 )
 from rpscli.commands.inputs import RESULTS, CaseInput, case_folder, write
@@ -31,11 +30,13 @@ from rpscli.report.documents import ONE_DIRECTION, heading, json_text
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 from rpscli.report.study.statistics import (
+    VERDICT,
     demand_columns,
     records_columns,
     summary_document,
     verdict_document,
     verdict_lines,
+    verdict_texts,
 )
 from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown
 from rpscli.sweep.statistics.fractiles import Spread
@@ -134,12 +135,18 @@ def _set_folder(
     return case_folder(first.given, OutputRequest(place, output.force), COMMAND, record_source=name)
 
 
+def _named(computed: Sequence[Computed]) -> Iterator[tuple[str, HistoryResult]]:
+    """All histories by case and record."""
+    for case in computed:
+        for label, history in zip(case.labels, case.histories, strict=True):
+            yield f"{case.label}, {label}", history
+
+
 def _error(computed: Sequence[Computed]) -> RpsError | None:
     """What ends the command: failed histories, else limits that are exceeded."""
     lines = [
-        f"{case.label}, {label}: {history.error}"
-        for case in computed
-        for label, history in zip(case.labels, case.histories, strict=True)
+        f"{name}: {history.error}"
+        for name, history in _named(computed)
         if isinstance(history.error, AnalysisError)
     ]
     if lines:
@@ -162,9 +169,8 @@ def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str,
         for name in ("records.csv", "statistics.csv", "summary.json", "run.json")
     ]
     warnings = [
-        f"{case.label}, {label}: {text}"
-        for case in computed
-        for label, history in zip(case.labels, case.histories, strict=True)
+        f"{name}: {text}"
+        for name, history in _named(computed)
         for text in history.document["warnings"]
     ]
     document = {
@@ -223,17 +229,11 @@ def _verdict_table(computed: Sequence[Computed]) -> Table:
     rows = []
     for case in computed:
         for verdict in case.verdicts:
-            event = verdict.condition.name in EVENTS
+            *texts, _ = verdict_texts(verdict)
             which = "least" if verdict.condition.from_below else "largest"
             value = shown(verdict.value) if math.isfinite(verdict.value) else "overturned"
-            largest = "" if event else f", {which} {value} ({verdict.record})"
-            rows.append(
-                [
-                    case.label,
-                    verdict.condition.name,
-                    verdict.word,
-                    condition_text(verdict.condition),
-                    f"{verdict.beyond.number} of {verdict.beyond.of} beyond{largest}",
-                ]
-            )
-    return Table.of_texts(["case", "limit", "", "requirement", "result"], rows, words=5, keys=2)
+            event = verdict.condition.name in EVENTS
+            worst = "" if event else f", {which} {value} ({verdict.record})"
+            result = f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}"
+            rows.append([case.label, *texts, result])
+    return Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)

@@ -128,10 +128,7 @@ def _energy(result: TimeHistoryResult) -> list[Row]:
         "still stored": energy.stored,
         "residual": energy.residual,
     }
-    rows = [
-        (f"  {name}", measured(part, "J"), percent(part, supplied), "")
-        for name, part in parts.items()
-    ]
+    rows = [(f"  {k}", measured(v, "J"), percent(v, supplied), "") for k, v in parts.items()]
     return [("energy input", measured(energy.input, "J"), "", ""), *rows]
 
 
@@ -163,11 +160,10 @@ def devices_table(result: TimeHistoryResult) -> Table:
             measured(demand.stroke, "m"),
             measured(demand.velocity, "m/s"),
             measured(demand.energy, "J"),
-            ""
-            if demand.remaining_prestress is None
-            else f"prestress {measured(demand.remaining_prestress, 'N')} left",
+            f"prestress {measured(left, 'N')} left" if left is not None else "",
         ]
         for index, demand in enumerate(result.devices)
+        for left in (demand.remaining_prestress,)
     ]
     return Table.of_texts(["device", "force", "stroke", "velocity", "energy", ""], rows)
 
@@ -176,10 +172,8 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
     """Every limit with its value."""
     rows = []
     for verdict in verdicts:
-        condition, value = verdict.condition, shown(verdict.value)
-        row = (condition.name, verdict.word, condition.source)
-        if condition.name in EVENTS:
-            rows.append((*row, "", ""))
-        else:
-            rows.append((*row, "overturned" if verdict.overturned else value, condition.bound))
+        condition = verdict.condition
+        value = "overturned" if verdict.overturned else shown(verdict.value)
+        numbers = ("", "") if condition.name in EVENTS else (value, condition.bound)
+        rows.append((condition.name, verdict.word, condition.source, *numbers))
     return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)

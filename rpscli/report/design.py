@@ -124,7 +124,7 @@ def _design(answer: Answer, place: int) -> dict[str, Any]:
 def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
     """Each requirement at the best design, or at the least violated one."""
     judged, place = answer.judged, answer.closest
-    without = {each.requirement: each for each in answer.without}
+    without, best = answer.without, answer.objectives[answer.best]
     return [
         {
             "requirement": requirement_label(requirement),
@@ -135,8 +135,8 @@ def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
             "records_too_many": float(judged.excess[row, place]),
             "met": bool(judged.met[row, 0, place]),
             "designs_that_meet_it": int(judged.met[row, 0].sum()),
-            "binds": without[row].binds if row in without else None,
-            "aim_without_it": without[row].objective if row in without else None,
+            "binds": without[row] < best if without else None,
+            "aim_without_it": without[row] if without else None,
         }
         for row, requirement in enumerate(judged.requirements)
     ]

@@ -8,7 +8,7 @@ import sys
 import traceback
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import click
 
@@ -56,11 +56,7 @@ def leave(error: RpsError | None) -> None:
     """End a command that has given its result, if an error belongs to it."""
     if error is not None:
         emit(_lines(error), sys.stderr)
-        _exit(error.exit_code)
-
-
-def _exit(code: int) -> NoReturn:
-    raise click.exceptions.Exit(code)
+        raise click.exceptions.Exit(error.exit_code)
 
 
 def kind(error: BaseException) -> str:

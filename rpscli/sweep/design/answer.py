@@ -142,19 +142,8 @@ NONE = -1
 """Place of a design that does not exist."""
 
 
-class Without(NamedTuple):
-    """The least objective if one requirement fell; `binds` if it is less then."""
-
-    requirement: int
-    objective: float
-    binds: bool
-
-
-class Interval(NamedTuple):
-    """In which a number lies in so large a part of the resamples; NaN if it has none."""
-
-    low: float
-    high: float
+Interval = tuple[float, float]
+"""In which a number lies in so large a part of the resamples; NaN if it has none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,19 +208,24 @@ class Answer:
         return int(objectives.argmin()) if np.isfinite(objectives).any() else NONE
 
     @property
+    def of_resamples(self) -> Indices:
+        """(resamples,) the best design of each; NONE where nothing passes."""
+        return self.chosen[1 : 1 + self.resamples]
+
+    @property
     def unanswered(self) -> int:
         """Resamples in which nothing passes."""
-        return int((self.chosen[1 : 1 + self.resamples] == NONE).sum())
+        return int((self.of_resamples == NONE).sum())
 
     def interval(self, key: int) -> Interval:
         """Of a key of the best design, over the resamples that have one."""
-        chosen = self.chosen[1 : 1 + self.resamples]
+        chosen = self.of_resamples
         return interval_of(self.values[chosen[chosen != NONE], key])
 
     @property
     def objective_interval(self) -> Interval:
         """Of what is to be least."""
-        chosen = self.chosen[1 : 1 + self.resamples]
+        chosen = self.of_resamples
         rows = np.nonzero(chosen != NONE)[0]
         return interval_of(self.judged.objectives[0][1 + rows, chosen[rows]])
 
@@ -253,14 +247,15 @@ class Answer:
         return np.asarray(passing[order][kept])
 
     @property
-    def without(self) -> Iterator[Without]:
-        """The best design if one requirement fell; only where there is a best one."""
+    def without(self) -> list[float]:
+        """The least objective if one requirement fell, for each; empty without a best design."""
         if self.best == NONE:
-            return
-        for place in range(len(self.judged.requirements)):
-            others = np.delete(self.judged.met[:, 0], place, axis=0).all(axis=0) & self.valid
-            least = float(self.objectives[others].min())
-            yield Without(place, least, least < self.objectives[self.best])
+            return []
+        met, objectives = self.judged.met[:, 0], np.where(self.valid, self.objectives, np.inf)
+        return [
+            float(objectives[np.delete(met, place, axis=0).all(axis=0)].min())
+            for place in range(len(met))
+        ]
 
     @property
     def at_bounds(self) -> Iterator[tuple[str, str]]:
@@ -288,12 +283,13 @@ def interval_of(values: Array) -> Interval:
     """The middle part of numbers, some of which may be infinite; NaN without any.
 
     >>> interval_of(np.arange(1001.0))
-    Interval(low=25.0, high=975.0)
+    (25.0, 975.0)
     """
     if not len(values):
-        return Interval(np.nan, np.nan)
+        return np.nan, np.nan
     tail = 0.5 * (1.0 - CONFIDENCE)
-    return Interval(*fractiles(values, (tail, 1.0 - tail)).tolist())
+    low, high = fractiles(values, (tail, 1.0 - tail)).tolist()
+    return low, high
 
 
 def _distance(judged: Judged) -> Array:

@@ -29,11 +29,6 @@ MOST_NEAR = 64
 """Other designs among which the neighbours of a design are looked for."""
 
 
-def usual_count(unknowns: int) -> int:
-    """Designs of the first sample, if the file does not say: 32, 64, 128 and so on, to 512."""
-    return int(min(512, 2 ** (unknowns + 4)))
-
-
 def first_places(unknowns: int, count: int, seed: int) -> Array:
     """(designs, unknowns) of the first sample.
 
@@ -133,7 +128,7 @@ class Search:
     def __init__(self, task: DesignTask) -> None:
         search, unknowns = task.file.search, len(task.unknowns)
         self.task = task
-        self.first = search.first or usual_count(unknowns)
+        self.first = search.first or min(512, 2 ** (unknowns + 4))
         self.most = max(search.most or ROUNDS * self.first, self.first)
         self.weights = weights_of(max(len(task.study.sources), 1), search.resamples, search.seed)
         self.requirements: tuple[Requirement, ...] = ()
@@ -198,11 +193,8 @@ class Search:
         lacking = frozenset.union(*(properties.lacking for properties in layout.properties))
         for name in self.names:
             if name in lacking and name not in EVENTS:
-                where = (
-                    "minimise"
-                    if any(name in objective for objective in self.task.file.minimise)
-                    else "limits"
-                )
+                aimed_at = any(name in objective for objective in self.task.file.minimise)
+                where = "minimise" if aimed_at else "limits"
                 document.refuse([Fault((where,), f"{where}: {needs_of(name)}")])
 
     def add(self, places: Array, values: Array, valid: Flags, table: Table | None) -> None:
