@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from importlib import resources
-from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
@@ -19,8 +18,6 @@ from rpscli.report.documents import heading
 from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from pydantic import BaseModel
-
     from rpscli.case.schema.keys import KeyReference
 
 BEARING = """\
@@ -82,9 +79,9 @@ def _formats() -> list[KeyReference]:
     from rpscli.case.study.schema import StudyFile
 
     known: dict[str, KeyReference] = {}
-    models: tuple[type[BaseModel], ...] = (CaseFile, StudyFile, DesignFile)
-    for reference in chain.from_iterable(map(key_references, models)):
-        known.setdefault(reference.key, reference)
+    for model in (CaseFile, StudyFile, DesignFile):
+        for reference in key_references(model):
+            known.setdefault(reference.key, reference)
     return list(known.values())
 
 
