@@ -190,7 +190,12 @@ def case_from_mapping(
     """A case from values in memory, or from a document (or part of one) with its positions."""
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
-    file, partial = _checked(document)
+    check = schema_check(CaseFile, document)
+    partial = PartialCase(document, check)
+    faults = [*check.faults, *(fault for rule in RULES for fault in rule(partial))]
+    document.refuse(fault for fault in faults if not check.suggested.intersection(fault.needs))
+    file = check.read
+    assert file is not None, "without faults the file is read"
     stem = Path(name.strip("<>")).stem or "case"
     podium = _podium(file, partial)
     ignored = ignored_keys(partial)
@@ -199,16 +204,6 @@ def case_from_mapping(
         *doubts_of_storeys(file.superstructure, document),
     )
     return Case(stem, name, folder or Path(), file, podium, doubts)
-
-
-def _checked(document: Document) -> tuple[CaseFile, PartialCase]:
-    """The validated file; all faults are raised together."""
-    check = schema_check(CaseFile, document)
-    partial = PartialCase(document, check)
-    faults = [*check.faults, *(fault for rule in RULES for fault in rule(partial))]
-    document.refuse(fault for fault in faults if not check.suggested.intersection(fault.needs))
-    assert check.read is not None, "without faults the file is read"
-    return check.read, partial
 
 
 def _podium(file: CaseFile, partial: PartialCase) -> Podium:

@@ -165,61 +165,42 @@ def choose(
     scaled: Array, wanted: Array, events: Sequence[str], count: int, per_event: int
 ) -> list[int]:
     """Places of the spectra whose mean is nearest to the target, in order."""
+
+    def free(places: Sequence[int]) -> list[int]:
+        """What may still be chosen beside these places."""
+        taken = Counter(events[place] for place in places)
+        every = enumerate(events)
+        return [p for p, event in every if p not in places and taken[event] < per_event]
+
+    def grown(first: int) -> list[int]:
+        """A choice that begins with one spectrum and takes the best next one each time."""
+        places = [first]
+        while len(places) < count:
+            others = free(places)
+            means = (scaled[places].sum(axis=0) + scaled[others]) / (len(places) + 1.0)
+            places.append(others[int(np.argmin(misfit(means, wanted)))])
+        return places
+
+    def exchanged(places: list[int]) -> tuple[float, list[int]]:
+        """The best exchange of one spectrum for another, until none helps; first its misfit."""
+        now = float(misfit(scaled[places].mean(axis=0), wanted))
+        while True:
+            total, best = scaled[places].sum(axis=0), None
+            for out in places:
+                kept = [place for place in places if place != out]
+                if not (others := [place for place in free(kept) if place != out]):
+                    continue
+                found = misfit((total - scaled[out] + scaled[others]) / len(places), wanted)
+                place = int(np.argmin(found))
+                # Rounding of the sums must not look like progress, or it would never end.
+                if found[place] < now - 1e-12:
+                    now, best = float(found[place]), [*kept, others[place]]
+            if best is None:
+                return float(misfit(scaled[places].mean(axis=0), wanted)), sorted(places)
+            places = best
+
     order = np.argsort(misfit(scaled, wanted), kind="stable")
-    best: tuple[float, list[int]] | None = None
-    for first in order[:STARTS].tolist():
-        places = _exchanged(
-            _grown(first, scaled, wanted, events, count, per_event),
-            scaled, wanted, events, per_event,
-        )  # fmt: skip
-        found = float(misfit(scaled[places].mean(axis=0), wanted)), sorted(places)
-        best = found if best is None else min(best, found)
-    assert best is not None, "there are spectra"
-    return best[1]
-
-
-def _grown(
-    first: int, scaled: Array, wanted: Array, events: Sequence[str], count: int, per_event: int
-) -> list[int]:
-    """A choice that begins with one spectrum and takes the best next one each time."""
-    places = [first]
-    while len(places) < count:
-        free = _free(places, events, per_event)
-        means = (scaled[places].sum(axis=0) + scaled[free]) / (len(places) + 1.0)
-        places.append(free[int(np.argmin(misfit(means, wanted)))])
-    return places
-
-
-def _exchanged(
-    places: list[int], scaled: Array, wanted: Array, events: Sequence[str], per_event: int
-) -> list[int]:
-    """The best exchange of one spectrum for another, until none helps."""
-    now = float(misfit(scaled[places].mean(axis=0), wanted))
-    while True:
-        total, best = scaled[places].sum(axis=0), None
-        for out in places:
-            others = [place for place in places if place != out]
-            free = [place for place in _free(others, events, per_event) if place != out]
-            if not free:
-                continue
-            found = misfit((total - scaled[out] + scaled[free]) / len(places), wanted)
-            place = int(np.argmin(found))
-            # Rounding of the sums must not look like progress, or it would never end.
-            if found[place] < now - 1e-12:
-                now, best = float(found[place]), [*others, free[place]]
-        if best is None:
-            return places
-        places = best
-
-
-def _free(places: Sequence[int], events: Sequence[str], per_event: int) -> list[int]:
-    """What may still be chosen beside these places."""
-    taken = Counter(events[place] for place in places)
-    return [
-        place
-        for place, event in enumerate(events)
-        if place not in places and taken[event] < per_event
-    ]
+    return min(exchanged(grown(first)) for first in order[:STARTS].tolist())[1]
 
 
 def _candidate(

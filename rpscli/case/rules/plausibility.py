@@ -132,22 +132,18 @@ def doubts_of_storeys(section: SuperstructureSection, document: Document) -> Ite
     for name in PER_STOREY:
         written = document.at(("superstructure", name))
         if isinstance(written, list):
-            yield from _mixed(name, written)
+            bare = [value for value in written if not isinstance(value, str)]
+            if bare and len(bare) < len(written):
+                with_unit = next(value for value in written if isinstance(value, str))
+                yield Doubt(
+                    f"superstructure.{name} mixes numbers with and without a unit{{1}}: a bare"
+                    " number is in SI units; write the unit everywhere",
+                    detail=f" ({with_unit} and {bare[0]})",
+                )
     for name, unit in (("storey_mass", "kg"), ("stiffness", "N/m")):
         given = getattr(section, name)
         if section.storeys and given is not None:
             yield from _neighbours(name, unit, each_storey(given, section.storeys))
-
-
-def _mixed(name: str, written: Sequence[object]) -> Iterator[Doubt]:
-    bare = [value for value in written if not isinstance(value, str)]
-    if bare and len(bare) < len(written):
-        with_unit = next(value for value in written if isinstance(value, str))
-        yield Doubt(
-            f"superstructure.{name} mixes numbers with and without a unit{{1}}: a bare number is in"
-            " SI units; write the unit everywhere",
-            detail=f" ({with_unit} and {bare[0]})",
-        )
 
 
 def _neighbours(name: str, unit: str, values: Sequence[float]) -> Iterator[Doubt]:

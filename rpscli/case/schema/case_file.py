@@ -50,28 +50,23 @@ class DeviceSection(Section):
         description="viscous or friction damper, elastic stop, unbonded tendon in the axis of each"
         " column, or the resistance of the columns to rolling"
     )
-    coefficient: Annotated[float, Quantity("N s/m", symbol="c", above=0)] | None = None
+    coefficient: Annotated[float | None, Quantity("N s/m", symbol="c", above=0)] = None
     """viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"""
-    exponent: (
-        Annotated[
-            float, Quantity(symbol="a", at_least=0.2, at_most=2, remedy="1 is a linear damper")
-        ]
-        | None
-    ) = None
+    exponent: Annotated[float | None, Quantity(symbol="a", at_least=0.2, at_most=2, remedy="1 is a linear damper")] = None
     """viscous: a of P = c |u_b'|^a; 1 if left out"""
-    force: Annotated[float, Quantity("N", symbol="F_d", above=0)] | None = None
+    force: Annotated[float | None, Quantity("N", symbol="F_d", above=0)] = None
     """friction: F_d, at which the damper slides"""
-    gap: Annotated[float, Quantity("m", symbol="d", at_least=0)] | None = None
+    gap: Annotated[float | None, Quantity("m", symbol="d", at_least=0)] = None
     """stop: d, the cap beam's displacement at which it is met, on both sides"""
-    stiffness: Annotated[float, Quantity("N/m", above=0)] | None = None
+    stiffness: Annotated[float | None, Quantity("N/m", above=0)] = None
     """stop: k_s; tendon: k_t of one"""
-    damping: Annotated[float, Quantity("N s/m", symbol="c_s", at_least=0)] | None = None
+    damping: Annotated[float | None, Quantity("N s/m", symbol="c_s", at_least=0)] = None
     """stop: c_s beside its stiffness; it never pulls; 0 if left out"""
-    prestress: Annotated[float, Quantity("N", symbol="P_0", at_least=0)] | None = None
+    prestress: Annotated[float | None, Quantity("N", symbol="P_0", at_least=0)] = None
     """tendon: P_0 of one, while the structure stands"""
-    yield_force: Annotated[float, Quantity("N", symbol="P_y", above=0)] | None = None
+    yield_force: Annotated[float | None, Quantity("N", symbol="P_y", above=0)] = None
     """tendon: P_y of one; left out: it never yields"""
-    lever: Annotated[float, Quantity("m", symbol="f", above=0)] | None = Field(
+    lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = Field(
         None,
         description="rolling_resistance: f, by which the normal force runs ahead of the contact;"
         " a moment f N at either end of the columns",
@@ -149,15 +144,12 @@ class BearingSection(Section):
     """tan(alpha) = B/H"""
     wedge_slenderness: PositiveRatio | None = None
     """tan(alpha') = B'/H; ignored for flat ends"""
-    curvature_ratio: (
-        Annotated[
-            float | Literal["critical"],
-            Quantity(
-                symbol="rho = r/2H", at_least=0, remedy="use 0 for flat ends", words=("critical",)
-            ),
-        ]
-        | None
-    ) = None
+    curvature_ratio: Annotated[
+        float | Literal["critical"] | None,
+        Quantity(
+            symbol="rho = r/2H", at_least=0, remedy="use 0 for flat ends", words=("critical",)
+        ),
+    ] = None
     """rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2"""
     dimensions: DimensionsSection | None = None
     """sizes in place of the four keys above"""
@@ -180,9 +172,7 @@ class ImpactSection(Section):
         description="flexible: floors keep their velocity; rigid: floors jump with the cap beam;"
         " value: restitution is given",
     )
-    restitution: (
-        Annotated[float, Quantity(symbol="velocity after over before", above=0, at_most=1)] | None
-    ) = None
+    restitution: Annotated[float | None, Quantity(symbol="velocity after over before", above=0, at_most=1)] = None
     """e of the law value"""
     loss: Annotated[
         float, Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5)
@@ -206,7 +196,7 @@ class PodiumMasses(Section):
     """gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"""
     superstructure_mass_ratio: PositiveRatio | None = None
     """eta = M_tot/m_b, building over cap beam"""
-    cap_beam_mass: Annotated[float, Quantity("kg", symbol="m_b", at_least=0)] | None = None
+    cap_beam_mass: Annotated[float | None, Quantity("kg", symbol="m_b", at_least=0)] = None
     """m_b; in place of a ratio"""
     column_mass: Mass | None = None
     """m_c of one column; in place of cap_beam_mass_ratio"""
@@ -226,10 +216,7 @@ class PodiumSection(PodiumMasses):
     """shape of one column"""
     impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = ImpactSection()
     """impact law; a law's name alone may stand here"""
-    friction: (
-        Annotated[float, Quantity(symbol="of friction, at both ends of the columns", above=0)]
-        | None
-    ) = None
+    friction: Annotated[float | None, Quantity(symbol="of friction, at both ends of the columns", above=0)] = None
     """coefficient of friction at both ends of the columns; the friction demand is then judged"""
     devices: tuple[DeviceSection, ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""

@@ -207,6 +207,7 @@ def key_references(model: type[BaseModel]) -> Iterator[KeyReference]:
 
 
 def _reference(key: str, field: FieldInfo) -> KeyReference:
+    parents = [key.rsplit(".", depth)[0] for depth in range(key.count(".") + 1)]
     marks = list(_inside(field))
     quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
     whole = next((mark for mark in marks if isinstance(mark, Whole)), None)
@@ -225,11 +226,5 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
         default=default if isinstance(default, str | int | float) else None,
         required=field.is_required(),
         keys=tuple(fields_of(section)) if section else (),
-        sections=_sections(key),
+        sections=next((SECTIONS[parent] for parent in parents if parent in SECTIONS), ""),
     )
-
-
-def _sections(key: str) -> str:
-    parts = key.split(".")
-    parents = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
-    return next((SECTIONS[parent] for parent in parents if parent in SECTIONS), "")

@@ -52,7 +52,7 @@ class ScaleToSection(Section):
     """PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"""
     value: MeasuredValue
     """what it is to be, SI or with a unit, such as 0.4 g"""
-    period: Annotated[Annotated[float, Quantity("s", above=0)] | None, of_sa] = None
+    period: Annotated[Annotated[float | None, Quantity("s", above=0)], of_sa] = None
     """of Sa; left out: the fixed-base first period of the building"""
     damping: DampingRatio = 0.05
     """of Sa"""

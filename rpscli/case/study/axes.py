@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path as Folder
 from typing import Any
@@ -49,24 +49,21 @@ def axes_of(document: Document) -> tuple[list[Axis], list[Fault]]:
     faults: list[Fault] = []
     for index, values in enumerate(read):
         path: Path = ("vary", index)
-        faults += _unequal(document, path, values)
-        if len({len(column) for column in values.values()}) == 1:
-            axes.append(_axis(document, path, values))
-    return axes, faults
-
-
-def _unequal(document: Document, path: Path, values: Mapping[str, Values]) -> Iterator[Fault]:
-    """The keys of one axis need equally many values."""
-    first, *others = values
-    for key in others:
-        if len(values[key]) != len(values[first]):
-            yield Fault(
+        first, *others = values
+        faults += [
+            Fault(
                 (*path, key),
                 f"{key} has {len(values[key])} values, but"
                 f" {first}{document.where((*path, first))} has {len(values[first])}: the keys of"
                 " one axis go together; give equally many, or begin another axis with `-`",
                 at_key=True,
             )
+            for key in others
+            if len(values[key]) != len(values[first])
+        ]
+        if len({len(column) for column in values.values()}) == 1:
+            axes.append(_axis(document, path, values))
+    return axes, faults
 
 
 def _axis(document: Document, path: Path, values: Mapping[str, Values]) -> Axis:

@@ -29,7 +29,8 @@ def read_text(source: str | Path) -> str:
     try:
         kind = path.stat().st_mode
         if stat.S_ISDIR(kind):
-            raise CaseError(f"{source}: is a folder; name a file in it{_example(path)}")
+            example = "".join(f", such as {file}" for file in sorted(path.glob("*.yaml"))[:1])
+            raise CaseError(f"{source}: is a folder; name a file in it{example}")
         if stat.S_ISCHR(kind) or stat.S_ISBLK(kind):
             raise CaseError(f"{source}: is a device; name a file, or `-` for the standard input")
         with _opened(path, kind) as file:
@@ -93,8 +94,3 @@ def _similar(path: Path) -> str:
     if found := nearest(path.stem, names):
         return f"; did you mean {folder / names[found]}?"
     return "; `rps init` writes a case to start from"
-
-
-def _example(folder: Path) -> str:
-    files = sorted(folder.glob("*.yaml"))
-    return f", such as {files[0]}" if files else ""

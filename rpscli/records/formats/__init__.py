@@ -66,7 +66,11 @@ def read_record(
     channel: int | None = None,
 ) -> GroundMotion:
     """Read one record file of any known format."""
-    _refuse_other_quantity(path)
+    if quantity := _OTHER_QUANTITIES.get(path.suffix.lower()):
+        raise RecordError(
+            f"{path}: {path.suffix} files hold {quantity}; give the acceleration record of the "
+            f"same station, {path.with_suffix('.AT2').name}"
+        )
     text = read_text(path, source, dt=dt, units=units, channel=channel)
     motion = (_by_content(text) or _by_extension(text)).read(text)
     if motion.pga > _NONSENSE * STANDARD_GRAVITY:
@@ -95,15 +99,6 @@ def _by_extension(text: RecordText) -> RecordFormat:
     # The format of that name then says what is missing.
     extension = text.path.suffix.lower()
     return next((form for form in FORMATS if extension in form.extensions), FORMATS[-1])
-
-
-def _refuse_other_quantity(path: Path) -> None:
-    quantity = _OTHER_QUANTITIES.get(path.suffix.lower())
-    if quantity:
-        raise RecordError(
-            f"{path}: {path.suffix} files hold {quantity}; give the acceleration record of the "
-            f"same station, {path.with_suffix('.AT2').name}"
-        )
 
 
 def _implausible(motion: GroundMotion) -> tuple[str, ...]:

@@ -69,11 +69,6 @@ class _Header:
     step: Statement
     start: int  # first line of values
 
-    @property
-    def line(self) -> int:
-        """The line of NPTS."""
-        return self.count.line
-
 
 def recognises_at2(text: RecordText) -> bool:
     """Whether the text has a line that announces NPTS, with DT on it or beside it."""
@@ -94,10 +89,12 @@ def read_at2(text: RecordText) -> GroundMotion:
     unit, factor = text.agreed_factor(_stated_units(text, header))
     _refuse_contradictions(text, header)
     dt, doubts = _step(text, header.step)
-    values, warnings = _values(text, header.start, stated_count(text, header.count), header.line)
+    values, warnings = _values(
+        text, header.start, stated_count(text, header.count), header.count.line
+    )
     title = [
         line.strip()
-        for line in text.heads[: header.line]
+        for line in text.heads[: header.count.line]
         if line.strip() and not _UNITS.search(line)
     ]
     return GroundMotion(
@@ -130,25 +127,26 @@ def _find_header(text: RecordText) -> _Header | None:
         start = _first_numeric(text, index + 1)
         both = _both(line)
         if both:
-            return _Header(*_statements(both[1], both[2], index, index), start)
+            return _Header(
+                Statement("NPTS", both[1], index), Statement("DT", both[2], index), start
+            )
         count = _COUNT.search(line)
         elsewhere = (*range(index + 1, min(start, _HEADER_LINES)), *range(index))
         step = next(
-            ((m[1], i) for i in (index, *elsewhere) if (m := _STEP.search(text.heads[i]))), None
+            (
+                Statement("DT", m[1], i)
+                for i in (index, *elsewhere)
+                if (m := _STEP.search(text.heads[i]))
+            ),
+            None,
         )
         if count and step:
-            return _Header(*_statements(count[1], step[0], index, step[1]), start)
+            return _Header(Statement("NPTS", count[1], index), step, start)
     return None
 
 
 def _both(line: str) -> re.Match[str] | None:
     return _NUMBERS_FIRST.search(line) or _NUMBERS_LAST.search(line)
-
-
-def _statements(
-    count: str, step: str, count_line: int, step_line: int
-) -> tuple[Statement, Statement]:
-    return Statement("NPTS", count, count_line), Statement("DT", step, step_line)
 
 
 def _refuse_contradictions(text: RecordText, header: _Header) -> None:
@@ -163,10 +161,8 @@ def _refuse_contradictions(text: RecordText, header: _Header) -> None:
 
 
 def _first_numeric(text: RecordText, start: int) -> int:
-    for index in range(start, len(text.lines)):
-        if _VALUE.match(text.heads[index]):
-            return index
-    return len(text.lines)
+    end = len(text.lines)
+    return next((index for index in range(start, end) if _VALUE.match(text.heads[index])), end)
 
 
 def _refuse_other_series(text: RecordText, header: _Header) -> None:

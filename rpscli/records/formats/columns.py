@@ -51,11 +51,6 @@ class _Table:
     widths: NDArray[np.int64]  # (rows,) numbers of each
     lines: NDArray[np.int64]  # (rows,) of the file
 
-    @property
-    def rows(self) -> int:
-        """Number of rows."""
-        return self.widths.size
-
 
 def recognises_columns(text: RecordText) -> bool:
     """Whether most lines, and the last that is no comment, hold nothing but numbers."""
@@ -100,7 +95,9 @@ def _table(text: RecordText) -> _Table:
                 index,
             )
     if len(widths) < 2:
-        _refuse_punctuation(text)
+        for index, line in enumerate(text.heads):
+            if why := why_no_numbers(line):
+                raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", index)
         raise text.fault(
             f"no known format of ground motions: {len(widths)} row(s) of numbers; export the "
             f"record as PEER AT2, or as columns of time and acceleration"
@@ -113,20 +110,14 @@ def _table(text: RecordText) -> _Table:
     )
 
 
-def _refuse_punctuation(text: RecordText) -> None:
-    for index, line in enumerate(text.heads):
-        if why := why_no_numbers(line):
-            raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", index)
-
-
 def _check_count(text: RecordText, table: _Table) -> None:
     stated = agreed(text, _found(table.header, _COUNT, "npts"), stated_count)
     count = None if stated is None else stated_count(text, stated)
     found = table.values.size
-    if count is not None and count not in (found, table.rows):
+    if count is not None and count not in (found, table.widths.size):
         raise text.fault(
-            f"the header announces {count} values and the file holds {table.rows} row(s) and "
-            f"{found} number(s); fetch it again, or correct the header"
+            f"the header announces {count} values and the file holds {table.widths.size} row(s)"
+            f" and {found} number(s); fetch it again, or correct the header"
         )
 
 
@@ -145,7 +136,7 @@ def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
     header_step = _stated_step(text, table.header)
     # Rounded times know the step to one unit of their last digit over the whole record.
     coarsest = float(resolution.max())
-    known_to = max(1e-6, 2.0 * coarsest / (step * table.rows))
+    known_to = max(1e-6, 2.0 * coarsest / (step * table.widths.size))
     if header_step is not None and abs(header_step - step) > known_to * step:
         raise text.fault(
             f"the header says dt = {header_step:g} s and the times advance by {step:g} s; "
@@ -200,7 +191,7 @@ def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
     width = int(table.widths[0])
     ragged = np.flatnonzero(table.widths[:-1] != width)
     if ragged.size or table.widths[-1] > width:
-        bad = int(ragged[0]) if ragged.size else table.rows - 1
+        bad = int(ragged[0]) if ragged.size else table.widths.size - 1
         raise text.fault(
             f"a row of {table.widths[bad]} numbers among rows of {width}; every row but the "
             f"last must be full: fetch the file again",

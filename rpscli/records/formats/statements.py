@@ -188,7 +188,14 @@ def series(
             f" {'the end' if end >= len(text.lines) else f'line {end}'}; the file is damaged,"
             " fetch it again"
         )
-    _refuse_ragged(text, rows, width or len(rows[0][1]))
+    width = width or len(rows[0][1])
+    for index, row in rows:
+        if len(row) != width and not (index == rows[-1][0] and len(row) < width):
+            raise text.fault(
+                f"{len(row)} value(s) in a row where the format has {width}; the file is damaged,"
+                " fetch it again",
+                index,
+            )
     return np.array([value for _, row in rows for value in row])
 
 
@@ -205,14 +212,3 @@ def _foreign_line(text: RecordText, index: int, found: int, count: int) -> Excep
         f"{why_no_numbers(text.lines[index])}; the file is damaged or cut short",
         index,
     )
-
-
-def _refuse_ragged(text: RecordText, rows: list[tuple[int, list[float]]], width: int) -> None:
-    for place, (index, row) in enumerate(rows):
-        last = place == len(rows) - 1
-        if len(row) != width and not (last and len(row) < width):
-            raise text.fault(
-                f"{len(row)} value(s) in a row where the format has {width}; the file is damaged,"
-                " fetch it again",
-                index,
-            )
