@@ -29,10 +29,7 @@ from rpscli.model.superstructure import (
 
 
 class Shape(NamedTuple):
-    """Ratios of a column, whichever way the case describes it.
-
-    `wedge_slenderness` equals `slenderness` where flat ends leave it out.
-    """
+    """Ratios of a column; `wedge_slenderness` equals `slenderness` where flat ends leave it out."""
 
     semi_diagonal: float
     slenderness: float

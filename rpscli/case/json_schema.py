@@ -43,19 +43,12 @@ def json_schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def case_json_schema() -> dict[str, Any]:
-    """JSON schema of a case file.
-
-    It knows keys, types, units and bounds of single values; what keys must be together (masses
-    given once, an arc that fits) only loading a case can tell.
-    """
+    """JSON schema of a case file: keys, types, units and bounds, not what joins keys."""
     return json_schema_of(CaseFile)
 
 
 def study_json_schema(kinds: ReportKinds, model: type[StudyParts] = StudyFile) -> dict[str, Any]:
-    """JSON schema of a study file, with the options of every kind of report; or of a design file.
-
-    What a base lacks the varied keys may bring: of a case written in the study, no key is required.
-    """
+    """JSON schema of a study or design file; its base may lack what keys bring."""
     options = {name: kind.options for name, kind in kinds.items()}
     models: dict[type[BaseModel], None] = dict.fromkeys((model, CaseFile, *options.values()))
     references, schema = models_json_schema(

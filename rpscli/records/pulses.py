@@ -102,7 +102,12 @@ def load_pulse(rest: str, source: str) -> GroundMotion:
     period = query.quantity("period", "time")
     if period <= 0.0:
         raise RecordError(f"{source}: period = {period} s must be positive")
-    pulse, amplitude = _bell_of_waves(query, period) if own else _simple(query, name)
+    pulse, amplitude = (
+        _bell_of_waves(query, period) if own else (_PULSES[name], query.acceleration("amplitude"))
+    )
+    if amplitude == 0.0:
+        key = next(key for key in ("amplitude", "velocity_amplitude") if key in query.values)
+        raise RecordError(f"{source}: {key} = 0 makes no pulse")
     dt, steps = _sampling(query, pulse, period)
     # The last sample of a pulse that fits is its end exactly, whatever the rounding of dt.
     tau = np.arange(steps + 1, dtype=np.float64) * (
@@ -117,10 +122,6 @@ def load_pulse(rest: str, source: str) -> GroundMotion:
         "pulse",
         f"{name.replace('_', ' ')} pulse, period {period:g} s, peak {peak:.4g} g",
     )
-
-
-def _simple(query: Query, name: str) -> tuple[_Pulse, float]:
-    return _PULSES[name], _nonzero(query, "amplitude", query.acceleration("amplitude"))
 
 
 def _bell_of_waves(query: Query, period: float) -> tuple[_Pulse, float]:
@@ -143,13 +144,7 @@ def _bell_of_waves(query: Query, period: float) -> tuple[_Pulse, float]:
         amplitude = query.acceleration("amplitude")
     else:
         amplitude = query.quantity("velocity_amplitude", "velocity") * peak / period
-    return _Pulse(shape, cycles, fits=False), _nonzero(query, given[0], amplitude)
-
-
-def _nonzero(query: Query, key: str, amplitude: float) -> float:
-    if amplitude == 0.0:
-        raise RecordError(f"{query.source}: {key} = 0 makes no pulse")
-    return amplitude
+    return _Pulse(shape, cycles, fits=False), amplitude
 
 
 def _sampling(query: Query, pulse: _Pulse, period: float) -> tuple[float, int]:

@@ -173,10 +173,7 @@ def release_rule(bearing: Bearing, analysis: AnalysisSection) -> Iterator[Fault]
 
 
 def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
-    """The impact law must send the columns over to their other edge: 0 < e <= 1.
-
-    Theory, section 4.
-    """
+    """The impact law sends the columns to their other edge: 0 < e <= 1 (Theory, section 4)."""
     column, law = podium.bearing, podium.impact_law
     e = law.ratio(column, podium.gamma, podium.eta)
     if e > 1.0:

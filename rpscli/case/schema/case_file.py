@@ -52,7 +52,9 @@ class DeviceSection(Section):
     )
     coefficient: Annotated[float | None, Quantity("N s/m", symbol="c", above=0)] = None
     """viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"""
-    exponent: Annotated[float | None, Quantity(symbol="a", at_least=0.2, at_most=2, remedy="1 is a linear damper")] = None
+    exponent: Annotated[
+        float | None, Quantity(symbol="a", at_least=0.2, at_most=2, remedy="1 is a linear damper")
+    ] = None
     """viscous: a of P = c |u_b'|^a; 1 if left out"""
     force: Annotated[float | None, Quantity("N", symbol="F_d", above=0)] = None
     """friction: F_d, at which the damper slides"""
@@ -172,7 +174,9 @@ class ImpactSection(Section):
         description="flexible: floors keep their velocity; rigid: floors jump with the cap beam;"
         " value: restitution is given",
     )
-    restitution: Annotated[float | None, Quantity(symbol="velocity after over before", above=0, at_most=1)] = None
+    restitution: Annotated[
+        float | None, Quantity(symbol="velocity after over before", above=0, at_most=1)
+    ] = None
     """e of the law value"""
     loss: Annotated[
         float, Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5)
@@ -216,7 +220,9 @@ class PodiumSection(PodiumMasses):
     """shape of one column"""
     impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = ImpactSection()
     """impact law; a law's name alone may stand here"""
-    friction: Annotated[float | None, Quantity(symbol="of friction, at both ends of the columns", above=0)] = None
+    friction: Annotated[
+        float | None, Quantity(symbol="of friction, at both ends of the columns", above=0)
+    ] = None
     """coefficient of friction at both ends of the columns; the friction demand is then judged"""
     devices: tuple[DeviceSection, ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""

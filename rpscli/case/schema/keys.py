@@ -58,10 +58,7 @@ def _chosen_by_user(annotation: Any) -> Any:
 
 
 def annotation_at(model: type[BaseModel], path: Path) -> Any:
-    """What the format says of the value at a path, or None if nothing may stand there.
-
-    An index stands for any element of its list, and any word for a key that the user chooses.
-    """
+    """What the format says of the value at a path, or None; an index stands for any element."""
     below: Any = model
     for part in path:
         if not isinstance(part, int):
@@ -102,11 +99,7 @@ def known_paths(model: type[BaseModel]) -> tuple[Path, ...]:
 
 
 def suggestion_for(model: type[BaseModel], path: Path) -> Path | None:
-    """The known key that an unknown one was probably meant to be.
-
-    The same word under another parent comes first, then a similar word under the same parent,
-    then a similar word anywhere.
-    """
+    """The known key that was probably meant: the same word, a sibling, a similar one."""
     *parent, key = path
     siblings = {name: (*parent, name) for name in _keys_in(annotation_at(model, tuple(parent)))}
     anywhere = {str(p[-1]): p for p in reversed(known_paths(model))}

@@ -80,10 +80,7 @@ def _axis(document: Document, path: Path, values: Mapping[str, Values]) -> Axis:
 
 
 def sources_of(document: Document, folder: Folder) -> tuple[tuple[str, ...], list[Fault]]:
-    """Single sources of the list `records`, in order, each once; and what is wrong with it.
-
-    Whether a source exists is seen here; whether it can be read is seen when it is.
-    """
+    """Single sources of the list `records` that exist, in order, each once; and what is wrong."""
     written = document.content.get("records")
     sources: list[str] = []
     faults: list[Fault] = []

@@ -107,21 +107,20 @@ def report_rules(
     document: Document, axes: list[Axis], requests: tuple[ReportRequest, ...], kinds: ReportKinds
 ) -> Iterator[Fault]:
     """Keys that reports name must vary; each kind has rules of its own."""
-    known = [key for axis in axes for key in axis.keys]
+    known = [*(key for axis in axes for key in axis.keys), *OF_POINTS]
     for request in requests:
         kind = kinds[request.kind]
-        faults = list(_key_faults([*known, *OF_POINTS], request))
+        faults = [
+            Fault(
+                path := (*request.path, request.kind, *option),
+                f"{dotted(path)} = {key} does not vary in this study; use {listed(known)}",
+            )
+            for option, key in varied_keys(request.options)
+            if key not in known
+        ]
         if not faults and document.content.get("analysis", "timehistory") in kind.analyses:
             faults.extend(kind.check(document, axes, request))
         yield from faults
-
-
-def _key_faults(known: list[str], request: ReportRequest) -> Iterator[Fault]:
-    for option, key in varied_keys(request.options):
-        if key not in known:
-            path = (*request.path, request.kind, *option)
-            text = f"{dotted(path)} = {key} does not vary in this study; use {listed(known)}"
-            yield Fault(path, text)
 
 
 MOST_SYSTEMS = 200_000

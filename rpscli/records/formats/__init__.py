@@ -103,14 +103,10 @@ def _by_extension(text: RecordText) -> RecordFormat:
 
 def _implausible(motion: GroundMotion) -> tuple[str, ...]:
     peak = motion.pga / STANDARD_GRAVITY
-    doubts = []
-    if not _FINEST <= motion.dt <= _COARSEST:
-        doubts.append(
-            f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
-            f" {_COARSEST:g} s): check the time step"
-        )
-    if peak > _STRONGEST:
-        doubts.append(f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units")
-    if peak < _WEAKEST:
-        doubts.append(f"PGA = {peak:.3g} g is weaker than can be felt: check the units")
-    return tuple(doubts)
+    doubts = {
+        f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
+        f" {_COARSEST:g} s): check the time step": not _FINEST <= motion.dt <= _COARSEST,
+        f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units": peak > _STRONGEST,
+        f"PGA = {peak:.3g} g is weaker than can be felt: check the units": peak < _WEAKEST,
+    }
+    return tuple(doubt for doubt, doubtful in doubts.items() if doubtful)

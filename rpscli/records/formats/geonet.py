@@ -93,7 +93,5 @@ def _acceleration(text: RecordText, first: int, count: int) -> NDArray[np.float6
 
 
 def _label(text: RecordText, start: int) -> str:
-    for line in text.heads[start : start + _TEXT_LINES]:
-        if match := _COMPONENT.match(line):
-            return match[1]
-    return "unnamed"
+    matches = map(_COMPONENT.match, text.heads[start : start + _TEXT_LINES])
+    return next((match[1] for match in matches if match), "unnamed")

@@ -28,10 +28,7 @@ def recognises_knet(text: RecordText) -> bool:
 
 
 def read_knet(text: RecordText) -> GroundMotion:
-    """Read a K-NET or KiK-net file; the mean of the record is removed, and that is said.
-
-    The counts carry the offset of the sensor. The agency's own peak is that about the mean.
-    """
+    """Read a K-NET or KiK-net file; the mean, the sensor's offset, is removed, and that is said."""
     text.single_channel()
     scale = _stated(text, "Scale Factor", _SCALE)
     (rate,) = _stated(text, "Sampling Freq(Hz)", _RATE)

@@ -98,10 +98,7 @@ def agreed(
 def refuse_other_duration(
     text: RecordText, stated: Statement, count: int, dt: float, rounding: float
 ) -> None:
-    """Refuse a header whose duration [s] is not that of its values and their spacing.
-
-    Agencies count the last interval or leave it out, and round.
-    """
+    """Refuse a header whose duration [s] is not that of its values, give or take an interval."""
     duration = stated_number(text, stated)
     if abs(duration - (count - 0.5) * dt) > 0.51 * dt + rounding:
         raise text.fault(
@@ -144,10 +141,7 @@ def chosen_channel(text: RecordText, channels: Sequence[Channel]) -> Channel:
 
 
 def peak_warnings(values: NDArray[np.float64], stated: float, last_digit: float) -> tuple[str, ...]:
-    """A warning if the peak of the values is not the one that the header states.
-
-    Only its size is compared, since some agencies round it and some drop its sign.
-    """
+    """A warning if the peak of the values has not the size that the header states."""
     peak = float(np.max(np.abs(values)))
     if abs(peak - abs(stated)) <= 0.51 * last_digit + 1e-3 * abs(stated):
         return ()
