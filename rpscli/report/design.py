@@ -37,12 +37,6 @@ def requirement_label(requirement: Requirement) -> str:
     return f"{words} at {label(requirement.measure, requirement.level)}"
 
 
-def requirement_unit(requirement: Requirement) -> str:
-    """SI unit of its value."""
-    name = requirement.condition.name
-    return "-" if name in EVENTS else LIMITS[name].unit
-
-
 def objective_label(objective: Objective) -> str:
     """A sum in words.
 
@@ -164,7 +158,8 @@ def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Colu
             column(f"least {name}", objective_unit(objective), judged.objectives[row, 0])
         )
     for row, requirement in enumerate(judged.requirements):
-        name, unit = requirement_label(requirement), requirement_unit(requirement)
+        name, of = requirement_label(requirement), requirement.condition.name
+        unit = "-" if of in EVENTS else LIMITS[of].unit
         columns.append(column(name, unit, judged.values[row, 0]))
         columns.append(column(f"{name}: records too many", "-", judged.excess[row]))
     return columns

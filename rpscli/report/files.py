@@ -158,15 +158,14 @@ class OutputFolder:
         with locked(self.folder):
             # Another process may have written here since this one began.
             self._earlier = self._claimed()
-            self._refuse_strangers()
-            self._write()
-
-    def _write(self) -> None:
-        contents = {**self._contents, self.folder / RUN_FILE: self._run_text().encode()}
-        write_whole(contents)
-        for stale in self._own - {self._known_as(path) for path in contents}:
-            if Path(stale).name == stale:  # never outside the folder
-                (self.folder / stale).unlink(missing_ok=True)
+            for path in self._contents:
+                if path.exists() and self._known_as(path) not in self._own:
+                    self._refuse(f"{path} exists and is not an earlier output of this command")
+            contents = {**self._contents, self.folder / RUN_FILE: self._run_text().encode()}
+            write_whole(contents)
+            for stale in self._own - {self._known_as(path) for path in contents}:
+                if Path(stale).name == stale:  # never outside the folder
+                    (self.folder / stale).unlink(missing_ok=True)
 
     def _run_text(self) -> str:
         document = {
@@ -222,11 +221,6 @@ class OutputFolder:
         if same:
             return dict(earlier)
         return self._refuse(f"{self.folder} holds the results of {owner}")
-
-    def _refuse_strangers(self) -> None:
-        for path in self._contents:
-            if path.exists() and self._known_as(path) not in self._own:
-                self._refuse(f"{path} exists and is not an earlier output of this command")
 
     def _refuse(self, reason: str) -> dict[str, Any]:
         if not self.force:

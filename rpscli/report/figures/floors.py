@@ -64,7 +64,9 @@ def draw_shears(axes: Axes, result: TimeHistoryResult) -> None:
 def draw_storey_drifts(axes: Axes, result: TimeHistoryResult) -> None:
     """Largest storey drifts, as a part of the storey heights where these are known."""
     for demands, look in _series(result):
-        values, label = _drift(demands)
+        values, label = demands.storey_drifts * 1e3, STOREY_DRIFTS.in_unit("mm")
+        if demands.storey_drift_ratios is not None:
+            values, label = demands.storey_drift_ratios * 100.0, STOREY_DRIFT_RATIOS.in_unit("%")
         _stairs(axes, values, look)
         axes.set_xlabel(label)
     _levels(axes, result.structure.storeys)
@@ -89,12 +91,6 @@ def _series(result: TimeHistoryResult) -> Iterator[tuple[StoreyDemands, dict[str
 def _stairs(axes: Axes, values: Array, look: dict[str, Any]) -> None:
     # The shear is the same all the way up a storey: storey i reaches from level i - 1 to i.
     axes.stairs(values, np.arange(len(values) + 1), orientation="horizontal", **look, lw=1.3)
-
-
-def _drift(demands: StoreyDemands) -> tuple[Array, str]:
-    if demands.storey_drift_ratios is None:
-        return demands.storey_drifts * 1e3, STOREY_DRIFTS.in_unit("mm")
-    return demands.storey_drift_ratios * 100.0, STOREY_DRIFT_RATIOS.in_unit("%")
 
 
 def _levels(axes: Axes, storeys: int) -> None:

@@ -129,9 +129,12 @@ def quiet_matplotlib() -> None:
 def read_style(path: Path) -> dict[str, Any]:
     """matplotlib's settings in a style file."""
     quiet_matplotlib()
+    from logging.handlers import BufferingHandler
+
     from matplotlib import rc_params_from_file
 
-    complaints = _Complaints()
+    complaints = BufferingHandler(capacity=1000)  # which would be printed, and then go on
+    complaints.setLevel(logging.WARNING)
     logger = logging.getLogger("matplotlib")
     logger.addHandler(complaints)
     passed_on, logger.propagate = logger.propagate, False
@@ -146,8 +149,9 @@ def read_style(path: Path) -> dict[str, Any]:
     finally:
         logger.removeHandler(complaints)
         logger.propagate = passed_on
-    if complaints.texts:
-        reasons = "; ".join(" ".join(text.split()) for text in complaints.texts)
+    if complaints.buffer:
+        texts = (record.getMessage() for record in complaints.buffer)
+        reasons = "; ".join(" ".join(text.split()) for text in texts)
         raise UsageError(f"--style {path}: {reasons}")
     return dict(found)
 
@@ -157,14 +161,3 @@ def _regular(path: Path) -> Path:
     if path.exists() and not path.is_file():
         raise OSError(0, "is not a file")
     return path
-
-
-class _Complaints(logging.Handler):
-    """What matplotlib says about a style file, which it would print and go on."""
-
-    def __init__(self) -> None:
-        super().__init__(logging.WARNING)
-        self.texts: list[str] = []
-
-    def emit(self, record: logging.LogRecord) -> None:
-        self.texts.append(record.getMessage())

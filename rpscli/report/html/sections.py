@@ -68,12 +68,12 @@ def motions_section(
 
 
 def _table(motions: Sequence[GroundMotion]) -> Table:
-    rows = []
-    for motion in motions:
-        found = intensity_measures(motion)
-        numbers = (motion.duration, found.pga, found.pgv, found.d5_95)
-        texts = [f"{number:.4g}" for number in numbers]
-        rows.append((motion.source, motion.digest[:16], *texts))
+    rows = [
+        (each.source, each.digest[:16], *map("{:.4g}".format, numbers))
+        for each in motions
+        for of in [intensity_measures(each)]
+        for numbers in [(each.duration, of.pga, of.pgv, of.d5_95)]
+    ]
     heads = (
         "record", "SHA-256 begins with", "duration [s]", "PGA [m/s2]", "PGV [m/s]", "5-95 % [s]"
     )  # fmt: skip
@@ -126,10 +126,7 @@ def _storeys(structure: PodiumStructure) -> Table:
 
 def input_table(content: Mapping[str, Any]) -> Table:
     """Every key of a case in SI units, defaults written out."""
-    rows = []
-    for key, value in _leaves(content):
-        of_key = unit(key)
-        rows.append((key, _plain(value), "" if of_key == "-" else of_key))
+    rows = [(key, _plain(value), unit(key).removeprefix("-")) for key, value in _leaves(content)]
     return Table.of_texts(("key", "value", "unit"), rows, words=3)
 
 

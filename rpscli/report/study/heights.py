@@ -202,7 +202,13 @@ SPECTRA = {"pseudo_acceleration": "m/s2", "displacement": "m"}
 def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
     """Run the histories once more for their samples, which are not stored."""
     found = grouping(study.table)
-    floors = [_floors(study, group, options.damping) for group in found.computed]
+    floors = []
+    for group in found.computed:
+        spectra = np.array([study.floor_spectra(n, options.damping) for n in group.points.tolist()])
+        # An overturned history is larger than any demand; its building on a fixed base is not.
+        spectra[group.fallen, 0] = np.inf
+        spread = np.quantile(spectra, FRACTILES, axis=0, method="inverted_cdf")
+        floors.append(Floors(group.values, spread))
     heads = {
         f"{state}_{name}_{100 * share:.0f}": unit
         for state in STATES
@@ -226,13 +232,6 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
         (lambda title: floor_spectra_figure(found.keys, floors, title, note)) if floors else None,
         found.notes,
     )
-
-
-def _floors(study: StudyResults, group: Histories, damping: float) -> Floors:
-    spectra = np.array([study.floor_spectra(n, damping) for n in group.points.tolist()])
-    # An overturned history is larger than any demand; its building on a fixed base is not.
-    spectra[group.fallen, 0] = np.inf
-    return Floors(group.values, np.quantile(spectra, FRACTILES, axis=0, method="inverted_cdf"))
 
 
 def floor_spectra_figure(

@@ -320,7 +320,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
 def _pulses_of(study: StudyResults, options: SpectrumOptions) -> tuple[Array, Array]:
     """(points,) frequency of the pulse over p, and its amplitude over g tan(alpha)."""
     table, layout = study.table, study.table.layout
-    pulses: dict[RecordRequest, Pulse] = {}
+    pulses: dict[RecordRequest, PulseSection] = {}
     frequency, amplitude = np.full((2, len(table)), np.nan)
     for point in layout:
         assert point.record is not None, "points of histories have a record"
@@ -344,14 +344,7 @@ def _boundary(part: Histories, frequency: Array, amplitude: Array) -> tuple[Arra
     return ratios, np.where(np.isfinite(least), least, np.nan)
 
 
-class Pulse(NamedTuple):
-    """Period [s] and peak acceleration [m/s2] of a pulse; None: that of the record."""
-
-    period: float
-    amplitude: float | None
-
-
-def pulse_of(source: str, options: SpectrumOptions) -> Pulse:
+def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
     """The pulse of a record.
 
     Raises
@@ -362,11 +355,11 @@ def pulse_of(source: str, options: SpectrumOptions) -> Pulse:
     Examples
     --------
     >>> pulse_of("pulse:sine?amplitude=0.4g&period=1.2", SpectrumOptions())
-    Pulse(period=1.2, amplitude=None)
+    PulseSection(period=1.2, amplitude=None)
     """
     given = options.pulses.get(source) or options.pulses.get(PurePath(source).name)
     if given is not None:
-        return Pulse(given.period, given.amplitude)
+        return given
     scheme, _, rest = source.partition(":")
     if scheme != "pulse":
         raise CaseError(
@@ -374,7 +367,7 @@ def pulse_of(source: str, options: SpectrumOptions) -> Pulse:
             f" a file holds: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
         )
     query: Query = parse_query(rest.partition("?")[2], source, PULSE_OPTIONS)
-    return Pulse(query.quantity("period", "time"), None)
+    return PulseSection.model_construct(period=query.quantity("period", "time"))
 
 
 def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Iterator[str]:

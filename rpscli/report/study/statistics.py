@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.analyses.result_quantities import HISTORY
-from rpscli.case.conditions import LIMITS, Condition, condition_text
+from rpscli.case.conditions import LIMITS, condition_text
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.table import Column, shown
 from rpscli.sweep.statistics.fractiles import Share
@@ -94,10 +94,12 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
     return [
         *key_columns(keys, [verdict.values for verdict in verdicts]),
         Column("limit", "-", [condition.name for condition in conditions]),
-        Column("unit", "-", [_unit(condition) for condition in conditions]),
+        Column("unit", "-", [LIMITS[c.name].unit if c.name in LIMITS else "-" for c in conditions]),
         Column("at_most", "SI", [None if c.from_below else c.limit for c in conditions]),
         Column("at_least", "SI", [c.limit if c.from_below else None for c in conditions]),
-        Column("admissible_share", "-", [_share(condition) for condition in conditions]),
+        Column(
+            "admissible_share", "-", [c.share if c.fractile is None else None for c in conditions]
+        ),
         Column("fractile", "-", [condition.fractile for condition in conditions]),
         Column("value_at_fractile", "SI", fractiles),
         Column("counted", "-", [verdict.beyond.of for verdict in verdicts]),
@@ -106,14 +108,6 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         Column("exceeded", "-", [str(verdict.exceeded).lower() for verdict in verdicts]),
         Column("source", "-", [condition.source for condition in conditions]),
     ]
-
-
-def _unit(condition: Condition) -> str:
-    return LIMITS[condition.name].unit if condition.name in LIMITS else "-"
-
-
-def _share(condition: Condition) -> float | None:
-    return condition.share if condition.fractile is None else None
 
 
 def summary_document(summary: Summary) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,17 +107,13 @@ class StoreyDemands:
 
 def isolated_demands(result: TimeHistoryResult) -> StoreyDemands:
     """Demands of the building on its bearings."""
-    floors = result.floor_accelerations, result.floor_velocities
-    return _demands(result, result.max_drifts, result.storey_shears, *floors)
+    return _demands(result, result.max_drifts, result)
 
 
 def fixed_base_demands(result: TimeHistoryResult) -> StoreyDemands | None:
     """Demands of the same building on a fixed base; None without a building."""
     fixed = result.fixed_base
-    if fixed is None:
-        return None
-    floors = fixed.floor_accelerations, fixed.floor_velocities
-    return _demands(result, fixed.drifts, fixed.storey_shears, *floors)
+    return None if fixed is None else _demands(result, fixed.drifts, fixed)
 
 
 def storey_columns(result: TimeHistoryResult) -> list[Column]:
@@ -128,12 +125,11 @@ def storey_columns(result: TimeHistoryResult) -> list[Column]:
     return [*columns, *(_columns("fixed_base_", fixed, count) if fixed else ())]
 
 
-def _demands(
-    result: TimeHistoryResult, drifts: Array, shears: Array, accelerations: Array, velocities: Array
-) -> StoreyDemands:
+def _demands(result: TimeHistoryResult, drifts: Array, of: Any) -> StoreyDemands:
     building = result.structure.superstructure
     ratios = None if building is None else building.drift_ratios(drifts)
-    return StoreyDemands(drifts, ratios, shears, accelerations, velocities)
+    floors = of.floor_accelerations, of.floor_velocities
+    return StoreyDemands(drifts, ratios, of.storey_shears, *floors)
 
 
 def _columns(prefix: str, demands: StoreyDemands, count: int) -> Iterator[Column]:
