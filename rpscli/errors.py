@@ -72,20 +72,8 @@ class OutputError(RpsError):
 
 
 def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
-    """The known word that a mistyped one was probably meant to be; None if none is like it.
+    """The known word that was probably meant; None if `likeness`, of letters in common, is less.
 
-    Parameters
-    ----------
-    word
-        What was written. Small and capital letters, ``-`` and ``_`` count as the same.
-    known
-        What might have been meant.
-    likeness
-        Least share of letters in common, from 0 to 1; smaller for long names that are made of
-        parts, such as those of files and records.
-
-    Examples
-    --------
     >>> nearest("slendernes", ["slenderness", "semi_diagonal"])
     'slenderness'
     >>> nearest("colour", ["slenderness"]) is None
@@ -99,17 +87,8 @@ def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | Non
 
 
 def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7) -> str:
-    """What to say of a word that is not known.
+    """What to say of a word that is not known, and `otherwise` if none is like it.
 
-    Parameters
-    ----------
-    word, known, likeness
-        See `nearest`.
-    otherwise
-        What to say if no known word is like it.
-
-    Examples
-    --------
     >>> hint("slendernes", ["slenderness"], "")
     'did you mean slenderness?'
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,9 @@ import click
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
+from rpscli.report.documents import heading
 from rpscli.report.files import OutputFolder, Run
+from rpscli.report.table import Part
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -72,6 +74,26 @@ def write(folder: OutputFolder, terminal: Terminal) -> None:
     folder.write()
     note = "; replaces results of the same case with other inputs" if replaced else ""
     terminal.note(f"written to {folder.folder}{note}")
+
+
+def conclude(
+    given: CaseInput,
+    folder: OutputFolder,
+    results: Mapping[str, Any],
+    tables: Iterable[Part],
+    terminal: Terminal,
+) -> None:
+    """Write the files of a command about one case, and give its result."""
+    write(folder, terminal)
+    document = {
+        **heading(),
+        "command": folder.run.command,
+        "case": case_heading(given),
+        **results,
+        "warnings": given.case.warnings,
+        "files": folder.files,
+    }
+    terminal.result(document, tables)
 
 
 def case_heading(given: CaseInput) -> dict[str, str]:

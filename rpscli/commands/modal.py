@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.inputs import case_folder, case_heading, read_case, write
+from rpscli.commands.inputs import case_folder, conclude, read_case
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
@@ -19,7 +19,6 @@ from rpscli.commands.shell.options import (
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import counted
 from rpscli.errors import listed
-from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 from rpscli.report.table import Heading, Part, Table, shown
@@ -56,28 +55,14 @@ def command(
         with counted("drawing the animation", terminal) as progress:
             draw = partial(modes_film, result, given.case.title, film, progress)
             folder.add_at(film.file, drawn_with(look, film.ending, draw))
-    write(folder, terminal)
-    document = {
-        **heading(),
-        "command": "modal",
-        "case": case_heading(given),
-        **result.results(),
-        "warnings": given.case.warnings,
-        "files": folder.files,
-    }
-    terminal.result(document, _tables(result, given.case.title))
+    conclude(given, folder, result.results(), _tables(result, given.case.title), terminal)
 
 
 def _tables(result: ModalResult, title: str) -> Iterator[Part]:
-    storey = [
-        (
-            name,
-            modes.own_motion,
-            shown(modes.frequency_parameter),
-            shown(modes.frequency_parameter_rigid),
-        )
-        for name, modes in result.uplifted.items()
-    ]
+    storey = []
+    for name, modes in result.uplifted.items():
+        numbers = modes.frequency_parameter, modes.frequency_parameter_rigid
+        storey.append((name, modes.own_motion, *map(shown, numbers)))
     yield Heading(title)
     yield Table.of_texts(
         ("storey's own mode", "", "p_ext rad/s", "rigid estimate rad/s"), storey, words=2
@@ -92,16 +77,8 @@ def _tables(result: ModalResult, title: str) -> Iterator[Part]:
     ]
     yield Table.of_texts(("full contact", "rad/s", "T s", "xi %"), rows)
     for name, modes in result.uplifted.items():
-        yield Table.of_texts(
-            (f"{name}", "rad/s", "of fixed base", "xi %", "of fixed base"),
-            [
-                (
-                    str(i + 1),
-                    shown(w),
-                    shown(modes.frequency_ratio[i]),
-                    shown(100.0 * modes.damping[i], 3),
-                    shown(modes.damping_ratio[i]),
-                )
-                for i, w in enumerate(modes.frequencies)
-            ],
-        )
+        states = []
+        for i, w in enumerate(modes.frequencies):
+            damping = shown(100.0 * modes.damping[i], 3), shown(modes.damping_ratio[i])
+            states.append((str(i + 1), shown(w), shown(modes.frequency_ratio[i]), *damping))
+        yield Table.of_texts((name, "rad/s", "of fixed base", "xi %", "of fixed base"), states)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.analyses.result_quantities import PUSHOVER
-from rpscli.commands.inputs import case_folder, case_heading, read_case, write
+from rpscli.commands.inputs import case_folder, conclude, read_case
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
@@ -17,7 +17,7 @@ from rpscli.commands.shell.options import (
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
-from rpscli.report.documents import heading, pushover_document
+from rpscli.report.documents import pushover_document
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
@@ -61,16 +61,8 @@ def command(
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
     folder.add_all(pushover_files(result, given.case.title, look))
-    write(folder, terminal)
-    document = {
-        **heading(),
-        "command": "pushover",
-        "case": case_heading(given),
-        **pushover_document(result),
-        "warnings": given.case.warnings,
-        "files": folder.files,
-    }
-    terminal.result(document, _tables(result, given.case.title))
+    tables = _tables(result, given.case.title)
+    conclude(given, folder, pushover_document(result), tables, terminal)
 
 
 def _pattern(text: str) -> PatternName | list[float]:
@@ -101,14 +93,9 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
     yield Heading(title)
     yield Table.listing(rows)
     if result.capacity:
-        capacity = [
-            (
-                curve.pattern,
-                shown(curve.roof_displacement_at_uplift),
-                shown(float(curve.sum_of_floor_forces.max()) * 1e-3),
-            )
-            for curve in result.capacity
-        ]
-        yield Table.of_texts(
-            ("pattern", "roof at uplift m", "largest sum of floor forces kN"), capacity
-        )
+        heads = ("pattern", "roof at uplift m", "largest sum of floor forces kN")
+        capacity = []
+        for curve in result.capacity:
+            largest = shown(float(curve.sum_of_floor_forces.max()) * 1e-3)
+            capacity.append((curve.pattern, shown(curve.roof_displacement_at_uplift), largest))
+        yield Table.of_texts(heads, capacity)

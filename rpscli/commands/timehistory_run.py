@@ -61,11 +61,7 @@ class HistoryResult(NamedTuple):
 def history_requests(
     cases: Sequence[CaseInput], motions: Sequence[MotionRequest], output: OutputRequest
 ) -> list[HistoryRequest]:
-    """Every case under every motion, all read and all folders claimed before any is computed.
-
-    Without ``-o`` each goes to a folder of its record's name and scale. With it, several go to
-    folders of these names inside, below one of each case if there are several cases.
-    """
+    """Every case under every motion, all read and all folders claimed before any is computed."""
     requests = []
     case_labels = unique([given.case.name for given in cases])
     for given, case_label in zip(cases, case_labels, strict=True):

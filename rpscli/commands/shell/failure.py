@@ -40,11 +40,7 @@ def report(error: BaseException, *, as_json: bool) -> int:
 
 
 def concluded(document: Mapping[str, Any], error: RpsError | None) -> dict[str, Any]:
-    """The document of a result, with the error that belongs to it, and the exit code.
-
-    A limit that is exceeded leaves a good result, of status ``ok``. After any other error the
-    document says so, beside the numbers that there are.
-    """
+    """The document of a result with its exit code; status ``ok`` although a limit is exceeded."""
     code = 0 if error is None else error.exit_code
     end = {"passed": code == 0, "exit_code": code}
     if error is None or isinstance(error, LimitExceeded):

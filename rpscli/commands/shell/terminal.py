@@ -155,11 +155,7 @@ def _parts(tables: Iterable[Part], console: Console) -> Iterator[RichTable | Tex
 
 
 def emit(text: str, stream: TextIO | None) -> None:
-    """Write at once. What the stream cannot encode becomes ``?``; a reader that left is no error.
-
-    After `rps ... | head -1` there is nobody left to read. The command goes on, so that its files
-    and its exit code do not depend on who listens. The same holds for a stream that is closed.
-    """
+    """Write at once; what cannot be encoded becomes ``?``, and a reader that left is no error."""
     if stream is None:
         return
     encoding = stream.encoding or "utf-8"

@@ -23,10 +23,7 @@ NaN where a history failed or the design is not a valid case."""
 
 
 class Requirement(NamedTuple):
-    """A condition at one intensity: its place among them, its measure and its value.
-
-    The value is None where there is one intensity only.
-    """
+    """A condition at one intensity: its place, measure and value, None where there is one only."""
 
     condition: Condition
     intensity: int
@@ -40,11 +37,7 @@ class Requirement(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """How often each record counts, (rows, records).
-
-    The first row is of ones. `resamples` rows of a bootstrap follow, then one row for each record
-    that is left out, if there are several.
-    """
+    """How often each record counts: once, in `resamples` of a bootstrap, without one at a time."""
 
     rows: Array
     resamples: int
@@ -96,10 +89,7 @@ def judged_designs(
     demands: Demands,
     weights: Array,
 ) -> Judged:
-    """Judge designs with values (designs, keys) in weightings (weightings, records) of the records.
-
-    `demands` are those of the names in requirements and objectives.
-    """
+    """Judge designs with values (designs, keys) in weights (weightings, records) of the records."""
     found, excess, met = [], [], []
     for requirement in requirements:
         condition = requirement.condition

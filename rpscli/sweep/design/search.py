@@ -30,11 +30,7 @@ MOST_NEAR = 64
 
 
 def first_places(unknowns: int, count: int, seed: int) -> Array:
-    """(designs, unknowns) of the first sample.
-
-    One unknown: equal steps from end to end. Several: a scrambled Sobol sequence after the corners,
-    which are counted besides.
-    """
+    """(designs, unknowns): equal steps of one unknown, else corners and a Sobol sequence."""
     if unknowns == 1:
         return np.linspace(0.0, 1.0, count)[:, None]
     corners = list(itertools.product((0.0, 1.0), repeat=unknowns)) * (unknowns <= MOST_CORNERS)

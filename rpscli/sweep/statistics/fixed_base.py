@@ -26,10 +26,7 @@ FixedBaseReferences = dict[tuple[int, RecordRequest], Array]
 def fixed_base_references(
     layout: StudyPoints, context: StudyContext, store: Store, jobs: int
 ) -> FixedBaseReferences:
-    """All of a study; those that are not in the store are computed and stored.
-
-    Systems without a building have none, nor have records that cannot be read.
-    """
+    """Those of all systems with a building; what is not in the store is computed and stored."""
     known = store.fixed_base()
     keys: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, tuple[PodiumStructure, GroundMotion]] = {}

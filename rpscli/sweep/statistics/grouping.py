@@ -90,10 +90,7 @@ def statistic_words(wanted: float | str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Grouping:
-    """All groups under the keys that tables and figures show.
-
-    `pooled` says what differs within a group besides the record, `notes` warn of it.
-    """
+    """All groups under the keys of tables; `pooled` differs within them, `notes` warn of it."""
 
     keys: tuple[str, ...]
     groups: tuple[Histories, ...]
@@ -122,11 +119,7 @@ def grouping(
     besides: Sequence[str] = (),
     within: Indices | None = None,
 ) -> Grouping:
-    """Points grouped by some keys; by default each system at each intensity.
-
-    `besides` are keys that tell points apart inside a group: series, abscissae. `within` are points
-    to be grouped, in place of all.
-    """
+    """Points (`within` some) grouped by keys; `besides` are those that tell them apart inside."""
     layout = table.layout
     keys = own_keys(layout, besides) if keys is None else tuple(keys)
     found = (Histories(table, *group) for group in groups(layout, keys, within))
@@ -135,10 +128,7 @@ def grouping(
 
 
 def own_keys(layout: StudyPoints, besides: Sequence[str] = ()) -> tuple[str, ...]:
-    """What tells systems and intensities apart, where a report does not say otherwise.
-
-    Keys that vary together with one of `besides` are left out.
-    """
+    """What tells systems and intensities apart, without keys that vary with one of `besides`."""
     together = {key for other in besides for key in axis_keys(layout, other)}
     keys = tuple(key for key in leading_keys(layout) if key not in together)
     several = len(layout.scales) > 1 and INTENSITY not in besides

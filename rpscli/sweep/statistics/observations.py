@@ -20,11 +20,7 @@ from rpscli.sweep.table import Array, Indices, groups
 
 
 class Pairs(NamedTuple):
-    """Points with an observation, in the order of the study.
-
-    `points` and `records` (pairs,) are numbers of points and of their records, `values`
-    (quantities, pairs) what was observed, NaN where nothing was. `notes` tell what was left out.
-    """
+    """Points (pairs,), their records, what was observed (quantities, pairs), what was left out."""
 
     points: Indices
     records: Indices
@@ -33,10 +29,7 @@ class Pairs(NamedTuple):
 
 
 def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
-    """Pair every point with the observation of its record and system.
-
-    A record goes by its source, its file's name, or that without its suffix.
-    """
+    """Every point with the observation of its system and of its record by any of its names."""
     records = _record_numbers(layout)
     rows = {
         (records[row.record], row.system): place
@@ -154,11 +147,7 @@ class Maxima:
 
 
 class Worth(NamedTuple):
-    """What a fit makes small: the misfit, and then what is off in the count.
-
-    The misfit is the share of wrong outcomes, or the median of |ln(computed/observed)| of maxima;
-    `error` is its standard error, 0 of maxima.
-    """
+    """What a fit makes small: the misfit with its standard error, then what is off in the count."""
 
     misfit: float
     count_off: float

@@ -22,10 +22,7 @@ REDUCTION = next(quantity for quantity in LIMITED if quantity.name == "fixed_bas
 
 @dataclass(frozen=True, eq=False)
 class SummaryRow:
-    """Histories of one system at one intensity.
-
-    `points` are those that did not fail, `spreads` belong to the quantities of the summary.
-    """
+    """Histories of one system at one intensity; `points` are those that did not fail."""
 
     values: tuple[object, ...]
     points: Indices
@@ -47,10 +44,7 @@ class Summary:
 
 @dataclass(frozen=True, eq=False)
 class Records:
-    """Histories of one structure under several records, as a table of a study has them.
-
-    `outcomes` and `columns` of results by name are (records,), NaN where there is no such result.
-    """
+    """Histories of one structure, (records,) each, as a table of a study has them."""
 
     outcomes: NDArray[np.str_]
     columns: dict[str, Array]

@@ -61,11 +61,7 @@ class Judgement(NamedTuple):
 
 
 def judge(demands: Array, weights: Array, condition: Condition) -> Judgement:
-    """Rows of demands (rows, histories) against a condition, in each weighting of the histories.
-
-    Larger demands are worse: see `worse`. `weights` (weightings, histories) say how often each
-    history counts.
-    """
+    """Demands (rows, histories), larger the worse, in weights (weightings, histories) of each."""
     total = weights @ (~np.isnan(demands)).T
     beyond = weights @ (demands > condition.sign * condition.limit).T
     return Judgement(total, beyond, _admissible(condition, total))
