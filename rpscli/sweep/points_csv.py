@@ -61,15 +61,10 @@ def units_of_columns(layout: StudyPoints) -> list[tuple[str, str]]:
 
 def _scales(table: Table) -> Array | None:
     """Factors on the records; known beforehand unless a measure decides about them."""
-    layout, plan = table.layout, table.layout.plan
+    plan = table.layout.plan
     if plan.analysis != "timehistory":
         return None
-    if plan.measure is not None:
-        return table.scale
-    systems, _, scales, members = layout.places
-    own = np.array([properties.scale for properties in layout.properties])[systems]
-    given = own if layout.scales == (None,) else np.array(layout.scales, np.float64)[scales]
-    return np.asarray(given * np.array([change.scale for change in layout.members])[members])
+    return table.layout.factors if plan.measure is None else table.scale
 
 
 def point_columns(table: Table) -> Columns:

@@ -65,24 +65,7 @@ Stored = Callable[[Iterable[str]], PointResults]
 
 
 class Store:
-    """Results of the points of a study.
-
-    Parameters
-    ----------
-    folder
-        Of the study; made if it does not exist.
-    fresh
-        Throw away what an earlier run left.
-
-    Raises
-    ------
-    Refused
-        If another process works in this folder, or the file is not one of ours.
-    OutputError
-        If the file cannot be written, or was deleted since it was opened.
-    RpsError
-        If it is damaged.
-    """
+    """Results of the points of a study, in its folder; `fresh` discards those of an earlier run."""
 
     def __init__(self, folder: Path, *, fresh: bool = False) -> None:
         self.path = folder / FILE

@@ -32,15 +32,7 @@ SAMPLES_KEPT = 32_000_000
 
 
 class Recent(Generic[Key, Value]):
-    """The values that were asked for last; safe to share among threads.
-
-    Parameters
-    ----------
-    room
-        Sum of the sizes that are kept.
-    size
-        Size of a value.
-    """
+    """Values that were asked for last, sizes of `room` in all; safe to share among threads."""
 
     def __init__(self, room: float, size: Callable[[Value], float] = lambda _: 1.0) -> None:
         self._room, self._size, self._held = room, size, 0.0

@@ -19,7 +19,7 @@ from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RpsError
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
-from rpscli.sweep.evaluation.results import Indices
+from rpscli.sweep.evaluation.results import Array, Indices
 from rpscli.sweep.points.check import SystemProperties, Watched, check_systems
 from rpscli.sweep.points.combinations import Change, Combinations, changes, combinations_of
 
@@ -90,6 +90,14 @@ class StudyPoints:
         """(points,) places of all points among systems, records, scales and members."""
         shape = (len(self.properties), *self._within)
         return np.unravel_index(np.arange(len(self)), shape)
+
+    @cached_property
+    def factors(self) -> Array:
+        """(points,) factors on the records, where no measure decides about them."""
+        systems, _, scales, members = self.places
+        own = np.array([properties.scale for properties in self.properties])[systems]
+        given = own if self.scales == (None,) else np.array(self.scales, np.float64)[scales]
+        return np.asarray(given * np.array([change.scale for change in self.members])[members])
 
     @cached_property
     def identifying(self) -> dict[str, tuple[int, Sequence[Any]]]:

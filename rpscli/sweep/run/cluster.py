@@ -47,20 +47,7 @@ def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
 
 
 class Cluster:
-    """Computes batches on a Dask cluster.
-
-    Parameters
-    ----------
-    address
-        Of the scheduler, such as ``tcp://head:8786``.
-    plan
-        Of the study.
-
-    Raises
-    ------
-    UsageError
-        If Dask is not installed, or there is no scheduler with a worker at the address.
-    """
+    """Computes batches on a Dask cluster, whose scheduler has an address as tcp://head:8786."""
 
     def __init__(self, address: str, plan: Plan) -> None:
         try:

@@ -123,13 +123,10 @@ def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
 
 def factors(table: Table) -> Array:
     """(points,) factors on the records; NaN where there is none or the record is a pulse."""
-    found = table.scale.copy()
-    for number, point in enumerate(table.layout):
-        if table.layout.plan.measure is None:
-            found[number] = point.scale * point.scale_change
-        if point.record is None or point.record.source.startswith(SCHEME):
-            found[number] = np.nan
-    return found
+    layout = table.layout
+    of, sources = layout.identifying["record"]
+    pulses = np.array([source.startswith(SCHEME) for source in sources])[layout.places[of]]
+    return np.where(pulses, np.nan, layout.factors if layout.plan.measure is None else table.scale)
 
 
 def scale_notes(table: Table) -> Iterator[str]:
