@@ -60,7 +60,7 @@ class StudyPoints:
     def _within(self) -> tuple[int, int, int]:
         return len(self.records), len(self.scales), len(self.members)
 
-    @property
+    @cached_property
     def points_of_system(self) -> int:
         """Number of points of one system; they follow each other."""
         return math.prod(self._within)

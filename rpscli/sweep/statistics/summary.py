@@ -121,18 +121,13 @@ def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
         return np.asarray(table.columns["max_base_shear"] / (np.abs(table.scale) * reference))
 
 
-def factors(table: Table) -> Array:
-    """(points,) factors on the records; NaN where there is none or the record is a pulse."""
+def scale_notes(table: Table) -> Iterator[str]:
+    """How many points have an unusual factor, and the one that is farthest from 1."""
     layout = table.layout
     of, sources = layout.identifying["record"]
     pulses = np.array([source.startswith(SCHEME) for source in sources])[layout.places[of]]
-    return np.where(pulses, np.nan, layout.factors if layout.plan.measure is None else table.scale)
-
-
-def scale_notes(table: Table) -> Iterator[str]:
-    """How many points have an unusual factor, and the one that is farthest from 1."""
-    scale = np.abs(factors(table))
-    unusual = (scale < LEAST) | (scale > MOST)
+    scale = np.abs(layout.factors if layout.plan.measure is None else table.scale)
+    unusual = ((scale < LEAST) | (scale > MOST)) & ~pulses
     if unusual.any():
         distance = np.abs(np.log(np.where(unusual, np.maximum(scale, 1e-300), 1.0)))
         farthest = int(np.argmax(distance))
