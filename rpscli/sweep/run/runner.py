@@ -5,12 +5,12 @@ from __future__ import annotations
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import takewhile
 from types import FrameType
 
-from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.run.resume import Resume
 from rpscli.sweep.run.schedule import Engine, batches
@@ -78,7 +78,8 @@ def run(
     first: tuple[int, float] | None = None
     with first_interrupt(announce) as interrupted:
         work = batches(layout, start.pending, engine.jobs)
-        for points, results in engine.outcomes(_until(interrupted, work)):
+        wanted = takewhile(lambda _: not interrupted.is_set(), work)
+        for points, results in engine.outcomes(wanted):
             store.add([start.keys[point.number] for point in points], results)
             computed += len(points)
             failed += results.failed()
@@ -88,14 +89,6 @@ def run(
             report(Progress(total, start.kept, computed, failed, seconds, *first))
     seconds = time.monotonic() - began
     return Finish(computed, failed, seconds, computed < len(start.pending))
-
-
-def _until(stop: threading.Event, work: Iterable[list[Point]]) -> Iterator[list[Point]]:
-    """Batches until somebody wants to stop."""
-    for batch in work:
-        if stop.is_set():
-            return
-        yield batch
 
 
 @contextmanager

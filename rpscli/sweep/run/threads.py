@@ -32,13 +32,6 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-class _End:
-    """What a thread says last; `error` is what ended it before its time."""
-
-    def __init__(self, error: BaseException | None = None) -> None:
-        self.error = error
-
-
 class Threads:
     """Computes batches in threads of this process.
 
@@ -50,7 +43,7 @@ class Threads:
     def __init__(self, context: StudyContext, jobs: int) -> None:
         self._context = context
         self.jobs = jobs
-        self._done: SimpleQueue[Computed | _End] = SimpleQueue()
+        self._done: SimpleQueue[Computed | BaseException | None] = SimpleQueue()
         self._taking = Lock()
 
     def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
@@ -61,15 +54,15 @@ class Threads:
         computing = self.jobs
         while computing:
             item = self._said()
-            if not isinstance(item, _End):
-                yield item
-            elif item.error is not None:
-                raise item.error
-            else:
+            if item is None:
                 computing -= 1
+            elif isinstance(item, BaseException):
+                raise item
+            else:
+                yield item
 
-    def _said(self) -> Computed | _End:
-        """What a thread says next."""
+    def _said(self) -> Computed | BaseException | None:
+        """What a thread says next: a batch, what ended it before its time, or that it is done."""
         while True:
             with suppress(Empty):
                 return self._done.get(timeout=HEARING)
@@ -79,9 +72,9 @@ class Threads:
             while (batch := self._next(source)) is not None:
                 self._done.put((batch, run_batch(self._context, batch)))
         except BaseException as error:  # noqa: BLE001 -- raised again where it can be told
-            self._done.put(_End(error))
+            self._done.put(error)
         else:
-            self._done.put(_End())
+            self._done.put(None)
 
     def _next(self, source: Iterator[list[Point]]) -> list[Point] | None:
         with self._taking:
