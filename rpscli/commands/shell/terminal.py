@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rpscli.errors import OutputError
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 WARNINGS_SHOWN = 5
 PLAIN_WIDTH = 100
 """Columns where the output is no terminal and COLUMNS is not set."""
-LONGEST_WORD, LONGEST_HEAD = 30, 14
+LONGEST_WORD, LONGEST_HEAD, MOST_LINES = 30, 14, 9
 """Which is not broken, in cells and in heads."""
 GAP = 3
 """Between two columns."""
@@ -70,13 +71,14 @@ def fitting(table: Table, console: Console) -> Iterator[RichTable]:
         for count in range(len(others), 0, -1):
             shown = [*keys, *others[:count]]
             # rich takes from all columns what is missing, and then gives numbers back what they
-            # need: where that is too much, all of the room is to come from words.
-            made = (_made(table, shown, firm=firm) for firm in (False, True))
+            # need: where that is too much, all of the room is to come from words, and heads of
+            # numbers break into as few lines as do.
+            made = (_made(table, shown, lines) for lines in (None, 2, 3, MOST_LINES))
             part = next((each for each in made if _width(each, console) <= console.width), None)
             if part is not None:
                 break
         others = others[count:]
-        yield part or _made(table, shown, firm=False)
+        yield part or _made(table, shown)
 
 
 def _width(made: RichTable, console: Console) -> int:
@@ -90,8 +92,11 @@ def _width(made: RichTable, console: Console) -> int:
     return max(needed if made.show_header else 0, *widths, 0)
 
 
-def _made(table: Table, columns: Sequence[int], *, firm: bool) -> RichTable:
-    """Some columns of a table: words fold where it is narrow, numbers stand right and never do."""
+def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> RichTable:
+    """Some columns of a table: words fold where it is narrow, numbers stand right and never do.
+
+    Columns of numbers are as narrow as heads of so many lines let them be, if that is said.
+    """
     from rich import box
     from rich.table import Table as RichTable
 
@@ -111,7 +116,10 @@ def _made(table: Table, columns: Sequence[int], *, firm: bool) -> RichTable:
             made.add_column(head, overflow="fold", min_width=least)
         else:
             least = max(in_head, *map(len, cells), 0)
-            width = least if firm else None
+            width = None
+            if lines is not None:
+                wide = range(least, max(least, len(head)) + 1)
+                width = next(w for w in wide if len(wrap(head, w)) <= lines or w == wide[-1])
             made.add_column(head, justify="right", overflow="fold", width=width, min_width=least)
     for row in rows:
         made.add_row(*(row[index] for index in columns))
