@@ -105,7 +105,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
     durations = [motion.duration for motion in motions.items]
     for r, history in zip(requests, given, strict=True):
         seconds = longest_time(r.settings, durations[history.motion])
-        refuse_steps(seconds * rates[history.system])
+        refuse_steps(seconds * rates[history.system], r.structure)
     run = run_of(stacked, motions.items, given)
     lanes = LANES if len(requests) >= worth_lanes else 1
     follow(run, lanes)

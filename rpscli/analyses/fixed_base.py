@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernels.systems import building_system
+from rpscli.analyses.kernels.systems import CONTACT_ANGLE, building_system
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion
@@ -83,6 +84,7 @@ def _follow(
     integrate_fixed_base(
         record.acceleration,
         record.dt,
+        max(math.ceil(record.dt * float(building.frequencies[-1]) / CONTACT_ANGLE), 1),
         intervals + 1,
         building_system(building),
         empty_block(building.storeys),

@@ -20,7 +20,7 @@ OUTCOMES: dict[int, Outcome] = {
 """Proper endings; every other code is a failure."""
 
 OUTCOME_WORDS = np.array(
-    [OUTCOMES.get(code, "failed") for code in range(state.FAILED_STEP_TOO_SMALL + 1)]
+    [OUTCOMES.get(code, "failed") for code in range(state.FAILED_TOO_MANY_STEPS + 1)]
 )
 """By the codes of `physics.planar.state`, of which RUNNING counts from the end."""
 
@@ -40,6 +40,10 @@ REASONS = {
     ),
     state.FAILED_STEP_TOO_SMALL: (
         "events follow each other without time passing; raise analysis.recontact_tolerance"
+    ),
+    state.FAILED_TOO_MANY_STEPS: (
+        "a viscous damper whose exponent is below 1 holds the cap beam so firmly that steps become"
+        " too many; use a friction damper, a larger exponent or a smaller coefficient"
     ),
 }
 

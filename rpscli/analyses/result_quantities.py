@@ -85,6 +85,8 @@ NEEDS = {
     "superstructure": "a superstructure",
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "podium.friction": "podium.friction in the case",
+    "columns": "podium.plan and superstructure.vertical_period in the case: without them it leaves"
+    " out the overturning moment and the shock of impacts",
     "damper": "a damper in podium.devices",
     "stop": "a stop in podium.devices",
     "tendon": "a prestressed tendon in podium.devices",
@@ -182,10 +184,14 @@ SAMPLED = (
         meaning="largest base shear over that of the fixed base",
     ),
     ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
-    ResultQuantity("max_column_force", "N", "axial force of a column", limit="2e6"),
     ResultQuantity(
-        "min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True
+        "max_column_force", "N", "axial force of a column", limit="2e6", needs="columns"
     ),
+    ResultQuantity(
+        "min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True,
+        needs="columns",
+    ),
+    ResultQuantity("overturning_ratio", "-", "overturning moment over that of the weight"),
     ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction"),
 )  # fmt: skip
 """Scalars of a history that is followed with all its samples: a single one, or those of a study

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.column_forces import AxialForces
 from rpscli.analyses.fixed_base import FixedBaseResponse, largest_velocities
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace
 from rpscli.frozen import frozen
 from rpscli.physics.planar import geometry, state
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 NEAR_CRITICAL = 0.8
 """Rotations above this part of the critical one are near it: a little more may overturn."""
@@ -85,6 +86,11 @@ class TimeHistoryResult(Demand):
         In the order of time.
     fixed_base
         The same building on a fixed base; None where that was not asked for.
+    motion
+        All components of the ground's motion.
+    axial
+        Axial forces of single columns; None where neither rows of columns nor the vertical period
+        of the building are given.
     """
 
     record: GroundMotion
@@ -92,6 +98,8 @@ class TimeHistoryResult(Demand):
     trace: Trace
     events: tuple[Event, ...]
     fixed_base: FixedBaseResponse | None
+    motion: MotionComponents
+    axial: AxialForces | None = None
 
     def facts(self) -> dict[str, Any]:
         """The record, and what it asked for."""
@@ -151,21 +159,45 @@ class TimeHistoryResult(Demand):
 
     @property
     def column_forces(self) -> dict[str, ColumnForces]:
-        """Envelopes at the `top` and at the `bottom` of a column, at the samples.
+        """Envelopes at the `top` and at the `bottom` of a column.
 
-        All columns carry alike; where the case does not give their number, these are the forces of
-        all columns together.
+        All columns carry alike, but for the overturning moment where their rows are given; where
+        the case does not give their number, these are the forces of all columns together.
+        `left_out` says what axial forces do not hold.
         """
-        t, columns = self.trace, self.structure.columns
-        ends = {"top": (t.shear_top, t.normal_top), "bottom": (t.shear_bottom, t.normal_bottom)}
+        st, history = self.structure, self.history
+        upper = st.cap_beam_mass + st.superstructure_mass
+        weights = st.gravity * upper, st.gravity * (upper + st.columns_mass)
         return {
             end: ColumnForces(
-                shear=float(np.max(np.abs(shear))) / columns,
-                largest_normal=float(np.max(normal)) / columns,
-                least_normal=float(np.min(normal)) / columns,
+                float(history[f"shear_{end}"]) / st.columns,
+                self.axial.largest[end]
+                if self.axial
+                else float(history[f"heavy_{end}"]) * weight / st.columns,
+                self.axial.least[end]
+                if self.axial
+                else float(history[f"normal_{end}"]) * weight / st.columns,
             )
-            for end, (shear, normal) in ends.items()
+            if weight > 0.0
+            else ColumnForces(0.0, 0.0, 0.0)
+            for end, weight in zip(("top", "bottom"), weights, strict=True)
         }
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What the axial forces of columns do not hold, and the key that would give it."""
+        st, building = self.structure, self.structure.superstructure
+        if building is None:
+            return ()
+        moment = () if st.rows else ("the overturning moment of the building (podium.plan)",)
+        if building.vertical_period is None:
+            return (*moment, "the shock of impacts (superstructure.vertical_period)")
+        return moment
+
+    @property
+    def overturning_ratio(self) -> float | None:
+        """What the floors' inertia adds to an outer row over its mean force; None without rows."""
+        return self.axial.overturning_ratio if self.axial else None
 
     @property
     def max_column_shear(self) -> float:
@@ -212,6 +244,12 @@ class TimeHistoryResult(Demand):
             notes.append(
                 "contact is lost: the normal force between columns and beam or ground falls to"
                 f" {least:.3g} of the weight; the model assumes contact throughout"
+            )
+        if self.axial and self.axial.lift_off is not None:
+            notes.append(
+                f"an outer row of columns would lift off at t = {self.axial.lift_off:.4g} s: the"
+                " overturning moment takes more than its share of the weight; the model assumes"
+                " that all columns stand"
             )
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
         if self.energy.created > 0.02 * supplied:

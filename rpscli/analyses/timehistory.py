@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
+from rpscli.analyses.column_forces import axial_forces
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.trace import event_list, trace_of
+from rpscli.analyses.trace import Trace, event_list, trace_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
@@ -56,7 +58,7 @@ def time_history(
     if with_fixed_base and structure.superstructure is not None:
         intervals = max(int(run.history.intervals), motion.horizontal.npts - 1)
         fixed = fixed_base_response(structure, motion.horizontal, intervals)
-    return TimeHistoryResult(
+    result = TimeHistoryResult(
         structure=structure,
         history=run.history,
         record=motion.horizontal,
@@ -64,4 +66,22 @@ def time_history(
         trace=trace_of(structure, run),
         events=event_list(run.log),
         fixed_base=fixed,
+        motion=motion,
     )
+    if not structure.tells_column_forces:
+        return result
+    dense = denser_trace(result, AXIAL_STEP)
+    return replace(result, axial=axial_forces(structure, dense, result.events))
+
+
+AXIAL_STEP = 2e-3
+"""Between instants at which the forces of single columns are looked at [s], or less."""
+
+
+def denser_trace(result: TimeHistoryResult, step: float) -> Trace:
+    """The histories of the same motion at even parts of the sampling interval, up to `step` [s]."""
+    parts = max(math.ceil(result.record.dt / step - 1e-9), 1)
+    if parts == 1:
+        return result.trace
+    run = sampled_history(result.structure, result.motion, result.settings, parts)
+    return trace_of(result.structure, run)

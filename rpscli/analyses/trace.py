@@ -10,7 +10,7 @@ True
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Literal, TypeAlias, cast, get_args
 
 import numpy as np
@@ -151,6 +151,9 @@ BLOCK = 50_000
 class Trace(Shown):
     """Histories at the record's samples and on through the free vibration, SI units.
 
+    What was largest between samples, and just before and after impacts, is in the largest demands,
+    not here.
+
     Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements
     and velocities are relative to the ground.
 
@@ -211,7 +214,8 @@ class Trace(Shown):
 
 
 def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
-    """Histories from what the kernel stored at samples."""
+    """Histories from what the kernel stored, at samples or between them as well."""
+    run = replace(run, motion=run.motion.finer(run.finer)) if run.finer > 1 else run
     samples = run.samples
     devices = DeviceTrace(*np.moveaxis(run.devices, 1, 0))
     return Trace(

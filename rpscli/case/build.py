@@ -13,6 +13,7 @@ from rpscli.case.schema.case_file import (
     BearingSection,
     CaseFile,
     DimensionsSection,
+    PlanSection,
     PodiumMasses,
     SuperstructureSection,
 )
@@ -109,7 +110,14 @@ def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
         ),
         columns=file.podium.columns or 1,
         friction=file.podium.friction,
+        rows=_rows(file.podium.plan),
     )
+
+
+def _rows(plan: PlanSection | None) -> tuple[float, ...]:
+    if plan is None:
+        return ()
+    return plan.rows or (0.0, plan.length or 0.0)
 
 
 def building(section: SuperstructureSection) -> Superstructure | None:
@@ -127,7 +135,7 @@ def building(section: SuperstructureSection) -> Superstructure | None:
     damping: RayleighDamping | ModalDamping = ModalDamping(given.ratio)
     if given.modes is not None:
         damping = RayleighDamping(given.ratio, given.modes)
-    return Superstructure(masses, stiffnesses, damping, heights)
+    return Superstructure(masses, stiffnesses, damping, heights, section.vertical_period)
 
 
 def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[float]:

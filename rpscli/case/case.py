@@ -23,6 +23,7 @@ from rpscli.case.rules.podium import (
     restitution_rule,
 )
 from rpscli.case.rules.superstructure import (
+    column_rules,
     ignored_keys,
     ignored_text,
     limits_rules,
@@ -48,6 +49,7 @@ RULES = (
     devices_rules,
     record_rules,
     limits_rules,
+    column_rules,
 )
 
 

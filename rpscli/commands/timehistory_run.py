@@ -129,7 +129,8 @@ def compute(
         limits = case_conditions(case.limits, overturning=True)
         limits = [*with_friction(limits, case.structure), *conditions]
         for limit in limits:
-            if limit.name in found and found[limit.name] is None:
+            unknown = limit.name in LIMITS and LIMITS[limit.name].needs == "columns"
+            if limit.name in found and (found[limit.name] is None or (unknown and result.left_out)):
                 needs = NEEDS[LIMITS[limit.name].needs]
                 raise UsageError(f"{limit.source}: {limit.name} needs {needs}")
         records = Records.of([result.outcome], [demands])

@@ -112,10 +112,12 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
     """Forces of one column, or of all where their number is not known."""
     names = ("max_column_shear", "max_column_force", "min_column_force")
     rows = [_row(result, name) for name in names]
-    if result.structure.columns > 1:
-        return rows
     labels = ("total column shear", "axial force, all columns", "minimum axial force, all columns")
-    return [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
+    if result.structure.columns == 1:
+        rows = [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
+    if result.overturning_ratio is not None:
+        rows.append(_row(result, "overturning_ratio"))
+    return [*rows, *((f"  without {what}", "", "", "") for what in result.left_out)]
 
 
 def _energy(result: TimeHistoryResult) -> list[Row]:

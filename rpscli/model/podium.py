@@ -49,6 +49,9 @@ class PodiumStructure(Shown):
         N; only tendons, one in each column, and forces of one column ask for it.
     friction
         Coefficient of friction at both ends of the columns; None where it is not known.
+    rows
+        Where rows of columns, with equally many each, stand along the motion [m]; none where that
+        is not known.
 
     Raises
     ------
@@ -70,6 +73,7 @@ class PodiumStructure(Shown):
     devices: tuple[Device, ...] = ()
     columns: int = 1
     friction: float | None = None
+    rows: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""
@@ -77,6 +81,8 @@ class PodiumStructure(Shown):
             raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0")
         if self.superstructure is not None and self.cap_beam_mass == 0.0:
             raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
+        if self.rows and (len(self.rows) < 2 or max(self.rows) <= min(self.rows)):
+            raise ValueError("rows must be at least two places that differ")
         if self.columns < 1:
             raise ValueError("columns must be >= 1")
         if len(self.devices) > MOST_DEVICES:
@@ -102,6 +108,18 @@ class PodiumStructure(Shown):
             "devices": [device.kind for device in self.devices],
             "bearing": self.bearing,
         }
+
+    @property
+    def tells_column_forces(self) -> bool:
+        """Whether something is known of how columns share, or of the shock of impacts."""
+        building = self.superstructure
+        return building is not None and bool(self.rows or building.vertical_period)
+
+    @property
+    def column_forces_known(self) -> bool:
+        """Whether both are, so that a column may be designed by its forces."""
+        building = self.superstructure
+        return building is not None and bool(self.rows and building.vertical_period)
 
     @property
     def storeys(self) -> int:

@@ -200,7 +200,9 @@ class Superstructure(Shown):
     damping
         Rayleigh or modal damping of the building on a fixed base.
     storey_heights
-        (n,) [m]; only for drift ratios and pictures.
+        (n,) [m]; only for drift ratios, pictures and the overturning moment.
+    vertical_period
+        First period of the vertical vibration on the cap beam [s]; only for the shock of impacts.
 
     Raises
     ------
@@ -212,6 +214,7 @@ class Superstructure(Shown):
     stiffnesses: NDArray[np.float64]
     damping: RayleighDamping | ModalDamping
     storey_heights: NDArray[np.float64] | None = None
+    vertical_period: float | None = None
 
     def __post_init__(self) -> None:
         """Take any sequence; refuse what is not a building."""
@@ -225,6 +228,8 @@ class Superstructure(Shown):
         }
         if lengths != {self.storeys} or not self.storeys:
             raise ValueError(f"masses, stiffnesses and heights must have one length: {lengths}")
+        if self.vertical_period is not None and not self.vertical_period > 0.0:
+            raise ValueError("vertical_period must be > 0")
         if self.storeys > MOST_STOREYS:
             raise ValueError(f"{self.storeys} storeys: there is room for {MOST_STOREYS} at most")
 
@@ -281,6 +286,14 @@ class Superstructure(Shown):
     def periods(self) -> NDArray[np.float64]:
         """Fixed-base periods, (n,), descending [s]."""
         return frozen(2.0 * math.pi / self.frequencies)
+
+    @property
+    def vertical_modes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Frequencies [rad/s] and effective masses [kg], (n,), of floors on equal springs."""
+        assert self.vertical_period is not None, "asked for where the period is given"
+        frequencies, shapes = shear_modes(self.masses, np.ones(self.storeys))
+        scale = 2.0 * math.pi / (self.vertical_period * frequencies[0])
+        return scale * frequencies, (shapes.T @ self.masses) ** 2
 
     @property
     def participation(self) -> NDArray[np.float64]:

@@ -305,6 +305,15 @@ class MotionComponents(Frozen):
         parts = [self.horizontal.digest, self.vertical.digest if self.vertical else ""]
         return hashlib.sha256("|".join(parts).encode()).digest()
 
+    def finer(self, parts: int) -> MotionComponents:
+        """The same motion with that many even parts in each sampling interval."""
+        named: dict[str, GroundMotion] = {}
+        for name, motion in self.named.items():
+            at = np.arange((motion.npts - 1) * parts + 1) / parts
+            values = np.interp(at, np.arange(motion.npts), motion.acceleration)
+            named[name] = replace(motion, acceleration=values, dt=motion.dt / parts)
+        return MotionComponents(named["horizontal"], named.get("vertical"))
+
     def scaled(self, factor: float) -> MotionComponents:
         """All components times `factor`."""
         named = {name: motion.scaled(factor) for name, motion in self.named.items()}

@@ -70,7 +70,8 @@ def test_forces_obey_the_laws(result: TimeHistoryResult) -> None:
     velocity = STRUCTURE.lever_arm(np.abs(t.rotation)) * rate
     assert friction[moves] == pytest.approx(-F_D * np.sign(rate[moves]))
     assert np.all(np.abs(friction) <= F_D * (1.0 + 1e-12))
-    assert not friction[t.phase == FULL_CONTACT].any()
+    rests = t.phase == FULL_CONTACT
+    assert not rolling[rests].any()
     assert viscous == pytest.approx(-C * np.sign(velocity) * np.abs(velocity) ** A, abs=1e-3)
     assert np.all((tension >= 0.0) & (tension <= P_Y * (1.0 + 1e-9)))
     u = t.cap_beam_displacement
@@ -83,13 +84,15 @@ def test_forces_obey_the_laws(result: TimeHistoryResult) -> None:
 
 
 def test_contact_forces_are_those_of_the_kernel(result: TimeHistoryResult) -> None:
-    """The kernel looks at the same samples, and at both ends of what is stuck."""
+    """The kernel looks at the same samples, at both ends of what is stuck, and between."""
     t = result.trace
     top = np.max(np.abs(t.shear_top / t.normal_top))
-    assert result.history.friction_top == pytest.approx(top, rel=1e-6)
+    assert result.history.friction_top >= top * (1.0 - 1e-6)
+    assert result.history.friction_top == pytest.approx(top, rel=0.05)
     weight = (STRUCTURE.cap_beam_mass + STRUCTURE.superstructure_mass) * STRUCTURE.gravity
     least = np.min(t.normal_top) / weight
-    assert result.history.normal_top == pytest.approx(least, rel=1e-6)
+    assert result.history.normal_top <= least * (1.0 + 1e-6)
+    assert result.history.normal_top == pytest.approx(least, rel=0.05)
     assert t.normal_top[0] == pytest.approx(weight + 4.0 * P)
 
 
@@ -143,7 +146,7 @@ def test_the_default_steps_are_as_good_as_without_devices(device: Device | None)
         for accuracy in (1.0, 4.0)
     )
     assert coarse.max_rotation == pytest.approx(fine.max_rotation, rel=1e-8)
-    assert coarse.max_base_shear == pytest.approx(fine.max_base_shear, rel=1e-7)
+    assert coarse.max_base_shear == pytest.approx(fine.max_base_shear, rel=3e-5)
     residuals = [abs(result.energy.residual) / result.energy.input for result in (coarse, fine)]
     assert residuals[0] < 1e-8
     assert residuals[1] < residuals[0] / 4.0**5

@@ -45,7 +45,7 @@ def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
     isolated, fixed = isolated_floor_spectra(result), fixed_base_floor_spectra(result)
     assert fixed is not None
     # The free vibration after the record is cut at different times.
-    np.testing.assert_allclose(isolated.pseudo_acceleration, fixed.pseudo_acceleration, rtol=1e-6)
+    np.testing.assert_allclose(isolated.pseudo_acceleration, fixed.pseudo_acceleration, rtol=5e-5)
 
 
 @needs_compiled_kernels

@@ -67,7 +67,7 @@ def test_without_a_coefficient_nothing_is_said_of_sliding() -> None:
 
 
 def test_forces_at_the_columns_are_those_of_the_kernel() -> None:
-    """The largest |F|/N and the least N of the samples are those that the kernel found."""
+    """The largest |F|/N and the least N at the samples are within what the kernel found."""
     record, upwards = waves(2.0, 0.02, 4.0, seed=21), waves(1.5, 0.02, 2.0, seed=22)
     for structure in (podium(0, 0.15, 0.5), podium(3, 0.2, 0.0)):
         result = time_history(structure, record, vertical=upwards)
@@ -77,10 +77,12 @@ def test_forces_at_the_columns_are_those_of_the_kernel() -> None:
             structure.gravity * (structure.cap_beam_mass + structure.superstructure_mass),
         )
         friction = np.max(np.abs(trace.shear_top) / trace.normal_top)
-        assert friction == pytest.approx(result.history.friction_top, rel=1e-10)
+        assert friction <= result.history.friction_top * (1.0 + 1e-10)
+        assert friction == pytest.approx(result.history.friction_top, rel=0.02)
         friction = np.max(np.abs(trace.shear_bottom) / trace.normal_bottom)
-        assert friction == pytest.approx(result.history.friction_bottom, rel=1e-10)
+        assert friction <= result.history.friction_bottom * (1.0 + 1e-10)
+        assert friction == pytest.approx(result.history.friction_bottom, rel=0.02)
         least = np.min(trace.normal_top) / weight
-        assert least == pytest.approx(result.history.normal_top, rel=1e-10)
+        assert least >= result.history.normal_top * (1.0 - 1e-10)
         same = demand(replace(structure, friction=0.5), record, vertical=upwards)
         assert same.friction_ratio == result.friction_demand / 0.5

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from paper_structures import FLAT, RecordLoader, needs_compiled_kernels, podium
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
 
 pytestmark = needs_compiled_kernels
 
@@ -50,10 +52,14 @@ def test_converged_histories(
     usual = TimeHistorySettings(free_vibration=10.0, recontact_rule="relative")
     fine = demand(structure, record, replace(usual, accuracy=4.0))
     assert fine.max_rotation == printed(rotation)
-    assert fine.storey_shears[0] / structure.static_base_shear == printed(shear)
+    # the printed shears were looked at where the record has samples
+    trace = time_history(structure, record, replace(usual, accuracy=4.0)).trace
+    sampled = float(np.max(np.abs(trace.storey_shears[:, 0])))
+    assert sampled / structure.static_base_shear == printed(shear)
+    assert sampled <= fine.storey_shears[0] < 1.02 * sampled
     assert fine.impacts == impacts
     # the default step is far within the 1e-4 that its description promises for most histories
     default = demand(structure, record, usual)
     assert default.max_rotation == pytest.approx(fine.max_rotation, rel=1e-7)
-    assert default.storey_shears == pytest.approx(fine.storey_shears, rel=1e-5)
+    assert default.storey_shears == pytest.approx(fine.storey_shears, rel=1e-4)
     assert default.impacts == impacts

@@ -27,7 +27,7 @@ def test_a_stiff_building_in_full_contact_moves_with_the_ground() -> None:
     assert result.fixed_base is not None
     assert result.fixed_base.floor_velocities == pytest.approx(result.floor_velocities, rel=1e-9)
     assert result.max_floor_velocity == max(result.floor_velocities)
-    assert result.fixed_base_ratio == pytest.approx(1.0, rel=1e-9)
+    assert result.fixed_base_ratio == pytest.approx(1.0, rel=1e-5)
 
 
 def test_columns_at_rest_carry_the_weight_and_the_mass_times_acceleration() -> None:

@@ -48,7 +48,7 @@ def result(request: pytest.FixtureRequest) -> TimeHistoryResult:
     return time_history(request.param, RECORD, SETTINGS, vertical=VERTICAL)
 
 
-def test_maxima_are_those_of_the_samples(result: TimeHistoryResult) -> None:
+def test_maxima_are_not_below_the_samples(result: TimeHistoryResult) -> None:
     trace = result.trace
     sampled = float(np.max(np.abs(trace.rotation)))
     # turning points lie between samples: x'' dt^2/8 above the nearest at most
@@ -61,12 +61,14 @@ def test_maxima_are_those_of_the_samples(result: TimeHistoryResult) -> None:
         assert result.base_shear_ratio is None
         return
     shears = np.max(np.abs(trace.storey_shears), axis=0)
-    assert result.storey_shears == pytest.approx(shears, rel=1e-11)
+    assert np.all(result.storey_shears >= (1.0 - 1e-11) * shears)
+    assert result.storey_shears == pytest.approx(shears, rel=0.05)
     accelerations = np.max(np.abs(trace.floor_accelerations), axis=0)
-    assert result.floor_accelerations == pytest.approx(accelerations, rel=1e-9)
-    drifts = np.max(np.abs(trace.drifts), axis=0)
-    assert result.max_drifts == pytest.approx(drifts, rel=1e-11)
-    ratio = shears[0] / result.structure.static_base_shear
+    assert np.all(result.floor_accelerations >= (1.0 - 1e-9) * accelerations)
+    assert result.structure.superstructure is not None
+    stiffnesses = result.structure.superstructure.stiffnesses
+    assert result.max_drifts == pytest.approx(result.storey_shears / stiffnesses, rel=1e-11)
+    ratio = result.storey_shears[0] / result.structure.static_base_shear
     assert result.base_shear_ratio == pytest.approx(ratio, rel=1e-11)
 
 

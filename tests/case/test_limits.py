@@ -9,6 +9,8 @@ from rpscli.case.case import parse_case
 from rpscli.case.conditions import Condition, condition_text, conditions_of
 from rpscli.errors import CaseError
 
+from .conftest import Faults
+
 
 def limited(building: str, text: str) -> tuple[Condition, ...]:
     """Conditions of a case with these limits."""
@@ -37,7 +39,27 @@ def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(building: str) -> None
     ]
 
 
+def with_columns(building: str) -> str:
+    """What the force of a column is made of."""
+    building = building.replace("  profile: sine\n", "  vertical_period: 0.1 s\n")
+    return building.replace("  impact: {law: rigid}\n", "  plan: {length: 12 m}\n")
+
+
+def test_the_force_of_a_column_is_no_limit_without_what_governs_it(
+    building: str, faults: Faults
+) -> None:
+    limits = "limits: {rotation_ratio: 0.5}"
+    found = faults(building, limits, "limits: {max_column_force: 100 kN}")
+    assert "without the overturning moment and the shock of impacts" in found
+    assert "podium.plan and superstructure.vertical_period" in found
+    found = faults(with_columns(building), "storey_height: 3.0", "profile: sine")
+    assert "podium.plan needs superstructure.storey_height" in found
+    found = faults(with_columns(building), "{length: 12 m}", "{length: 12 m, rows: [0, 4]}")
+    assert "not both" in found
+
+
 def test_a_least_force_is_limited_from_below(building: str) -> None:
+    building = with_columns(building)
     found = limited(building, "{min_column_force: {at_least: 100 kN, share: 0.1}}")
     assert found == (Condition("min_column_force", 1e5, "the case", share=0.1),)
     assert condition_text(found[0]) == "at least 100000 but for 10 % of the records"
@@ -49,7 +71,7 @@ def test_a_least_force_is_limited_from_below(building: str) -> None:
 
 @pytest.mark.parametrize("name", [quantity.name for quantity in LIMITED])
 def test_every_result_of_the_list_may_be_limited(building: str, name: str) -> None:
-    ((found),) = limited(building, f"{{{name}: 3}}")
+    ((found),) = limited(with_columns(building), f"{{{name}: 3}}")
     assert (found.name, found.limit) == (name, 3.0)
 
 

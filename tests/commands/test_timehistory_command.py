@@ -179,8 +179,12 @@ def test_limits_of_the_case(rps: Invoke) -> None:
 
 
 def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
-    words = ("timehistory", "small.yaml", "--fail-on")
-    assert rps(*words, "min_column_force=1").exit_code == 0
+    refused = rps("timehistory", "small.yaml", "--fail-on", "min_column_force=1")
+    assert refused.exit_code == 2
+    assert "overturning moment and the shock of impacts" in " ".join(refused.stderr.split())
+    known = ("--set", "podium.plan={length: 8}", "--set", "superstructure.vertical_period=0.1")
+    words = ("timehistory", "small.yaml", *known, "--fail-on")
+    assert rps(*words, "min_column_force=-1e9").exit_code == 0
     result = rps(*words, "min_column_force=1e9")
     assert result.exit_code == 10
     assert "is below 1e+09 (--fail-on)" in result.stderr

@@ -66,12 +66,14 @@ class MultibodyResult:
     """Tilt (mean of the columns) and drifts of each storey every `STEPS_TOGETHER` steps.
 
     `apart` is the longest time during which a column touched only the ground or only the beam [s].
+    `carried` is the force under the floors over their weight, where they stand on vertical springs.
     """
 
     time: Array
     rotation: Array
     drifts: Array
     apart: float
+    carried: Array | None = None
 
 
 def simulate(
@@ -86,16 +88,27 @@ def simulate(
     level: bool = True,
     closing_damping: float = 1.0,
     devices: Sequence[OracleDevice] = (),
+    vertical_period: float | None = None,
 ) -> MultibodyResult:
     """Response to ground acceleration samples [m/s2] from rest, or after release from a tilt.
 
     Unless `level`, the cap beam may tilt on its columns. `closing_damping` is that of contacts over
     critical: at 1 they part again with exp(-2) = 0.135 of the speed at which they closed; more
-    than that keeps them closed.
+    than that keeps them closed. With a `vertical_period`, the first one, floors stand on equal
+    vertical springs with 5 % of damping in the first mode, in proportion to stiffness.
     """
     import mujoco  # an extra
 
-    text = description(system, columns, time_step, closing_damping, level=level, devices=devices)
+    upright = None if vertical_period is None else Upright(system, vertical_period)
+    text = description(
+        system,
+        columns,
+        time_step,
+        closing_damping,
+        level=level,
+        devices=devices,
+        upright=upright,
+    )
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     _place(data, system, columns, initial_rotation)
@@ -108,20 +121,60 @@ def simulate(
     tilts = _addresses(model, [f"tilt {c}" for c in range(columns)])
     floors = _addresses(model, [f"floor {i}" for i in range(len(system.masses))])
     rows = np.empty((count + 1, 1 + len(floors)))
-    touching = np.empty(count + 1)
+    touching, carried = np.empty(count + 1), np.ones(count + 1)
     for j in range(count + 1):
         if j:
             model.opt.gravity[0] = -pushes[j - 1]
             mujoco.mj_step(model, data, STEPS_TOGETHER)
         rows[j] = data.qpos[tilts].mean(), *data.qpos[floors]
         touching[j] = data.ncon
+        if upright:
+            joint = data.joint("lift 0")
+            carried[j] = upright.carried(float(joint.qpos[0]), float(joint.qvel[0]))
     needed = columns * (2 if system.cap_beam_mass else 1)
     return MultibodyResult(
         time=np.arange(count + 1, dtype=np.float64) * interval,
         rotation=rows[:, 0],
         drifts=np.diff(rows[:, 1:], axis=1, prepend=0.0),
         apart=interval * _longest(touching[1:] < needed),
+        carried=carried if upright else None,
     )
+
+
+class Upright:
+    """Floors on equal vertical springs, at rest under their weight."""
+
+    def __init__(self, system: OracleSystem, period: float) -> None:
+        self.masses, n = np.asarray(system.masses), len(system.masses)
+        chain = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+        chain[-1, -1] = 1.0
+        first = min(np.linalg.eigvals(chain / self.masses[:, None]).real)
+        self.stiffness = (2.0 * math.pi / period) ** 2 / first
+        self.damping = self.stiffness * 2.0 * 0.05 * period / (2.0 * math.pi)
+        self.weights = system.gravity * np.cumsum(self.masses[::-1])[::-1]
+
+    def joint(self, i: int) -> str:
+        """The freedom of a floor to rise, with the spring to the beam for the first."""
+        spring = f'stiffness="{self.stiffness}" springref="{self.rest(0)}"' if i == 0 else ""
+        damping = f'damping="{self.damping}"' if i == 0 else ""
+        return f'<joint name="lift {i}" type="slide" axis="0 0 1" {spring} {damping}/>'
+
+    def spring(self, i: int) -> str:
+        """Between a floor and the one below."""
+        return (
+            f'<fixed stiffness="{self.stiffness}" damping="{self.damping}"'
+            f' springlength="{self.rest(i)}"><joint joint="lift {i}" coef="1"/>'
+            f'<joint joint="lift {i - 1}" coef="-1"/></fixed>'
+        )
+
+    def rest(self, i: int) -> float:
+        """How far the weight above compresses a spring [m]."""
+        return float(self.weights[i] / self.stiffness)
+
+    def carried(self, lift: float, rate: float) -> float:
+        """Force under the first floor over the weight above."""
+        force = self.stiffness * (self.rest(0) - lift) - self.damping * rate
+        return float(force / self.weights[0])
 
 
 def description(
@@ -132,15 +185,17 @@ def description(
     *,
     level: bool,
     devices: Sequence[OracleDevice] = (),
+    upright: Upright | None = None,
 ) -> str:
     """The structure in the engine's language."""
     bodies = [_column(system, c, columns) for c in range(columns)]
     bodies += [anchors(c, _place_of(c, columns)) for c in range(columns)]
     if system.cap_beam_mass:
         joint = beam_joint(devices, time_step)
-        bodies.append(_cap_beam(system, columns, joint, level=level))
+        bodies.append(_cap_beam(system, columns, joint, level=level, upright=upright))
     stiff = 1 if any(isinstance(d, RollingResistance) for d in devices) else STIFF_FRICTION
-    tendons = [*_storeys(system), *springs(devices, columns, _half_sizes(system)[0])]
+    above = [upright.spring(i) for i in range(1, len(system.masses))] if upright else []
+    tendons = [*_storeys(system), *above, *springs(devices, columns, _half_sizes(system)[0])]
     return f"""
     <mujoco>
       <compiler angle="radian" inertiafromgeom="false"/>
@@ -190,14 +245,17 @@ def _place_of(number: int, columns: int) -> float:
     return (number - 0.5 * (columns - 1)) * SPACING
 
 
-def _cap_beam(system: OracleSystem, columns: int, joint: str, *, level: bool) -> str:
+def _cap_beam(
+    system: OracleSystem, columns: int, joint: str, *, level: bool, upright: Upright | None = None
+) -> str:
     H, half, reach = _half_sizes(system)[0], 0.5 * THICKNESS, 0.5 * columns * SPACING
     spin = system.cap_beam_mass * (half**2 + reach**2) / 3.0
     # Rayleigh damping: what is left of C after the storeys' dampers acts against the beam.
     floors = "".join(
         f'<body><inertial pos="0 0 0" mass="{mass}" diaginertia="1 1 1"/>'
         f'<joint name="floor {i}" type="slide" axis="1 0 0" damping="{damping}"'
-        f' stiffness="{0.0 if i else system.stiffnesses[0]}"/></body>'
+        f' stiffness="{0.0 if i else system.stiffnesses[0]}"/>'
+        f"{upright.joint(i) if upright else ''}</body>"
         for i, (mass, damping) in enumerate(
             zip(system.masses, system.damping_matrix.sum(axis=1), strict=True)
         )

@@ -105,7 +105,9 @@ def agree(
     assert rotation == pytest.approx(other.theta[: len(rotation)], abs=10.0 * tolerance * size)
     if structure.storeys:
         shears = other.max_storey_shears_at_samples
-        assert result.storey_shears == pytest.approx(shears, rel=10.0 * tolerance)
+        sampled = np.max(np.abs(result.trace.storey_shears), axis=0)
+        assert sampled == pytest.approx(shears, rel=10.0 * tolerance)
+        assert np.all(result.storey_shears >= (1.0 - 1e-9) * sampled)
     supplied = max(abs(result.energy.input), 1.0)
     assert result.energy.impact == pytest.approx(other.energy_lost, abs=10.0 * tolerance * supplied)
     if structure.devices and not other.overturned:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from paper_structures import FLAT, Array, building, needs_compiled_kernels, podium, waves
 
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 from rpscli.physics.planar.demands import raise_floors
 from rpscli.physics.planar.state import ROLLING
@@ -25,7 +25,7 @@ def seen(lane: OneLane, q: list[float], dq: list[float]) -> bool:
     lane.modes("next_q")[:], lane.modes("next_dq")[:] = q, dq
     springs, dampers = lane.modes("omega2") * q, lane.modes("two_xi_omega") * dq
     lane.modes("modal_force")[:] = springs + dampers
-    s.at_sample[0] = s.accepted[0] = 1.0
+    s.accepted[0] = 1.0
     lane.observe()
     return bool(s.demands_rise[0] > 0.0)
 
@@ -87,16 +87,17 @@ def test_the_bounds_are_sums_over_modes(storeys: int) -> None:
 @needs_compiled_kernels
 @pytest.mark.parametrize("damping", [RayleighDamping(0.05), ModalDamping(0.02)], ids=str)
 @pytest.mark.parametrize(("storeys", "rho"), [(1, FLAT), (4, 0.5), (7, 1.5), (11, FLAT)])
-def test_maxima_are_those_of_all_samples(
+def test_maxima_are_those_of_a_dense_trace(
     storeys: int, rho: float, damping: RayleighDamping | ModalDamping
 ) -> None:
     structure = podium(storeys, 0.15, rho, superstructure=building(storeys, damping=damping))
     record = waves(10.0, 0.01, 2.5 * structure.uplift_acceleration, seed=3)
     result = time_history(structure, record, TimeHistorySettings(free_vibration=3.0))
     assert result.impacts > 10
-    trace = result.trace
-    shears = np.max(np.abs(trace.storey_shears), axis=0)
-    accelerations = np.max(np.abs(trace.floor_accelerations), axis=0)
-    # stored samples are displacements relative to the ground: u_b + v rounds v
-    assert result.storey_shears == pytest.approx(shears, rel=1e-10)
-    assert result.floor_accelerations == pytest.approx(accelerations, rel=1e-9)
+    for trace, tolerance in ((result.trace, 0.1), (denser_trace(result, 5e-4), 2e-3)):
+        shears = np.max(np.abs(trace.storey_shears), axis=0)
+        accelerations = np.max(np.abs(trace.floor_accelerations), axis=0)
+        # nothing is missed at a sample; stored ones are relative to the ground: u_b + v rounds v
+        assert np.all(result.storey_shears >= (1.0 - 1e-3) * shears)
+        assert result.storey_shears == pytest.approx(shears, rel=tolerance)
+        assert result.floor_accelerations == pytest.approx(accelerations, rel=tolerance)

@@ -55,11 +55,15 @@ def test_full_contact_equals_lsim(above: Superstructure) -> None:
     shears = above.stiffnesses * np.diff(u, axis=1, prepend=0.0)
     size = float(np.max(np.abs(shears)))
     assert result.trace.storey_shears == pytest.approx(shears, abs=1e-9 * size)
-    assert result.storey_shears == pytest.approx(np.max(np.abs(shears), axis=0), rel=1e-9)
+    sampled = np.max(np.abs(shears), axis=0)
+    assert np.all(result.storey_shears >= (1.0 - 1e-9) * sampled)
+    assert result.storey_shears == pytest.approx(sampled, rel=0.05)
     absolute = states @ state_matrix(above)[n:].T
     size = float(np.max(np.abs(absolute)))
     assert result.trace.floor_accelerations == pytest.approx(absolute, abs=1e-9 * size)
-    assert result.floor_accelerations == pytest.approx(np.max(np.abs(absolute), axis=0), rel=1e-9)
+    sampled = np.max(np.abs(absolute), axis=0)
+    assert np.all(result.floor_accelerations >= (1.0 - 1e-9) * sampled)
+    assert result.floor_accelerations == pytest.approx(sampled, rel=0.1)
 
 
 @pytest.mark.parametrize("above", BUILDINGS[:3], ids=lambda b: str(b.storeys))
@@ -89,10 +93,11 @@ def test_the_fixed_base_yardstick_is_the_same_building(above: Superstructure) ->
     fixed, trace = result.fixed_base, result.trace
     size = float(np.max(np.abs(fixed.floor_displacements)))
     assert trace.floor_displacements == pytest.approx(fixed.floor_displacements, abs=1e-10 * size)
-    assert result.storey_shears == pytest.approx(fixed.storey_shears, rel=1e-9)
-    assert result.floor_accelerations == pytest.approx(fixed.floor_accelerations, rel=1e-9)
-    assert fixed.drifts == pytest.approx(result.max_drifts, rel=1e-9)
-    assert fixed.base_shear == pytest.approx(result.max_base_shear, rel=1e-9)
+    # peaks between the ends of steps, which are not the same
+    assert result.storey_shears == pytest.approx(fixed.storey_shears, rel=1e-4)
+    assert result.floor_accelerations == pytest.approx(fixed.floor_accelerations, rel=1e-3)
+    assert fixed.drifts == pytest.approx(result.max_drifts, rel=1e-4)
+    assert fixed.base_shear == pytest.approx(result.max_base_shear, rel=1e-4)
 
 
 OVERDAMPED = [

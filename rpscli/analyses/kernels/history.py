@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import accumulate
 from typing import NamedTuple
@@ -13,7 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.compilation import compiled
-from rpscli.analyses.kernels.systems import most_steps, stacked_systems
+from rpscli.analyses.kernels.systems import (
+    most_seconds,
+    most_steps,
+    stacked_systems,
+    steps_a_second,
+)
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
@@ -27,6 +32,9 @@ MOST_NUMBERS = 1e9
 
 MOST_STEPS = 1e10
 """Of one history: more than an hour."""
+
+WORTH_A_THREAD = 0.5
+"""Histories that may take longer [s] can be interrupted."""
 
 FIRST_LOG = 4096
 """Rows of the event log at the first attempt; a longer history is run once more."""
@@ -47,10 +55,11 @@ def run_of(
     *,
     rows: int = 0,
     events: int = 0,
+    finer: int = 1,
 ) -> Run:
     """What the kernel needs to run histories, and room for their results.
 
-    `rows` samples and `events` of the first history are kept.
+    `rows`, `finer` of them a sample, and `events` of the first history are kept.
     """
     first = systems.view(np.ndarray)
     n, devices = int(first["n"][0]), int(first["devices"].max())
@@ -69,16 +78,17 @@ def run_of(
         requests=given.view(np.recarray),
         acceleration=np.concatenate([motion.samples.ravel() for motion in motions]),
         results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
-        output=_output(n, devices, rows, events) if rows else _no_output(n, devices),
+        output=_output(n, devices, rows, events, finer) if rows else _no_output(n, devices),
     )
 
 
-def _output(storeys: int, devices: int, rows: int, events: int) -> Output:
+def _output(storeys: int, devices: int, rows: int, events: int, finer: int = 1) -> Output:
     return Output(
         samples=records(SAMPLE, count=rows),
         floors=np.empty((rows, 2, storeys)),
         log=records(EVENT, count=events),
         devices=np.empty((rows, 4, devices)),
+        finer=finer,
     )
 
 
@@ -87,12 +97,12 @@ def _no_output(storeys: int, devices: int) -> Output:
     return _output(storeys, devices, 0, 0)
 
 
-def follow(run: Run, lanes: int) -> None:
+def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
     """Follow every history of a run; writes `run.results`."""
     from rpscli.physics.planar.driver import integrate
 
     with compiled(equipped=bool(run.systems.view(np.ndarray)["devices"].any())):
-        integrate(run, lanes)
+        integrate(run, lanes, interruptible=interruptible)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +121,8 @@ class SampledHistory:
     """(events,)."""
     devices: NDArray[np.float64]
     """(intervals + 1, 4, devices), see `physics.planar.run.Output`."""
+    finer: int = 1
+    """Samples are that many times as dense."""
 
 
 def longest_history(settings: TimeHistorySettings, motion: MotionComponents) -> int:
@@ -140,37 +152,53 @@ def refuse_endless(
             f" {8e-9 * MOST_NUMBERS:.3g} GB; {remedy}, or resample the record, whose dt is"
             f" {motion.dt:g} s"
         )
-    refuse_steps(most_steps(structure, settings, motion.duration))
+    refuse_steps(most_steps(structure, settings, motion.duration), structure)
 
 
-def refuse_steps(steps: float) -> None:
+def refuse_steps(steps: float, structure: PodiumStructure) -> None:
     """Refuse a history of more than `MOST_STEPS`: raises CaseError."""
-    if steps > MOST_STEPS:
-        raise CaseError(
-            f"the history may take {steps:.3g} steps, which must not be more than {MOST_STEPS:.3g}:"
-            " the record is too long, or the highest modes of the building are too stiff or too"
-            " strongly damped; give a shorter analysis.free_vibration, damp by `modal`, or use"
-            " fewer storeys"
+    if steps <= MOST_STEPS:
+        return
+    cause = (
+        "the record is too long, or the highest modes of the building are too stiff or too"
+        " strongly damped; give a shorter analysis.free_vibration, damp by `modal`, or use"
+        " fewer storeys"
+    )
+    alone = steps_a_second(replace(structure, devices=()))
+    each = [steps_a_second(replace(structure, devices=(d,))) for d in structure.devices]
+    if each and max(each) > 2.0 * alone:
+        i = each.index(max(each))
+        cause = (
+            f"podium.devices.{i} ({structure.devices[i].kind}) is so stiff, or damps so strongly,"
+            " that steps must be short; use less of it, a larger exponent, or a friction damper"
         )
+    raise CaseError(
+        f"the history may take {steps:.3g} steps, which must not be more than {MOST_STEPS:.3g}:"
+        f" {cause}"
+    )
 
 
 def sampled_history(
-    structure: PodiumStructure, motion: MotionComponents, settings: TimeHistorySettings
+    structure: PodiumStructure,
+    motion: MotionComponents,
+    settings: TimeHistorySettings,
+    finer: int = 1,
 ) -> SampledHistory:
-    """Run one history and keep everything."""
+    """Run one history and keep everything, at so many even parts of each sampling interval."""
     systems = stacked_systems([(structure, settings)])
     refuse_endless(structure, settings, motion)
-    rows = longest_history(settings, motion)
+    rows = longest_history(settings, motion) * finer
+    seconds = most_seconds(structure, settings, motion.duration)
     events = FIRST_LOG
     while True:
-        run = run_of(systems, [motion], [Request(0, 0)], rows=rows, events=events)
-        follow(run, lanes=1)
+        run = run_of(systems, [motion], [Request(0, 0)], rows=rows, events=events, finer=finer)
+        follow(run, lanes=1, interruptible=seconds > WORTH_A_THREAD)
         history = run.results[0]
         if (seen := int(history.events.sum())) <= events:
             break
         events = seen
         del run  # before there is room for another
-    kept, output = int(history.intervals) + 1, run.output
+    kept, output = int(history.intervals) * finer + 1, run.output
     # Shortened in place, which nothing else looks at: a copy would take as much again.
     for array in (output.floors, output.devices):
         array.resize((kept, *array.shape[1:]), refcheck=False)
@@ -181,4 +209,5 @@ def sampled_history(
         output.floors,
         output.log[:seen],
         output.devices,
+        finer,
     )

@@ -92,15 +92,10 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     fill_devices(record, structure)
 
 
-LINEAR_SPEED = 1e-8
-"""Of sqrt(g R): up to this velocity a power of it is taken as linear, too little to be felt."""
-
-
 def fill_devices(record: Record, structure: PodiumStructure) -> None:
     """The devices, each with the constants of its law."""
     record["columns"], record["devices"] = structure.columns, len(structure.devices)
-    speed = math.sqrt(structure.gravity * structure.bearing.semi_diagonal)
-    record["linear_speed"] = LINEAR_SPEED * speed
+    record["linear_speed"] = linear_speed(structure)
     for i, device in enumerate(structure.devices):
         record["device_kind"][i] = DEVICE_KINDS[type(device)]
         constants = device.constants(structure)
@@ -133,6 +128,7 @@ def fill_settings(
     record["theta_limit"] = limit
     record["uplifted_rate"] = settings.accuracy * uplifted_rate(structure)
     record["contact_rate"] = contact_rate(structure)
+    record["most_steps"] = MOST_POWER_STEPS
     record["last_term"] = LAST_TERM * settings.accuracy**-ORDER
     record["recontact_tolerance"] = settings.recontact_tolerance
     record["bounces"] = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
@@ -168,6 +164,7 @@ def fill_building(record: Record, building: Superstructure) -> None:
     record["phi"][:n, :n], record["storey_shear_of"][:n, :n] = shapes, shears
     of_shears, of_accelerations = omega**3 * shaken**-0.3, omega**-0.6 * shaken**-0.5
     record["shear_weight"][:n], record["acceleration_weight"][:n] = of_shears, of_accelerations
+    record["bend_ratio"] = np.max(omega2 * omega2 * of_accelerations / of_shears)
     record["shear_bound_of"][:n] = 1.0 / np.sum(shears.T**2 / of_shears, axis=1)
     record["acceleration_bound_of"][:n] = 1.0 / np.sum(shapes.T**2 / of_accelerations, axis=1)
 
@@ -207,6 +204,43 @@ def uplifted_rate(structure: PodiumStructure) -> float:
     return max(frequency / uplifted_angle(structure), decay / UPLIFTED_DECAY)
 
 
+LINEAR_SPEEDS = 1e-8, 1e-6
+"""Of sqrt(g R): up to the first of these velocities a power of it is taken as linear, too little to
+be felt; up to the second where the power would else decay faster than `FASTEST_POWER`."""
+
+FASTEST_POWER = 1e5
+"""Of a power of the velocity: its decay rate where it is taken as linear, if that can be had
+[1/s]."""
+
+MOST_POWER_STEPS = 5e8
+"""Of one history whose dampers shorten its steps: some minutes."""
+
+
+def powers(structure: PodiumStructure) -> list[tuple[float, float]]:
+    """Coefficient and exponent of dampers whose force rises steeply about rest."""
+    laws = (
+        (getattr(d, "coefficient", 0.0), getattr(d, "exponent", 1.0)) for d in structure.devices
+    )
+    return [(coefficient, exponent) for coefficient, exponent in laws if exponent < 1.0]
+
+
+def linear_speed(structure: PodiumStructure) -> float:
+    """Up to this velocity of the cap beam a power of it is taken as linear [m/s]."""
+    unit = math.sqrt(structure.gravity * structure.bearing.semi_diagonal)
+    least, most = (share * unit for share in LINEAR_SPEEDS)
+    limit = FASTEST_POWER * least_base_mass(structure)
+    speeds = [(c / limit) ** (1.0 / (1.0 - exponent)) for c, exponent in powers(structure)]
+    return float(min(max([least, *speeds]), most))
+
+
+def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
+    """A bound on steps a second, with those that a power of the velocity asks for about rest."""
+    speed = linear_speed(structure)
+    damping = sum(c * speed ** (exponent - 1.0) for c, exponent in powers(structure))
+    about_rest = damping / least_base_mass(structure) / UPLIFTED_DECAY
+    return float(accuracy * uplifted_rate(structure) + about_rest)
+
+
 def uplifted_angle(structure: PodiumStructure) -> float:
     """Largest Taylor step times the highest uplifted frequency [rad].
 
@@ -223,7 +257,7 @@ def uplifted_angle(structure: PodiumStructure) -> float:
 
 def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, duration: float) -> float:
     """Taylor steps of a history that never comes to rest, a bound on those of all others."""
-    return longest_time(settings, duration) * settings.accuracy * uplifted_rate(structure)
+    return longest_time(settings, duration) * steps_a_second(structure, settings.accuracy)
 
 
 def longest_time(settings: TimeHistorySettings, duration: float) -> float:

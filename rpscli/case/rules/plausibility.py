@@ -81,6 +81,12 @@ STOREY_MASS = TypicalRange("the mean mass of a storey", "t", 1.0, 10_000.0)
 RESTITUTION = TypicalRange("the restitution at impact e", "", 0.5, 1.0)
 FRICTION = TypicalRange("the coefficient podium.friction", "", 0.1, 1.5)
 
+HOLDS = 1.3
+"""Over tan(alpha): columns with less friction may slide in any record (Theory, section 2)."""
+
+WALKS = 0.25
+"""tan(alpha) above which contacts that rebound let the beam walk over its columns (Theory, 2)."""
+
 NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""
 
@@ -101,6 +107,18 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     yield from RESTITUTION.doubts(structure.restitution)
     if structure.friction is not None:
         yield from FRICTION.doubts(structure.friction)
+        if structure.friction < HOLDS * bearing.slenderness:
+            yield Doubt(
+                f"podium.friction = {{0}} is below {HOLDS:g} tan(alpha): columns may slide in any"
+                " record that lifts them, which the model leaves out",
+                structure.friction,
+            )
+    if bearing.slenderness > WALKS and building is not None:
+        yield Doubt(
+            f"tan(alpha) = {{0}} is above {WALKS:g}: contacts that rebound, which the model leaves"
+            " out, let the cap beam walk over its columns",
+            bearing.slenderness,
+        )
     if building is None:
         return
     yield from STOREY_MASS.doubts(1e-3 * float(building.masses.mean()))

@@ -10,7 +10,16 @@ from rpscli.case.text.document import MISSING, Fault, Path, shown
 from rpscli.errors import listed
 
 STOREYS: Path = (*SUPERSTRUCTURE, "storeys")
-BUILDING_KEYS = ("storey_mass", "storey_height", "period", "profile", "stiffness", "damping")
+VERTICAL_PERIOD: Path = (*SUPERSTRUCTURE, "vertical_period")
+BUILDING_KEYS = (
+    "storey_mass",
+    "storey_height",
+    "period",
+    "profile",
+    "stiffness",
+    "damping",
+    "vertical_period",
+)
 
 
 def superstructure_rules(case: PartialCase) -> Iterator[Fault]:
@@ -81,6 +90,31 @@ def limits_rules(case: PartialCase) -> Iterator[Fault]:
     if case.storeys and case.has((*LIMITS, "drift_ratio")) and not case.has(height):
         text = "limits.drift_ratio needs superstructure.storey_height, which is missing"
         yield Fault((*LIMITS, "drift_ratio"), text, at_key=True, needs=(height,))
+
+
+def column_rules(case: PartialCase) -> Iterator[Fault]:
+    """Rows of columns are complete, and limits on the force of a column are on all of it."""
+    plan, height = (*PODIUM, "plan"), (*SUPERSTRUCTURE, "storey_height")
+    if case.has(plan):
+        given = case.present(plan, "length", "rows")
+        if len(given) != 1:
+            text = "give length, between two rows of columns, or the places of all rows"
+            yield Fault(plan, f"podium.plan: {text}; not {'both' if given else 'neither'}")
+        if case.storeys and not case.has(height):
+            text = "podium.plan needs superstructure.storey_height: the moment has lever arms"
+            yield Fault(plan, text, at_key=True, needs=(height,))
+    keys = {"the overturning moment": plan, "the shock of impacts": VERTICAL_PERIOD}
+    lacking = {what: path for what, path in keys.items() if not case.has(path)}
+    for name in case.present(LIMITS, "max_column_force", "min_column_force"):
+        if case.storeys and lacking:
+            yield Fault(
+                (*LIMITS, name),
+                f"limits.{name}: the force of a column is known without"
+                f" {listed(lacking, 'and')} only, by which it may be some times as large; give"
+                f" {listed(('.'.join(map(str, path)) for path in lacking.values()), 'and')}",
+                at_key=True,
+                needs=tuple(lacking.values()),
+            )
 
 
 def ignored_text(names: list[str]) -> str:

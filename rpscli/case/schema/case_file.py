@@ -120,6 +120,9 @@ class SuperstructureSection(Section):
     """storey stiffness in place of period and profile: one value, or a list"""
     damping: DampingSection | None = None
     """on a fixed base"""
+    vertical_period: Time | None = None
+    """first period of the vertical vibration on the cap beam; gives the shock of impacts in the
+    forces of columns"""
 
 
 class DimensionsSection(Section):
@@ -213,6 +216,15 @@ class PodiumMasses(Section):
         return self.cap_beam_mass_ratio == 0.0 or self.cap_beam_mass == 0.0
 
 
+class PlanSection(Section):
+    """Where columns stand along the motion."""
+
+    length: Length | None = None
+    """between two rows of columns, the outer ones"""
+    rows: Annotated[tuple[float, ...], Quantity("m", symbol="of each row")] | None = None
+    """places of all rows, with equally many columns each"""
+
+
 class PodiumSection(PodiumMasses):
     """Columns and cap beam."""
 
@@ -224,6 +236,9 @@ class PodiumSection(PodiumMasses):
         float | None, Quantity(symbol="of friction, at both ends of the columns", above=0)
     ] = None
     """coefficient of friction at both ends of the columns; the friction demand is then judged"""
+    plan: PlanSection | None = None
+    """where columns stand along the motion; gives the overturning moment in the forces of columns,
+    with superstructure.storey_height"""
     devices: tuple[DeviceSection, ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""
 

@@ -163,6 +163,8 @@ SECTIONS = {
     "podium.impact": "4",
     "podium.friction": "8",
     "podium.devices": "11",
+    "podium.plan": "8",
+    "superstructure.vertical_period": "8",
     "record": "2",
     "record.vertical": "2, 8",
     "analysis": "10",

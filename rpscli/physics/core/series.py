@@ -31,6 +31,44 @@ def slope(c: Terms, t: float) -> float:
     return c[1] + t * (2.0 * c[2] + t * (3.0 * c[3] + t * higher_terms))
 
 
+# The largest value within a step of what is known at its start, middle and end.
+
+
+@compiled
+def middle_of(
+    start: float, end: float, slope_times_step: float, end_slope_times_step: float
+) -> float:
+    """The middle of the cubic with these ends and slopes, which errs by (w h)^4/384."""
+    return 0.5 * (start + end) + 0.125 * (slope_times_step - end_slope_times_step)
+
+
+@compiled
+def cubic(
+    start: float, end: float, slope_times_step: float, end_slope_times_step: float, t: float
+) -> tuple[float, float]:
+    """The same cubic a fraction t into the step, and its slope times the step."""
+    change = end - start
+    first, last = slope_times_step - change, end_slope_times_step - change
+    bent = first * (1.0 - t) - last * t
+    slope_there = change + first * (1.0 - t) * (1.0 - 3.0 * t) + last * t * (3.0 * t - 2.0)
+    return start + change * t + t * (1.0 - t) * bent, slope_there
+
+
+@compiled
+def turning_value(start: float, middle: float, end: float) -> float:
+    """Where the parabola through three values turns within the step, its value; else the end."""
+    bend, change = start - 2.0 * middle + end, end - start
+    turns = abs(change) < 2.0 * abs(bend)
+    return middle - change * change / (8.0 * (bend if turns else 1.0)) if turns else end
+
+
+@compiled
+def peak(start: float, middle: float, end: float) -> float:
+    """The largest absolute value of the parabola through three values."""
+    highest = max(abs(start), abs(end))
+    return max(highest, abs(turning_value(start, middle, end)))
+
+
 # Sine and cosine of a tilt, without branches so that lanes can be computed together.
 
 S1, S2, S3, S4, S5 = -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800

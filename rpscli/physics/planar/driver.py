@@ -10,13 +10,18 @@ does not depend on its neighbours.
 from __future__ import annotations
 
 import math
+from threading import Thread, current_thread, main_thread
 
 import numpy as np
 
 from rpscli.physics.core.compile import compiled, kernel
 from rpscli.physics.core.lanes import set_ground
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
-from rpscli.physics.planar.demands import observe_ends, raise_contacts, raise_floors
+from rpscli.physics.planar.demands import (
+    observe_ends,
+    raise_contacts_within,
+    raise_floors,
+)
 from rpscli.physics.planar.devices.events import check_devices
 from rpscli.physics.planar.devices.flows import book_devices, leave_devices, observe_devices
 from rpscli.physics.planar.devices.rest import load_devices, release_devices
@@ -25,13 +30,14 @@ from rpscli.physics.planar.equation_of_motion import load_factors
 from rpscli.physics.planar.events import go_on_restarted, next_interval, raise_peak, resolve_step
 from rpscli.physics.planar.full_contact.follow import follow_full_contact
 from rpscli.physics.planar.run import Output, Run
-from rpscli.physics.planar.samples import store_sample
+from rpscli.physics.planar.samples import store_sample, store_within
 from rpscli.physics.planar.state import (
     AFTER_RELEASE,
     AT_REST,
     BLOCK,
     EQUIPPED_STATE,
     EVENT_KINDS,
+    FAILED_TOO_MANY_STEPS,
     FOLLOW_CONTACT,
     FULL_CONTACT,
     GOES_ON,
@@ -48,15 +54,33 @@ from rpscli.physics.planar.state import (
 from rpscli.physics.planar.steps import accept_steps, check_steps, plan_steps, take_steps
 from rpscli.physics.planar.transitions import enter_phase
 
+HEARS = 0.1
+"""A Ctrl-C is heard within so many seconds."""
 
-def integrate(run: Run, lanes: int = LANES) -> None:
-    """Follow every history of `run.requests` from rest; writes `run.results`."""
+
+def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> None:
+    """Follow every history of `run.requests` from rest; writes `run.results`.
+
+    Machine code hears no signal: to be `interruptible` by Ctrl-C it runs in another thread, which
+    costs a tenth of a millisecond.
+    """
     systems = run.systems.view(np.ndarray)  # fields of records take ten times as long
     state = scratch(EQUIPPED_STATE if systems["devices"].any() else STATE)
-    block, storeys = scratch(BLOCK), systems["n"][0]
-    state.view(np.ndarray)["n"], state.view(np.ndarray)["lanes"] = storeys, lanes
+    block, storeys, plain = scratch(BLOCK), systems["n"][0], state.view(np.ndarray)
+    plain["n"], plain["lanes"], plain["stop"] = storeys, lanes, 0
     block.view(np.ndarray)["n"] = storeys
-    integrate_lanes(state, block, run)
+    if not interruptible or current_thread() is not main_thread():
+        integrate_lanes(state, block, run)
+        return
+    worker = Thread(target=integrate_lanes, args=(state, block, run), daemon=True)
+    worker.start()
+    try:
+        while worker.is_alive():
+            worker.join(HEARS)
+    except BaseException:
+        plain["stop"] = 1
+        worker.join()
+        raise
 
 
 @kernel
@@ -72,9 +96,9 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, s.lanes
     begun = False
-    while active > 0:
+    while active > 0 and s.stop == 0:
         if begun:
-            advance_lanes(state, systems, block, output.log)
+            advance_lanes(state, systems, block, output)
         for l in range(s.lanes):
             next_action = IS_OVER
             if not begun:  # each takes its first history
@@ -85,7 +109,10 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
                 next_action = NOT_ACCEPTED
             elif s.steps_left[l] > 0.0:
                 plan_steps(s, l)
-                next_action = GOES_ON
+                if s.steps[l] <= systems[s.system[l]].most_steps:
+                    next_action = GOES_ON
+                else:
+                    s.outcome[l] = FAILED_TOO_MANY_STEPS
             else:
                 next_action = next_interval(s, l, acceleration)
                 if s.audited > 0:
@@ -93,7 +120,7 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
             while next_action != GOES_ON or s.restart_after[l] != NOTHING_NEW:
                 system = systems[s.system[l]]
                 if next_action == NOT_ACCEPTED:
-                    next_action = resolve_step(s, l, system, block[0], output.log)
+                    next_action = resolve_step(s, l, system, block[0], output)
                 elif next_action == FOLLOW_CONTACT:
                     next_action = follow_full_contact(s, l, system, block[0], acceleration, output)
                 elif next_action == GOES_ON:
@@ -105,14 +132,14 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
 
 
 @kernel
-def advance_lanes(state: Record, systems: Record, blocks: Record, log: Record) -> None:
+def advance_lanes(state: Record, systems: Record, blocks: Record, output: Output) -> None:
     """A step of all lanes together, as far as it holds no event."""
     s = state[0]
     take_steps(s)
     check_steps(s)
     check_devices(s)
     observe_ends(s)
-    observe_lanes(s, systems, blocks[0], log)
+    observe_lanes(s, systems, blocks[0], output)
     accept_steps(s)
 
 
@@ -138,25 +165,29 @@ def next_history(s: Record, l: int, run: Run) -> int:
 
 
 @compiled
-def observe_lanes(s: Record, systems: Record, block: Record, log: Record) -> None:
+def observe_lanes(s: Record, systems: Record, block: Record, output: Output) -> None:
     """What few steps ask for, lane by lane."""
     for l in range(s.lanes):
         if s.audited > 0 and s.accepted[l] > 0.0:
             book_energy(s, l, 1.0)
+            if output.finer > 1:
+                store_within(s, l, systems[s.system[l]], output, 1.0)
         if s.devices[l] > 0 and s.accepted[l] > 0.0:
             book_devices(s, l, 1.0)
-            observe_devices(s, l)
+            observe_devices(s, l, 1.0)
         if s.peak_inside[l] > 0.0:
-            raise_peak(s, l, block, log)
+            raise_peak(s, l, block, output.log)
         if s.demands_rise[l] > 0.0:
             raise_floors(s, l, systems[s.system[l]])
+        if s.contacts_rise[l] > 0.0:
+            raise_contacts_within(s, l, 1.0)
 
 
 @compiled
 def idle(s: Record, l: int) -> None:
     """Leave a lane without a history: it makes empty steps."""
     s.history[l], s.devices[l], s.nonsmooth_damper[l] = NO_HISTORY, 0, 0.0
-    s.restart_after[l], s.step[l] = NOTHING_NEW, 0.0
+    s.restart_after[l], s.step[l], s.system[l] = NOTHING_NEW, 0.0, 0
 
 
 @compiled
@@ -185,9 +216,8 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     if system.initial_rotation != 0.0:
         release(s, l, system)
         return GOES_ON
+    s.next_a_g[l], s.next_g_up[l], s.next_V[l] = s.a_g[l], s.g_up[l], 0.0
     store_sample(s, l, system, run.output)
-    s.next_a_g[l], s.next_g_up[l] = s.a_g[l], s.g_up[l]
-    raise_contacts(s, l, 1.0, 0.0, 0.0, 0.0)
     return FOLLOW_CONTACT
 
 
@@ -203,6 +233,7 @@ def load_system(s: Record, l: int, system: Record) -> None:
     s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
     s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
     s.theta_cr[l], s.last_term[l] = system.theta_cr, system.last_term
+    s.bend_ratio[l], s.last_look[l] = system.bend_ratio, -1.0
     for r in range(s.n):
         s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[r], system.two_xi_omega[r]
         s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[r], system.shear_weight[r]
@@ -216,6 +247,8 @@ def clear_results(s: Record, l: int) -> None:
     s.max_theta[l], s.max_theta_time[l], s.critical_time[l] = 0.0, 0.0, -1.0
     s.friction_top[l], s.friction_bottom[l] = 0.0, 0.0
     s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
+    s.heavy_top[l], s.heavy_bottom[l] = 0.0, 0.0
+    s.shear_top[l], s.shear_bottom[l] = 0.0, 0.0
     s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l] = 0.0, 0.0
     for i in range(s.n):
         s.storey_shear[l, i], s.floor_acceleration[l, i] = 0.0, 0.0
@@ -255,6 +288,8 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     result.critical_time = s.critical_time[l]
     result.friction_top, result.friction_bottom = s.friction_top[l], s.friction_bottom[l]
     result.normal_top, result.normal_bottom = s.normal_top[l], s.normal_bottom[l]
+    result.heavy_top, result.heavy_bottom = s.heavy_top[l], s.heavy_bottom[l]
+    result.shear_top, result.shear_bottom = s.shear_top[l], s.shear_bottom[l]
     result.energy_input, result.energy_damped = s.energy_input[l], s.energy_damped[l]
     result.energy_lost, result.energy_created = s.energy_lost[l], s.energy_created[l]
     for i in range(s.n):

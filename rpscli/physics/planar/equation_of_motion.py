@@ -27,7 +27,7 @@ follows from those before it by sums of products (A. Jorba and M. Zou, Exp. Math
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -326,6 +326,10 @@ def friction(shear: float, normal: float) -> float:
     return demand if presses else math.inf
 
 
+Measures: TypeAlias = tuple[float, float, float, float, float, float]
+"""|F|/N, N over the weight and |F|, each at the upper and at the lower ends."""
+
+
 @compiled
 def contact_measures(
     cap_beam: float,
@@ -338,8 +342,8 @@ def contact_measures(
     g_up: float,
     gravity: float,
     pull: float = 0.0,
-) -> tuple[float, float, float, float]:
-    """Friction demands |F|/N and normal forces over the weight on them, upper and lower ends.
+) -> Measures:
+    """Friction demands |F|/N, normal forces over the weight on them, and |F|; upper, lower ends.
 
     Where no mass stands on the columns their upper ends demand nothing: friction 0, normal force
     infinite.
@@ -355,6 +359,8 @@ def contact_measures(
         friction(shear_bottom, normal_bottom),
         light_top if loaded else math.inf,
         normal_bottom / (lower * gravity),
+        abs(shear_top),
+        abs(shear_bottom),
     )
 
 

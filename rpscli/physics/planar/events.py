@@ -23,14 +23,15 @@ from rpscli.physics.core.quintic import (
     value,
 )
 from rpscli.physics.core.records import NO_HISTORY, Floats, Record
+from rpscli.physics.planar.demands import observe_start, raise_contacts_within, raise_floors
 from rpscli.physics.planar.devices.events import change_law, has_friction, locate_change
-from rpscli.physics.planar.devices.flows import book_devices, observe_devices
+from rpscli.physics.planar.devices.flows import book_devices, observe_devices, raise_devices
 from rpscli.physics.planar.devices.forces import set_devices
 from rpscli.physics.planar.devices.rest import at_reversal, begin_excursion
 from rpscli.physics.planar.energy import book_energy
 from rpscli.physics.planar.equation_of_motion import renew_accelerations
 from rpscli.physics.planar.run import Output
-from rpscli.physics.planar.samples import store_sample
+from rpscli.physics.planar.samples import store_sample, store_within
 from rpscli.physics.planar.state import (
     AFTER_IMPACT,
     AFTER_PHASE_CHANGE,
@@ -109,23 +110,27 @@ def end_on_event(
     l: int,
     system: Record,
     block: Record,
-    log: Record,
+    output: Output,
     fraction: float,
     level: float,
     kind: int,
     which: int,
 ) -> None:
     """End the step on an event, and switch [level rad]."""
+    log = output.log
     if s.audited > 0:
         book_energy(s, l, fraction)
+        if output.finer > 1:
+            store_within(s, l, system, output, fraction)
     if s.devices[l] > 0:
         book_devices(s, l, fraction)
+        observe_devices(s, l, fraction)
+    raise_contacts_within(s, l, fraction)
     end_step_at(s, l, fraction, level)
+    raise_floors(s, l, system)
     turned = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
     if s.next_theta[l] > s.max_theta[l] or turned:
         raise_peak(s, l, block, log)
-    if s.devices[l] > 0:
-        observe_devices(s, l)
     s.theta[l], s.theta_dot[l] = s.next_theta[l], s.next_theta_dot[l]
     for r in range(s.n):
         s.q[r, l], s.dq[0, r, l] = s.next_q[r, l], s.next_dq[r, l]
@@ -134,7 +139,7 @@ def end_on_event(
     s.stalled[l] = s.stalled[l] + 1 if s.time[l] == before else 0
     if kind == IMPACT:
         apply_impact(s, l, system, log)
-        begin_excursion(s, l)
+        begin_excursion(s, l, log)
         return
     if kind == CHANGE_OF_DEVICE:
         change_law(s, l, log, which)
@@ -178,7 +183,7 @@ def next_interval(s: Record, l: int, acceleration: Floats) -> int:
 
 
 @kernel
-def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) -> int:
+def resolve_step(s: Record, l: int, system: Record, block: Record, output: Output) -> int:
     """Deal with a step that was not accepted: GOES_ON or IS_OVER.
 
     After a false alarm the same step is taken once more, and passes. A step that is too long for
@@ -198,7 +203,7 @@ def resolve_step(s: Record, l: int, system: Record, block: Record, log: Record) 
     if kind == NO_EVENT:
         s.no_event[l] = 1.0
         return GOES_ON
-    end_on_event(s, l, system, block, log, fraction, level, kind, which)
+    end_on_event(s, l, system, block, output, fraction, level, kind, which)
     plan_steps(s, l)
     return IS_OVER if s.outcome[l] >= 0 or too_many_events(s, l, system) else GOES_ON
 
@@ -219,7 +224,9 @@ def go_on_restarted(s: Record, l: int, system: Record, output: Output) -> int:
         return IS_OVER
     if s.devices[l] > 0:
         set_devices(s, l, s.theta[l], s.theta_dot[l])
+        raise_devices(s, l, s.theta[l], s.theta_dot[l])
     renew_accelerations(s, l)
+    observe_start(s, l)
     after = s.restart_after[l]
     s.restart_after[l] = NOTHING_NEW
     if after == AFTER_PHASE_CHANGE and s.theta_dot[l] == 0.0 and has_friction(s, l):

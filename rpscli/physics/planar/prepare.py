@@ -61,15 +61,15 @@ def compile_phases(*, equipped: bool) -> None:
     next_history(s, 0, run)
     go_on_restarted(s, 0, run.systems[0], run.output)
     floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
-    integrate_fixed_base(run.acceleration, 1.0, 0, run.systems, block, floors, largest)
+    integrate_fixed_base(run.acceleration, 1.0, 1, 0, run.systems, block, floors, largest)
 
 
 def compile_steps(*, equipped: bool) -> None:
     """Uplifted steps of all lanes, and those of one that end on an event."""
     run, state = empty_run(1), no_histories(equipped=equipped)
     block = empty_block(1)
-    advance_lanes(state, run.systems, block, run.output.log)
-    resolve_step(state[0], 0, run.systems[0], block[0], run.output.log)
+    advance_lanes(state, run.systems, block, run.output)
+    resolve_step(state[0], 0, run.systems[0], block[0], run.output)
 
 
 def no_histories(*, equipped: bool) -> Record:

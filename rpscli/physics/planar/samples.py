@@ -2,23 +2,80 @@
 
 from __future__ import annotations
 
+import math
+
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import Record
-from rpscli.physics.core.series import sine_cosine
+from rpscli.physics.core.series import cubic, integral, sine_cosine, slope, value
 from rpscli.physics.planar.devices.flows import store_devices
 from rpscli.physics.planar.equation_of_motion import (
     cap_beam_displacement,
     contact_height,
+    modal_terms,
     phase_constants,
+    rotation_terms,
 )
 from rpscli.physics.planar.run import Output
 from rpscli.physics.planar.state import FULL_CONTACT
+
+PASSED = 1e-9
+"""Of a part of the interval: what is passed by less is met."""
 
 
 @compiled
 def store_sample(s: Record, l: int, system: Record, output: Output) -> None:
     """Keep the state at the start of the present interval, if there is room."""
-    at = s.interval[l]
+    for r in range(s.n):
+        s.looked_at[0, r], s.looked_at[1, r] = s.q[r, l], s.dq[0, r, l]
+    store_row(s, l, system, output, s.interval[l] * output.finer)
+
+
+@compiled
+def store_within(s: Record, l: int, system: Record, output: Output, fraction: float) -> None:
+    """Keep the states at the even parts of the interval that the first part of the step passes."""
+    h, terms, part = s.step[l], rotation_terms(s, l), s.dt[l] / output.finer
+    if h <= 0.0:
+        return
+    theta, theta_dot, theta_ddot = s.theta[l], s.theta_dot[l], s.theta_ddot[l]
+    for j in range(max(math.ceil(s.time[l] / part - PASSED), 1), output.finer):
+        t = (j * part - s.time[l]) / h
+        if t * h >= fraction * h - PASSED * part:
+            break
+        s.theta[l], s.theta_dot[l] = theta + h * integral(terms, t), value(terms, t)
+        s.theta_ddot[l] = slope(terms, t) / h
+        for r in range(s.n):
+            mode = modal_terms(s, r, l)
+            s.looked_at[0, r] = s.q[r, l] + h * integral(mode, t)
+            s.looked_at[1, r] = value(mode, t)
+        store_row(s, l, system, output, s.interval[l] * output.finer + j)
+    s.theta[l], s.theta_dot[l], s.theta_ddot[l] = theta, theta_dot, theta_ddot
+
+
+@compiled
+def store_at_rest(
+    s: Record, l: int, system: Record, block: Record, output: Output, k: int, begin: float, h: float
+) -> None:
+    """The same in a step of the block, the k-th, that begins at a time of the interval."""
+    part = s.dt[l] / output.finer
+    for j in range(max(math.ceil(begin / part - PASSED), 1), output.finer):
+        time = j * part - begin
+        if time >= h - PASSED * part:
+            break
+        s.next_V[l] = 0.0
+        s.next_a_g[l] = block.a_g[k] + block.a_g_slope[k] * time
+        s.next_g_up[l] = block.g_up[k] + block.g_up_slope[k] * time
+        for r in range(s.n):
+            v0, v1 = h * block.dqs[r, k], h * block.dqs[r, k + 1]
+            q, change = cubic(block.qs[r, k], block.qs[r, k + 1], v0, v1, time / h)
+            s.looked_at[0, r], s.looked_at[1, r] = q, change / h
+            force = s.omega2[r, l] * q + s.two_xi_omega[r, l] * change / h
+            s.next_V[l] += s.Gamma[r, l] * force
+        store_row(s, l, system, output, s.interval[l] * output.finer + j)
+
+
+@compiled
+def store_row(s: Record, l: int, system: Record, output: Output, at: int) -> None:
+    """Keep the state of a lane, its modes as they stand in `looked_at`, if there is room."""
     if at >= output.samples.shape[0]:
         return
     sample, side = output.samples[at], s.side[l]
@@ -36,8 +93,8 @@ def store_sample(s: Record, l: int, system: Record, output: Output) -> None:
     for i in range(s.n):
         u, du = u_b, du_b
         for r in range(s.n):
-            u += system.phi[r, i] * s.q[r, l]
-            du += system.phi[r, i] * s.dq[0, r, l]
+            u += system.phi[r, i] * s.looked_at[0, r]
+            du += system.phi[r, i] * s.looked_at[1, r]
         output.floors[at, 0, i], output.floors[at, 1, i] = u, du
     if s.devices[l] > 0:
         store_devices(s, l, output.devices[at])

@@ -100,7 +100,6 @@ def check_steps(s: Record) -> None:
         passing = (path[5] > s.theta_cr[l]) & (s.critical_time[l] < 0.0)
         s.too_long[l] = 1.0 if too_long else 0.0
         s.accepted[l] = 1.0 if accepted else 0.0
-        s.at_sample[l] = 1.0 if accepted & (s.steps_left[l] == 1.0) else 0.0
         s.peak_inside[l] = 1.0 if accepted & (higher | passing) else 0.0
 
 
@@ -125,6 +124,12 @@ def accept_steps(s: Record) -> None:
         s.C[l] = chosen(accepted, s.next_C[l], s.C[l])
         s.per_A[l] = chosen(accepted, s.next_per_A[l], s.per_A[l])
         s.V[l] = chosen(accepted, s.next_V[l], s.V[l])
+        s.light[l] = chosen(accepted, s.next_light[l], s.light[l])
+        s.drag[l] = chosen(accepted, s.next_drag[l], s.drag[l])
+        s.shear_before[l] = chosen(accepted, s.shear_bound[l], s.shear_before[l])
+        s.acceleration_before[l] = chosen(
+            accepted, s.acceleration_bound[l], s.acceleration_before[l]
+        )
     for r in range(s.n):
         for l in range(lanes):
             s.q[r, l] = chosen(s.accepted[l], s.next_q[r, l], s.q[r, l])

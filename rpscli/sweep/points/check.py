@@ -170,6 +170,7 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
         structure.superstructure is not None and structure.superstructure.storey_heights is not None
     ),
     "podium.friction": lambda structure: structure.friction is not None,
+    "columns": lambda structure: structure.column_forces_known,
     "damper": _device_with("max_damper_force"),
     "stop": _device_with("max_stop_force"),
     "tendon": _device_with("lost_prestress"),

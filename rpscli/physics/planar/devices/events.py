@@ -159,7 +159,7 @@ def check_devices(s: Record) -> None:
                 path = watched_path(s, l)
                 alarm = min(lower_hull(path), path[0]) < 0.0
         if alarm:
-            s.accepted[l], s.at_sample[l], s.peak_inside[l] = 0.0, 0.0, 0.0
+            s.accepted[l], s.peak_inside[l] = 0.0, 0.0
 
 
 @with_devices(otherwise=(NO_PASSAGE, -1))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import Floats, Record
-from rpscli.physics.core.series import NODES, WEIGHTS, integral, value
+from rpscli.physics.core.series import NODES, WEIGHTS, Terms, integral, value
 from rpscli.physics.planar.devices import with_devices
+from rpscli.physics.planar.devices.events import watch_stop
 from rpscli.physics.planar.devices.forces import (
     cap_beam_path,
     resistance,
@@ -62,24 +63,55 @@ def book_devices(s: Record, l: int, fraction: float) -> None:
 
 
 @with_devices()
-def observe_devices(s: Record, l: int) -> None:
-    """Raise the largest forces and rates of devices by those at the end of the step.
+def observe_devices(s: Record, l: int, fraction: float) -> None:
+    """Raise the largest forces and rates of devices by those of the first part of the step.
 
-    Where the tilt turns within it, also by those at the turning point.
+    At its end, and within it where the tilt turns, |u_b'| is largest, or the force of a stop is.
     """
-    raise_devices(s, l, s.next_theta[l], s.next_theta_dot[l])
-    if s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0:
-        terms, low, high = rotation_terms(s, l), 0.0, 1.0
-        for _ in range(50):
-            t = 0.5 * (low + high)
-            if value(terms, t) > 0.0:
-                low = t
-            else:
-                high = t
-        raise_devices(s, l, s.theta[l] + s.step[l] * integral(terms, low), 0.0)
+    terms = rotation_terms(s, l)
+    raise_within(s, l, fraction)
+    if terms[0] > 0.0 and value(terms, fraction) < 0.0:
+        raise_within(s, l, where_zero(terms, fraction))
+    d = s.advance_terms
+    rate = d[0, l], d[1, l], d[2, l], d[3, l], d[4, l], d[5, l], d[6, l], d[7, l]
+    raise_where_level(s, l, rate, fraction)
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == STOP and s.device_branch[i, l] == WORKING:
+            watch_stop(s, l, i, 0)
+            d = s.event_terms
+            force = d[0, l], d[1, l], d[2, l], d[3, l], d[4, l], d[5, l], d[6, l], d[7, l]
+            raise_where_level(s, l, force, fraction)
 
 
 @compiled
+def where_zero(c: Terms, fraction: float) -> float:
+    """Where in the first part of the step a series passes through zero, once: bisection."""
+    low, high = 0.0, fraction
+    for _ in range(50):
+        t = 0.5 * (low + high)
+        if value(c, t) * c[0] > 0.0:
+            low = t
+        else:
+            high = t
+    return low
+
+
+@compiled
+def raise_where_level(s: Record, l: int, c: Terms, fraction: float) -> None:
+    """Look at devices where a series has its extreme within the first part of the step."""
+    rates = c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5], 6.0 * c[6], 7.0 * c[7], 0.0
+    if rates[0] * value(rates, fraction) < 0.0:
+        raise_within(s, l, where_zero(rates, fraction))
+
+
+@compiled
+def raise_within(s: Record, l: int, t: float) -> None:
+    """Raise the largest forces and rates by those a fraction t into the step."""
+    terms = rotation_terms(s, l)
+    raise_devices(s, l, s.theta[l] + s.step[l] * integral(terms, t), value(terms, t))
+
+
+@with_devices()
 def raise_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
     """Raise the largest forces and rates by those at a tilt and its rate."""
     path, rate, C = cap_beam_path(s, l, theta, theta_dot)
@@ -131,19 +163,20 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
 
     Horizontal forces are those on the cap beam, positive to the right, and go with u_b; of a tendon
     the tension of one goes with its elongation. Friction at rest is what equilibrium asks for while
-    the storey is stuck, and counted as zero in full contact, where it cannot be told from that of
-    the columns' flat ends.
+    the storey is stuck, and in full contact the least that it can be, see `rest`.
     """
     stuck, stands = s.phase[l] == STUCK, s.phase[l] == FULL_CONTACT
     path, rate, C = cap_beam_path(s, l, s.theta[l], s.theta_dot[l])
     e, lever, _, _ = tendon_elongation(s, l, s.theta[l])
-    share = mobilised_friction(s, l) if stuck else 0.0
+    share = mobilised_friction(s, l) if stuck or stands else 0.0
     for i in range(s.devices[l]):
         kind, e_rate = s.device_kind[i, l], lever * s.theta_dot[l]
         force, _, displacement = device_at(s, l, i, path, rate, C, e, e_rate)
         if kind != TENDON:
             if (stuck or stands) and kind in (FRICTION, ROLLING_RESISTANCE):
                 force *= share * s.direction[l]
+                if stands and kind == ROLLING_RESISTANCE:
+                    force = 0.0
             force, displacement = -s.side[l] * force, s.side[l] * displacement
         sample[0, i], sample[1, i] = force + 0.0, displacement + 0.0
         sample[2, i] = s.device_energy[i, l]

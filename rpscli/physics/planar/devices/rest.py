@@ -6,8 +6,8 @@ import math
 
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.lanes import log_event, time_of
-from rpscli.physics.core.records import INSTANTS, Record
-from rpscli.physics.core.series import sine_cosine
+from rpscli.physics.core.records import Record
+from rpscli.physics.core.series import middle_of, sine_cosine
 from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.devices.events import has_friction, reset_yielded_tendons
 from rpscli.physics.planar.devices.forces import (
@@ -37,6 +37,7 @@ from rpscli.physics.planar.state import (
     STICKING,
     STOP,
     STOP_GAP,
+    STOP_MET,
     STUCK,
     TENDON,
     TENDON_PRESTRESS,
@@ -82,12 +83,15 @@ def load_devices(s: Record, l: int, system: Record) -> None:
 
 
 @with_devices()
-def begin_excursion(s: Record, l: int) -> None:
+def begin_excursion(s: Record, l: int, log: Record) -> None:
     """Leave x = 0: friction acts against growing tilts, and a stop without a gap is met at once."""
     s.direction[l] = 1.0
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == STOP:
-            s.device_branch[i, l] = WORKING if s.law[i, STOP_GAP, l] == 0.0 else IDLE
+            s.device_branch[i, l] = IDLE
+            if s.law[i, STOP_GAP, l] == 0.0:
+                s.device_branch[i, l], rate = WORKING, s.side[l] * s.theta_dot[l]
+                log_event(s, l, log, time_of(s, l), STOP_MET, 0.0, rate, rate, 0.0)
 
 
 @with_devices()
@@ -132,25 +136,30 @@ def arms(s: Record, l: int) -> tuple[float, float]:
 
 @compiled
 def mobilised_friction(s: Record, l: int) -> float:
-    """Share of its friction that a stuck storey asks for, against growing tilts: -1 to 1.
+    """Share of its friction that a storey at rest asks for, against growing tilts: -1 to 1.
 
-    Reads V and the ground in `next_V`, `next_a_g` and `next_g_up`.
+    In full contact the columns hold what they can, and friction dampers the rest: no less, or the
+    columns would turn (Theory, section 11). Reads V and the ground in `next_V`, `next_a_g` and
+    `next_g_up`.
     """
     B, C = arms(s, l)
     elastic, friction = force_at_rest(s, l)
-    action = horizontal_action(s, l, s.next_a_g[l], s.next_V[l])
-    pushed = -(B / C * s.next_g_up[l] * s.weight_over_R[l] + action) / s.shear_factor[l]
-    return float((pushed - elastic) / friction)
+    action = horizontal_action(s, l, s.next_a_g[l], s.next_V[l]) / s.shear_factor[l]
+    resists = B / C * s.next_g_up[l] * s.weight_over_R[l] / s.shear_factor[l] + elastic
+    if s.phase[l] == STUCK:
+        return float(-(resists + action) / friction)
+    dampers = s.friction_force[l]
+    beyond = min(max(abs(action) - (resists + friction - dampers), 0.0), dampers)
+    return -math.copysign(beyond / dampers, action) if dampers > 0.0 else 0.0
 
 
 @with_devices()
-def write_push_at_rest(s: Record, l: int, block: Record) -> None:
-    """Write what devices push the cap beam with at all instants of a block, where it is stuck.
+def write_push_at_rest(s: Record, l: int, block: Record, h: float, steps: int) -> None:
+    """Write what devices push the cap beam with at rest, at instants of a block and between.
 
-    Friction dampers and rolling resistance hold in proportion to what each could. In full contact
-    nothing is counted.
+    Of a stuck storey friction dampers and rolling resistance hold in proportion to what each could.
     """
-    if s.phase[l] != STUCK:
+    if s.friction_force[l] == 0.0 and s.phase[l] != STUCK:
         return
     path, _, _ = cap_beam_path(s, l, s.theta[l], 0.0)
     e, _, sin_psi, _ = tendon_elongation(s, l, s.theta[l])
@@ -159,9 +168,20 @@ def write_push_at_rest(s: Record, l: int, block: Record) -> None:
         steady += s.columns[l] * tension(s, l, i, e) * sin_psi
         if s.device_kind[i, l] == STOP:
             steady += resistance(s, l, i, path, 0.0)
-    for k in range(INSTANTS):
+    share, most = 0.0, 0.0
+    for k in range(steps + 1):
         s.next_V[l], s.next_a_g[l], s.next_g_up[l] = block.V[k], block.a_g[k], block.g_up[k]
-        block.push[k] = -s.side[l] * (steady + mobilised_friction(s, l) * s.friction_force[l])
+        share = mobilised_friction(s, l)
+        most = max(most, abs(share))
+        block.push[k] = -s.side[l] * (steady + share * s.friction_force[l])
+        s.next_V[l] = middle_of(block.V[k], block.V[k + 1], h * block.dV[k], h * block.dV[k + 1])
+        s.next_a_g[l] += 0.5 * h * block.a_g_slope[k]
+        s.next_g_up[l] += 0.5 * h * block.g_up_slope[k]
+        share = mobilised_friction(s, l)
+        block.push_within[k] = -s.side[l] * (steady + share * s.friction_force[l])
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == FRICTION:
+            s.device_force[i, l] = max(s.device_force[i, l], most * s.law[i, FRICTION_FORCE, l])
 
 
 @with_devices(otherwise=0.0)

@@ -1,124 +1,146 @@
-"""What a building in full contact demands, at all instants of a block at once."""
+"""What a building in full contact demands, in all steps of a block at once."""
 
 from __future__ import annotations
 
-import math
-
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import INSTANTS, Floats, Record
-from rpscli.physics.planar.demands import written
-from rpscli.physics.planar.equation_of_motion import contact_measures
+from rpscli.physics.core.series import middle_of, peak
+from rpscli.physics.planar.demands import BULGE, ENDS, WITHIN, raise_by, written
+from rpscli.physics.planar.equation_of_motion import Measures, contact_measures
 
 
 @compiled
-def clear_contacts(block: Record) -> None:
-    """Begin a time in full contact: nothing was demanded yet."""
+def may_raise(s: Record, l: int, block: Record, h: float, steps: int) -> bool:
+    """Whether a bound of the first steps, of length h [s], is passed, see `planar.demands`."""
+    found, part, ratio = 0, BULGE * h**4, s.bend_ratio[l]
+    shear, acceleration = s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l]
     for k in range(INSTANTS):
-        block.friction_top[k], block.friction_bottom[k] = 0.0, 0.0
-        block.normal_top[k], block.normal_bottom[k] = math.inf, math.inf
-        block.push[k] = 0.0
-
-
-@compiled
-def mark_samples(block: Record, first: int, last: int, each: int) -> None:
-    """Write `at_sample`: 1 at the instants first, first + each, ... up to last."""
-    for k in range(INSTANTS):
-        block.at_sample[k] = 0.0
-    for k in range(first, last + 1, each):
-        block.at_sample[k] = 1.0
-
-
-@compiled
-def may_raise(block: Record, shear: float, acceleration: float) -> bool:
-    """Whether the bounds of a sample are above these, see `uplifted.demands`."""
-    found = 0
-    for k in range(INSTANTS):
-        more = (block.shear_bound[k] > shear) | (block.acceleration_bound[k] > acceleration)
-        found |= 1 if more & (block.at_sample[k] > 0.0) else 0
+        bulge = part * block.shear_bend[k]
+        of_acceleration = ENDS * block.acceleration_bound[k] + ratio * bulge
+        more = (ENDS * block.shear_bound[k] + bulge > shear) | (of_acceleration > acceleration)
+        found |= 1 if more & (k <= steps) else 0
     return found > 0
 
 
 @compiled
 def raise_floors_of_block(
-    block: Record, system: Record, shears: Floats, accelerations: Floats
+    block: Record, system: Record, shears: Floats, accelerations: Floats, h: float, steps: int
 ) -> None:
     """Raise the largest storey shears [N] and absolute floor accelerations [m/s2], (n,) or more."""
-    n = block.n
-    threes = n - n % 3
-    for i in range(n):
+    bulge = (WITHIN / 8.0 * h * h) ** 2
+    for r in range(block.n):
+        omega2, damping, Gamma = system.omega2[r], system.two_xi_omega[r], system.Gamma[r]
         for k in range(INSTANTS):
-            block.shear[k], block.acceleration[k] = 0.0, 0.0
-        for r in range(0, threes, 3):
-            add_three_modes(block, system, i, r)
-        for r in range(threes, n):
-            phi, shear = system.phi[r, i], system.storey_shear_of[r, i]
-            for k in range(INSTANTS):
-                block.shear[k] += shear * block.qs[r, k]
-                block.acceleration[k] += phi * block.forces[r, k]
-        shears[i] = max(shears[i], largest_at_samples(block, block.shear))
-        accelerations[i] = max(accelerations[i], largest_at_samples(block, block.acceleration))
+            ddq = -Gamma * block.a_g[k] - block.forces[r, k]
+            block.rises[r, k] = omega2 * block.dqs[r, k] + damping * ddq
+    for i in range(block.n):
+        add_modes(block, system.storey_shear_of, block.qs, block.row, i)
+        if row_may_rise(block, shears[i], system.shear_bound_of[i], bulge, steps):
+            add_modes(block, system.storey_shear_of, block.dqs, block.row_slope, i)
+            shears[i] = max(shears[i], largest_of_row(block, h, steps))
+        add_modes(block, system.phi, block.forces, block.row, i)
+        bound = system.acceleration_bound_of[i] / system.bend_ratio
+        if row_may_rise(block, accelerations[i], bound, bulge, steps):
+            add_modes(block, system.phi, block.rises, block.row_slope, i)
+            accelerations[i] = max(accelerations[i], largest_of_row(block, h, steps))
 
 
 @compiled
-def largest_at_samples(block: Record, row: Floats) -> float:
-    """Largest absolute value of a row at samples; overwrites the row [row (INSTANTS,)]."""
+def row_may_rise(block: Record, largest: float, bound: float, bulge: float, steps: int) -> bool:
+    """Whether the block's row may rise above the largest in its first steps."""
+    found = 0
     for k in range(INSTANTS):
-        row[k] = block.at_sample[k] * abs(row[k])
+        left = largest - abs(block.row[k])
+        more = (left < 0.0) | (left * left * bound < bulge * block.shear_bend[k])
+        found |= 1 if more & (k <= steps) else 0
+    return found > 0
+
+
+@compiled
+def add_modes(block: Record, shares: Floats, modes: Floats, row: Floats, i: int) -> None:
+    """Sum what all modes contribute at floor i to a row, three at a time."""
+    threes = block.n - block.n % 3
+    for k in range(INSTANTS):
+        row[k] = 0.0
+    for r in range(0, threes, 3):
+        a, b, c = shares[r, i], shares[r + 1, i], shares[r + 2, i]
+        for k in range(INSTANTS):
+            row[k] = row[k] + a * modes[r, k] + b * modes[r + 1, k] + c * modes[r + 2, k]
+    for r in range(threes, block.n):
+        a = shares[r, i]
+        for k in range(INSTANTS):
+            row[k] += a * modes[r, k]
+
+
+@compiled
+def largest_of_row(block: Record, h: float, steps: int) -> float:
+    """Largest absolute value of the block's row in its first steps."""
+    row, rates, largest = block.row, block.row_slope, block.largest
+    for k in range(INSTANTS):
+        middle = middle_of(row[k], row[k + 1], h * rates[k], h * rates[k + 1])
+        largest[k] = written(peak(row[k], middle, row[k + 1]) if k < steps else 0.0)
     half = INSTANTS // 2  # halved so that the compiler compares vectors
     while half >= 4:
         for k in range(half):
-            row[k] = written(max(row[k], row[half + k]))
+            largest[k] = written(max(largest[k], largest[half + k]))
         half //= 2
-    return float(max(row[0], row[1], row[2], row[3]))
+    return float(max(largest[0], largest[1], largest[2], largest[3]))
 
 
 @compiled
-def add_three_modes(block: Record, system: Record, i: int, r: int) -> None:
-    """Add what the modes r, r + 1 and r + 2 contribute at floor i: the sum waits in a register."""
-    s0, s1 = system.storey_shear_of[r, i], system.storey_shear_of[r + 1, i]
-    s2, qs = system.storey_shear_of[r + 2, i], block.qs
+def contacts_may_rise(s: Record, l: int, block: Record, pull: float, h: float, steps: int) -> bool:
+    """Whether forces of the columns may be larger, or smaller, than so far in the first steps."""
+    beam, columns, gravity = s.cap_beam_mass[l], s.columns_mass[l], s.gravity[l]
+    upper = beam + s.floors_mass[l]
+    found, part = 0, WITHIN / 8.0 * h
     for k in range(INSTANTS):
-        block.shear[k] = block.shear[k] + s0 * qs[r, k] + s1 * qs[r + 1, k] + s2 * qs[r + 2, k]
-    p0, p1, p2 = system.phi[r, i], system.phi[r + 1, i], system.phi[r + 2, i]
-    forces = block.forces
-    for k in range(INSTANTS):
-        block.acceleration[k] = (
-            block.acceleration[k]
-            + p0 * forces[r, k]
-            + p1 * forces[r + 1, k]
-            + p2 * forces[r + 2, k]
+        a_g, g_up = block.a_g[k], block.g_up[k]
+        bulge = part * abs(block.dV[k] - block.dV[k + 1])
+        shear = beam * a_g - block.V[k] - block.push[k]
+        top, bottom = abs(shear) + bulge, abs(shear + columns * a_g) + bulge
+        N_top = upper * g_up + pull
+        N_bottom = N_top + columns * g_up
+        more = (top > s.friction_top[l] * N_top) | (bottom > s.friction_bottom[l] * N_bottom)
+        more |= (top > s.shear_top[l]) | (bottom > s.shear_bottom[l])
+        light = N_bottom / ((upper + columns) * gravity)
+        more |= (light < s.normal_bottom[l]) | (light > s.heavy_bottom[l])
+        found |= 1 if more & (k <= steps) else 0
+    return found > 0
+
+
+@compiled
+def observe_contacts(
+    s: Record, l: int, block: Record, system: Record, pull: float, h: float, steps: int
+) -> None:
+    """Raise friction demands and forces of contacts, step by step, within and at both ends."""
+    for k in range(steps):
+        V, V_end = block.V[k], block.V[k + 1]
+        a_g, change = block.a_g[k], 0.5 * h * block.a_g_slope[k]
+        g_up, rise = block.g_up[k], 0.5 * h * block.g_up_slope[k]
+        middle = middle_of(V, V_end, h * block.dV[k], h * block.dV[k + 1])
+        raise_by(
+            s,
+            l,
+            measures(system, V + block.push[k], a_g, g_up, pull),
+            measures(system, middle + block.push_within[k], a_g + change, g_up + rise, pull),
+            measures(
+                system, V_end + block.push[k + 1], a_g + 2.0 * change, g_up + 2.0 * rise, pull
+            ),
         )
 
 
 @compiled
-def observe_contacts(block: Record, system: Record, pull: float) -> None:
-    """Raise friction demands and lower least normal forces, instant by instant [pull N]."""
-    for k in range(INSTANTS):
-        top, bottom, light_top, light_bottom = contact_measures(
-            system.cap_beam_mass,
-            system.floors_mass,
-            system.columns_mass,
-            0.0,
-            0.0,
-            block.V[k] + block.push[k],
-            block.a_g[k],
-            block.g_up[k],
-            system.gravity,
-            pull,
-        )
-        seen = block.at_sample[k] > 0.0
-        block.friction_top[k] = written(max(block.friction_top[k], top if seen else 0.0))
-        block.friction_bottom[k] = written(max(block.friction_bottom[k], bottom if seen else 0.0))
-        block.normal_top[k] = written(min(block.normal_top[k], light_top if seen else math.inf))
-        light = light_bottom if seen else math.inf
-        block.normal_bottom[k] = written(min(block.normal_bottom[k], light))
-
-
-@compiled
-def hand_over_contacts(s: Record, l: int, block: Record) -> None:
-    """End a time in full contact: raise the demands of the lane by its own."""
-    for k in range(INSTANTS):
-        s.friction_top[l] = max(s.friction_top[l], block.friction_top[k])
-        s.friction_bottom[l] = max(s.friction_bottom[l], block.friction_bottom[k])
-        s.normal_top[l] = min(s.normal_top[l], block.normal_top[k])
-        s.normal_bottom[l] = min(s.normal_bottom[l], block.normal_bottom[k])
+def measures(system: Record, V: float, a_g: float, g_up: float, pull: float) -> Measures:
+    """Measures of contacts at rest, see `contact_measures`."""
+    return contact_measures(
+        system.cap_beam_mass,
+        system.floors_mass,
+        system.columns_mass,
+        0.0,
+        0.0,
+        V,
+        a_g,
+        g_up,
+        system.gravity,
+        pull,
+    )

@@ -16,9 +16,7 @@ from rpscli.physics.planar.devices.rest import (
     write_push_at_rest,
 )
 from rpscli.physics.planar.full_contact.demands import (
-    clear_contacts,
-    hand_over_contacts,
-    mark_samples,
+    contacts_may_rise,
     may_raise,
     observe_contacts,
     raise_floors_of_block,
@@ -38,7 +36,7 @@ from rpscli.physics.planar.full_contact.uplift_search import (
     raise_alarms,
 )
 from rpscli.physics.planar.run import Output
-from rpscli.physics.planar.samples import store_sample
+from rpscli.physics.planar.samples import store_at_rest, store_sample
 from rpscli.physics.planar.state import (
     FAILED_NOT_FINITE,
     GOES_ON,
@@ -126,10 +124,15 @@ def accept_block(
         for k in range(1, taken + 1):
             s.energy_input[l] += block.input[k - 1]
             s.energy_damped[l] += block.damped[k - 1]
+            done = (k - 1) // plan.each
+            s.interval[l] = first + done
+            if output.finer > 1:
+                begin = (k - 1 - done * plan.each) * plan.h + (time if done == 0 else 0.0)
+                store_at_rest(s, l, system, block, output, k - 1, begin, plan.h)
+            s.interval[l] = first + k // plan.each
             if k % plan.each == 0:
                 keep_state(block, k)
                 modes_from_block(s, l, block)
-                s.interval[l] = first + k // plan.each
                 s.next_V[l] = block.V[k]
                 s.next_a_g[l], s.next_g_up[l] = block.a_g[k], block.g_up[k]
                 store_sample(s, l, system, output)
@@ -146,17 +149,31 @@ def accept_block(
 
 @compiled
 def leave_contact(
-    s: Record, l: int, system: Record, block: Record, output: Output, at: int, h: float, side: float
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    output: Output,
+    pull: float,
+    at: int,
+    h: float,
+    side: float,
 ) -> None:
     """Leave full contact a time h into the step after `at` others of the block [h s]."""
     block.a_g[0], block.a_g_slope[0] = block.a_g[at], block.a_g_slope[at]
+    block.g_up[0], block.g_up_slope[0] = block.g_up[at], block.g_up_slope[at]
+    block.a_g[1] = block.a_g[0] + h * block.a_g_slope[0]
+    block.g_up[1] = block.g_up[0] + h * block.g_up_slope[0]
     fill_map(block, system, SHORT_STEP, h)
     follow_modes(block, system, SHORT_STEP)
+    observe_block(s, l, system, block, pull, h, 1)
     if output.samples.shape[0] > 0:
         fill_work(block, system, SHORT_STEP, h)
         book_energy_of_block(block, system, SHORT_STEP)
         s.energy_input[l] += block.input[0]
         s.energy_damped[l] += block.damped[0]
+        if output.finer > 1:
+            store_at_rest(s, l, system, block, output, 0, s.time[l], h)
     keep_state(block, 1)
     s.time[l] += h
     modes_from_block(s, l, block)
@@ -164,7 +181,21 @@ def leave_contact(
         slide(s, l, output.log, side)
     else:
         uplift(s, l, system, output.log, side)
-        begin_excursion(s, l)
+        begin_excursion(s, l, output.log)
+
+
+@compiled
+def observe_block(
+    s: Record, l: int, system: Record, block: Record, pull: float, h: float, steps: int
+) -> None:
+    """Raise the demands of a lane by those of the first steps of the block, of length h [s]."""
+    if may_raise(s, l, block, h, steps):
+        shears, accelerations = s.storey_shear[l], s.floor_acceleration[l]
+        raise_floors_of_block(block, system, shears, accelerations, h, steps)
+        set_below_all_maxima(s, l, system)
+    write_push_at_rest(s, l, block, h, steps)
+    if s.devices[l] > 0 or contacts_may_rise(s, l, block, pull, h, steps):
+        observe_contacts(s, l, block, system, pull, h, steps)
 
 
 @compiled
@@ -201,19 +232,15 @@ def follow_full_contact(
     fill_map(block, system, WHOLE_STEP, s.contact_step[l])
     if output.samples.shape[0] > 0:
         fill_work(block, system, WHOLE_STEP, s.contact_step[l])
-    clear_contacts(block)
+    for k in range(INSTANTS):
+        block.push[k], block.push_within[k] = 0.0, 0.0
     side, over, fine = 0.0, False, False
-    while side == 0.0 and not over:
+    while side == 0.0 and not over and s.stop == 0:
         plan = plan_block(s, l, system, block, FINE if fine else 1)
         set_ground_of_block(s, l, block, acceleration, plan.h, plan.each, plan.steps)
         follow_modes(block, system, plan.which)
         taken, fraction, side, alarm = search_block(block, margin, plan, 0.0 if fine else NEAR)
-        mark_samples(block, plan.each, taken, plan.each)
-        if may_raise(block, s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l]):
-            raise_floors_of_block(block, system, s.storey_shear[l], s.floor_acceleration[l])
-            set_below_all_maxima(s, l, system)
-        write_push_at_rest(s, l, block)
-        observe_contacts(block, system, pull)
+        observe_block(s, l, system, block, pull, plan.h, taken)
         if not math.isfinite(block.ddV[taken]):
             s.outcome[l] = FAILED_NOT_FINITE
             over = True
@@ -222,10 +249,9 @@ def follow_full_contact(
         over = accept_block(s, l, system, block, acceleration, output, plan, taken, margin)
         if side != 0.0:
             h = locate_uplift(block, system, margin, plan.h, taken, fraction * plan.h, side)
-            leave_contact(s, l, system, block, output, taken, h, side)
+            leave_contact(s, l, system, block, output, pull, taken, h, side)
     if over:
         modes_from_block(s, l, block)
-    hand_over_contacts(s, l, block)
     plan_steps(s, l)
     return IS_OVER if over else GOES_ON
 

@@ -18,7 +18,7 @@ from rpscli.physics.core.compile import compiled, kernel
 from rpscli.physics.core.oscillator import decay, transition
 from rpscli.physics.core.records import INSTANTS, Floats, Record
 from rpscli.physics.core.series import NODES, WEIGHTS
-from rpscli.physics.planar.full_contact.demands import mark_samples, raise_floors_of_block
+from rpscli.physics.planar.full_contact.demands import raise_floors_of_block
 from rpscli.physics.planar.state import WHOLE_STEP
 
 Map: TypeAlias = tuple[float, float, float, float]
@@ -50,6 +50,7 @@ def follow_modes(block: Record, system: Record, which: int) -> None:
     for k in range(INSTANTS):
         block.V[k], block.dV[k], block.ddV[k] = 0.0, 0.0, 0.0
         block.shear_bound[k], block.acceleration_bound[k] = 0.0, 0.0
+        block.shear_bend[k] = 0.0
     move_modes(block, block.step_maps[which])
     for r in range(block.n):
         Gamma, omega2, two_xi_omega = system.Gamma[r], system.omega2[r], system.two_xi_omega[r]
@@ -66,6 +67,7 @@ def follow_modes(block: Record, system: Record, which: int) -> None:
             force_rate = omega2 * block.dqs[r, k] + two_xi_omega * ddq
             block.dV[k] += Gamma * force_rate
             block.ddV[k] += Gamma * (omega2 * ddq - two_xi_omega * force_rate)
+            block.shear_bend[k] += shear * (ddq * ddq)
 
 
 @compiled
@@ -193,6 +195,7 @@ def book_energy_of_block(block: Record, system: Record, which: int) -> None:
 def integrate_fixed_base(
     acceleration: Floats,
     dt: float,
+    each: int,
     instants: int,
     systems: Record,
     blocks: Record,
@@ -201,30 +204,38 @@ def integrate_fixed_base(
 ) -> None:
     """The building on a fixed base, from rest: exact, for comparison and as a test.
 
-    `acceleration` is (npts,) [m/s2] with the interval `dt`, zero after the last sample; `instants`
-    samples are followed. Written are `floors` (instants, 2, n), u and u' [m, m/s], or (0, 2, n) if
-    nobody asks for them, and `largest` (2, n), storey shears [N] and absolute accelerations [m/s2].
+    `acceleration` is (npts,) [m/s2] with the interval `dt`, zero after the last sample, followed in
+    `each` steps; `instants` samples are followed. Written are `floors` (instants, 2, n), u and u'
+    [m, m/s], or (0, 2, n) if nobody asks for them, and `largest` (2, n), storey shears [N] and
+    absolute accelerations [m/s2].
     """
     system, block = systems[0], blocks[0]
-    n = system.n
-    fill_map(block, system, WHOLE_STEP, dt)
-    steps = INSTANTS - 1
-    for first in range(0, instants, steps):
+    h = dt / each
+    fill_map(block, system, WHOLE_STEP, h)
+    most, last = INSTANTS - 1, (instants - 1) * each
+    for first in range(0, last + 1, most):
         for k in range(INSTANTS):
-            i = first + k
+            i = (first + k) // each
             inside = i + 1 < acceleration.shape[0]
             start = acceleration[i] if inside else 0.0
             end = acceleration[i + 1] if inside else 0.0
-            block.a_g[k], block.a_g_slope[k] = start, (end - start) / dt
+            slope = (end - start) / dt
+            block.a_g[k], block.a_g_slope[k] = start + slope * h * ((first + k) % each), slope
         follow_modes(block, system, WHOLE_STEP)
-        last = min(steps, instants - first) - 1
-        mark_samples(block, 0, last, 1)
-        raise_floors_of_block(block, system, largest[0], largest[1])
-        for k in range(last + 1 if floors.shape[0] else 0):
-            for i in range(n):
-                u, du = 0.0, 0.0
-                for r in range(n):
-                    u += system.phi[r, i] * block.qs[r, k]
-                    du += system.phi[r, i] * block.dqs[r, k]
-                floors[first + k, 0, i], floors[first + k, 1, i] = u, du
-        keep_state(block, steps)
+        steps = min(most, last - first)
+        raise_floors_of_block(block, system, largest[0], largest[1], h, steps)
+        for k in range(min(most, last + 1 - first) if floors.shape[0] else 0):
+            if (first + k) % each == 0:
+                store_floors(block, system, k, floors[(first + k) // each])
+        keep_state(block, most)
+
+
+@compiled
+def store_floors(block: Record, system: Record, k: int, floors: Floats) -> None:
+    """Displacements and velocities (2, n) of the floors after k steps of the block."""
+    for i in range(block.n):
+        u, du = 0.0, 0.0
+        for r in range(block.n):
+            u += system.phi[r, i] * block.qs[r, k]
+            du += system.phi[r, i] * block.dqs[r, k]
+        floors[0, i], floors[1, i] = u, du

