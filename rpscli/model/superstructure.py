@@ -289,11 +289,15 @@ class Superstructure(Shown):
 
     @property
     def vertical_modes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Frequencies [rad/s] and effective masses [kg], (n,), of floors on equal springs."""
-        assert self.vertical_period is not None, "asked for where the period is given"
+        """Frequencies [rad/s] and effective masses [kg], (n,), of floors on equal springs.
+
+        Empty where `vertical_period` is not known.
+        """
+        if self.vertical_period is None:
+            return frozen(np.empty(0)), frozen(np.empty(0))
         frequencies, shapes = shear_modes(self.masses, np.ones(self.storeys))
         scale = 2.0 * math.pi / (self.vertical_period * frequencies[0])
-        return scale * frequencies, (shapes.T @ self.masses) ** 2
+        return frozen(scale * frequencies), frozen((shapes.T @ self.masses) ** 2)
 
     @property
     def participation(self) -> NDArray[np.float64]:

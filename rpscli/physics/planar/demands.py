@@ -165,7 +165,9 @@ def raise_contacts(s: Record, l: int, look: float, across: float, upwards: float
 def contacts_within(s: Record, l: int, t: float) -> Measures:
     """Measures of contacts a fraction t into the step, from its Taylor terms."""
     terms, phase = rotation_terms(s, l), phase_constants(s, l)
-    theta, theta_dot = s.theta[l] + s.step[l] * integral(terms, t), value(terms, t)
+    # At an impact the tilt is zero but for rounding; below zero tendons would pull the other way.
+    theta = max(s.theta[l] + s.step[l] * integral(terms, t), 0.0)
+    theta_dot = value(terms, t)
     sine, cosine = sine_cosine(theta)
     B, C = contact_arm(phase, cosine, sine), contact_height(phase, cosine, sine)
     across, upwards = cap_beam_acceleration(

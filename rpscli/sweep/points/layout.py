@@ -17,6 +17,7 @@ from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RpsError
+from rpscli.frozen import frozen
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
 from rpscli.sweep.evaluation.results import Array, Indices
@@ -89,7 +90,7 @@ class StudyPoints:
     def places(self) -> tuple[Indices, ...]:
         """(points,) places of all points among systems, records, scales and members."""
         shape = (len(self.properties), *self._within)
-        return np.unravel_index(np.arange(len(self)), shape)
+        return frozen(np.unravel_index(np.arange(len(self)), shape))
 
     @cached_property
     def factors(self) -> Array:
@@ -97,7 +98,7 @@ class StudyPoints:
         systems, _, scales, members = self.places
         own = np.array([properties.scale for properties in self.properties])[systems]
         given = own if self.scales == (None,) else np.array(self.scales, np.float64)[scales]
-        return np.asarray(given * np.array([change.scale for change in self.members])[members])
+        return frozen(given * np.array([change.scale for change in self.members])[members])
 
     @cached_property
     def identifying(self) -> dict[str, tuple[int, Sequence[Any]]]:
