@@ -29,7 +29,9 @@ def read_smc(text: RecordText) -> GroundMotion:
     title = _TITLE.match(text.heads[0])
     if title is None or title[1] != _CORRECTED:
         raise text.fault(
-            f"the file is {text.heads[0].strip()!r}; only '2 CORRECTED ACCELEROGRAM' can be read", 0
+            f"the file is {text.heads[0].strip()[:40]!r}; only '2 CORRECTED ACCELEROGRAM' can be"
+            " read",
+            0,
         )
     body = _TEXT_LINES + _INTEGER_LINES
     integers = series(text, _TEXT_LINES, _INTEGERS, stop=body)
