@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
 from rpscli.frozen import Frozen, frozen
+from rpscli.records.recording import UNKNOWN, Recording
 from rpscli.shown import Shown, with_unit
 
 if TYPE_CHECKING:
@@ -65,6 +66,8 @@ class GroundMotion(Shown):
         What the reader understood: event, station, units.
     warnings : tuple of str
         What the reader wants a human to look at.
+    recording : Recording
+        Earthquake and station, as far as the source tells them.
 
     Raises
     ------
@@ -88,6 +91,7 @@ class GroundMotion(Shown):
     format: str = "array"
     description: str = ""
     warnings: tuple[str, ...] = ()
+    recording: Recording = UNKNOWN
 
     def __post_init__(self) -> None:
         if np.ma.is_masked(self.acceleration):

