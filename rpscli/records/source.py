@@ -62,7 +62,7 @@ def load_record(
         If there is no such record, or it cannot be read without guessing.
     """
     with _readable(source):
-        plain, option = _split_factor(source)
+        plain, option = split_factor(source)
         motion = _loaded(plain, folder, dt, units)
         if not option:
             return motion
@@ -80,7 +80,7 @@ def load_components(source: str, vertical: str | None, **how: Any) -> MotionComp
     return MotionComponents(along, None if vertical is None else load_record(vertical, **how))
 
 
-def _split_factor(source: str) -> tuple[str, str]:
+def split_factor(source: str) -> tuple[str, str]:
     """A source without its factor, and that option; empty without one."""
     match = _FACTOR.search(source)
     if match is None:
@@ -97,7 +97,7 @@ def _loaded(source: str, folder: Path | None, dt: float | None, units: str | Non
         if dt is not None or units is not None:
             raise RecordError(f"{source}: dt and units describe files; leave them out here")
         return _MAKERS[scheme](rest, source)
-    place, options = _split_options(source)
+    place, options = split_options(source)
     query = parse_query(options, source, ("dt", "units", "channel", "second", "angle"))
     path = _located(place, folder)
     motion = _read(path, source, query, dt, units)
@@ -170,7 +170,7 @@ def _differ(one: str, other: str) -> bool:
 
 def _expand(source: str, folder: Path | None) -> list[str]:
     with _readable(source):
-        plain, factor = _split_factor(source)
+        plain, factor = split_factor(source)
         found = _expanded(plain, folder)
         if not factor:
             return found
@@ -189,7 +189,7 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
         return [source]
     from rpscli.records.formats import is_record
 
-    place, options = _split_options(source)
+    place, options = split_options(source)
     suffix = f"?{options}" if options else ""
     path = _located(place, folder)
     if path.is_dir():
@@ -220,7 +220,7 @@ def _listed(place: str, source: str, folder: Path | None) -> list[str]:
         raise RecordError(f"{source}: is not text; name a list with one source a line") from None
     found = []
     for line in filter(None, (line.partition("#")[0].strip() for line in lines)):
-        scheme, _ = _split_scheme(_split_factor(line)[0], path.parent)
+        scheme, _ = _split_scheme(split_factor(line)[0], path.parent)
         if scheme == LIST:
             raise RecordError(f"{source}: {line}: a list holds no lists; write its sources here")
         found += _expand(line if scheme else str(Path(place).parent / line), folder)
@@ -232,7 +232,7 @@ def _listed(place: str, source: str, folder: Path | None) -> list[str]:
 def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
     """Scheme and rest of a source that is not a file; an empty scheme means a file."""
     match = _SCHEME.fullmatch(source)
-    if not match or _located(_split_options(source)[0], folder).exists():
+    if not match or _located(split_options(source)[0], folder).exists():
         return "", source
     kinds = [*_MAKERS, LIST]
     if match[1] not in kinds:
@@ -242,7 +242,8 @@ def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
     return match[1], match[2]
 
 
-def _split_options(source: str) -> tuple[str, str]:
+def split_options(source: str) -> tuple[str, str]:
+    """The name of a file, and its options."""
     match = _FILE_OPTIONS.fullmatch(source)
     return (match[1], match[2]) if match else (source, "")
 

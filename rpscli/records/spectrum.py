@@ -82,10 +82,25 @@ def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
 
+def pseudo_acceleration_history(
+    motion: GroundMotion, period: float, damping: float
+) -> NDArray[np.float64]:
+    """Relative displacement of an oscillator times (2 pi/T)^2 [m/s2], on a step of its own."""
+    if period == 0.0:
+        return motion.acceleration
+    return (2.0 * math.pi / period) ** 2 * _histories(motion, period, damping)[0]
+
+
 def _peaks(motion: GroundMotion, period: float, damping: float) -> tuple[float, float]:
     """Peak displacement [m] and total acceleration [m/s2] of one oscillator."""
     if period == 0.0:
         return 0.0, motion.pga
+    relative, total = (float(np.max(np.abs(h))) for h in _histories(motion, period, damping))
+    return relative, total
+
+
+def _histories(motion: GroundMotion, period: float, damping: float) -> list[NDArray[np.float64]]:
+    """Displacement [m] and total acceleration [m/s2] of one oscillator."""
     from scipy.signal import lfilter
 
     ground, dt = _refined(motion, period)
@@ -99,14 +114,14 @@ def _peaks(motion: GroundMotion, period: float, damping: float) -> tuple[float, 
     start = other @ b1
     weights = np.array([b1, b0 + start, last])
     readings = np.array([[1.0, 0.0], [-(w**2), -2.0 * damping * w]])
-    peaks = []
+    found = []
     for reading in readings:
         forcing = weights @ reading
         # Rest at the first sample, which may be a jump, fixes the state of the filter.
         rest = np.array([-forcing[0], -float(start @ reading)]) * ground[0]
         response, _ = lfilter(forcing, recursion, ground, zi=rest)
-        peaks.append(float(np.max(np.abs(response))))
-    return peaks[0], peaks[1]
+        found.append(response)
+    return found
 
 
 def _refined(motion: GroundMotion, period: float) -> tuple[NDArray[np.float64], float]:

