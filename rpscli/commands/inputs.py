@@ -198,13 +198,13 @@ def _factor(case: Case, request: MotionRequest, motion: GroundMotion) -> float:
 
 
 def _factor_to(case: Case, target: ScaleToSection, motion: GroundMotion, source: str) -> float:
-    from rpscli.records.measures import factor_to, measured
+    from rpscli.records.measures import AT_PERIOD, factor_to, measured
 
     period = target.period
-    if target.measure == "Sa" and period is None:
+    if target.measure in AT_PERIOD and period is None:
         building = case.structure.superstructure
         if building is None:
-            raise UsageError(f"{source}: without storeys there is no T1 at which to take Sa")
+            raise UsageError(f"{source}: without storeys {target.measure} has no T1 to be taken at")
         period = float(building.periods[0])
     unscaled = measured(motion, target.measure, period, target.damping)
     return factor_to(target.value, unscaled, target.measure, motion.source)

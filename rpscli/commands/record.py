@@ -117,6 +117,7 @@ def record_tables(motion: GroundMotion, measures: IntensityMeasures) -> Iterator
         ("PGD", f"{shown(measures.pgd)} m"),
         ("Arias intensity", f"{shown(measures.arias)} m/s"),
         ("CAV", f"{shown(measures.cav)} m/s"),
+        ("significant duration, 5-75 %", f"{shown(measures.d5_75)} s"),
         ("significant duration, 5-95 %", f"{shown(measures.d5_95)} s"),
     ]
     yield Table.listing([("name", motion.name), *rows])

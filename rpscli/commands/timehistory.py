@@ -53,7 +53,8 @@ from rpscli.report.figures.look import Look, drawn_with
 @click.option(
     "--scale-to",
     metavar="MEASURE=VALUE",
-    help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', PGD, CAV or Arias.",
+    help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', AvgSa, FIV3, PGD, Housner,"
+    " CAV or Arias.",
 )
 @fail_on_option(
     "End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"

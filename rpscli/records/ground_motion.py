@@ -209,13 +209,14 @@ class GroundMotion(Shown):
         Parameters
         ----------
         measure : str
-            ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``Arias`` or ``CAV``.
+            ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``AvgSa``, ``FIV3``, ``Housner``, ``Arias`` or
+            ``CAV``.
         value : float [SI]
             What it is to be.
         period : float, optional [s]
-            Of Sa, which needs it.
+            Of Sa, AvgSa and FIV3, which need it.
         damping : float
-            Of Sa, a share of critical damping.
+            Of Sa, AvgSa and Housner, a share of critical damping.
 
         Raises
         ------
@@ -229,6 +230,7 @@ class GroundMotion(Shown):
         [0.0, 1.0, -1.5]
         """
         from rpscli.records.measures import (  # measures measure motions
+            AT_PERIOD,
             MEASURE_UNITS,
             factor_to,
             measured,
@@ -237,8 +239,9 @@ class GroundMotion(Shown):
         if measure not in MEASURE_UNITS:
             known = ", ".join(MEASURE_UNITS)
             raise RecordError(f"{self.source}: {measure} is not a measure; there are {known}")
-        if measure == "Sa" and period is None:
-            raise RecordError(f"{self.source}: Sa is scaled to at a period; give period=... in s")
+        if measure in AT_PERIOD and period is None:
+            text = f"{self.source}: {measure} is scaled to at a period; give period=... in s"
+            raise RecordError(text)
         if not value > 0.0:
             raise RecordError(f"{self.source}: {measure} = {value} must be > 0 to scale to it")
         unscaled = measured(self, measure, period, damping)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.spectrum import spectral_acceleration
+from rpscli.records.spectrum import response_spectrum, spectral_acceleration
 
 
 def velocity(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
@@ -54,8 +54,9 @@ class IntensityMeasures:
     """Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s]."""
     cav: float
     """Cumulative absolute velocity, the integral of the absolute acceleration [m/s]."""
+    d5_75: float
     d5_95: float
-    """Significant duration, from 5 % to 95 % of the Arias intensity [s]."""
+    """Significant durations, from 5 % to 75 % and to 95 % of the Arias intensity [s]."""
 
 
 def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
@@ -66,7 +67,8 @@ def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
     one, while squares of the straight lines between samples fall short by dt/6 sum (a' dt)^2.
 
     A. Arias, in Seismic Design for Nuclear Power Plants, MIT Press, 1970.
-    M. D. Trifunac and A. G. Brady, Bull. Seism. Soc. Am. 65, 1975 (duration).
+    M. D. Trifunac and A. G. Brady, Bull. Seism. Soc. Am. 65, 1975 (duration to 95 %);
+    P. G. Somerville and others, SAC/BD-97/04, 1997, use that to 75 %.
 
     >>> flat = GroundMotion(np.ones(101), 0.1, "flat", "", "")
     >>> measures = intensity_measures(flat)
@@ -81,6 +83,7 @@ def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
         pgd=float(np.max(np.abs(displacement(a, dt)))),
         arias=math.pi / (2.0 * STANDARD_GRAVITY) * float(husid[-1]),
         cav=float(_cumulative(np.abs(a), dt)[-1]),
+        d5_75=_crossing(husid, 0.75, dt) - _crossing(husid, 0.05, dt),
         d5_95=_crossing(husid, 0.95, dt) - _crossing(husid, 0.05, dt),
     )
 
@@ -99,26 +102,92 @@ def _crossing(husid: NDArray[np.float64], share: float, dt: float) -> float:
     return dt * (before + float((level - husid[before]) / (husid[after] - husid[before])))
 
 
-Measure = Literal["PGA", "PGV", "PGD", "Sa", "Arias", "CAV"]
+def average_spectral_acceleration(
+    motion: GroundMotion, period: float, damping: float = 0.05
+) -> float:
+    """AvgSa [m/s2]: geometric mean of Sa at ten periods, evenly spaced from 0.2 T to 3 T.
+
+    The range is that of L. Eads, E. Miranda and D. G. Lignos, Earthq. Eng. Struct. Dyn. 44, 2015,
+    who space the periods by 0.01 s; ten periods are those of the ground motion models that
+    give hazard curves of it.
+    """
+    periods = period * np.linspace(0.2, 3.0, 10)
+    spectrum = response_spectrum(motion, periods, damping).pseudo_acceleration
+    # A motion of zeros has no logarithm, and measures nothing.
+    return float(np.exp(np.mean(np.log(spectrum)))) if spectrum.all() else 0.0
+
+
+def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
+    """FIV3 [m/s]: the three largest increments of filtered ground velocity in 0.7 T, added up.
+
+    V(t) is the integral from t to t + 0.7 T of the acceleration behind a Butterworth low-pass
+    filter of second order with the corner 0.85/T, run forwards and backwards, as in the public
+    implementations EzGM and im_calculator. FIV3 is the larger of the sum of the three largest
+    maxima of V(t) and of the three smallest minima without their sign. The ground is at rest
+    before and after the record.
+
+    H. Davalos and E. Miranda, Earthq. Eng. Struct. Dyn. 48, 2019, 1384-1405, equations 1 to 3.
+    """
+    from scipy.signal import butter, filtfilt, find_peaks
+
+    window, corner, dt = 0.7 * period, 0.85 / period, motion.dt
+    # Three periods of the corner, after which the filter has forgotten, and the window.
+    quiet = np.zeros(math.ceil((3.0 / corner + window) / dt))
+    ground = np.concatenate([quiet, motion.acceleration, quiet])
+    if corner < (nyquist := 0.5 / dt):
+        ground = filtfilt(*butter(2, corner / nyquist), ground, padlen=0)
+    speed, time = _cumulative(ground, dt), np.arange(ground.size) * dt
+    gained = np.interp(time + window, time, speed) - speed
+    # Ripples of rounding on a flat top are no maxima of their own.
+    least = 1e-9 * float(np.max(np.abs(gained)))
+    sums = [
+        np.sort(each[find_peaks(each, prominence=least)[0]])[-3:].sum()
+        for each in (gained, -gained)
+    ]
+    return float(max(*sums, 0.0))
+
+
+def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
+    """Spectrum intensity [m]: integral of the pseudo-velocity over periods of 0.1 to 2.5 s.
+
+    G. W. Housner, in Proc. Symposium on Earthquake and Blast Effects on Structures, 1952.
+    """
+    periods = np.linspace(0.1, 2.5, 97)
+    spectrum = response_spectrum(motion, periods, damping).pseudo_acceleration
+    return float(np.trapezoid(spectrum * periods / (2.0 * math.pi), periods))
+
+
+Measure = Literal["PGA", "PGV", "PGD", "Sa", "AvgSa", "FIV3", "Housner", "Arias", "CAV"]
 
 MEASURE_UNITS: dict[Measure, str] = {
     "PGA": "m/s2",
     "PGV": "m/s",
     "PGD": "m",
     "Sa": "m/s2",
+    "AvgSa": "m/s2",
+    "FIV3": "m/s",
+    "Housner": "m",
     "Arias": "m/s",
     "CAV": "m/s",
 }
 """SI units."""
+
+AT_PERIOD: tuple[Measure, ...] = ("Sa", "AvgSa", "FIV3")
+"""Measures that are taken at a period."""
 
 
 def measured(
     motion: GroundMotion, measure: Measure, period: float | None = None, damping: float = 0.05
 ) -> float:
     """A measure of a motion, SI units."""
-    if measure == "Sa":
-        assert period is not None, "Sa is asked for at a period"
-        return spectral_acceleration(motion, period, damping)
+    if measure == "Housner":
+        return housner_intensity(motion, damping)
+    if measure in AT_PERIOD:
+        assert period is not None, f"{measure} is asked for at a period"
+        if measure == "FIV3":
+            return filtered_incremental_velocity(motion, period)
+        of = spectral_acceleration if measure == "Sa" else average_spectral_acceleration
+        return of(motion, period, damping)
     return float(getattr(intensity_measures(motion), measure.lower()))
 
 

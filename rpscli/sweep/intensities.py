@@ -8,7 +8,7 @@ import numpy as np
 
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
-from rpscli.records.measures import MEASURE_UNITS, Measure
+from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.table import Array, Table
 
@@ -33,18 +33,18 @@ class Asked(Protocol):
 
     @property
     def period(self) -> float | None:
-        """Of Sa; T1 of each system by default."""
+        """Of Sa, AvgSa or FIV3; T1 of each system by default."""
 
     @property
     def damping(self) -> float:
-        """Of Sa."""
+        """Of Sa, AvgSa or Housner."""
 
 
 class Intensity(NamedTuple):
     """A measure of the scaled records.
 
-    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa, None for T1
-    of each system.
+    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa and the like,
+    None for T1 of each system.
     """
 
     measure: Measure
@@ -73,7 +73,7 @@ def intensity(table: Table, context: StudyContext, options: Asked) -> Intensity:
             values[point.number] = point.scale * _effect(measure, point.scale_change)
             continue
         at = None
-        if measure == "Sa":
+        if measure in AT_PERIOD:
             at = period or table.layout.properties[point.system].period
             assert at is not None, "`measure_without_period` was asked before"
         try:

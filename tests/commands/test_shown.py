@@ -10,7 +10,7 @@ import pytest
 from report.small_results import CURVED, KINDS, structure
 
 import rpscli
-from rpscli.records.measures import measured
+from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, measured
 from rpscli.shown import Shown
 
 LONGEST = 600
@@ -81,10 +81,10 @@ def test_a_motion_of_an_array_needs_no_names() -> None:
     assert rpscli.demand(structure(CURVED, 0), motion).outcome == "survived"
 
 
-@pytest.mark.parametrize("measure", ["PGA", "PGV", "PGD", "Arias", "CAV", "Sa"])
+@pytest.mark.parametrize("measure", MEASURE_UNITS)
 def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.8")
-    period = 0.5 if measure == "Sa" else None
+    period = 0.5 if measure in AT_PERIOD else None
     scaled = motion.scaled_to(measure, 0.7, period=period)  # type: ignore[arg-type]
     # a scaled motion is measured by the same sums
     assert measured(scaled, measure, period) == pytest.approx(0.7, rel=1e-12)  # type: ignore[arg-type]

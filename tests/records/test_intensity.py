@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import displacement, intensity_measures, velocity
+from rpscli.records.measures import displacement, intensity_measures, measured, velocity
 
 SAMPLES = st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=30)
 
@@ -42,6 +42,56 @@ def test_one_sine_against_its_integrals() -> None:
     assert measures.pgd == pytest.approx(a / w, rel=second_order)  # a t/w at t = 1 s
     assert measures.arias == pytest.approx(math.pi / (2 * STANDARD_GRAVITY) * a**2 / 2, rel=1e-12)
     assert measures.cav == pytest.approx(2.0 * a / math.pi, rel=second_order)
+
+
+def test_significant_durations_by_hand() -> None:
+    # Flat for 10 s: the Husid curve is straight, so 70 % and 90 % of 10 s.
+    measures = intensity_measures(motion([1.0] * 101, 0.1))
+    assert measures.d5_75 == pytest.approx(7.0)
+    assert measures.d5_95 == pytest.approx(9.0)
+
+
+def test_spectral_measures_of_a_sudden_load() -> None:
+    """Its spectrum is flat: a (1 + e), e the decay over half a cycle, at every period."""
+    a, damping = 3.0, 0.05
+    peak = a * (1.0 + math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2)))
+    load = motion([a] * 4001, 0.01)
+    tolerance = 2e-3  # of spectra between their samples
+    assert measured(load, "AvgSa", 0.8) == pytest.approx(peak, rel=tolerance)
+    # The integral of T/2pi from 0.1 to 2.5 s.
+    of_one = (2.5**2 - 0.1**2) / (4.0 * math.pi)
+    assert measured(load, "Housner") == pytest.approx(peak * of_one, rel=tolerance)
+
+
+def test_filtered_incremental_velocity_of_three_long_pushes() -> None:
+    """Bell curves, too slow for the filter: each gains its integral over 0.7 T at its top."""
+    period, dt, wide = 0.5, 0.005, 2.0
+    bell = np.exp(-0.5 * (np.arange(-12.0, 12.0, dt) / wide) ** 2)
+    three = np.concatenate([1.0 * bell, 3.0 * bell, 2.0 * bell])
+    one = wide * math.sqrt(2.0 * math.pi) * math.erf(0.35 * period / (wide * math.sqrt(2.0)))
+    # The filter takes (f/corner)^4 with f = 1/(2 pi 2 s): 5e-6.
+    wanted = pytest.approx(6.0 * one, rel=2e-5)
+    assert measured(GroundMotion(three, dt), "FIV3", period) == wanted
+    # A fourth, and pushes to the other side that gain less, change nothing.
+    more = np.concatenate([three, 0.5 * bell, -0.9 * three])
+    assert measured(GroundMotion(more, dt), "FIV3", period) == wanted
+
+
+@pytest.mark.parametrize("frequency", [0.5, 1.3, 4.0])
+def test_filtered_incremental_velocity_of_a_sine(frequency: float) -> None:
+    """Three times amplitude, squared gain of the filter, and integral over the window."""
+    a, period, dt = 2.0, 0.6, 0.002
+    corner, count = 0.85 / period, round(40.0 / dt)
+    ramps = np.minimum(1.0, np.minimum(np.arange(count), np.arange(count)[::-1]) * dt / 10.0)
+    swing = np.sin(0.5 * math.pi * ramps) ** 2 * np.sin(
+        2.0 * math.pi * frequency * dt * np.arange(count)
+    )
+    warped = math.tan(math.pi * frequency * dt) / math.tan(math.pi * corner * dt)
+    gain = 1.0 / (1.0 + warped**4)
+    wanted = 3.0 * a * gain * abs(math.sin(math.pi * frequency * 0.7 * period))
+    wanted /= math.pi * frequency
+    found = measured(GroundMotion(a * swing, dt), "FIV3", period)
+    assert found == pytest.approx(wanted, rel=3e-3)  # ramps are not one frequency
 
 
 @settings(deadline=None)

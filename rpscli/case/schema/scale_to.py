@@ -15,7 +15,7 @@ from pydantic import (
 
 from rpscli.case.schema.fields import DampingRatio, Quantity, Section, refuse
 from rpscli.errors import hint
-from rpscli.records.measures import MEASURE_UNITS, Measure
+from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
 
 _TARGET = re.compile(r"\s*([A-Za-z]+)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 
@@ -36,26 +36,26 @@ MeasuredValue = Annotated[
 ]
 
 
-def _of_sa(period: float | None, info: ValidationInfo) -> float | None:
-    if info.data.get("measure", "Sa") != "Sa":
-        refuse(f"belongs to the measure Sa; {info.data['measure']} has none, take it out")
+def _at_period(period: float | None, info: ValidationInfo) -> float | None:
+    if (measure := info.data.get("measure", "Sa")) not in AT_PERIOD:
+        refuse(f"belongs to the measures {', '.join(AT_PERIOD)}; {measure} has none, take it out")
     return period
 
 
-of_sa = AfterValidator(_of_sa)
+at_period = AfterValidator(_at_period)
 
 
 class ScaleToSection(Section):
     """A value of an intensity measure of the horizontal record, in place of a factor."""
 
     measure: Measure
-    """PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"""
+    """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD or Housner [m] when scaled"""
     value: MeasuredValue
     """what it is to be, SI or with a unit, such as 0.4 g"""
-    period: Annotated[Annotated[float | None, Quantity("s", above=0)], of_sa] = None
-    """of Sa; left out: the fixed-base first period of the building"""
+    period: Annotated[Annotated[float | None, Quantity("s", above=0)], at_period] = None
+    """of Sa, AvgSa or FIV3; left out: the fixed-base first period of the building"""
     damping: DampingRatio = 0.05
-    """of Sa"""
+    """of Sa, AvgSa or Housner"""
 
 
 def scale_to_of(text: str) -> ScaleToSection:

@@ -35,7 +35,7 @@ from rpscli.case.schema.fields import (
     refuse,
 )
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.schema.scale_to import MeasuredValue, measured_value, of_sa
+from rpscli.case.schema.scale_to import MeasuredValue, at_period, measured_value
 from rpscli.case.text.document import shown
 from rpscli.records.measures import Measure
 
@@ -103,13 +103,13 @@ class MeasureScale(Section):
     """Every record scaled to given values of an intensity measure."""
 
     measure: Measure
-    """PGA, Sa [m/s2], PGV, CAV, Arias [m/s] or PGD [m] of the scaled record"""
+    """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD or Housner [m] when scaled"""
     values: MeasuredValues
     """values to scale to, SI or with a unit"""
-    period: Annotated[Time | None, of_sa] = None
-    """of Sa; left out: the fixed-base first period of each system"""
+    period: Annotated[Time | None, at_period] = None
+    """of Sa, AvgSa or FIV3; left out: the fixed-base first period of each system"""
     damping: DampingRatio = 0.05
-    """of Sa"""
+    """of Sa, AvgSa or Housner"""
 
 
 def _kind_of_scale(value: object) -> str:

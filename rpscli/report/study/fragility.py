@@ -18,7 +18,7 @@ from rpscli.case.schema.fields import DampingRatio, Quantity, Section, Whole
 from rpscli.case.schema.limits import described
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.case.study.schema import PositiveNumbers, Seed
-from rpscli.records.measures import Measure
+from rpscli.records.measures import AT_PERIOD, Measure
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import Layout, colour, left_out, marker, over, panel_figure, remarks
@@ -61,8 +61,10 @@ class MeasureOptions(ReportOptions):
     measure: Measure | None = Field(
         None, description="the one that the study scales to by default, else PGV"
     )
-    period: Time | None = Field(None, description="of Sa; T1 of each system by default")
-    damping: DampingRatio = Field(0.05, description="of Sa")
+    period: Time | None = Field(
+        None, description="of Sa, AvgSa or FIV3; T1 of each system by default"
+    )
+    damping: DampingRatio = Field(0.05, description="of Sa, AvgSa or Housner")
 
 
 class BandOptions(MeasureOptions):
@@ -246,9 +248,9 @@ def binned(intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
 
 def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
     """What keeps a report from having the measure that it asks for."""
-    at_first_period = options.measure == "Sa" and options.period is None
+    at_first_period = options.measure in AT_PERIOD and options.period is None
     if at_first_period and any(system.period is None for system in layout.properties):
-        yield "Sa at T1 needs storeys; give the report a `period`"
+        yield f"{options.measure} at T1 needs storeys; give the report a `period`"
 
 
 def fragility(study: StudyResults, options: FragilityOptions) -> Found:
@@ -368,9 +370,10 @@ def side_by_side(panels: int) -> int:
 
 def measure_name(intensity: Intensity) -> str:
     """The measure with its period."""
-    if intensity.measure != "Sa":
+    if intensity.measure not in AT_PERIOD:
         return intensity.measure
-    return "Sa(T1)" if intensity.period is None else f"Sa({intensity.period:g} s)"
+    at = "T1" if intensity.period is None else f"{intensity.period:g} s"
+    return f"{intensity.measure}({at})"
 
 
 REPORT = Report(

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from rpscli.case.schema.fields import Quantity, Section, Text
 from rpscli.errors import CaseError
-from rpscli.records.measures import Measure
+from rpscli.records.measures import AT_PERIOD, Measure
 from rpscli.report.study.fragility import (
     Fragilities,
     Fragility,
@@ -92,8 +92,8 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
     measure = options.hazard.measure
     if options.measure not in (None, measure):
         yield f"measure: {options.measure} is not hazard.measure: {measure}; take the first out"
-    if measure == "Sa" and options.period is None:
-        yield "a hazard curve of Sa is for one period; give the report a `period`"
+    if measure in AT_PERIOD and options.period is None:
+        yield f"a hazard curve of {measure} is for one period; give the report a `period`"
     try:
         hazard_of(layout, options)
     except CaseError as error:

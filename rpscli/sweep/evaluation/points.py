@@ -26,9 +26,9 @@ class Point(NamedTuple):
     """One point.
 
     `number` is its place in the order of the study, from 0. `values` are those of the varied keys,
-    in their order. `scale` is the factor on the record, or
-    the value of the measure to scale it to; `period` is then the one of Sa. The changes are
-    factors of the perturbation, 1 where there is none.
+    in their order. `scale` is the factor on the record, or the value of the measure to scale it to;
+    `period` is then the one of Sa and the like. The changes are factors of the perturbation, 1
+    where there is none.
     """
 
     number: int

@@ -18,6 +18,7 @@ from rpscli.case.study.study import Study
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RpsError
 from rpscli.frozen import frozen
+from rpscli.records.measures import AT_PERIOD
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
 from rpscli.sweep.evaluation.results import Array, Indices
@@ -123,9 +124,9 @@ class StudyPoints:
         return columns
 
     def period_of_measure(self, properties: SystemProperties) -> float | None:
-        """Period of Sa at which the records of a system are scaled; None unless they are [s]."""
+        """Period at which the records of a system are scaled; None unless they are [s]."""
         measure = self.plan.measure
-        if measure is None or measure.measure != "Sa":
+        if measure is None or measure.measure not in AT_PERIOD:
             return None
         return measure.period or properties.period
 
