@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 
+from rpscli.analyses.kernels import compilation
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS as REPORT_KINDS
 from rpscli.report.study.report import Found
@@ -163,6 +164,18 @@ def test_a_dry_run_shows_the_points_and_writes_nothing(
     assert "Test [study]" in text
     assert "36" in text
     assert not (workplace / "results").exists()
+
+
+def test_a_dry_run_compiles_no_kernel_with_devices(
+    sweep_json: Document, workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where only the kernel without them is there, a study with devices is guessed at."""
+    monkeypatch.setattr(compilation, "is_ready", lambda *, equipped=False: not equipped)
+    plain = sweep_json("study.yaml", "--dry-run")["estimate"]
+    assert plain["source"] == "trying some of the points"
+    dampers = "  - podium.devices: [[], [{kind: viscous, coefficient: 1.0e5}]]\nrecords:"
+    (workplace / "study.yaml").write_text(STUDY.replace("records:", dampers))
+    assert "not compiled" in sweep_json("study.yaml", "--dry-run")["estimate"]["source"]
 
 
 def test_a_report_that_cannot_be_drawn_is_refused_before_anything_runs(

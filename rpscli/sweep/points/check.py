@@ -43,8 +43,8 @@ class SystemProperties(NamedTuple):
 
     `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
     that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
-    `limits` are those of the study or, where it has none, of the case; `lacking` names results
-    that the system cannot have; `doubts` are what is unusual about it.
+    `equipped` whether there are devices; `limits` are those of the study or, where it has none, of
+    the case; `lacking` names results that the system cannot have; `doubts` are what is unusual.
     """
 
     values: Values
@@ -56,6 +56,7 @@ class SystemProperties(NamedTuple):
     frequency_parameter: float
     static_base_shear: float
     building: bytes
+    equipped: bool
     record: RecordRequest | None
     scale: float
     limits: tuple[Condition, ...]
@@ -124,6 +125,7 @@ def _properties(
         frequency_parameter=structure.rigid_frequency_parameter,
         static_base_shear=structure.static_base_shear,
         building=b"" if building is None else _digest(building),
+        equipped=bool(structure.devices),
         record=request,
         scale=1.0 if case.record is None else case.record.scale,
         limits=_limits(study, case),
