@@ -50,13 +50,11 @@ FEW_COLUMNS, LONG_NAME, MOST_LETTERS = 4, 10, 14
 class RotationOptions(ReportOptions):
     """Largest rotations of several systems against those of one, record by record."""
 
-    key: VariedKey | None = Field(
-        None, description="varied key in which they differ; the last axis"
-    )
+    key: VariedKey | None = None
+    """varied key in which they differ; the last axis"""
     reference: Any = Field(None, description="its value on the horizontal axis; the last one")
-    panels: VariedKeys | None = Field(
-        None, description="varied keys, one panel for each value; each intensity by default"
-    )
+    panels: VariedKeys | None = None
+    """varied keys, one panel for each value; each intensity by default"""
 
 
 class ContrastOptions(RotationOptions):
@@ -66,9 +64,8 @@ class ContrastOptions(RotationOptions):
     value: Any = Field(None, description="the key's value that is compared; the first other one")
     rows: VariedKeys = Field(description="varied keys down each map")
     columns: VariedKeys = Field(description="varied keys across each map")
-    results: tuple[DemandName, ...] = Field(
-        ("rotation_ratio", "base_shear_ratio"), description="results of which ratios are formed"
-    )
+    results: tuple[DemandName, ...] = ("rotation_ratio", "base_shear_ratio")
+    """results of which ratios are formed"""
 
 
 class Pairs(NamedTuple):

@@ -59,12 +59,10 @@ FITTED, HELD_OUT, ALL = "fitted", "held out", "all"
 class FitSection(Section):
     """Choose values of varied keys on a share of the records; the rest is held out."""
 
-    keys: Keys | None = Field(
-        None, description="varied keys to be chosen; all but those of the observations"
-    )
-    share: Annotated[float, Quantity(above=0, below=1)] = Field(
-        0.5, description="share of the records that they are chosen on"
-    )
+    keys: Keys | None = None
+    """varied keys to be chosen; all but those of the observations"""
+    share: Annotated[float, Quantity(above=0, below=1)] = 0.5
+    """share of the records that they are chosen on"""
     seed: Seed = Field(1, description="of the draw of these records")
 
 

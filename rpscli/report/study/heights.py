@@ -44,9 +44,8 @@ class StoreyShearOptions(ReportOptions):
     """Mean and largest storey shears against those on a fixed base."""
 
     panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
-    unit: Literal["V_st", "kN"] = Field(
-        "V_st", description="of the figure: the base shear at uplift, or kN to compare systems"
-    )
+    unit: Literal["V_st", "kN"] = "V_st"
+    """of the figure: the base shear at uplift, or kN to compare systems"""
 
 
 class FloorSpectraOptions(ReportOptions):

@@ -228,9 +228,8 @@ class PulseSection(Section):
     """What a record that is not made from a formula has for a pulse."""
 
     period: Time = Field(description="of the pulse")
-    amplitude: Annotated[float, Quantity("m/s2", above=0)] | None = Field(
-        None, description="peak acceleration of the unscaled pulse; that of the record by default"
-    )
+    amplitude: Annotated[float, Quantity("m/s2", above=0)] | None = None
+    """peak acceleration of the unscaled pulse; that of the record by default"""
 
 
 class SpectrumOptions(ReportOptions):

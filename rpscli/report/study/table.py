@@ -33,12 +33,10 @@ SMALLER = 0.75
 class OverturningOptions(ReportOptions):
     """Share of the points that overturn, as a table."""
 
-    rows: VariedKeys | None = Field(
-        None, description="varied keys down the table; all but the columns'"
-    )
-    columns: VariedKeys | None = Field(
-        None, description="varied keys across; those of the last axis"
-    )
+    rows: VariedKeys | None = None
+    """varied keys down the table; all but the columns'"""
+    columns: VariedKeys | None = None
+    """varied keys across; those of the last axis"""
 
 
 class TableOptions(OverturningOptions):
