@@ -9,8 +9,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue, models_jso
 from pydantic_core import core_schema
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.study.reports import ReportKinds
-from rpscli.case.study.schema import StudyFile, StudyParts
+from rpscli.case.study.schema import StudyParts
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -47,20 +46,17 @@ def case_json_schema() -> dict[str, Any]:
     return json_schema_of(CaseFile)
 
 
-def study_json_schema(kinds: ReportKinds, model: type[StudyParts] = StudyFile) -> dict[str, Any]:
+def study_json_schema(model: type[StudyParts]) -> dict[str, Any]:
     """JSON schema of a study or design file; its base may lack what keys bring."""
-    options = {name: kind.options for name, kind in kinds.items()}
-    models: dict[type[BaseModel], None] = dict.fromkeys((model, CaseFile, *options.values()))
+    models: dict[type[BaseModel], None] = dict.fromkeys((model, CaseFile))
     references, schema = models_json_schema(
         [(model, "validation") for model in models], schema_generator=PresentKeys
     )
     definitions: dict[str, Any] = schema["$defs"]
 
-    def reference(model: Any) -> dict[str, Any]:
-        return dict(references[model, "validation"])
-
     def definition(model: Any) -> dict[str, Any]:
-        found: dict[str, Any] = definitions.pop(reference(model)["$ref"].rsplit("/", 1)[1])
+        name = references[model, "validation"]["$ref"].rsplit("/", 1)[1]
+        found: dict[str, Any] = definitions.pop(name)
         return found
 
     study, base = definition(model), definition(CaseFile)
@@ -70,15 +66,4 @@ def study_json_schema(kinds: ReportKinds, model: type[StudyParts] = StudyFile) -
         "anyOf": [{"type": "string", "minLength": 1}, base],
         "description": described,
     }
-    with_options = {
-        "type": "object",
-        "minProperties": 1,
-        "maxProperties": 1,
-        "additionalProperties": False,
-        "properties": {
-            name: {"anyOf": [reference(model), {"type": "null"}]} for name, model in options.items()
-        },
-    }
-    if reports := study["properties"].get("reports"):
-        reports["items"] = {"anyOf": [{"enum": list(options)}, with_options]}
     return {"$schema": DIALECT, **study, "$defs": definitions}

@@ -70,10 +70,28 @@ def sampled(distribution: str) -> tuple[str, str]:
         # reports
         (SCALE, f"reports: demand\n{SCALE}", ("study.yaml:10:10", "must be a list")),
         (SCALE, f"reports: [3]\n{SCALE}", ("reports.0 = 3", "must be a name")),
-        (SCALE, f"reports: [xyzzy]\n{SCALE}", ("no report 'xyzzy'", "known are", "fragility")),
-        (SCALE, f"reports: [{'x' * 5000}]\n{SCALE}", ("no report 'xxx", "xxx...; known are")),
-        (SCALE, f"reports: [lines]\n{SCALE}", ("reports.0.x is missing", "reports.0.y is missing")),
+        (
+            SCALE,
+            f"reports: [xyzzy]\n{SCALE}",
+            ("'xyzzy' is not a report", "known are", "fragility"),
+        ),
+        (SCALE, f"reports: [{'x' * 5000}]\n{SCALE}", ("= 'xxx", "... is not a report; known are")),
+        (
+            SCALE,
+            f"reports: [lines]\n{SCALE}",
+            ("reports.0.lines.x is missing", "lines.y is missing"),
+        ),
         (SCALE, f"reports: [demand: 3]\n{SCALE}", ("demand = 3", "mapping of options")),
+        (
+            SCALE,
+            f"reports: [demand: {{panels: }}, ida: {{panles: scale}}, 3]\n{SCALE}",
+            (
+                "study.yaml:10:20: reports.0.demand.panels has no value",
+                "study.yaml:10:37: reports.1.ida.panles is not a key",
+                "did you mean reports.1.ida.panels",
+                "study.yaml:10:53: reports.2 = 3 must be a name",
+            ),
+        ),
         (SCALE, f"reports: [demand: {{panels: [3]}}]\n{SCALE}", ("a key or a list of keys",)),
         # sample
         (*sampled("7"), ("cap_beam_mass_ratio = 7 must be [low, high]", "distribution")),

@@ -36,7 +36,7 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     for path in empty:
         if path not in announced:
             _empty_value(check, model, path)
-    content = document.pruned(empty)
+    content = document.pruned(empty, elements=True)
     read, errors = _read(model, content)
     if not (errors or check.faults):
         return check._replace(sound=content, read=read)

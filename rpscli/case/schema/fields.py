@@ -7,6 +7,7 @@ that bounds, unit and meaning stand once, beside the field.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Annotated, Any, Literal, NoReturn, Self, TypeGuard
@@ -16,13 +17,14 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
     PlainValidator,
     WithJsonSchema,
     model_validator,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from rpscli.errors import listed, nearest
+from rpscli.errors import hint, listed, nearest
 from rpscli.units import KINDS, si_value
 
 
@@ -307,3 +309,58 @@ class Several:
             custom_error_type="rps",
             custom_error_message="must be a list of values, or {low, high, count}",
         )
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """A mapping that is one of several kinds of section, under its name: ``name: {option: value}``.
+
+    In JSON schemas a name may stand alone, as where a file is read before it is checked.
+    """
+
+    what: str
+    sections: Mapping[str, type[Section]]
+
+    def name_of(self, value: object) -> str:
+        """The kind of a value; refuses what has none."""
+        if not isinstance(value, str) and not (isinstance(value, dict) and len(value) == 1):
+            refuse("must be a name, or one `name: {option: value}`")
+        name = value if isinstance(value, str) else str(next(iter(value)))
+        if name not in self.sections:
+            known = f"known are {listed(self.sections, 'and')}"
+            refuse(f"is not a {self.what}; {hint(name, self.sections, known)}")
+        return name
+
+    def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """The check, for pydantic."""
+
+        def checked(value: object) -> object:
+            self.name_of(value)
+            return value
+
+        def inside(value: Any) -> object:
+            (options,) = value.values()
+            if not isinstance(options, dict):
+                refuse("must be a mapping of options")
+            return options
+
+        before = core_schema.no_info_before_validator_function
+        kinds: dict[Any, CoreSchema] = {
+            name: before(inside, handler.generate_schema(section))
+            for name, section in self.sections.items()
+        }
+        return before(checked, core_schema.tagged_union_schema(kinds, self.name_of))
+
+    def __get_pydantic_json_schema__(
+        self, schema: Any, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """The JSON schema."""
+        kinds = schema["schema"]["choices"].items()
+        one = {
+            "type": "object",
+            "minProperties": 1,
+            "maxProperties": 1,
+            "additionalProperties": False,
+            "properties": {k: {"anyOf": [handler(each), {"type": "null"}]} for k, each in kinds},
+        }
+        return {"anyOf": [{"enum": list(self.sections)}, one]}

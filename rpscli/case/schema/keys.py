@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.fields import PLAIN, Quantity, Several, ValueRange, Whole
+from rpscli.case.schema.fields import PLAIN, OneOf, Quantity, Several, ValueRange, Whole
 from rpscli.case.text.document import Fault, Path, dotted
 from rpscli.errors import listed, nearest
 
@@ -66,12 +66,13 @@ def annotation_at(model: type[BaseModel], path: Path) -> Any:
     return below
 
 
-def _keys_in(annotation: Any) -> dict[str, FieldInfo]:
-    """The keys of a mapping, of any of its forms."""
-    fields: dict[str, FieldInfo] = {}
+def _keys_in(annotation: Any) -> dict[str, Any]:
+    """The keys of a mapping, of any of its forms; names of sections stand for these."""
+    fields: dict[str, Any] = {}
     for section in sections_of(annotation):
         fields = fields_of(section) | fields
-    return fields
+    kinds = (part.sections for part in _inside(annotation) if isinstance(part, OneOf))
+    return {**fields, **next(kinds, {})}
 
 
 def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:

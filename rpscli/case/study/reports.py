@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Protocol, get_args
 
-from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.fields import Section, Text
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.schema import Analysis, AnyKeys
-from rpscli.case.text.document import Document, Fault, Path, dotted, shown
-from rpscli.errors import hint, listed
+from rpscli.case.text.document import Document, Fault, Path
 
 _VARIED = "varied keys"
 VariedKeys = Annotated[AnyKeys, _VARIED]
@@ -83,42 +81,35 @@ OF_THE_STUDY = ("points", "failed", "statistics", "verdicts")
 """Stems of files that every study leaves."""
 
 
-def requests_of(
-    document: Document, kinds: ReportKinds
-) -> tuple[tuple[ReportRequest, ...], list[Fault]]:
-    """Reports under the key `reports`, and what is wrong with them."""
-    written = document.content.get("reports", [])
+def written_out(document: Document, kinds: ReportKinds) -> Document:
+    """A study in which reports that are named alone, or with nothing behind them, have options."""
+
+    def whole(item: Any) -> Any:
+        if isinstance(item, str) and item in kinds:
+            return {item: {}}
+        alone = isinstance(item, dict) and len(item) == 1 and [*item.values()] == [None]
+        return {kind: {} for kind in item} if alone else item
+
+    written = document.content.get("reports")
+    if not isinstance(written, list):
+        return document
+    return replace(document, content={**document.content, "reports": [*map(whole, written)]})
+
+
+def requests_of(document: Document, kinds: ReportKinds) -> tuple[ReportRequest, ...]:
+    """Reports of a study that is written out, as far as they can be read."""
     requests: list[ReportRequest] = []
-    faults: list[Fault] = []
+    written = document.content.get("reports")
     for index, item in enumerate(written if isinstance(written, list) else ()):
-        path: Path = ("reports", index)
-        if isinstance(item, str):
-            kind, given = item, None
-        elif isinstance(item, dict) and len(item) == 1:
+        try:
             ((kind, given),) = item.items()
-            path = (*path, kind)
-        else:
-            continue  # told with the other keys
-        if kind not in kinds:
-            suggestion = hint(kind, kinds, f"known are {listed(kinds, 'and')}")
-            text = f"reports.{index}: there is no report {shown(kind)}; {suggestion}"
-            faults.append(Fault(path, text))
-            continue
-        if given is not None and not isinstance(given, dict):
-            text = f"{dotted(path)} = {shown(given)} must be a mapping of options"
-            faults.append(Fault(path, text))
-            continue
-        part = document.part(*path) if given else Document(document.name, {})
-        check = schema_check(kinds[kind].options, part)
-        faults += (
-            Fault((*path, *fault.path), f"{dotted(path)}.{fault.text}", fault.at_key)
-            for fault in check.faults
-        )
-        if check.read is not None:
-            taken = {*OF_THE_STUDY, *(request.stem for request in requests)}
-            stem = _stem(check.read.name or kind, taken)
-            requests.append(ReportRequest(kind, stem, check.read, ("reports", index)))
-    return tuple(requests), faults
+            options = kinds[kind].options.model_validate(given)
+        except (AttributeError, KeyError, ValueError):
+            continue  # told key by key
+        taken = {*OF_THE_STUDY, *(request.stem for request in requests)}
+        stem = _stem(options.name or kind, taken)
+        requests.append(ReportRequest(kind, stem, options, ("reports", index)))
+    return tuple(requests)
 
 
 def _stem(wanted: str, taken: set[str]) -> str:

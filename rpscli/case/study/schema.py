@@ -6,6 +6,7 @@ that join several keys stand in `rules`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
@@ -18,6 +19,7 @@ from pydantic import (
     Tag,
     ValidationInfo,
     WithJsonSchema,
+    create_model,
     model_validator,
 )
 from pydantic_core import CoreSchema
@@ -26,6 +28,7 @@ from rpscli.case.schema.case_file import FORMAT_VERSION, PositiveRatio, Time
 from rpscli.case.schema.fields import (
     CHECKED_BY_ITSELF,
     DampingRatio,
+    OneOf,
     Quantity,
     Section,
     Several,
@@ -229,23 +232,12 @@ Sources = Annotated[
 ]
 
 
-def _report(value: object) -> object:
-    if not isinstance(value, str) and not (isinstance(value, dict) and len(value) == 1):
-        refuse("must be a name, or one `name: {option: value}`")
-    return value
-
-
-WrittenOrNamed = str | dict[str, Any]
 Base = Annotated[
-    WrittenOrNamed,
+    str | dict[str, Any],
     must_be((str, dict), "a file, as text, or a case, as a mapping", filled=True),
     CHECKED_BY_ITSELF,
 ]
-Reports = Annotated[
-    tuple[Annotated[WrittenOrNamed, PlainValidator(_report), WithJsonSchema({})], ...],
-    must_be(list, "a list, as in [overturning, fragility]"),
-    CHECKED_BY_ITSELF,
-]
+_A_LIST = must_be(list, "a list, as in [overturning, fragility]")
 
 
 class StudyParts(Section):
@@ -285,5 +277,12 @@ class StudyFile(StudyParts):
     """small perturbations around every point"""
     observed: Text | None = None
     """CSV file of what was observed under records; for the report comparison"""
-    reports: Reports = ()
+    reports: Annotated[tuple[Any, ...], _A_LIST] = ()
     """names of reports, or `name: {option: value}`"""
+
+
+def study_file(kinds: Mapping[str, type[Section]]) -> type[StudyFile]:
+    """The format of studies that may ask for reports of these kinds."""
+    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", kinds)], ...], _A_LIST]
+    field = each, Field((), description=StudyFile.model_fields["reports"].description)
+    return create_model("StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field)

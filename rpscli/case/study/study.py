@@ -15,7 +15,7 @@ from rpscli.case.schema.keys import fields_of
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Axis, axes_of, sources_of
 from rpscli.case.study.observed import Observed, observed_of
-from rpscli.case.study.reports import ReportKinds, ReportRequest, requests_of
+from rpscli.case.study.reports import ReportKinds, ReportRequest, requests_of, written_out
 from rpscli.case.study.rules import (
     analysis_rules,
     fixed_faults,
@@ -25,7 +25,7 @@ from rpscli.case.study.rules import (
     twice,
     unknown_keys,
 )
-from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
+from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts, study_file
 from rpscli.case.text.document import Document, is_case, is_design, is_study, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
@@ -113,11 +113,13 @@ def study_of(
     digest: str,
 ) -> Study:
     """A study from its document, as `parse_study` says."""
-    check = schema_check(StudyFile, document)
+    whole = written_out(document, kinds)
+    options = {name: kind.options for name, kind in kinds.items()}
+    check = schema_check(study_file(options), whole)
     axes, axis_faults = axes_of(document)
     sources, source_faults = sources_of(document, folder)
-    reports, report_faults = requests_of(document, kinds)
-    faults = [*check.faults, *axis_faults, *source_faults, *report_faults]
+    reports = requests_of(whole, kinds)
+    faults = [*check.faults, *axis_faults, *source_faults]
     faults += [*unknown_keys(document), *twice(document), *record_rules(document)]
     faults += analysis_rules(document, reports, kinds)
     observed = None

@@ -139,12 +139,19 @@ class Document:
         )
         return Document(self.name, self.at(path), below(self.keys), below(self.values), faults)
 
-    def pruned(self, paths: Iterable[Path]) -> dict[str, Any]:
-        """A copy of the content without the values at some paths."""
+    def pruned(self, paths: Iterable[Path], *, elements: bool = False) -> dict[str, Any]:
+        """A copy of the content without the values at some paths.
+
+        A faulty element takes its list with it, but what is inside `elements` may go alone.
+        """
         content = copy.deepcopy(self.content)
         for path in paths:
-            owner, key = content, None
-            for part in path:  # a faulty element of a list takes the list with it
+            owner: Any = content
+            key = None
+            for depth, part in enumerate(path, start=1):
+                if elements and isinstance(owner, list) and depth < len(path):
+                    owner = owner[int(part)]
+                    continue
                 if not isinstance(owner, dict) or part not in owner:
                     break
                 holder, key = owner, part
