@@ -283,6 +283,8 @@ class StudyFile(StudyParts):
 
 def study_file(kinds: Mapping[str, type[Section]]) -> type[StudyFile]:
     """The format of studies that may ask for reports of these kinds."""
+    if not kinds:
+        return StudyFile
     each: Any = Annotated[tuple[Annotated[Any, OneOf("report", kinds)], ...], _A_LIST]
     field = each, Field((), description=StudyFile.model_fields["reports"].description)
     return create_model("StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field)
