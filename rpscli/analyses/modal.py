@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.result_quantities import FIXED_BASE_MODES, UPLIFTED, values_of
+from rpscli.analyses.result_quantities import FIXED_BASE_MODES, LINEAR, UPLIFTED, values_of
 from rpscli.frozen import frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
+from rpscli.model.uplifted_state import UpliftedState, beginning, to_first_order
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
@@ -41,7 +42,10 @@ class FixedBaseModes(Shown):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class UpliftedModes(Shown):
-    """Modes after uplift, linearised about theta = 0; ascending in frequency."""
+    """Modes after uplift, linearised where the state begins; ascending in frequency."""
+
+    linearised_at: float
+    """|theta| where that is [rad]: 0, or beta rocking on curved ends."""
 
     eigenvalues: NDArray[np.complex128]
     """(2 n + 2,) the storey's own pair first, then the pairs of the vibration modes [1/s]."""
@@ -56,10 +60,12 @@ class UpliftedModes(Shown):
     frequency_parameter: float
     """p_ext of the storey's own mode [rad/s]; growth rate if the stiffness is negative."""
     frequency_parameter_rigid: float
-    """p_hat sqrt|kappa| of the rigid frame [rad/s]."""
+    """That of the rigid frame [rad/s]; to first order p_hat sqrt|kappa|."""
     shapes: Array
     """(n + 1, n + 1): storey's own mode first, then the vibration modes, one a column;
     u_b first, then the floors, relative to the ground, scaled to 1 at the largest component."""
+    first_order: UpliftedModes | None = None
+    """The paper's: to first order in alpha, rocking continued to theta = 0. None of those."""
 
     @property
     def own_period(self) -> float | None:
@@ -114,7 +120,8 @@ class ModalResult(Shown):
     @property
     def left_out(self) -> tuple[str, ...]:
         """What of the devices is not linear, and therefore not in the modes."""
-        laws = (device.linear(self.structure, 0.0, 0.0) for device in self.structure.devices)
+        state = beginning(self.structure.bearing, rolling=False)
+        laws = (device.linear(self.structure, state) for device in self.structure.devices)
         return tuple(dict.fromkeys(law.left_out for law in laws if law.left_out))
 
     @property
@@ -122,6 +129,12 @@ class ModalResult(Shown):
         """The uplifted states that exist, by name."""
         states = {"rolling": self.rolling, "rocking": self.rocking}
         return {name: modes for name, modes in states.items() if modes is not None}
+
+    @property
+    def both_orders(self) -> dict[str, tuple[UpliftedModes, UpliftedModes]]:
+        """The same, exact and to first order."""
+        orders = {name: (modes, modes.first_order) for name, modes in self.uplifted.items()}
+        return {name: (exact, paper) for name, (exact, paper) in orders.items() if paper}
 
     def facts(self) -> dict[str, Any]:
         """Periods on a fixed base, and what the storey itself does in each state."""
@@ -134,7 +147,10 @@ class ModalResult(Shown):
     def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""
         fixed = self.fixed_base
-        states = {name: values_of(modes, UPLIFTED) for name, modes in self.uplifted.items()}
+        states = {
+            name: values_of(exact, UPLIFTED) | {"first_order": values_of(paper, LINEAR)}
+            for name, (exact, paper) in self.both_orders.items()
+        }
         return {
             "fixed_base": None if fixed is None else values_of(fixed, FIXED_BASE_MODES),
             "rolling": None,
@@ -144,17 +160,23 @@ class ModalResult(Shown):
 
 
 def modal(structure: PodiumStructure) -> ModalResult:
-    """Modal analysis in full contact, rolling and rocking (Theory, section 6; paper, section 3)."""
-    bearing, building = structure.bearing, structure.superstructure
-    rolling = None
-    if not bearing.is_flat:
-        rolling = _uplifted(structure, 2.0 * bearing.curvature_ratio - 1.0, bearing.alpha)
+    """Modal analysis in full contact, rolling and rocking (Theory, section 6; paper, section 3).
+
+    Exact where a state begins; the paper's first-order values are in `first_order` of each state.
+    """
+    building, flat = structure.superstructure, structure.bearing.is_flat
     return ModalResult(
         structure=structure,
         fixed_base=_fixed_base(building) if building else None,
-        rolling=rolling,
-        rocking=_uplifted(structure, -1.0, bearing.alpha_wedge),
+        rolling=None if flat else _both_orders(structure, rolling=True),
+        rocking=_both_orders(structure, rolling=False),
     )
+
+
+def _both_orders(structure: PodiumStructure, *, rolling: bool) -> UpliftedModes:
+    bearing = structure.bearing
+    paper = _uplifted(structure, to_first_order(bearing, rolling=rolling))
+    return replace(_uplifted(structure, beginning(bearing, rolling=rolling)), first_order=paper)
 
 
 def _fixed_base(building: Superstructure) -> FixedBaseModes:
@@ -164,50 +186,55 @@ def _fixed_base(building: Superstructure) -> FixedBaseModes:
 
 
 def linearised_matrices(
-    structure: PodiumStructure, kappa: float, angle: float
+    structure: PodiumStructure, state: UpliftedState
 ) -> tuple[Array, Array, Array]:
     """M_L, C_L, K_L in the coordinates [2 R theta, u_t], each (n + 1, n + 1).
 
-    The storey's dimensionless stiffness `kappa` is 2 rho - 1 rolling, -1 rocking, the angle alpha
-    rolling, alpha' rocking [rad].
-
-    Paper, Table 2, where the sign of the (2 rho - 1) term must be +: with the printed one a larger
-    radius would soften the storey (Theory, section 9). Linear dampers and elastic tendons belong
-    to u_b (Theory, section 11).
+    About a state at rest, whose weight a constant moment holds (Theory, section 6). To first order
+    paper, Table 2, where the sign of the (2 rho - 1) term must be +: with the printed one a larger
+    radius would soften the storey (Theory, section 9). Linear dampers and elastic tendons are in it
+    (Theory, section 11).
     """
     n = structure.storeys
     M, C, K = (np.zeros((n + 1, n + 1)) for _ in range(3))
-    columns = 0.25 * structure.columns_mass * structure.bearing.inertia_ratio
-    M[0, 0] = columns + structure.cap_beam_mass + structure.superstructure_mass * angle**2
-    K[0, 0] = structure.weight * kappa / (2.0 * structure.bearing.semi_diagonal)
-    stiffness, C[0, 0] = _of_devices(structure, kappa, angle)
-    K[0, 0] += stiffness
+    M[0, 0] = _base_mass(structure, state) + structure.superstructure_mass * state.arm**2
+    stiffness, C[0, 0] = _of_devices(structure, state)
+    K[0, 0] = structure.weight * state.kappa / (2.0 * structure.bearing.semi_diagonal) + stiffness
     if (building := structure.superstructure) is not None:
         M[1:, 1:] = building.mass_matrix
         for whole, part in ((C, building.damping_matrix), (K, building.stiffness_matrix)):
-            whole[0, 0] += part.sum()
-            whole[0, 1:] = whole[1:, 0] = -part.sum(axis=0)
+            whole[0, 0] += state.height**2 * part.sum()
+            whole[0, 1:] = whole[1:, 0] = -state.height * part.sum(axis=0)
             whole[1:, 1:] = part
     return M, C, K
 
 
-def _of_devices(structure: PodiumStructure, kappa: float, angle: float) -> tuple[float, float]:
-    """Stiffness [N/m] and damping [N s/m] that devices add to u_bR."""
-    laws = [device.linear(structure, kappa, angle) for device in structure.devices]
+def _base_mass(structure: PodiumStructure, state: UpliftedState) -> float:
+    """Inertia of columns and cap beam against 2 R theta [kg]."""
+    S = state.squared_distance
+    columns = 0.25 * structure.columns_mass * (structure.bearing.inertia_ratio - 1.0 + S)
+    return columns + structure.cap_beam_mass * S
+
+
+def _of_devices(structure: PodiumStructure, state: UpliftedState) -> tuple[float, float]:
+    """Stiffness [N/m] and damping [N s/m] that devices add to 2 R theta."""
+    laws = [device.linear(structure, state) for device in structure.devices]
     return sum(law.stiffness for law in laws), sum(law.damping for law in laws)
 
 
-def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> UpliftedModes:
-    M, C, K = linearised_matrices(structure, kappa, angle)
-    size = len(M)
-    state = np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
-    values, vectors = np.linalg.eig(state)
-    diameter = 2.0 * structure.bearing.semi_diagonal
-    stiffness, coefficient = _of_devices(structure, kappa, angle)
-    kappa += stiffness * diameter / structure.weight
-    own = _own_pair(values, kappa, coefficient / M.sum())
+def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes:
+    M, C, K = linearised_matrices(structure, state)
+    size, diameter = len(M), 2.0 * structure.bearing.semi_diagonal
+    system = np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
+    values, vectors = np.linalg.eig(system)
+    stiffness, coefficient = _of_devices(structure, state)
+    kappa = state.kappa + stiffness * diameter / structure.weight
+    carried = structure.superstructure_mass * state.squared_distance
+    rigid = _base_mass(structure, state) + carried
+    own = _own_pair(values, kappa, coefficient / rigid)
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
     values, vectors = values[order].astype(complex), vectors[:size, order]
+    vectors[0] *= state.height  # u_b
     if kappa == coefficient == 0.0:
         # A defective double zero: rounding splits it into +-sqrt(eps), which is not a frequency.
         values[:2], vectors[:, :2] = 0.0, 1.0
@@ -218,15 +245,15 @@ def _uplifted(structure: PodiumStructure, kappa: float, angle: float) -> Uplifte
     building = structure.superstructure
     omega = building.frequencies if building else np.empty(0)
     xi = building.damping_ratios if building else np.empty(0)
-    rigid = structure.rigid_frequency_parameter * math.sqrt(abs(kappa))
     return UpliftedModes(
+        linearised_at=state.rotation,
         eigenvalues=np.concatenate([values[:2], *([a, b] for a, b, _ in pairs)]),
         frequencies=frequencies,
         damping=damping,
         frequency_ratio=frequencies / omega,
         damping_ratio=np.divide(damping, xi, out=np.full_like(damping, np.nan), where=xi > 0.0),
         frequency_parameter=math.sqrt(abs(values[0] * values[1])),
-        frequency_parameter_rigid=rigid,
+        frequency_parameter_rigid=math.sqrt(abs(kappa) * structure.weight / (diameter * rigid)),
         shapes=_scaled(np.column_stack([_real_shape(vectors[:, i]) for i in columns])),
     )
 

@@ -249,20 +249,31 @@ _SHAPES = ResultQuantity("shapes", "-", "mode shape")
 FIXED_BASE_MODES = (_FREQUENCIES, ResultQuantity("periods", "s", "period", "$T$"), _DAMPING)
 """Lists by mode in full contact."""
 
+ORDER = "exact where the state begins; under first_order the paper's, for small alpha"
+
 UPLIFTED_MODES = (_FREQUENCIES, _DAMPING)
 """Lists by vibration mode of a linearised uplifted state."""
 
 UPLIFTED_RATIOS = (
-    ResultQuantity("frequency_ratio", "-", "frequency ratio", r"$\omega_u/\omega_0$"),
-    ResultQuantity("damping_ratio", "-", "damping ratio", r"$\xi_u/\xi_0$"),
+    ResultQuantity(
+        "frequency_ratio", "-", "frequency ratio", r"$\omega_u/\omega_0$", meaning=ORDER
+    ),
+    ResultQuantity("damping_ratio", "-", "damping ratio", r"$\xi_u/\xi_0$", meaning=ORDER),
 )
 """The same lists over those of the fixed base."""
 
 FREQUENCY_PARAMETERS = (
-    ResultQuantity("frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$"),
-    ResultQuantity("frequency_parameter_rigid", "rad/s", "rigid estimate", r"$\hat{p}_{ext}$"),
+    ResultQuantity(
+        "frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$", meaning=ORDER
+    ),
+    ResultQuantity(
+        "frequency_parameter_rigid", "rad/s", "rigid estimate", r"$\hat{p}_{ext}$", meaning=ORDER
+    ),
 )
 """Of the storey's own mode."""
+
+LINEAR = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS)
+"""What both orders have, the exact one and the paper's."""
 
 OWN_MOTION = (
     ResultQuantity("own_motion", "", "what the storey's own mode does"),
@@ -273,7 +284,12 @@ OWN_MOTION = (
 
 EIGENVALUES = ResultQuantity("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
 
-UPLIFTED = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS, *OWN_MOTION, EIGENVALUES)
+UPLIFTED = (
+    *LINEAR,
+    ResultQuantity("linearised_at", "rad", "tilt about which modes are linearised"),
+    *OWN_MOTION,
+    EIGENVALUES,
+)
 """All results of an uplifted state besides its shapes."""
 
 FIXED_BASE_SHAPES = (_SHAPES,)

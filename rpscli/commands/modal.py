@@ -38,7 +38,9 @@ def command(
     look: Look,
     film: FilmRequest | None,
 ) -> None:
-    """Modes of CASE in full contact and, linearised, rolling and rocking.
+    """Modes of CASE in full contact and, linearised where they begin, rolling and rocking.
+
+    Beside exact values stand the paper's, of first order in alpha.
 
     Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
     """
@@ -58,15 +60,28 @@ def command(
     conclude(given, folder, result.results(), _tables(result, given.case.title), terminal)
 
 
+ORDER = (
+    "Uplifted states are linearised exactly where they begin: rolling at 0, rocking at beta (0 for"
+    " flat ends). First order is the paper's: small alpha, rocking continued to 0."
+)
+
+
 def _tables(result: ModalResult, title: str) -> Iterator[Part]:
-    storey = []
-    for name, modes in result.uplifted.items():
-        numbers = modes.frequency_parameter, modes.frequency_parameter_rigid
-        storey.append((name, modes.own_motion, *map(shown, numbers)))
+    storey, vibrations = [], []
+    for name, (modes, paper) in result.both_orders.items():
+        numbers = modes.frequency_parameter, paper.frequency_parameter
+        rigid = modes.frequency_parameter_rigid
+        storey.append((name, modes.own_motion, *map(shown, (*numbers, rigid))))
+        for i, w in enumerate(modes.frequencies):
+            xi = shown(100.0 * modes.damping[i], 3), shown(100.0 * paper.damping[i], 3)
+            ratios = shown(modes.frequency_ratio[i]), shown(modes.damping_ratio[i])
+            cells = shown(w), shown(paper.frequencies[i]), ratios[0], *xi, ratios[1]
+            vibrations.append((name, str(i + 1), *cells))
     yield Heading(title)
     yield Table.of_texts(
-        ("storey's own mode", "", "p_ext rad/s", "rigid estimate rad/s"), storey, words=2
+        ("storey's own mode", "", "p_ext rad/s", "first order", "rigid estimate"), storey, words=2
     )
+    yield ORDER
     if result.left_out:
         yield f"Not linear, and left out: {listed(result.left_out, 'and')}."
     if (fixed := result.fixed_base) is None:
@@ -76,9 +91,5 @@ def _tables(result: ModalResult, title: str) -> Iterator[Part]:
         for i, w in enumerate(fixed.frequencies)
     ]
     yield Table.of_texts(("full contact", "rad/s", "T s", "xi %"), rows)
-    for name, modes in result.uplifted.items():
-        states = []
-        for i, w in enumerate(modes.frequencies):
-            damping = shown(100.0 * modes.damping[i], 3), shown(modes.damping_ratio[i])
-            states.append((str(i + 1), shown(w), shown(modes.frequency_ratio[i]), *damping))
-        yield Table.of_texts((name, "rad/s", "of fixed base", "xi %", "of fixed base"), states)
+    heads = "rad/s", "first order", "of fixed base", "xi %", "first order", "of fixed base"
+    yield Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)

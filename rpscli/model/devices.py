@@ -10,6 +10,7 @@ import numpy as np
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, PodiumStructure
+from rpscli.model.uplifted_state import UpliftedState
 
 
 class _OnCapBeam(Device):
@@ -63,10 +64,10 @@ class ViscousDamper(_OnCapBeam):
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
         return 0.0
 
-    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+    def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         if self.exponent != 1.0:
             return Linear(left_out="dampers whose exponent is not 1")
-        return Linear(damping=self.coefficient)
+        return Linear(damping=self.coefficient * state.height**2)
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
         # Powers of the velocity shorten their steps by themselves.
@@ -104,7 +105,7 @@ class FrictionDamper(_OnCapBeam):
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
         return 0.0
 
-    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+    def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         return Linear(left_out="friction")
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
@@ -150,7 +151,7 @@ class Stop(_OnCapBeam):
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
         return self.stiffness if self.gap == 0.0 else 0.0
 
-    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+    def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         return Linear(left_out="stops")
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
@@ -228,12 +229,13 @@ class Tendon(Device):
         growth = N * (self.stiffness * 4.0 * B**2 + self.prestress * 2.0 * r)
         return _force_growth(bearing, N * self.prestress * 2.0 * B, growth)
 
-    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
-        # To first order e = 2 R (a theta + (kappa + 1) theta^2/2), so N T de/dtheta over 2 R is
-        # N P_0 a + [N k_t a^2 + N P_0 (kappa + 1)/2R] u_bR.
-        geometric = self.prestress * (kappa + 1.0) / (2.0 * structure.bearing.semi_diagonal)
-        elastic = self.stiffness * angle**2
-        return Linear(structure.columns * (elastic + geometric), left_out="yielding of tendons")
+    def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
+        # N T de/dx, over (2 R)^2 x.
+        e, slope, bend = state.elongation
+        tension = min(self.prestress + self.stiffness * e, self.yield_force)
+        growth = structure.columns * (self.stiffness * slope**2 + tension * bend)
+        diameter = 2.0 * structure.bearing.semi_diagonal
+        return Linear(growth / diameter**2, left_out="yielding of tendons")
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
         # N k_t (de/du_b)^2: de/dx is at most 2 (B + r beta), du_b/dx at least 2 R cos(alpha).
@@ -296,7 +298,7 @@ class RollingResistance(_OnCapBeam):
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
         return _force_growth(structure.bearing, 2.0 * structure.weight * self.lever, 0.0)
 
-    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+    def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         return Linear(left_out="rolling resistance")
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:

@@ -16,6 +16,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
+from rpscli.model.uplifted_state import UpliftedState
 from rpscli.physics.planar import geometry
 from rpscli.shown import Shown, with_unit
 
@@ -230,10 +231,10 @@ class AtRest(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """What a device adds to small motions u_bR = 2 R theta on one side (Theory, sections 6, 11)."""
+    """What a device adds to small motions 2 R theta on one side (Theory, sections 6, 11)."""
 
     stiffness: float = 0.0
-    """To first order [N/m]."""
+    """[N/m]."""
     damping: float = 0.0
     """[N s/m]."""
     left_out: str = ""
@@ -268,8 +269,8 @@ class Device(ABC):
         |theta|, of any shape [rad]; of `beam_forces` theta.
     farthest
         Rotation to which it was drawn before [rad].
-    kappa, angle
-        2 rho - 1 and alpha rolling, -1 and alpha' rocking [-, rad].
+    state
+        About which motions are small.
     force
         Of the device, as histories have it [N].
     length
@@ -304,7 +305,7 @@ class Device(ABC):
         """What it adds to dF/du_b at u_b = 0+, on the way out [N/m], exact."""
 
     @abstractmethod
-    def linear(self, structure: PodiumStructure, kappa: float, angle: float) -> Linear:
+    def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         """What modes hold of it."""
 
     @abstractmethod

@@ -18,7 +18,7 @@ SIZES += [(50, FLAT), (50, 0.5), (100, 1.5)]
 
 
 def eigenvalues_anew(structure: PodiumStructure, *, rolling: bool) -> Array:
-    """Roots of the linearised system in base and drifts, by a generalised eigenproblem.
+    """Roots of the first-order system in base and drifts, by a generalised eigenproblem.
 
     Coordinates [u_b, d_1 ... d_n]: springs and dampers of the storeys are then uncoupled, the mass
     matrix is full; columns share u_b/2 and turn by u_b/2R, floors rise by a u_b.
@@ -53,7 +53,8 @@ def test_eigenvalues_are_those_of_matrices_built_in_drifts(storeys: int, rho: fl
     structure = podium(storeys, 0.15, rho)
     for modes, rolling in states(structure):
         expected = eigenvalues_anew(structure, rolling=rolling)
-        got = modes.eigenvalues
+        assert modes.first_order is not None
+        got = modes.first_order.eigenvalues
         assert len(got) == len(expected) == 2 * storeys + 2
         # each has a partner; a double zero is found to the root of eps only
         size = 1e-7 * float(np.max(np.abs(expected)))
@@ -110,18 +111,20 @@ def test_one_root_grows_where_the_stiffness_is_negative(storeys: int) -> None:
 
 @pytest.mark.parametrize(("tan_alpha", "period"), [(0.05, 0.1), (0.15, 0.3), (0.3, 1.0)])
 def test_one_storey_in_closed_form(tan_alpha: float, period: float) -> None:
-    """omega_u/omega_0 = sqrt(1 + M_tot/(N m_c Io/4 + m_b + M_tot a^2)); xi takes the same factor.
+    """omega_u/omega_0 = sqrt(1 + C^2 M_tot/(N m_c Io/4 + m_b + M_tot B^2)); xi the same factor.
 
-    At rho = 1/2 gravity drops out, so the form is exact.
+    B and C are a and 1 to first order. At rho = 1/2 gravity drops out, so the form is exact.
     """
     structure = podium(1, tan_alpha, 0.5, superstructure=building(1, period))
     modes = modal(structure).rolling
     assert modes is not None
     total, a = structure.superstructure_mass, structure.bearing.alpha
-    base = structure.columns_mass / 3.0 + structure.cap_beam_mass + total * a**2
-    factor = math.sqrt(1.0 + total / base)
-    assert modes.frequency_ratio[0] == pytest.approx(factor, rel=1e-7)
-    assert modes.damping_ratio[0] == pytest.approx(factor, rel=1e-7)
+    for found, B, C in ((modes, math.sin(a), math.cos(a)), (modes.first_order, a, 1.0)):
+        assert found is not None
+        base = structure.columns_mass / 3.0 + structure.cap_beam_mass + total * B**2
+        factor = math.sqrt(1.0 + C**2 * total / base)
+        assert found.frequency_ratio[0] == pytest.approx(factor, rel=1e-7)
+        assert found.damping_ratio[0] == pytest.approx(factor, rel=1e-7)
 
 
 @pytest.mark.parametrize("storeys", [0, 1, 6, 100])
@@ -139,7 +142,9 @@ def test_a_rigid_frame_has_only_its_own_mode() -> None:
     for rho, kappa in ((FLAT, -1.0), (0.25, -0.5), (1.5, 2.0)):
         structure = podium(0, 0.15, rho)
         result = modal(structure)
-        modes = result.rocking if rho == FLAT else result.rolling
+        state = result.rocking if rho == FLAT else result.rolling
+        assert state is not None
+        modes = state.first_order
         assert modes is not None
         assert len(modes.frequencies) == 0
         p = structure.rigid_frequency_parameter * math.sqrt(abs(kappa))
@@ -172,23 +177,25 @@ def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() 
     assert modes is not None
     masses = np.full(7, 2e5)
     a = structure.bearing.alpha
-    masses[0] = 2e4 / 3.0 + 2e5 + 12e5 * a**2
+    # of u_b = C 2 R theta
+    masses[0] = (2e4 / 3.0 + 2e5 + 12e5 * math.sin(a) ** 2) / math.cos(a) ** 2
     generalised = modes.shapes.T @ np.diag(masses) @ modes.shapes
     off = generalised - np.diag(np.diag(generalised))
     assert np.abs(off).max() < 1e-9 * masses[0]
 
 
 def test_the_storeys_own_mode_in_words() -> None:
-    """Rigid frame: lambda^2 = -kappa p^2, kappa = 2 rho - 1, rocking -1.
+    """Rigid frame to first order: lambda^2 = -kappa p^2, kappa = 2 rho - 1, rocking -1.
 
     With p^2 = (g/R)(1 + 2 gamma)/(Io + 4 gamma) and gamma = 10, Io = 4/3, R = 1.5 m:
     p = sqrt(6.53777 * 21/41.3333) = 1.82253 rad/s.
     """
-    swings = modal(podium(0, 0.15, 1.0)).rolling
+    rolling, falling = modal(podium(0, 0.15, 1.0)).uplifted.values()
+    swings, falls = rolling.first_order, falling.first_order
     assert swings is not None
+    assert falls is not None
     assert swings.own_period == pytest.approx(2.0 * math.pi / 1.82253, rel=1e-5)
     assert (swings.own_growth_time, swings.own_motion) == (None, "swings with T = 3.448 s")
-    falls = modal(podium(0, 0.15, 1.0)).rocking
     assert falls.own_growth_time == pytest.approx(1.0 / 1.82253, rel=1e-5)
     assert (falls.own_period, falls.own_motion) == (None, "falls away, e-fold in 0.5487 s")
     neutral = modal(podium(0, 0.15, 0.5)).rolling

@@ -98,6 +98,10 @@ def test_modal(rps_json: InvokeJson, case: Path) -> None:
         assert document[name]["frequency_parameter_rigid"] == modes.frequency_parameter_rigid
         assert document[name]["frequency_ratio"] == modes.frequency_ratio.tolist()
         assert document[name]["damping_ratio"] == modes.damping_ratio.tolist()
+        assert modes.first_order is not None
+        paper = document[name]["first_order"]
+        assert paper["frequencies"] == modes.first_order.frequencies.tolist()
+        assert paper["frequency_parameter"] == modes.first_order.frequency_parameter
         pairs = np.array(document[name]["eigenvalues"])
         assert np.array_equal(pairs[:, 0] + 1j * pairs[:, 1], modes.eigenvalues)
     fixed = document["fixed_base"]
@@ -117,7 +121,11 @@ def test_tables_of_the_modes(rps: Invoke) -> None:
     assert list(modes) == [
         "state [-]", "mode [-]", "frequency [rad/s]", "period [s]", "damping [-]",
         "frequency_ratio [-]", "damping_ratio [-]",
+        "first_order_frequency [rad/s]", "first_order_damping [-]",
     ]  # fmt: skip
+    assert result.rolling.first_order is not None
+    paper = [float(value) for value in modes["first_order_frequency [rad/s]"][3:6]]
+    assert paper == pytest.approx(result.rolling.first_order.frequencies, rel=TEN_DIGITS)
     assert modes["state [-]"] == ["full_contact"] * 3 + ["rolling"] * 3 + ["rocking"] * 3
     rolling = [float(value) for value in modes["frequency [rad/s]"][3:6]]
     assert rolling == pytest.approx(result.rolling.frequencies, rel=TEN_DIGITS)

@@ -130,11 +130,8 @@ def modes() -> Iterator[Comparison]:
 
 
 def _uplifted(storeys: int, rho: float, size: float) -> UpliftedModes:
-    result = modal(paper_podium(storeys, 0.15, rho or 0.5, size))
-    if rho == ROCKING:
-        return result.rocking
-    assert result.rolling is not None, "curved ends roll"
-    return result.rolling
+    states = modal(paper_podium(storeys, 0.15, rho or 0.5, size)).both_orders
+    return states["rolling" if rho else "rocking"][1]
 
 
 def _phase(rho: float) -> str:

@@ -20,20 +20,32 @@ from rpscli.report.table import Column, columns_of
 
 
 def mode_columns(result: ModalResult) -> list[Column]:
-    """`modes.csv`: one row a vibration mode of each state."""
+    """`modes.csv`: one row a vibration mode of each state; those uplifted in both orders."""
     heads = {"state": "-", "mode": "-", "frequency": "rad/s", "period": "s", "damping": "-"}
     ratios = {"frequency_ratio": "-", "damping_ratio": "-"}
-    return columns_of(heads | ratios, _mode_rows(result))
+    paper = {"first_order_frequency": "rad/s", "first_order_damping": "-"}
+    return columns_of(heads | ratios | paper, _mode_rows(result))
 
 
-def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float, ...]]:
+def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, ...]]:
     if (fixed := result.fixed_base) is not None:
         for i, (w, xi) in enumerate(zip(fixed.frequencies, fixed.damping, strict=True)):
-            yield "full_contact", i + 1, float(w), 2.0 * math.pi / w, float(xi), 1.0, 1.0
-    for name, modes in result.uplifted.items():
+            yield (
+                "full_contact",
+                i + 1,
+                float(w),
+                2.0 * math.pi / w,
+                float(xi),
+                1.0,
+                1.0,
+                None,
+                None,
+            )
+    for name, (modes, first) in result.both_orders.items():
         for i, (w, xi) in enumerate(zip(modes.frequencies, modes.damping, strict=True)):
             ratios = float(modes.frequency_ratio[i]), float(modes.damping_ratio[i])
-            yield name, i + 1, float(w), 2.0 * math.pi / w, float(xi), *ratios
+            paper = float(first.frequencies[i]), float(first.damping[i])
+            yield name, i + 1, float(w), 2.0 * math.pi / w, float(xi), *ratios, *paper
 
 
 def shape_columns(result: ModalResult) -> list[Column]:

@@ -101,10 +101,8 @@ SCALARS: dict[Analysis, Named] = {
 KNOWN: dict[Analysis, Named] = {
     "timehistory": SCALARS["timehistory"] | _named([rq.STOREY_SHEARS]),
     "modal": _named((*rq.FIXED_BASE_MODES, *rq.FIXED_BASE_SHAPES), _FIXED)
-    | _named(
-        (*rq.UPLIFTED_MODES, *rq.UPLIFTED_RATIOS, *rq.FREQUENCY_PARAMETERS, *rq.UPLIFTED_SHAPES),
-        _ROLLING + _ROCKING,
-    )
+    | _named((*rq.LINEAR, *rq.UPLIFTED_SHAPES), _ROLLING + _ROCKING)
+    | _named(rq.LINEAR, ("rolling.first_order.", "rocking.first_order."))
     | _named([rq.LEVEL]),
     "pushover": SCALARS["pushover"]
     | _named((*rq.STOREY_CURVE, *rq.STOREY_CURVE_RATIOS), ["curve."]),
@@ -130,16 +128,14 @@ def parametric_results(analysis: Analysis, structure: PodiumStructure) -> dict[s
 def _modal(structure: PodiumStructure) -> dict[str, Any]:
     result = modal(structure)
     found: dict[str, Any] = {rq.LEVEL.name: range(structure.storeys + 1)}
-    states: dict[str, Any] = {**result.uplifted, "fixed_base": result.fixed_base}
+    paper = {f"{name}.first_order": modes for name, (_, modes) in result.both_orders.items()}
+    states: dict[str, Any] = {**result.uplifted, **paper, "fixed_base": result.fixed_base}
     for state, modes in states.items():
         if modes is not None:
             found |= {f"{state}.{name}": values for name, values in modes.profiles().items()}
-            lists = rq.FIXED_BASE_MODES if state == "fixed_base" else _UPLIFTED
+            lists = rq.FIXED_BASE_MODES if state == "fixed_base" else rq.LINEAR
             found |= {f"{state}.{q.name}": getattr(modes, q.name) for q in lists}
     return found
-
-
-_UPLIFTED = (*rq.UPLIFTED_MODES, *rq.UPLIFTED_RATIOS, *rq.FREQUENCY_PARAMETERS)
 
 
 def _pushover(structure: PodiumStructure) -> dict[str, Any]:

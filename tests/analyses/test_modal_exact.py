@@ -1,0 +1,131 @@
+"""Exact modes against a numerical Jacobian of other equations of motion; the paper's as a limit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.devices import Equipment
+from oracles.storey_lagrangian import Contact, StoreyLagrangian
+from paper_structures import FLAT, Array, oracle_devices, oracle_system, podium
+
+from rpscli.analyses.modal import modal
+from rpscli.model.bearing import Bearing
+from rpscli.model.devices import FrictionDamper, Tendon, ViscousDamper
+from rpscli.model.podium import Device, PodiumStructure
+
+# tan alpha, tan alpha', rho; in the last the arc's end lies far beyond the column
+SHAPES = [(0.02, 0.04, 0.5), (0.15, 0.3, FLAT), (0.15, 0.3, 0.25), (0.6, 1.2, 0.7)]
+SHAPES += [(1.0, 1.5, 1.5), (0.5, 2.0, 0.75)]
+
+DEVICES: dict[str, tuple[Device, ...]] = {
+    "none": (),
+    "viscous": (ViscousDamper(4e5),),
+    "prestress": (Tendon(3e5, 5e5),),
+    "yielding": (Tendon(3e4, 5e7, 4e5), ViscousDamper(4e5)),
+}
+
+
+def jacobian(structure: PodiumStructure, *, rolling: bool) -> Array:
+    """Of [theta, drifts] and their rates where the state begins, by differences (2 n + 2, ...).
+
+    A constant moment holds the weight and the tendons there, so that it is an equilibrium.
+    """
+    motion, n = StoreyLagrangian(oracle_system(structure)), structure.storeys
+    gear = Equipment(motion, oracle_devices(structure), 1.0)
+    contact, start = Contact(1, rolling=rolling), 0.0 if rolling else motion.beta
+    y = np.zeros(2 * n + 2)
+    y[0] = start
+    gear.release(start, rolling=rolling)
+
+    def devices(y: Array) -> float:
+        return sum(active for active, _ in gear.moments(contact, y[0], y[n + 1], 1))
+
+    weight = motion.lifted_mass * structure.gravity
+    held = weight * motion.cap_beam(start, rolling=rolling)[1].imag - devices(y)
+
+    def rates(y: Array) -> Array:
+        moved = motion.acceleration(contact, y, 0.0, structure.gravity, held + devices(y))
+        return np.concatenate([y[n + 1 :], moved])
+
+    assert np.abs(rates(y)).max() < 1e-9
+    found, steps = np.empty((2 * n + 2, 2 * n + 2)), np.eye(2 * n + 2) * 1e-4
+    for j, step in enumerate(steps):
+        if j == 0:  # the tilt only grows: elongations have a kink at 0
+            slopes = (-25.0, 48.0, -36.0, 16.0, -3.0)
+            found[:, j] = sum(c * rates(y + k * step) for k, c in enumerate(slopes)) / 12e-4
+        else:
+            found[:, j] = (rates(y + step) - rates(y - step)) / 2e-4
+    return found
+
+
+@pytest.mark.parametrize("devices", DEVICES)
+@pytest.mark.parametrize("storeys", [0, 1, 3])
+@pytest.mark.parametrize("shape", SHAPES, ids=str)
+def test_eigenvalues_are_those_of_the_jacobian(
+    shape: tuple[float, float, float], storeys: int, devices: str
+) -> None:
+    bare = replace(podium(storeys), bearing=Bearing(1.5, *shape), columns=6)
+    structure = replace(bare, devices=DEVICES[devices])
+    beside = replace(structure, devices=(*structure.devices, FrictionDamper(1e5)))
+    for name, modes in modal(beside).uplifted.items():
+        expected = np.linalg.eigvals(jacobian(structure, rolling=name == "rolling"))
+        # differences round; a double zero is found to the root of that only
+        zero = 1e-5 if modes.frequency_parameter == 0.0 else 0.0
+        for value in modes.eigenvalues:
+            assert np.min(np.abs(expected - value)) < 1e-6 * np.max(np.abs(expected)) + zero
+
+
+@pytest.mark.parametrize("devices", ["none", "prestress"])
+@pytest.mark.parametrize("rho", [FLAT, 0.3, 1.5])
+def test_first_order_is_the_limit_for_small_alpha(rho: float, devices: str) -> None:
+    """What it leaves out falls with the square of alpha, in vibrations and in the own mode."""
+    off = []
+    for tan_alpha in (0.1, 0.05, 0.025):
+        structure = replace(podium(3, tan_alpha, rho), devices=DEVICES[devices])
+        for modes in modal(structure).uplifted.values():
+            paper = modes.first_order
+            assert paper is not None
+            assert paper.first_order is None
+            ratios = paper.frequencies[0], paper.damping[0], paper.frequency_parameter
+            exact = modes.frequencies[0], modes.damping[0], modes.frequency_parameter
+            off.append(np.array(ratios) / np.array(exact) - 1.0)
+    states = 1 if rho == FLAT else 2
+    first, second, third = np.array(off).reshape(3, states, 3)
+    assert np.abs(first).max() < 0.03  # tan alpha = .1, rocking at beta
+    # a quarter at half the angle; below 1e-5 other terms show
+    for whole, half in ((first, second), (second, third)):
+        assert np.all(np.abs(half) < 0.35 * np.abs(whole) + 1e-5)
+
+
+@pytest.mark.parametrize(
+    ("tan_alpha", "frequency", "damping", "own"),
+    [(0.15, 0.54, 0.37, -0.26), (0.3, 2.04, 1.57, -0.90), (0.6, 6.37, 5.74, -2.11)],
+)
+def test_what_first_order_leaves_out(
+    tan_alpha: float, frequency: float, damping: float, own: float
+) -> None:
+    """Three storeys, flat ends, in per cent as THEORY has them."""
+    modes = modal(podium(3, tan_alpha, FLAT)).rocking
+    paper = modes.first_order
+    assert paper is not None
+    pairs = [
+        (paper.frequencies[0], modes.frequencies[0], frequency),
+        (paper.damping[0], modes.damping[0], damping),
+        (paper.frequency_parameter, modes.frequency_parameter, own),
+    ]
+    for printed, exact, per_cent in pairs:
+        assert 100.0 * (printed / exact - 1.0) == pytest.approx(per_cent, abs=0.006)
+
+
+def test_a_rigid_block_falls_as_its_pendulum_does() -> None:
+    """theta'' = p^2 sin(theta - alpha): its slope at theta = 0 is p^2 cos(alpha)."""
+    for tan_alpha in (0.1, 0.5, 1.0):
+        structure = podium(0, tan_alpha, FLAT)
+        p = structure.rigid_frequency_parameter
+        modes = modal(structure).rocking
+        expected = p * math.sqrt(math.cos(math.atan(tan_alpha)))
+        assert modes.frequency_parameter == pytest.approx(expected, rel=1e-12)
+        assert modes.frequency_parameter_rigid == pytest.approx(expected, rel=1e-12)
