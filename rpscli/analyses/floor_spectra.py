@@ -25,7 +25,12 @@ PERIODS = frozen(np.geomspace(0.05, 4.0, 50))
 DAMPING = 0.05
 
 STEP = 1e-3
-"""Between instants at which floors are looked at [s], or less: 1/50 of the shortest period."""
+"""Between instants at which floors are looked at [s], or less: 1/50 of the shortest period, which
+leaves 0.1 % there."""
+
+RINGING = 10.0
+"""First periods of the building for which equipment is followed beyond the end of a history: at
+resonance it is shaken most some three of them later."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -66,17 +71,24 @@ def isolated_floor_spectra(
 
     Notes
     -----
-    From the absolute floor accelerations every `STEP` or less, linear between them. Where floors
-    keep their own velocities impacts make the forces of dampers jump: between two instants that is
-    told by a ramp with the impulse of the jump.
+    From the absolute floor accelerations every `STEP` or less, linear between them, and for ten
+    first periods of the building after the history. Where floors keep their own velocities impacts
+    make the forces of dampers jump: between two instants that is told by a ramp with the impulse of
+    the jump. The same motion written ten times denser moves pseudo-accelerations by less than
+    0.5 % at 0.1 s, and by less than 1 % at 0.05 s.
     """
-    trace = denser_trace(result, STEP)
+    trace = denser_trace(result, STEP, _ringing(result))
     accelerations = trace.floor_accelerations + jumps_left_out(result, trace)
     return floor_spectra(accelerations, _step(result), periods, damping)
 
 
 def _step(result: TimeHistoryResult) -> float:
     return result.record.dt / max(math.ceil(result.record.dt / STEP - 1e-9), 1)
+
+
+def _ringing(result: TimeHistoryResult) -> float:
+    building = result.structure.superstructure
+    return 0.0 if building is None else RINGING * float(building.periods[0])
 
 
 def jumps_left_out(result: TimeHistoryResult, trace: Trace) -> Array:
@@ -114,9 +126,10 @@ def fixed_base_floor_spectra(
     if result.fixed_base is None:
         return None
     parts = round(result.record.dt / _step(result))
-    rows = len(result.fixed_base.floor_displacements)
     denser = result.motion.finer(parts).horizontal
-    fixed = fixed_base_response(result.structure, denser, (rows - 1) * parts)
+    intervals = (len(result.fixed_base.floor_displacements) - 1) * parts
+    intervals += math.ceil(_ringing(result) / denser.dt)
+    fixed = fixed_base_response(result.structure, denser, intervals)
     return floor_spectra(fixed.acceleration_histories, denser.dt, periods, damping)
 
 

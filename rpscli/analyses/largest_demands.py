@@ -334,10 +334,10 @@ class Demand(Shown):
     )
     energy_devices = _Result[float]("Energy dissipated in all devices [J].")
     storey_shears = _Result[Array](
-        "(n,) largest elastic shears k_i d_i at the samples [N], from the bottom."
+        "(n,) largest elastic shears k_i d_i [N], from the bottom, within steps too."
     )
     floor_accelerations = _Result[Array](
-        "(n,) largest absolute accelerations at the samples [m/s2], from the bottom."
+        "(n,) largest absolute accelerations [m/s2], from the bottom, on both sides of impacts."
     )
     max_floor_acceleration = _Optional(
         "Largest of `floor_accelerations` [m/s2]; None without a superstructure."

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.column_forces import AxialForces
-from rpscli.analyses.fixed_base import FixedBaseResponse, largest_velocities
+from rpscli.analyses.fixed_base import FixedBaseResponse, largest_of_cubics, largest_velocities
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace
@@ -81,7 +81,7 @@ class TimeHistoryResult(Demand):
     settings
         Accuracy, tolerance, limits.
     trace
-        Histories at samples.
+        Histories at the record's samples, see `sampling`.
     events
         In the order of time.
     fixed_base
@@ -104,6 +104,11 @@ class TimeHistoryResult(Demand):
     def facts(self) -> dict[str, Any]:
         """The record, and what it asked for."""
         return {"record": self.record.name, **super().facts()}
+
+    @property
+    def sampling(self) -> str:
+        """Of the trace, its CSV file and figures; other results hold what lies between as well."""
+        return f"samples every {self.record.dt:g} s, between which maxima may lie"
 
     @property
     def energy(self) -> Energy:
@@ -136,8 +141,13 @@ class TimeHistoryResult(Demand):
 
     @property
     def floor_velocities(self) -> NDArray[np.float64]:
-        """(n,) largest absolute velocities at the samples [m/s], from the bottom."""
-        return frozen(largest_velocities(self.trace.floor_velocities, self.record))
+        """(n,) largest absolute velocities [m/s], from the bottom.
+
+        Of cubics through the samples and the accelerations there: 0.3 % low at most, 2 % where
+        floors jump with the cap beam, dt up to 0.02 s and periods from 0.1 s.
+        """
+        t = self.trace
+        return frozen(largest_velocities(t.floor_velocities, t.floor_accelerations, self.record))
 
     @property
     def max_floor_velocity(self) -> float | None:
@@ -146,10 +156,14 @@ class TimeHistoryResult(Demand):
 
     @property
     def max_roof_displacement(self) -> float | None:
-        """Largest displacement of the roof to the ground at the samples [m]."""
+        """Largest displacement of the roof to the ground [m], of cubics through the samples.
+
+        If the structure overturns, up to the last sample before that.
+        """
         if self.structure.superstructure is None:
             return None
-        return float(np.max(np.abs(self.trace.floor_displacements[:, -1])))
+        roof = self.trace.floor_displacements[:, -1:], self.trace.floor_velocities[:, -1:]
+        return float(largest_of_cubics(*roof, self.record.dt)[0])
 
     @property
     def fixed_base_ratio(self) -> float | None:
@@ -226,7 +240,10 @@ class TimeHistoryResult(Demand):
 
     @property
     def sliding_time(self) -> float | None:
-        """When |F|/N first exceeded the coefficient at a sample [s]; None if never."""
+        """When |F|/N first exceeded the coefficient at a sample [s]; None if at no sample.
+
+        `slides` tells what lies between samples too.
+        """
         coefficient, trace = self.structure.friction, self.trace
         if coefficient is None:
             return None

@@ -74,14 +74,22 @@ def time_history(
     return replace(result, axial=axial_forces(structure, dense, result.events))
 
 
-AXIAL_STEP = 2e-3
-"""Between instants at which the forces of single columns are looked at [s], or less."""
+AXIAL_STEP = 5e-4
+"""Between instants at which the forces of single columns are looked at [s], or less.
+
+Of nine storeys with 0.05 s vertically the largest is then 0.3 % low, and the least 1 % of the
+weight high."""
 
 
-def denser_trace(result: TimeHistoryResult, step: float) -> Trace:
-    """The histories of the same motion at even parts of the sampling interval, up to `step` [s]."""
+def denser_trace(result: TimeHistoryResult, step: float, beyond: float = 0.0) -> Trace:
+    """The same motion at even parts of the sampling interval, up to `step`, and so long on [s]."""
     parts = max(math.ceil(result.record.dt / step - 1e-9), 1)
-    if parts == 1:
+    settings = result.settings
+    if beyond > 0.0:
+        free = max(result.duration - result.record.duration, 0.0) + beyond
+        settings = replace(settings, free_vibration=free)
+    elif parts == 1:
         return result.trace
-    run = sampled_history(result.structure, result.motion, result.settings, parts)
-    return trace_of(result.structure, run)
+    return trace_of(
+        result.structure, sampled_history(result.structure, result.motion, settings, parts)
+    )

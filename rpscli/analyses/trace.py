@@ -77,8 +77,7 @@ def event_list(log: Record) -> tuple[Event, ...]:
 class DeviceDemand:
     """Largest demands of one device.
 
-    Forces and velocities are looked at where steps end and where the tilt turns, strokes
-    everywhere.
+    Looked at within steps and on both sides of events: the samples of a `DeviceTrace` may be less.
     """
 
     kind: str
@@ -114,7 +113,7 @@ def device_demands(structure: PodiumStructure, history: Record) -> tuple[DeviceD
 
 @dataclass(frozen=True, eq=False)
 class DeviceTrace(Frozen):
-    """What each device does at the samples: arrays (samples, devices)."""
+    """What each device does at the record's samples: arrays (samples, devices)."""
 
     force: Array
     """On the cap beam, positive to the right [N]; of a tendon the tension of one."""
@@ -151,8 +150,8 @@ BLOCK = 50_000
 class Trace(Shown):
     """Histories at the record's samples and on through the free vibration, SI units.
 
-    What was largest between samples, and just before and after impacts, is in the largest demands,
-    not here.
+    What was largest between samples, and on both sides of impacts, is in the largest demands, not
+    here.
 
     Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements
     and velocities are relative to the ground.

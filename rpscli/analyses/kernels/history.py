@@ -140,14 +140,18 @@ def numbers_of_a_sample(structure: PodiumStructure) -> int:
 
 
 def refuse_endless(
-    structure: PodiumStructure, settings: TimeHistorySettings, motion: MotionComponents
+    structure: PodiumStructure,
+    settings: TimeHistorySettings,
+    motion: MotionComponents,
+    finer: int = 1,
 ) -> None:
     """Refuse a history that may take more memory or time than anybody has."""
     remedy = "give a shorter analysis.free_vibration"
-    numbers = float(longest_history(settings, motion)) * numbers_of_a_sample(structure)
+    samples = longest_history(settings, motion) * finer
+    numbers = float(samples) * numbers_of_a_sample(structure)
     if numbers > MOST_NUMBERS:
         raise CaseError(
-            f"the history may have {longest_history(settings, motion)} samples of"
+            f"the history may have {samples} samples of"
             f" {structure.storeys} storeys, {8e-9 * numbers:.3g} GB, which must not be more than"
             f" {8e-9 * MOST_NUMBERS:.3g} GB; {remedy}, or resample the record, whose dt is"
             f" {motion.dt:g} s"
@@ -186,7 +190,7 @@ def sampled_history(
 ) -> SampledHistory:
     """Run one history and keep everything, at so many even parts of each sampling interval."""
     systems = stacked_systems([(structure, settings)])
-    refuse_endless(structure, settings, motion)
+    refuse_endless(structure, settings, motion, finer)
     rows = longest_history(settings, motion) * finer
     seconds = most_seconds(structure, settings, motion.duration)
     events = FIRST_LOG

@@ -49,7 +49,7 @@ def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
     rows = -(-count // columns)
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name)
+        style.heading(figure, title, result.record.name, result.sampling)
         panels = figure.subplots(rows, columns, squeeze=False).ravel()
         for index, axes in enumerate(panels[:count]):
             draw_device(axes, result, index)

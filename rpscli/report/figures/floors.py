@@ -126,7 +126,8 @@ def floor_spectra_figure(
     floors = shown_floors(len(isolated.displacement))
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, record, f"{style.percent(isolated.damping)} damping")
+        damping = f"{style.percent(isolated.damping)} damping"
+        style.heading(figure, title, record, damping, "floors followed every millisecond")
         grid = figure.subplots(2, len(floors), squeeze=False, sharex=True, sharey="row")
         for column, floor in enumerate(floors):
             for row, name in enumerate(SPECTRA):

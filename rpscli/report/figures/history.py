@@ -69,7 +69,7 @@ def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
     rows = 2 if result.structure.storeys else 1
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name)
+        style.heading(figure, title, result.record.name, result.sampling)
         panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
         draw_displacements(panels[0], result)
         if rows > 1:
@@ -142,7 +142,7 @@ def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
     rows = _rows(result)
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name)
+        style.heading(figure, title, result.record.name, result.sampling)
         ground, rotation, events = figure.subplots(
             3, 1, sharex=True, height_ratios=[1.0, 2.4, 0.18 * max(len(rows), 1)]
         )

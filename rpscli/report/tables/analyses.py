@@ -155,7 +155,9 @@ ENERGIES = ("energy_input", "energy_damped", "energy_impact", "energy_stored")
 
 
 def history_columns(result: TimeHistoryResult) -> list[Column]:
-    """`timehistory.csv`: one row a sample; floors and storeys are counted from the bottom.
+    """`timehistory.csv`: one row a sample of the record, on through the free vibration.
+
+    Largest results may lie between the rows. Floors and storeys are counted from the bottom.
 
     `phase` is 0 in full contact, 1 rolling, 2 rocking, 3 held by friction. Displacements are
     relative to the ground, floor accelerations absolute. Forces are those of one column, F to the
