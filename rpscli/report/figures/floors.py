@@ -127,7 +127,7 @@ def floor_spectra_figure(
 
     def draw(figure: Figure) -> None:
         damping = f"{style.percent(isolated.damping)} damping"
-        style.heading(figure, title, record, damping, "floors followed every millisecond")
+        style.heading(figure, title, record, damping, "steps of 1 ms or less")
         grid = figure.subplots(2, len(floors), squeeze=False, sharex=True, sharey="row")
         for column, floor in enumerate(floors):
             for row, name in enumerate(SPECTRA):
