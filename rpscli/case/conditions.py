@@ -49,6 +49,13 @@ class Condition:
         return -1.0 if self.from_below else 1.0
 
     @property
+    def admissible(self) -> float:
+        """Share of the records that may be beyond the limit."""
+        if self.fractile is None:
+            return self.share
+        return self.fractile if self.from_below else 1.0 - self.fractile
+
+    @property
     def bound(self) -> str:
         """The limit in words."""
         return f"at {'least' if self.from_below else 'most'} {self.limit:g}"

@@ -189,14 +189,13 @@ def _sections(
 
 def _in_short(done: HistoryResult, result: TimeHistoryResult) -> Iterator[Block]:
     from rpscli.commands.timehistory_tables import limits_table, outcome_text
+    from rpscli.report.study.statistics import verdicts_in_short
 
     yield f"Outcome: {outcome_text(result)}."
     if result.failure:
         yield Notice(result.failure)
     if done.verdicts:
-        exceeded = sum(verdict.exceeded for verdict in done.verdicts)
-        of = f"of {len(done.verdicts)} limits"
-        yield f"{exceeded} {of} exceeded." if exceeded else f"All {len(done.verdicts)} limits met."
+        yield verdicts_in_short(done.verdicts, f"{len(done.verdicts)} limits")
         yield limits_table(done.verdicts)
     else:
         yield "No limits were set."

@@ -131,12 +131,13 @@ def _of_first(section: Section, study: Study) -> Section:
 
 
 def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator[Block]:
+    from rpscli.report.study.statistics import verdicts_in_short
+
     counts = {"points": len(run.table), **run.outcomes}
     yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
     if run.summary is not None and run.verdicts:
-        exceeded = sum(verdict.exceeded for verdict in run.verdicts)
-        verdicts = f"{len(run.verdicts)} limits of a system at an intensity"
-        yield f"{exceeded} of {verdicts} exceeded." if exceeded else f"All {verdicts} are met."
+        what = f"{len(run.verdicts)} limits of a system at an intensity"
+        yield verdicts_in_short(run.verdicts, what)
         yield verdict_table(run.summary, run.verdicts)
     elif run.summary is not None:
         yield "No limits were set."

@@ -255,6 +255,7 @@ def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
     """Every limit of each system and intensity; those that are exceeded first."""
     from rpscli.report.study.statistics import VERDICT, verdict_texts
 
-    ordered = sorted(verdicts, key=lambda verdict: not verdict.exceeded)[:MOST_ROWS]
+    ordered = sorted(verdicts, key=lambda verdict: (not verdict.exceeded, verdict.shown))
+    ordered = ordered[:MOST_ROWS]
     systems = [verdict.values for verdict in ordered]
     return _of_systems(summary, systems, VERDICT, map(verdict_texts, ordered), words=3, keys=1)

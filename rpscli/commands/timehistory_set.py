@@ -33,6 +33,7 @@ from rpscli.report.study.statistics import (
     VERDICT,
     demand_columns,
     records_columns,
+    shown_by_text,
     summary_document,
     verdict_document,
     verdict_lines,
@@ -235,5 +236,6 @@ def _verdict_table(computed: Sequence[Computed]) -> Table:
             event = verdict.condition.name in EVENTS
             worst = "" if event else f", {which} {value} ({verdict.record})"
             result = f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}"
+            result += f"; {shown_by_text(verdict)}" if verdict.shown_by else ""
             rows.append([case.label, *texts, result])
     return Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)

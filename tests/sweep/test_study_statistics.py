@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import Result
-from scipy.stats import beta
+from scipy.stats import beta, binom
 
 from rpscli.case.conditions import Condition
 from rpscli.commands.study import summary_tables
@@ -21,7 +21,7 @@ from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.statistics.fractiles import fractiles, share
 from rpscli.sweep.statistics.grouping import own_keys, pooled
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
-from rpscli.sweep.statistics.verdicts import decisive, judge, judged
+from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, judged
 from rpscli.sweep.table import Table
 from sweep.made_up import ALPHA, RHO, Stored, place, stored, table_of
 from sweep.small_studies import BASE, STUDY, Make
@@ -177,6 +177,33 @@ def test_verdicts(
     ]
     assert verdict.exceeded == exceeded
     assert (verdict.beyond.number, verdict.beyond.of, verdict.overturned) == (beyond, 5, fallen)
+
+
+@pytest.mark.parametrize(
+    ("condition", "number", "of", "word"),
+    [
+        (Condition("overturning", 0.0, "", share=0.05), 0, 58, "met, not shown"),
+        (Condition("overturning", 0.0, "", share=0.05), 0, 59, "met"),
+        (Condition("rotation_ratio", 0.5, "", share=0.1), 3, 31, "met, not shown"),
+        (Condition("rotation_ratio", 0.5, "", fractile=0.84), 1, 40, "met"),
+        (Condition("rotation_ratio", 0.5, "", fractile=0.84), 1, 20, "met, not shown"),
+        (Condition("min_column_force", 0.0, "", fractile=0.16), 1, 20, "met, not shown"),
+        (Condition("rotation_ratio", 0.5, ""), 0, 7, "met"),  # of these records alone
+        (Condition("rotation_ratio", 0.5, "", share=0.1), 0, 1, "met"),
+    ],
+)
+def test_what_is_met_is_shown_by_enough_records(
+    condition: Condition, number: int, of: int, word: str
+) -> None:
+    """Enough are those under which the probability of so few is small where it is admissible."""
+    verdict = Verdict(condition, (), share(number, of), 0, 0.0, "", None, exceeded=False)
+    assert verdict.word == word
+    if word == "met":
+        assert verdict.shown_by is None
+        return
+    tail = 0.025 if number else 0.05  # both ends have a half of what is left, a single one all
+    needed = next(n for n in range(1, 1000) if binom.cdf(number, n, condition.admissible) <= tail)
+    assert verdict.shown_by == needed
 
 
 def test_fractiles_that_are_a_whole_number_of_histories_are_not_rounded_up() -> None:

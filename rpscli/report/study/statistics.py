@@ -106,6 +106,8 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         *share_columns("beyond", [verdict.beyond for verdict in verdicts]),
         Column("overturned_among_them", "-", [verdict.overturned for verdict in verdicts]),
         Column("exceeded", "-", [str(verdict.exceeded).lower() for verdict in verdicts]),
+        Column("shown", "-", [str(verdict.shown).lower() for verdict in verdicts]),
+        Column("shown_by_records", "-", [verdict.shown_by for verdict in verdicts]),
         Column("source", "-", [condition.source for condition in conditions]),
     ]
 
@@ -149,16 +151,32 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
         "record": verdict.record,
         "value_at_fractile": verdict.fractile,
         "exceeded": verdict.exceeded,
+        "shown": verdict.shown,
+        "shown_by_records": verdict.shown_by,
     }
 
 
 def verdict_text(verdict: Verdict) -> str:
     """What a verdict rests on, in words."""
+    needed = f"; {shown_by_text(verdict)}" if verdict.shown_by else ""
     if verdict.fractile is not None:
         demand = "overturned" if math.isinf(verdict.fractile) else shown(verdict.fractile)
-        return f"{demand} there, n = {verdict.beyond.of}"
+        return f"{demand} there, n = {verdict.beyond.of}{needed}"
     fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
-    return f"{verdict.beyond}{fallen}"
+    return f"{verdict.beyond}{fallen}{needed}"
+
+
+def shown_by_text(verdict: Verdict) -> str:
+    """What would show that a limit is kept."""
+    return f"{verdict.beyond.number} of {verdict.shown_by} would show it"
+
+
+def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:
+    """How many limits are exceeded, or met, or met without being shown."""
+    exceeded = sum(verdict.exceeded for verdict in verdicts)
+    unsure = sum(verdict.shown_by is not None for verdict in verdicts)
+    first = f"{exceeded} of {what} exceeded" if exceeded else f"All {what} are met"
+    return f"{first}{f', {unsure} met but not shown' * bool(unsure)}."
 
 
 VERDICT = ("limit", "", "requirement", "result")

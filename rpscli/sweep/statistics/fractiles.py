@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple, Protocol
@@ -85,6 +86,20 @@ def share(number: int, of: int) -> Share:
     low = betaincinv(number, of - number + 1, end) if number else 0.0
     high = betaincinv(number + 1, of - number, 1.0 - end) if number < of else 1.0
     return Share(number, of, float(low), float(high))
+
+
+@lru_cache(maxsize=4096)
+def shown_by(number: int, admissible: float) -> int:
+    """Of how many histories, so many of them beyond, the interval ends at an admissible share.
+
+    >>> shown_by(0, 0.05), shown_by(0, 0.1), shown_by(1, 0.05)
+    (59, 29, 110)
+    """
+    most = number + 1
+    while share(number, most).high > admissible:
+        most *= 2
+    counts = range(number + 1, most)
+    return counts.start + bisect_left(counts, -admissible, key=lambda of: -share(number, of).high)
 
 
 class Spread(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.conditions import EVENTS, Condition
-from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, rank, share
+from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, rank, share, shown_by
 from rpscli.sweep.statistics.summary import Records, Summary
 from rpscli.sweep.table import Array, Indices, Table
 
@@ -23,6 +23,9 @@ class Verdict:
     overturned one does, `overturned` of them where the condition is on a result. `value` is the
     worst demand, infinite where it overturned, and `record` had it. `fractile` is the demand at the
     fractile of the condition, if it has one. Without any history nothing is exceeded.
+
+    A limit that a share of the records may exceed is *shown* to be kept if the interval of the
+    probability ends below that share. One for every record says something of these records alone.
     """
 
     condition: Condition
@@ -37,7 +40,21 @@ class Verdict:
     @property
     def word(self) -> str:
         """As tables say it."""
-        return "EXCEEDED" if self.exceeded else "met"
+        return "EXCEEDED" if self.exceeded else "met" if self.shown else "met, not shown"
+
+    @property
+    def shown(self) -> bool:
+        """Whether it is met, and the records are enough to say so of the probability."""
+        admissible, several = self.condition.admissible, self.beyond.of > 1
+        unsure = several and admissible > 0.0 and self.beyond.high > admissible
+        return not (self.exceeded or unsure)
+
+    @property
+    def shown_by(self) -> int | None:
+        """How many records would show it if no more of them were beyond; None where it is."""
+        if self.exceeded or self.shown:
+            return None
+        return shown_by(self.beyond.number, self.condition.admissible)
 
 
 class Judgement(NamedTuple):
