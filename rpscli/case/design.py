@@ -6,6 +6,7 @@ import hashlib
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, NamedTuple, Self, TypeGuard
 
@@ -28,6 +29,7 @@ from rpscli.case.text.document import Path as KeyPath
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, hint, listed
+from rpscli.records.clusters import clusters
 from rpscli.units import in_si
 
 PLUS = "plus"
@@ -165,7 +167,7 @@ class ValidateSection(Section):
     records: Sources | None = None
     """record sources, as in a study"""
     share: Annotated[float, Quantity(above=0, below=1)] | None = None
-    """share of the design's own records that is held out, in place of them"""
+    """share of the design's own recordings that is held out, in place of them"""
     seed: Seed = 1
     """of the draw of what is held out"""
 
@@ -233,6 +235,11 @@ class DesignTask:
             for row in values.tolist()
         )
 
+    @cached_property
+    def clusters(self) -> tuple[int, ...]:
+        """Numbers of the recordings, or events, of the records of the search."""
+        return clusters(self.study.sources or ("",), self.study.folder, self.file.independent)
+
     def study_of(self, values: Array, sources: tuple[str, ...] | None = None) -> Study:
         """The study of some designs, (designs, keys), under the design's records or others."""
         places = tuple((self.study.document.value_place(self.path(key)),) for key in self.keys)
@@ -293,7 +300,7 @@ def parse_design(
         folder=folder,
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
-    used, held_out = _used_and_held_out(document, file, study.sources, confirming)
+    used, held_out = _used_and_held_out(document, file, study, confirming)
     study = replace(study, document=document, sources=used, notes=(*notes, *more))
     return DesignTask(study, file, held_out)
 
@@ -341,15 +348,24 @@ def _note(word: str) -> str:
 
 
 def _used_and_held_out(
-    document: Document, file: DesignFile, sources: Sequence[str], confirming: Sequence[str]
+    document: Document, file: DesignFile, study: Study, confirming: Sequence[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Records of the search, and those that the design is validated on."""
-    used, held_out, section = tuple(sources), tuple(confirming), file.validation
+    sources, folder = study.sources, study.folder
+    used, held_out, section = sources, tuple(confirming), file.validation
     if section is not None and section.share is not None:
-        used, held_out = _shared(used, section.share, section.seed)
-    elif both := sorted(set(used) & set(held_out)):
-        text = f"validate.records has {listed(both[:3], 'and')}, which the search uses already"
-        document.refuse([Fault(("validate", "records"), f"{text}; name other motions")])
+        cluster = clusters(used, folder, file.independent)
+        used, held_out = _shared(used, cluster, section.share, section.seed)
+    else:
+        cluster = clusters((*used, *held_out), folder, file.independent)
+        known = set(cluster[: len(used)])
+        others = zip(held_out, cluster[len(used) :], strict=True)
+        if both := [source for source, number in others if number in known]:
+            text = (
+                f"validate.records has {listed(both[:3], 'and')}, whose {file.independent[:-1]} the"
+                " search uses already; name other motions"
+            )
+            document.refuse([Fault(("validate", "records"), text)])
     if section is not None and not (used and held_out):
         text = f"validate.share = {section.share} of {len(sources)} records leaves none"
         document.refuse([Fault(("validate",), f"{text} on one side; give more records")])
@@ -398,10 +414,11 @@ def _confirming(document: Document, folder: Path) -> tuple[tuple[str, ...], list
 
 
 def _shared(
-    sources: tuple[str, ...], share: float, seed: int
+    sources: tuple[str, ...], cluster: Sequence[int], share: float, seed: int
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Sources for the search, and those that are held out."""
-    count = round(share * len(sources))
-    drawn = set(np.random.default_rng(seed).permutation(len(sources))[:count].tolist())
-    used = tuple(source for place, source in enumerate(sources) if place not in drawn)
-    return used, tuple(source for place, source in enumerate(sources) if place in drawn)
+    """Sources for the search, and those that are held out: whole recordings or events."""
+    names = max(cluster, default=-1) + 1
+    drawn = set(np.random.default_rng(seed).permutation(names)[: round(share * names)].tolist())
+    numbered = [*zip(sources, cluster, strict=True)]
+    used = tuple(source for source, number in numbered if number not in drawn)
+    return used, tuple(source for source, number in numbered if number in drawn)

@@ -133,7 +133,7 @@ def compute(
             if limit.name in found and (found[limit.name] is None or (unknown and result.left_out)):
                 needs = NEEDS[LIMITS[limit.name].needs]
                 raise UsageError(f"{limit.source}: {limit.name} needs {needs}")
-        records = Records.of([result.outcome], [demands])
+        records = Records.of([result.outcome], [demands], [result.record.source])
         verdicts = judged_records(records, [request.label], limits)
         error = _exceeded(verdicts)
     document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]

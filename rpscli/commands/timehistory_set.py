@@ -100,7 +100,8 @@ def run_all(
             request.folder.write()
             histories.append(done)
         outcomes = [history.document["outcome"] for history in histories]
-        records = Records.of(outcomes, [history.demands for history in histories])
+        sources = [request.ground.horizontal.source for request in group]
+        records = Records.of(outcomes, [history.demands for history in histories], sources)
         judged = group[0].given.case
         limits = with_friction(case_conditions(judged.limits), judged.structure)
         found = judged_records(records, [each.label for each in group], [*limits, *conditions])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rpscli.case.conditions import EVENTS, LIMITS
-from rpscli.case.design import Objective
+from rpscli.case.design import DesignTask, Objective
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, in_force
 from rpscli.report.study.labels import key_columns, label, symbol
@@ -90,16 +90,28 @@ def answer_document(answer: Answer) -> dict[str, Any]:
                 **{key: answer.interval(place) for place, key in enumerate(answer.task.keys)},
                 objective_label(answer.task.file.minimise[0]): answer.objective_interval,
             },
-            # The best design when one record is left out, in the order of the records.
+            "independent": answer.task.file.independent,
+            # The best design without one recording or event, in the order of the records.
             "without_one": [
-                {"record": source, "best": None if place == NONE else _design(answer, place)}
-                for source, place in zip(
-                    answer.task.study.sources, answer.without_record.tolist(), strict=False
+                {"record": name, "best": None if place == NONE else _design(answer, place)}
+                for name, place in zip(
+                    _left_out(answer.task), answer.without_record.tolist(), strict=False
                 )
             ],
         },
         "bracket": answer.bracket if found is not None and len(answer.task.unknowns) == 1 else None,
     }
+
+
+def _left_out(task: DesignTask) -> list[str]:
+    """Names of what is left out together: the first source, and how many more there are."""
+    sources: dict[int, list[str]] = {}
+    for source, number in zip(task.study.sources, task.clusters, strict=False):
+        sources.setdefault(number, []).append(source)
+    return [
+        f"{first} and {len(others)} more" if others else first
+        for first, *others in sources.values()
+    ]
 
 
 def _design(answer: Answer, place: int) -> dict[str, Any]:

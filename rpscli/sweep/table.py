@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import STOREY_SHEARS
 from rpscli.frozen import Frozen, frozen
+from rpscli.records.clusters import By
 from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Stored
@@ -49,6 +50,16 @@ class Table(Frozen):
     def overturned(self) -> NDArray[np.bool_]:
         """(points,) which overturned."""
         return frozen(np.char.startswith(self.outcomes, "overturned"))
+
+    @property
+    def clusters(self) -> Indices:
+        """(points,) numbers of what is independent."""
+        return self.layout.clusters
+
+    @property
+    def independent(self) -> By:
+        """What that is."""
+        return self.layout.independent
 
 
 def tabulate(layout: StudyPoints, stored: Stored) -> Table:

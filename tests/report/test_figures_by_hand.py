@@ -38,6 +38,7 @@ from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design.answer import Answer, Judged, Requirement
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
 from rpscli.sweep.intensities import Intensity
+from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.statistics.grouping import Grouping
 from rpscli.sweep.statistics.observations import Agreement, Pairs, maxima
 from rpscli.sweep.table import Table
@@ -130,7 +131,7 @@ def test_what_a_rate_comes_from() -> None:
     def risk(
         values: tuple[object, ...], limit: LimitState, rates: list[float], half: float
     ) -> Risk:
-        observed = Observed(nothing, nothing, np.empty(0, dtype=np.int64))
+        observed = Observed(nothing, ())
         fragility = Fragility(values, limit, fit_of(nothing), nothing, observed, 9, 3, 0, 0)
         return Risk(fragility, sum(rates), NOTHING, edges, np.array(rates), half, ())
 
@@ -204,14 +205,14 @@ def compared() -> dict[str, Axes]:
     """A fragility and maxima beside what was observed, by the first line of their titles."""
     grid = np.array([1.0, 2.0, 4.0])
     binned = [
-        Observed(np.array(levels), np.array(shares), np.ones(2, dtype=np.int64))
-        for levels, shares in (((2.0, 5.0), (0.0, 1.0)), ((3.0, 8.0), (0.25, 0.75)))
+        Observed(np.array(levels), [share(number, 4) for number in numbers])
+        for levels, numbers in (((2.0, 5.0), (0, 4)), ((3.0, 8.0), (1, 3)))
     ]
     curves = [
         Curve(fit_of(np.array(probabilities)), each, grid)
         for probabilities, each in zip(((0.2, 0.4, 0.8), (0.3, 0.5, 0.6)), binned, strict=True)
     ]
-    outcomes = Outcomes(Agreement(1, 2, 1, 0), (), *curves)
+    outcomes = Outcomes(Agreement(1, 2, 1, 0, share(1, 4)), (), *curves)
     observed = np.array([[1.0, 1.0, 0.0, 0.0, NAN], [0.01, 0.02, 0.04, NAN, 0.03]])
     computed = np.array([[1.0, 0.0, 1.0, 1.0, NAN], [0.02, 0.01, INF, NAN, 0.03]])
     pairs = np.array([0, 1, 2, 3]), np.array([0, 1, 2, 4])

@@ -128,7 +128,7 @@ def test_one_unknown_against_the_exact_answer(design_json: DesignJson, workplace
     assert best - below < 1.01 * 0.001 * 0.3
     assert found["best"]["values"][WEDGE] == pytest.approx(2.0 * best + 0.1, rel=1e-5)
     # The same order statistic of each resample is known, and closed in upon as well.
-    weights = weights_of(len(PEAKS), 400, 1).rows[1:401]
+    weights = weights_of(range(len(PEAKS)), 400, 1).rows[1:401]
     answers = [np.sort(np.repeat(PEAKS, row.astype(int)))[-3] for row in weights]
     low, high = interval_of(np.array(answers))
     interval = found["records"]["intervals"][SLENDERNESS]

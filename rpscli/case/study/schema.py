@@ -40,6 +40,7 @@ from rpscli.case.schema.fields import (
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import MeasuredValue, at_period, measured_value
 from rpscli.case.text.document import shown
+from rpscli.records.clusters import By
 from rpscli.records.measures import Measure
 
 Number = Annotated[float, Quantity()]
@@ -255,6 +256,9 @@ class StudyParts(Section):
     """record sources, folders, globs; left out: the record of the case"""
     scale: Scale | None = None
     """factors on the records, or values of a measure to scale them to"""
+    independent: By = "recordings"
+    """what intervals, bootstraps and held-out parts take as a whole: recordings, of which all
+    components and angles are one, or events"""
     whole_histories: bool = Field(
         default=False,
         description="follow each history by itself, with all its samples: roof displacement, floor"

@@ -27,7 +27,6 @@ from rpscli.report.study.panels import log_ticks
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
-from rpscli.sweep.statistics.fractiles import CONFIDENCE
 from rpscli.sweep.statistics.observations import Agreement, Maxima
 from rpscli.sweep.study_results import StudyResults
 
@@ -116,7 +115,7 @@ def _ways(found: Outcomes) -> Iterator[tuple[str, float | None, Agreement]]:
 def _agreement_cells(counts: Agreement) -> tuple[object, ...]:
     agreed = counts.agreed
     shares = counts.counted, agreed.number, agreed.fraction, agreed.low, agreed.high
-    return (*shares, counts.observed, counts.computed, *counts)
+    return (*shares, counts.observed, counts.computed, *counts[:4])
 
 
 def _curves(found: Outcomes) -> tuple[tuple[str, Curve], ...]:
@@ -270,10 +269,8 @@ def _sentence(each: Compared) -> str:
 def _counts(counts: Agreement) -> str:
     agreed = counts.agreed
     percent = "-" if agreed.fraction is None else f"{100.0 * agreed.fraction:.1f} %"
-    return (
-        f"{percent} agree, {agreed.number} of {agreed.of} ({100.0 * CONFIDENCE:g} %:"
-        f" {agreed.interval}); overturned: {counts.computed} computed, {counts.observed} observed"
-    )
+    outcomes = f"{counts.computed} computed, {counts.observed} observed"
+    return f"{percent} agree, {agreed}; overturned: {outcomes}"
 
 
 REPORT = Report(ComparisonOptions, comparison, check=fit_faults, requires=uncomparable)

@@ -62,7 +62,7 @@ class FitSection(Section):
     keys: Keys | None = None
     """varied keys to be chosen; all but those of the observations"""
     share: Annotated[float, Quantity(above=0, below=1)] = 0.5
-    """share of the records that they are chosen on"""
+    """share of the recordings that they are chosen on"""
     seed: Seed = Field(1, description="of the draw of these records")
 
 
@@ -228,8 +228,8 @@ def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[st
     if not keys or named:
         which = f"{listed(named, 'and')} tells what was observed" if named else "no key is left"
         yield f"fit: {which}, and cannot be chosen; vary another key, and name it in fit.keys"
-    elif len(np.unique(observed_pairs(layout, observed).records)) < 2:
-        yield "fit: less than two records have an observation, and one part must be held out"
+    elif len(np.unique(layout.recordings[observed_pairs(layout, observed).points])) < 2:
+        yield "fit: less than two recordings are observed, and one part must be held out"
 
 
 def _leading(layout: StudyPoints) -> tuple[str, ...]:
@@ -277,12 +277,13 @@ class _Work:
     @cached_property
     def _parts(self) -> Mapping[str, Flags]:
         """Pairs of each part of the records."""
-        records, fit = np.unique(self._pairs.records), self._options.fit
+        clusters = self._table.layout.recordings[self._pairs.points]
+        records, fit = np.unique(clusters), self._options.fit
         if fit is None:
             return {ALL: np.ones(len(self._pairs.points), dtype=bool)}
         count = min(max(round(fit.share * len(records)), 1), len(records) - 1)
         drawn = np.random.default_rng(fit.seed).permutation(records)[:count]
-        fitted = np.isin(self._pairs.records, drawn)
+        fitted = np.isin(clusters, drawn)
         return {FITTED: fitted, HELD_OUT: ~fitted}
 
     def _chosen(self, points: Indices, part: str, quantity: int) -> Indices:
@@ -325,25 +326,19 @@ class _Work:
         observed = self._pairs.values[quantity] == 1.0
         learnt = self._chosen(points, next(iter(self._parts)), quantity)
         intensity = self._measured.values[self._pairs.points]
+        cluster = self._table.layout.clusters[self._pairs.points]
         shaken = places[intensity[places] > 0.0]
         grid = intensity_grid(intensity[shaken])
         return Outcomes(
-            agreement=agreement(computed[places], observed[places]),
+            agreement=agreement(computed[places], observed[places], cluster[places]),
             thresholds=tuple(self._thresholds(observed, learnt, places)),
             observed=self._curve(shaken, observed, intensity, grid),
             computed=self._curve(shaken, computed, intensity, grid),
         )
 
     def _curve(self, places: Indices, beyond: Flags, intensity: Array, grid: Array) -> Curve:
-        fit = fragility_fit(
-            self._table,
-            self._pairs.points[places],
-            intensity[places],
-            beyond[places],
-            grid,
-            self._options.bootstrap,
-        )
-        return Curve(fit, binned(intensity[places], beyond[places]), grid)
+        data = self._table, self._pairs.points[places], intensity[places], beyond[places]
+        return Curve(fragility_fit(*data, grid, self._options.bootstrap), binned(*data), grid)
 
     def _thresholds(self, observed: Flags, learnt: Indices, judged: Indices) -> Iterator[Threshold]:
         """Thresholds chosen on one part of the records and judged on another."""
@@ -353,5 +348,6 @@ class _Work:
             if len(known):
                 value = threshold(intensity[known], observed[known])
                 beyond = intensity[judged] >= value
-                counts = agreement(beyond, observed[judged])
+                cluster = self._table.layout.clusters[self._pairs.points[judged]]
+                counts = agreement(beyond, observed[judged], cluster)
                 yield Threshold(measured.measure, measured.unit, value, counts)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -26,9 +26,8 @@ from rpscli.report.study.report import Found, Report
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import share
+from rpscli.sweep.statistics.fractiles import Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
-from rpscli.sweep.statistics.observations import record_of
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Indices, Table
@@ -111,11 +110,15 @@ class LimitState(NamedTuple):
 
 
 class Observed(NamedTuple):
-    """Share of the points that exceed the limit within a bin of intensities, each (bins,)."""
+    """Points that exceed the limit within a bin of intensities, each (bins,)."""
 
     intensity: Array
-    share: Array
-    points: NDArray[np.int64]
+    shares: Sequence[Share]
+
+    @property
+    def share(self) -> Array:
+        """Their parts of all."""
+        return np.array([share.number / share.of for share in self.shares])
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +206,7 @@ def _fragility(
         limit=limit,
         fit=fragility_fit(table, kept, intensity, beyond, grid, options.bootstrap),
         grid=grid,
-        observed=binned(intensity, beyond),
+        observed=binned(table, kept, intensity, beyond),
         counted=len(kept),
         exceeded=int(beyond.sum()),
         overturned=int(table.overturned[kept].sum()),
@@ -220,10 +223,10 @@ def fragility_fit(
     bootstrap: Bootstrap,
 ) -> Lognormal:
     """A curve through what became of some points (m,) of a study under intensities (m,)."""
-    # Points of one record hang together; each point is alone if there is one record only.
-    cluster = points if len(table.layout.records) == 1 else record_of(table.layout, points)
-    # Motions over points: samples and members of an ensemble share a motion.
-    shaken = points % table.layout.points_of_system // len(table.layout.members)
+    layout = table.layout
+    cluster = layout.clusters[points]
+    # Motions over points: directions, samples and members of an ensemble share a motion.
+    shaken = layout.recordings[points] * len(layout.scales) + layout.places[2][points]
     weight = len(np.unique(shaken)) / max(len(points), 1)
     return lognormal_fit(intensity, beyond, cluster, weight, grid, bootstrap)
 
@@ -235,15 +238,15 @@ def intensity_grid(intensities: Array) -> Array:
     return np.geomspace(intensities.min() / 1.5, intensities.max() * 1.5, CURVE_POINTS)
 
 
-def binned(intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
+def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
     """Shares at each intensity, or in bins of equal numbers of points if there are too many."""
     levels, place = np.unique(intensity, return_inverse=True)
     if len(levels) > 2 * MOST_BINS:
         order = np.argsort(np.argsort(intensity, kind="stable"), kind="stable")
         place = order * MOST_BINS // len(intensity)
         levels = np.exp([np.log(intensity[place == i]).mean() for i in range(MOST_BINS)])
-    points = np.bincount(place, minlength=len(levels))
-    return Observed(levels, np.bincount(place, beyond, minlength=len(levels)) / points, points)
+    bins = [np.flatnonzero(place == i) for i in range(len(levels))]
+    return Observed(levels, tuple(share_of(table, kept[of], beyond[of]) for of in bins))
 
 
 def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
@@ -271,8 +274,7 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     observed = [
         (*of, level, shares.of, shares.number, shares.fraction, shares.low, shares.high)
         for of, curve in curves
-        for level, part, points in zip(*curve.observed, strict=True)
-        for shares in [share(round(part * points), int(points))]
+        for level, shares in zip(curve.observed.intensity, curve.observed.shares, strict=True)
     ]
     line_heads = {"limit": "-", measure: unit, "probability": "-", "low": "-", "high": "-"}
     of_shares = ("counted", "exceeded", "exceeded_share", "exceeded_low", "exceeded_high")

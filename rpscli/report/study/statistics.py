@@ -24,6 +24,14 @@ FROM_BELOW = {"84": "16", "largest": "least"}
 """What follows the names of those of which small values are bad."""
 
 
+def counted_columns(shares: Sequence[Share]) -> list[Column]:
+    """Histories, and the recordings or events that they come from."""
+    return [
+        Column("counted", "-", [share.of for share in shares]),
+        Column(shares[0].by if shares else "recordings", "-", [s.recordings for s in shares]),
+    ]
+
+
 def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
     """Count, share and interval; `name` is what is counted."""
     endings = {"": "number", "_share": "fraction", "_low": "low", "_high": "high"}
@@ -40,7 +48,7 @@ def summary_columns(summary: Summary) -> list[Column]:
     """
     rows = summary.rows
     columns = key_columns(summary.keys, [row.values for row in rows])
-    columns.append(Column("counted", "-", [row.overturned.of for row in rows]))
+    columns += counted_columns([row.overturned for row in rows])
     columns.append(Column("failed", "-", [row.failed for row in rows]))
     columns += share_columns("overturned", [row.overturned for row in rows])
     for place, quantity in enumerate(summary.quantities):
@@ -102,7 +110,7 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         ),
         Column("fractile", "-", [condition.fractile for condition in conditions]),
         Column("value_at_fractile", "SI", fractiles),
-        Column("counted", "-", [verdict.beyond.of for verdict in verdicts]),
+        *counted_columns([verdict.beyond for verdict in verdicts]),
         *share_columns("beyond", [verdict.beyond for verdict in verdicts]),
         Column("overturned_among_them", "-", [verdict.overturned for verdict in verdicts]),
         Column("exceeded", "-", [str(verdict.exceeded).lower() for verdict in verdicts]),
@@ -118,6 +126,7 @@ def summary_document(summary: Summary) -> list[dict[str, Any]]:
         {
             "system": dict(zip(summary.keys, row.values, strict=True)),
             "counted": row.overturned.of,
+            row.overturned.by: row.overturned.recordings,
             "failed": row.failed,
             "overturned": share_document(row.overturned),
             "demands": {
@@ -145,6 +154,7 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
         "system": dict(zip(keys, verdict.values, strict=True)),
         **asdict(verdict.condition),
         "counted": verdict.beyond.of,
+        verdict.beyond.by: verdict.beyond.recordings,
         "beyond": share_document(verdict.beyond),
         "overturned_among_them": verdict.overturned,
         "value": verdict.value,

@@ -37,20 +37,24 @@ class Requirement(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """How often each record counts: once, in `resamples` of a bootstrap, without one at a time."""
+    """How often each record counts: once, in `resamples` of a bootstrap, with one cluster left out.
+
+    Whole clusters are drawn and left out, recordings or events: see `records.clusters`.
+    """
 
     rows: Array
     resamples: int
 
 
-def weights_of(records: int, resamples: int, seed: int) -> Weights:
-    """The records as they are, drawn anew, and without one of them at a time."""
-    if records < 2:
-        return Weights(np.ones((1, records)), 0)
-    even = np.full(records, 1.0 / records)
-    drawn = np.random.default_rng(seed).multinomial(records, even, size=resamples)
-    ones = np.ones((1, records))
-    return Weights(np.concatenate([ones, drawn, 1.0 - np.eye(records)]), resamples)
+def weights_of(clusters: Sequence[int], resamples: int, seed: int) -> Weights:
+    """The records of these clusters as they are, drawn anew, and without one cluster at a time."""
+    ones, count = np.ones((1, len(clusters))), len(set(clusters))
+    if count < 2:
+        return Weights(ones, 0)
+    even = np.full(count, 1.0 / count)
+    drawn = np.random.default_rng(seed).multinomial(count, even, size=resamples)
+    rows = np.concatenate([drawn, 1.0 - np.eye(count)])
+    return Weights(np.concatenate([ones, rows[:, np.array(clusters)]]), resamples)
 
 
 def demands_of(table: Table, name: str) -> Array:

@@ -126,7 +126,7 @@ class Search:
         self.task = task
         self.first = search.first or min(512, 2 ** (unknowns + 4))
         self.most = max(search.most or ROUNDS * self.first, self.first)
-        self.weights = weights_of(max(len(task.study.sources), 1), search.resamples, search.seed)
+        self.weights = weights_of(task.clusters, search.resamples, search.seed)
         self.requirements: tuple[Requirement, ...] = ()
         self.places: Array = np.empty((0, unknowns))
         self.values: Array = np.empty((0, len(task.keys)))

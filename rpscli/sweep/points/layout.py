@@ -18,6 +18,7 @@ from rpscli.case.study.study import Study
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RpsError
 from rpscli.frozen import frozen
+from rpscli.records.clusters import By, clusters
 from rpscli.records.measures import AT_PERIOD
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
@@ -122,6 +123,28 @@ class StudyPoints:
                 records = tuple(properties.record for properties in self.properties)
             columns["record"] = 0 if own else 1, [record.source for record in records if record]
         return columns
+
+    @cached_property
+    def clusters(self) -> Indices:
+        """(points,) numbers of what is independent: recordings, or events if the study says so.
+
+        Under a single record points tell of that record alone, each for itself.
+        """
+        _, sources = self.identifying.get("record", (0, ()))
+        return self.recordings if len(set(sources)) > 1 else frozen(np.arange(len(self)))
+
+    @cached_property
+    def recordings(self) -> Indices:
+        """(points,) numbers of the recordings, or events, of all points."""
+        of, sources = self.identifying["record"]
+        folder = self.study.base_folder if self.records == (None,) else self.study.folder
+        found = clusters(sources, folder, self.independent)
+        return frozen(np.array(found)[self.places[of]])
+
+    @property
+    def independent(self) -> By:
+        """What statistics draw and count as a whole."""
+        return self.study.file.independent
 
     def period_of_measure(self, properties: SystemProperties) -> float | None:
         """Period at which the records of a system are scaled; None unless they are [s]."""

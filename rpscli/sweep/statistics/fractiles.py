@@ -10,7 +10,8 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.sweep.table import Array
+from rpscli.records.clusters import By
+from rpscli.sweep.table import Array, Indices
 
 CONFIDENCE = 0.95
 LOW, HIGH = 0.16, 0.84
@@ -33,18 +34,29 @@ class Outcomes(Protocol):
     def overturned(self) -> NDArray[np.bool_]:
         """(points,) which overturned."""
 
+    @property
+    def clusters(self) -> Indices:
+        """(points,) numbers of what is independent."""
+
+    @property
+    def independent(self) -> By:
+        """What that is."""
+
 
 class Share(NamedTuple):
     """A number of so many histories, and the interval of the probability; NaN without any.
 
-    The interval is that of Clopper and Pearson, exact for independent histories. Where none or all
-    are counted it has one end only, which then has the whole confidence.
+    The interval is that of Clopper and Pearson, exact for independent histories, see `clustered`
+    for others: `recordings` are behind them, or events if `by` says so. Where none or all are
+    counted it has one end only, which then has the whole confidence.
     """
 
     number: int
     of: int
     low: float
     high: float
+    recordings: int
+    by: By = "recordings"
 
     @property
     def fraction(self) -> float | None:
@@ -67,25 +79,71 @@ class Share(NamedTuple):
     def __str__(self) -> str:
         """Counts and interval.
 
-        >>> str(share(0, 22))
-        '0 of 22 (95 %: below 0.13)'
+        >>> str(share(0, 22)), str(clustered(np.zeros(48, dtype=bool), np.arange(48) // 12))
+        ('0 of 22 (95 %: below 0.13)', '0 of 48 from 4 recordings (95 %: below 0.53)')
         """
-        return f"{self.number} of {self.of} ({100.0 * CONFIDENCE:g} %: {self.interval})"
+        return (
+            f"{self.number} of {self.of}{self.behind} ({100.0 * CONFIDENCE:g} %: {self.interval})"
+        )
+
+    @property
+    def behind(self) -> str:
+        """How many recordings or events are behind the histories, where these are fewer."""
+        if self.recordings == self.of:
+            return ""
+        return f" from {self.recordings} {self.by[:-1] if self.recordings == 1 else self.by}"
+
+
+def share(number: int, of: int) -> Share:
+    """The share of independent histories in which something happened."""
+    return Share(number, of, *_interval(number, of), of)
+
+
+def clustered(happened: NDArray[np.bool_], cluster: Indices, by: By = "recordings") -> Share:
+    """The share of histories (m,) of clusters (m,), whose histories need not be independent.
+
+    The interval is that of fewer, independent ones: their number is divided by how much more the
+    counts of clusters scatter than those of independent histories would (the effective sample size
+    of E. L. Korn and B. I. Graubard, Survey Methodology 24, 1998), but by no more than if all
+    histories of a cluster ended alike. What few clusters show of their scatter is little, and
+    nothing where none or all are counted; so two more are taken in for it, one in which it happened
+    in all histories, and one in which it happened in none.
+    """
+    number, of = int(happened.sum()), len(happened)
+    names, place = np.unique(cluster, return_inverse=True)
+    if len(names) == of:
+        return share(number, of)._replace(by=by)
+    sizes = np.bincount(place).astype(float)
+    alike = of**2 / float(np.sum(sizes**2))
+    mean = of / len(names)
+    counts = np.append(np.bincount(place, happened), [mean, 0.0])
+    sizes = np.append(sizes, [mean, mean])
+    total, several = sizes.sum(), len(sizes)
+    p = counts.sum() / total
+    scatter = several / (several - 1.0) * float(np.sum((counts - p * sizes) ** 2)) / total**2
+    effective = min(max(of * p * (1.0 - p) / total / scatter, alike), of)
+    low, high = _interval(number * effective / of, effective)
+    return Share(number, of, low, high, len(names), by)
+
+
+def share_of(table: Outcomes, points: Indices, happened: NDArray[np.bool_]) -> Share:
+    """The share of some points (m,) in which something happened (m,)."""
+    return clustered(happened, table.clusters[points], table.independent)
 
 
 @lru_cache(maxsize=65_536)
-def share(number: int, of: int) -> Share:
-    """The share of histories in which something happened, of those that did not fail."""
+def _interval(number: float, of: float) -> tuple[float, float]:
+    """Clopper's and Pearson's; the numbers need not be whole."""
     # Not `scipy.stats.binomtest`, whose import takes as long as a thousand histories.
     from scipy.special import betaincinv
 
     if not of:
-        return Share(0, 0, float("nan"), float("nan"))
+        return float("nan"), float("nan")
     beyond = 1.0 - CONFIDENCE
     end = beyond if number in {0, of} else 0.5 * beyond
     low = betaincinv(number, of - number + 1, end) if number else 0.0
     high = betaincinv(number + 1, of - number, 1.0 - end) if number < of else 1.0
-    return Share(number, of, float(low), float(high))
+    return float(low), float(high)
 
 
 @lru_cache(maxsize=4096)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share
+from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 INTENSITY = "scale"
@@ -51,7 +51,7 @@ class Histories:
     @property
     def overturned(self) -> Share:
         """The share that overturned."""
-        return share(int(self.fallen.sum()), len(self))
+        return share_of(self.table, self.points, self.fallen)
 
     @property
     def survivors(self) -> Indices:
@@ -165,7 +165,7 @@ def pooling_notes(differing: Sequence[str]) -> tuple[str, ...]:
     if not differing:
         return ()
     text = f"pools {' and '.join(differing)}, which differ"
-    return (f"{text}: histories of one record are not independent, so intervals are too narrow",)
+    return (f"{text}: these do not tell as much as other records would, which intervals count",)
 
 
 def shown_keys(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rpscli.case.study.observed import Observed, comparable
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import Share, fractiles, share
+from rpscli.sweep.statistics.fractiles import Share, clustered, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY
 from rpscli.sweep.table import Array, Indices, groups
 
@@ -102,22 +102,18 @@ Flags = NDArray[np.bool_]
 
 
 class Agreement(NamedTuple):
-    """How often computed and observed outcomes are the same."""
+    """How often computed and observed outcomes are the same, and the share of that."""
 
     both: int
     computed_only: int
     observed_only: int
     neither: int
+    agreed: Share
 
     @property
     def counted(self) -> int:
         """All outcomes."""
-        return sum(self)
-
-    @property
-    def agreed(self) -> Share:
-        """The share of equal outcomes."""
-        return share(self.both + self.neither, self.counted)
+        return self.agreed.of
 
     @property
     def computed(self) -> int:
@@ -184,15 +180,16 @@ def best_place(worths: Sequence[Worth]) -> int:
     return places[(len(places) - 1) // 2]
 
 
-def agreement(computed: Flags, observed: Flags) -> Agreement:
-    """Count the four pairs of outcomes.
+def agreement(computed: Flags, observed: Flags, cluster: Indices) -> Agreement:
+    """Count the four pairs of outcomes, of clusters as `clustered` takes them.
 
     >>> import numpy as np
-    >>> agreement(np.array([True, True, False]), np.array([True, False, False]))
-    Agreement(both=1, computed_only=1, observed_only=0, neither=1)
+    >>> agreement(np.array([True, True, False]), np.array([True, False, False]), np.arange(3))[:4]
+    (1, 1, 0, 1)
     """
     cells = (computed & observed, computed & ~observed, ~computed & observed, ~computed & ~observed)
-    return Agreement(*(int(cell.sum()) for cell in cells))
+    a, b, c, d = (int(cell.sum()) for cell in cells)
+    return Agreement(a, b, c, d, clustered(computed == observed, cluster))
 
 
 def threshold(intensity: Array, observed: Flags) -> float:

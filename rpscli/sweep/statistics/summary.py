@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
+from rpscli.records.clusters import By, clusters
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.pulses import SCHEME
 from rpscli.sweep.evaluation.results import FAILED
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
-from rpscli.sweep.statistics.fractiles import Outcomes, Share, Spread, demand, share, spread
+from rpscli.sweep.statistics.fractiles import Outcomes, Share, Spread, demand, share_of, spread
 from rpscli.sweep.statistics.grouping import grouping
 from rpscli.sweep.table import Array, Indices, Table
 
@@ -48,12 +49,20 @@ class Records:
 
     outcomes: NDArray[np.str_]
     columns: dict[str, Array]
+    clusters: Indices
+    """Numbers of their recordings."""
+    independent: By = "recordings"
 
     @classmethod
-    def of(cls, outcomes: Sequence[str], demands: Sequence[Mapping[str, float]]) -> Records:
-        """From the outcome and the demands of each history."""
+    def of(
+        cls,
+        outcomes: Sequence[str],
+        demands: Sequence[Mapping[str, float]],
+        sources: Sequence[str],
+    ) -> Records:
+        """From the outcome, the demands and the record of each history."""
         columns = {name: np.array([each[name] for each in demands]) for name in demands[0]}
-        return cls(np.array(outcomes), columns)
+        return cls(np.array(outcomes), columns, np.array(clusters(sources)))
 
     @property
     def failed(self) -> NDArray[np.bool_]:
@@ -98,7 +107,7 @@ def _row(
     failed: int,
     values: tuple[object, ...],
 ) -> SummaryRow:
-    overturned = share(int(table.overturned[points].sum()), len(points))
+    overturned = share_of(table, points, table.overturned[points])
     spreads = (
         spread(column[points], from_below=quantity.from_below)
         for quantity, column in demands.items()

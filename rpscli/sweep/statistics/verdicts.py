@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.conditions import EVENTS, Condition
-from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, rank, share, shown_by
+from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, rank, share_of, shown_by
 from rpscli.sweep.statistics.summary import Records, Summary
 from rpscli.sweep.table import Array, Indices, Table
 
@@ -150,7 +150,7 @@ def verdicts(
             Verdict(
                 condition=condition,
                 values=values,
-                beyond=share(int(counted.beyond[0, 0]), len(points)),
+                beyond=share_of(table, points, demands > condition.sign * condition.limit),
                 overturned=int(table.overturned[points].sum()) if of_result else 0,
                 value=condition.sign * float(demands[worst]),
                 record=record_of(int(points[worst])),
