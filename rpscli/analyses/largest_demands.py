@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Generic, TypeVar, overload
+from typing import Any, Generic, TypeVar, cast, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.outcome import OUTCOME_WORDS, Outcome, failure_text, outcome_of
+from rpscli.analyses.outcome import Outcome, failure_text, outcomes_of
 from rpscli.analyses.result_quantities import HISTORY, KERNEL_FIELDS, ResultQuantity, values_of
 from rpscli.analyses.trace import DeviceDemand, device_demands
 from rpscli.frozen import frozen
 from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.statics import uplift_acceleration
 from rpscli.physics.core.records import Record, record_type
 from rpscli.physics.planar import geometry, state
 from rpscli.shown import Shown, with_unit
@@ -45,7 +46,7 @@ class Histories:
     @property
     def outcomes(self) -> NDArray[np.str_]:
         """How each ended, in words."""
-        return np.asarray(OUTCOME_WORDS[self.left["outcome"]])
+        return outcomes_of(self.left)
 
     def column(self, name: str) -> Array:
         """The values of a result of the table of results: a field of the kernel's, or made here."""
@@ -150,6 +151,14 @@ class Histories:
         """max_base_shear over V_st."""
         static = self._each(lambda structure: structure.static_base_shear or None)
         return self.max_base_shear / static
+
+    @property
+    def uplift_shear_ratio(self) -> Array:
+        """max_base_shear over M_tot times the ground acceleration that uplifts with devices."""
+        shear = self._each(
+            lambda s: s.superstructure_mass * uplift_acceleration(s) or None if s.devices else None
+        )
+        return self.max_base_shear / shear
 
     @property
     def max_floor_acceleration(self) -> Array:
@@ -295,7 +304,7 @@ class Demand(Shown):
     @property
     def outcome(self) -> Outcome:
         """How the history ended."""
-        return outcome_of(self.history)
+        return cast("Outcome", str(outcomes_of(self.history)))
 
     @property
     def failure(self) -> str | None:
@@ -310,7 +319,7 @@ class Demand(Shown):
     @property
     def stays_tilted(self) -> bool:
         """Whether friction holds the storey tilted at the end."""
-        return bool(self.history["phase"] == state.STUCK)
+        return self.outcome == "stays_tilted"
 
     max_rotation = _Result[float]("Largest |theta|, turning points between samples included [rad].")
     max_rotation_time = _Optional("When |theta| was largest [s]; None if there was no rotation.")
@@ -347,6 +356,10 @@ class Demand(Shown):
     )
     base_shear_ratio = _Optional(
         "max_base_shear over V_st = M_tot g tan(alpha); None without a superstructure."
+    )
+    uplift_shear_ratio = _Optional(
+        "max_base_shear over the base shear at quasi-static uplift against weight and devices; None"
+        " without either a superstructure or devices."
     )
     max_drifts = _Result[Array]("(n,) largest storey drifts [m].")
     drift_ratio = _Optional("Largest drift over storey height; None where no heights are given.")

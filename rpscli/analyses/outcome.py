@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.physics.core.records import Record
 from rpscli.physics.planar import state
 
-Outcome = Literal["at_rest", "survived", "overturned_rolling", "overturned_rocking", "failed"]
+Outcome = Literal[
+    "at_rest", "survived", "stays_tilted", "overturned_rolling", "overturned_rocking", "failed"
+]
 
 OUTCOMES: dict[int, Outcome] = {
     state.AT_REST: "at_rest",
@@ -23,6 +26,9 @@ OUTCOME_WORDS = np.array(
     [OUTCOMES.get(code, "failed") for code in range(state.FAILED_TOO_MANY_STEPS + 1)]
 )
 """By the codes of `physics.planar.state`, of which RUNNING counts from the end."""
+
+STOOD: tuple[Outcome, ...] = ("survived", "stays_tilted")
+"""After uplift: back in full contact or on the way, or held by friction at the end."""
 
 PHASE_NAMES = {
     state.FULL_CONTACT: "full contact",
@@ -48,9 +54,11 @@ REASONS = {
 }
 
 
-def outcome_of(history: Record) -> Outcome:
-    """The outcome of a `state.RESULT`."""
-    return OUTCOMES.get(int(history["outcome"]), "failed")
+def outcomes_of(left: Record) -> NDArray[np.str_]:
+    """Outcomes of `state.RESULT`s, of any shape."""
+    words = OUTCOME_WORDS[left["outcome"]]
+    held = (left["phase"] == state.STUCK) & (words == "survived")
+    return np.asarray(np.where(held, "stays_tilted", words))
 
 
 def failure_text(history: Record) -> str | None:

@@ -84,6 +84,7 @@ class ResultQuantity(NamedTuple):
 NEEDS = {
     "superstructure": "a superstructure",
     "superstructure.storey_height": "superstructure.storey_height in the case",
+    "superstructure, devices": "a superstructure and podium.devices",
     "podium.friction": "podium.friction in the case",
     "columns": "podium.plan and superstructure.vertical_period in the case: without them it leaves"
     " out the overturning moment and the shock of impacts",
@@ -138,6 +139,11 @@ HISTORY = (
     ResultQuantity(
         "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
         needs="superstructure", meaning="largest base shear over M_tot g tan(alpha)",
+    ),
+    ResultQuantity(
+        "uplift_shear_ratio", "-", "base shear over uplift with devices", limit="2",
+        needs="superstructure, devices",
+        meaning="largest base shear over that at uplift, V_st with what devices add",
     ),
     ResultQuantity(
         "drift_ratio", "-", "drift ratio", limit="0.005", demand=True,
@@ -286,7 +292,7 @@ EIGENVALUES = ResultQuantity("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
 
 UPLIFTED = (
     *LINEAR,
-    ResultQuantity("linearised_at", "rad", "tilt about which modes are linearised"),
+    ResultQuantity("linearised_at", "rad", "rotation about which modes are linearised"),
     *OWN_MOTION,
     EIGENVALUES,
 )

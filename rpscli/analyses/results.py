@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.column_forces import AxialForces
 from rpscli.analyses.fixed_base import FixedBaseResponse, largest_of_cubics, largest_velocities
 from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace
 from rpscli.frozen import frozen
@@ -231,7 +232,7 @@ class TimeHistoryResult(Demand):
     @property
     def is_near_critical(self) -> bool:
         """Whether it survived after rotations near the critical one, or beyond."""
-        return self.outcome == "survived" and self.rotation_ratio > NEAR_CRITICAL
+        return self.outcome in STOOD and self.rotation_ratio > NEAR_CRITICAL
 
     @property
     def slides(self) -> bool | None:

@@ -120,9 +120,10 @@ class DeviceTrace(Frozen):
     displacement: Array
     """u_b [m]; of a tendon the elongation of one."""
     energy: Array
-    """Dissipated so far [J]."""
+    """Dissipated so far [J]. A damped stop that has let go dissipates what its spring still holds
+    as the cap beam moves back to the gap, not at once: sums over an excursion are exact."""
     stored: Array
-    """Energy over what was stored at rest [J]."""
+    """Energy over what was stored at rest [J]; of a stop `k_s (|u_b| - d)^2/2`, let go or not."""
 
     def at(self, rows: Rows) -> DeviceTrace:
         """Only some samples."""

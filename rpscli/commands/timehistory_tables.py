@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 OUTCOMES = {
     "at_rest": "stays in full contact",
     "survived": "uplifts and comes back",
+    "stays_tilted": "uplifts and stays tilted, held by friction",
     "overturned_rolling": "overturns, rolling",
     "overturned_rocking": "overturns, rocking",
     "failed": "the analysis failed",
@@ -48,8 +49,6 @@ def timehistory_tables(
 def outcome_text(result: TimeHistoryResult) -> str:
     """How the history ended, how near to overturning, and whether the columns slide."""
     parts, passed = [OUTCOMES[result.outcome]], result.critical_passage_time
-    if result.stays_tilted:
-        parts = ["uplifts and stays tilted, held by friction"]
     if result.is_near_critical and passed is not None:
         parts.append(f"passed the critical rotation at t = {shown(passed)} s")
     elif result.is_near_critical:
@@ -83,6 +82,8 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     if result.fixed_base is not None:
         ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
         rows.append(_row(result, "max_base_shear", ratio, shear))
+        if result.uplift_shear_ratio is not None:
+            rows.append(_row(result, "uplift_shear_ratio"))
         rows += [_row(result, "fixed_base_ratio"), _row(result, "max_roof_displacement")]
         rows.append(_row(result, "max_floor_velocity"))
     demands = fixed_base_demands(result)

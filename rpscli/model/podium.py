@@ -95,7 +95,8 @@ class PodiumStructure(Shown):
             raise ValueError(
                 f"restitution e = {self.restitution:.4g} must be in (0, 1]: with e <= 0 the"
                 " columns would not go over to their other edge; use more slender columns"
-                " (a smaller tan alpha) or give a measured value"
+                " (a smaller tan alpha), with the law `flexible` a lighter building over the cap"
+                " beam, a smaller loss (0.5), or give a measured value"
             )
 
     def facts(self) -> dict[str, Any]:

@@ -53,6 +53,18 @@ def test_everything_happens(result: TimeHistoryResult) -> None:
     assert STUCK in result.trace.phase
 
 
+def test_base_shear_over_that_at_uplift_with_devices(result: TimeHistoryResult) -> None:
+    """W tan(alpha), tendons, friction and rolling resistance at the cap beam, by hand."""
+    s, b = STRUCTURE, STRUCTURE.bearing
+    force = (s.weight + 4 * P) * 0.15 + F_D + s.weight * 2e-3 / b.half_height
+    shear = s.superstructure_mass * force / (s.weight / s.gravity)
+    assert result.uplift_shear_ratio == pytest.approx(result.max_base_shear / shear, rel=1e-12)
+    static = s.superstructure_mass * s.gravity * 0.15
+    assert result.base_shear_ratio == pytest.approx(result.max_base_shear / static, rel=1e-12)
+    bare = time_history(replace(s, devices=()), RECORD, SETTINGS)
+    assert bare.uplift_shear_ratio is None
+
+
 def test_the_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
     t = result.trace
     given = t.energy_input + t.energy_stored[0]

@@ -265,6 +265,23 @@ def test_no_restitution(
     assert "must be > 0" in slightly_more
 
 
+def test_a_heavy_building_has_no_restitution(building: str, faults: Faults) -> None:
+    """The ratio of building to cap beam, a gentler loss and a measured value are remedies too."""
+    bearing = "podium.bearing={semi_diagonal: 1.5, slenderness: 0.15, curvature_ratio: 0}"
+    masses = ["podium.cap_beam_mass_ratio=10", "podium.impact.law=flexible"]
+    heavy = "podium.superstructure_mass_ratio={}".format
+    message = faults(building, overrides=[bearing, *masses, heavy(50)])
+    assert "under a building of 50 times the cap beam's mass gives the restitution -0.05" in message
+    proposed = float(message.split("a building of less than ")[1].split(" ")[0])
+    # 2 (1 + 40 + 40 eta) - 40 eta = (4/3 + 40)/sin^2(alpha) by hand
+    assert proposed == pytest.approx(((4 / 3 + 40) * (1 + 0.15**-2) - 82) / 40, abs=0.1)
+    for remedy in (heavy(proposed), "podium.impact.loss=0.5"):
+        case = parse_case(building, name="c", overrides=[bearing, *masses, heavy(50), remedy])
+        assert 0.0 < case.structure.restitution < 0.5
+    more = faults(building, overrides=[bearing, *masses, heavy(1.01 * proposed)])
+    assert "must be > 0" in more
+
+
 def test_a_factor_must_not_create_energy(building: str, faults: Faults) -> None:
     message = faults(building, "law: rigid", "law: rigid, factor: 1.2")
     assert message.startswith("c.yaml:17:32: podium.impact.factor = 1.2")

@@ -186,12 +186,22 @@ def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
         widest = largest_slenderness(law, column.inertia_ratio, podium.gamma, podium.eta)
         lost = "" if law.loss == 1.0 else f", loss {law.loss:g}"
         name = "dimensions" if document.has((*BEARING, "dimensions")) else "slenderness"
+        under, lighter = "", ""
+        if law.kind == "flexible" and podium.eta > 0.0:
+            beam, sin2 = 4.0 * podium.gamma, math.sin(column.alpha) ** 2
+            most = (column.inertia_ratio + beam) / sin2 - 2.0 * law.loss * (1.0 + beam)
+            most /= (2.0 * law.loss - 1.0) * beam
+            under = f" under a building of {podium.eta:g} times the cap beam's mass"
+            lighter = (
+                f", a building of less than {below(most)} times that mass" if most > 0.0 else ""
+            )
         yield Fault(
             (*BEARING, name),
-            f"podium.bearing: the slenderness tan(alpha) = {column.slenderness:g} gives the"
+            f"podium.bearing: the slenderness tan(alpha) = {column.slenderness:g}{under} gives the"
             f" restitution {e:.4g} (impact law {law.kind}{lost}), which must be > 0 for the columns"
-            f" to go over to their other edge; use less than {below(widest)}, or a measured value"
-            " with impact: {law: value, restitution: ...}",
+            f" to go over to their other edge; use less than {below(widest)}{lighter}, a part of"
+            " the loss with impact: {loss: 0.5}, or a measured value with"
+            " impact: {law: value, restitution: ...}",
         )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from rpscli.analyses.outcome import STOOD
 from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.fields import Quantity, Section
 from rpscli.case.study.reports import ReportOptions, VariedKeys
@@ -91,7 +92,7 @@ def demand(study: StudyResults, options: DemandOptions) -> Found:
     """
     leading = leading_keys(study.table.layout)
     series = options.series if options.series is not None else leading[1:-1]
-    lifted = study.table.outcomes == "survived"
+    lifted = np.isin(study.table.outcomes, STOOD)
     return _scatter(study, options, "rotation_ratio", "base_shear_ratio", series, lifted)
 
 
@@ -245,6 +246,7 @@ class SpectrumOptions(ReportOptions):
 LOOKS = (
     ("at_rest", "at rest", style.GREY, ".", 2.0),
     ("survived", "survived", style.SKY, "o", 3.0),
+    ("stays_tilted", "stays tilted", style.BLUE, "o", 3.0),
     ("overturned", "overturned", style.RED, "s", 3.0),
 )
 

@@ -162,7 +162,8 @@ def history_columns(result: TimeHistoryResult) -> list[Column]:
     `phase` is 0 in full contact, 1 rolling, 2 rocking, 3 held by friction. Displacements are
     relative to the ground, floor accelerations absolute. Forces are those of one column, F to the
     right and N upwards on what is above; of all columns together where the case does not give
-    their number. Devices are counted from 0, as in `podium.devices`.
+    their number. Devices are counted from 0, as in `podium.devices`; their energy is what they
+    dissipated so far, of a damped stop that has let go as the cap beam moves back to the gap.
     """
     t, columns = result.trace, result.structure.columns
     return [

@@ -172,6 +172,7 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     "superstructure.storey_height": lambda structure: (
         structure.superstructure is not None and structure.superstructure.storey_heights is not None
     ),
+    "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
     "podium.friction": lambda structure: structure.friction is not None,
     "columns": lambda structure: structure.column_forces_known,
     "damper": _device_with("max_damper_force"),
