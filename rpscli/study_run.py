@@ -23,7 +23,7 @@ from rpscli.report.study.statistics import (
     verdict_document,
     verdict_lines,
 )
-from rpscli.report.table import columns_of, csv_text
+from rpscli.report.table import Heading, Part, columns_of, csv_text
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.layout import StudyPoints, reproduction
@@ -68,14 +68,16 @@ class Failure(NamedTuple):
 class Collected:
     """The files of a study by name, and what its reports say.
 
-    `notes` warn of the numbers, `findings` are lines for the terminal, `broken` are the reports
-    that could not be made.
+    `notes` warn of the numbers, `findings` are lines for the terminal, `parts` and `documents`
+    tables of reports for readers and for JSON, `broken` are the reports that could not be made.
     """
 
     files: dict[str, str | bytes] = field(default_factory=dict)
     failures: list[Failure] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     findings: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    parts: list[Part] = field(default_factory=list)
+    documents: dict[str, Any] = field(default_factory=dict)
     broken: list[RpsError] = field(default_factory=list)
 
 
@@ -214,6 +216,9 @@ class StudyRun:
         add_notes(found.notes, request.stem, made.notes)
         if lines := list(made.findings):
             found.findings[request.stem] = lines
+        if document := made.document():
+            found.documents[request.stem] = document
+            found.parts += [Heading(request.stem), *made.parts()]
 
     def _failures(self, place: Path, found: Collected) -> Iterator[Failure]:
         base = self.layout.study.base_file

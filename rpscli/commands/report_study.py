@@ -104,7 +104,7 @@ def _sections(
     ]
     statistics, ground = list[Block](), Section("Ground motions", [])
     if run.summary:
-        statistics += summary_tables(run.summary)
+        statistics += [*summary_tables(run.summary), *found.parts]
         ground = motions_section(*_motions(study), study.title, look)
     return [
         Section("In short", list(_in_short(run, found, notes))),

@@ -106,6 +106,7 @@ def command(
             stem: [{"of": name, "found": sentence} for name, sentence in lines]
             for stem, lines in found.findings.items()
         },
+        "reports": found.documents,
         "failures": [failure._asdict() for failure in found.failures],
         "notes": list(run.start.notes),
         "warnings": notes,
@@ -126,5 +127,6 @@ def _tables(run: StudyRun, found: Collected) -> Iterator[Part]:
     for stem, lines in found.findings.items():
         yield Heading(stem)
         yield Table.listing(lines)
+    yield from found.parts
     if run.summary is not None:
         yield ONE_DIRECTION

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
-from matplotlib.patches import StepPatch
+from matplotlib.patches import Rectangle, StepPatch
 from numpy.typing import NDArray
 from scipy.stats import beta
 
@@ -128,17 +128,19 @@ def test_what_a_rate_comes_from() -> None:
     drift, fall = LimitState("max_lift", 0.02), LimitState("overturning", None)
     edges, nothing = np.array([1.0, 2.0, 4.0, 8.0, INF]), np.empty(0)
 
-    def risk(
-        values: tuple[object, ...], limit: LimitState, rates: list[float], half: float
-    ) -> Risk:
+    def risk(place: int, limit: LimitState, rates: list[float], half: float) -> Risk:
         observed = Observed(nothing, ())
-        fragility = Fragility(values, limit, fit_of(nothing), nothing, observed, 9, 3, 0, 0)
-        return Risk(fragility, sum(rates), NOTHING, edges, np.array(rates), half, ())
+        counts = (9, 3, 0, 0)
+        fit, values = fit_of(nothing), [(0.5,), (0,)][place]
+        fragility = Fragility(values, limit, fit, nothing, observed, *counts, place, 0.4, 6.0)
+        band = (0.5 * sum(rates), 2.0 * sum(rates)) if place else NOTHING
+        others = NAN, NAN, (), 0.1
+        return Risk(fragility, sum(rates), band, edges, np.array(rates), half, *others, ())
 
     risks = (
-        risk((0.5,), drift, [0.001, 0.003, 0.004, 0.002], 3.0),
-        risk((0,), drift, [0.0, 0.004, 0.012, 0.004], 5.0),
-        risk((0,), fall, [0.0, 0.0, 0.008, 0.002], 7.0),
+        risk(0, drift, [0.001, 0.003, 0.004, 0.002], 3.0),
+        risk(1, drift, [0.0, 0.004, 0.012, 0.004], 5.0),
+        risk(1, fall, [0.0, 0.0, 0.008, 0.002], 7.0),
     )
     found = Fragilities(
         intensity=Intensity("PGA", "m/s2", None, nothing),
@@ -149,15 +151,20 @@ def test_what_a_rate_comes_from() -> None:
     )
     figure = drawn(risk_figure, found, risks, 50.0)
     labelled(figure, "PGA [m/s²]", "share of the annual rate [%]")
-    # 1 - exp(-50 x 0.01) and 1 - exp(-50 x 0.02)
-    first = panels(figure)["lift of the building > 0.02 m\nP = 0.39 to 0.63"]
-    second = panels(figure)["overturning\nP = 0.39"]
+    first = panels(figure)["lift of the building > 0.02 m"]
+    second = panels(figure)["overturning"]
     for axes, shares, halves in (
         (first, {"ρ = 0.5": (10, 30, 40), "flat ends": (0, 20, 60)}, (3.0, 5.0)),
         (second, {"flat ends": (0, 0, 80)}, (7.0,)),
     ):
-        steps = {str(patch.get_label()): patch for patch in axes.patches}
+        steps = {str(patch.get_label()): patch for patch in axes.patches if patch.get_label()}
         assert list(steps) == list(shares)
+        beyond = [p for p in axes.patches if isinstance(p, StepPatch) and not p.get_label()]
+        for dotted, system in zip(beyond, shares, strict=True):
+            assert dotted.get_data()[0] == pytest.approx([100.0 - sum(shares[system])])
+            assert dotted.get_data()[1][0] == 8.0
+        (grey,) = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
+        assert grey.get_x() == 6.0
         for label, patch in steps.items():
             assert isinstance(patch, StepPatch)
             assert patch.orientation == "vertical"
@@ -165,12 +172,15 @@ def test_what_a_rate_comes_from() -> None:
             same(values, shares[label])
             same(at, edges[:-1])
         for line, half in zip(axes.lines, halves, strict=True):
-            same(line.get_data(), ((half, half), (0.0, 1.0)))
+            same(line.get_data(), ((half, half), (0.0, 0.82)))
         assert axes.get_xscale() == "log"
-        same(axes.get_xlim(), (0.9, 1.1 * 8.0))
+        same(axes.get_xlim(), (0.9, 1.1 * 1.4 * 8.0))
         assert axes.get_ylim()[0] == 0.0
     assert legend(figure) == ["ρ = 0.5", "flat ends"]
-    for words in ("P: probability in 50 years", "dashed: half of the rate", "over 3 records"):
+    # 1 - exp(-50 x 0.01), with 0.02, and with half and twice of it
+    numbers = [text.get_text() for text in first.texts]
+    assert numbers == ["P = 0.393 (no band)", "P = 0.632 (0.39 to 0.86)"]
+    for words in ("P in 50 years, 90 % bands", "dashed: half of the rate", "over 3 records"):
         assert words in figure.get_suptitle()
 
 

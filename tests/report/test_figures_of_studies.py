@@ -363,7 +363,9 @@ def test_fragilities(histories: Open) -> None:
             (fit,) = [row for row in chosen(fits, rho) if row["limit"] == title]
             assert line.get_linestyle() == ("--" if fit["method"] == "penalised" else "-")
             paths = [np.asarray(path.vertices) for path in bands[place].get_paths()]
-            for column in ("low", "high"):
+            known = fragility[0]["low"] != ""
+            assert known == (fit["beta_low"] != "") == bool(paths)
+            for column in ("low", "high") if known else ():
                 edge = np.column_stack([numbers(fragility, c) for c in ("PGA", column)])
                 apart = np.abs(np.vstack(paths)[:, None] - edge).sum(axis=2).min(axis=0)
                 assert apart.max() < 1e-8
@@ -382,7 +384,7 @@ def test_fragilities(histories: Open) -> None:
             assert all(float(row["exceeded_low"]) <= float(row["exceeded_high"]) for row in data)
         assert axes.get_ylim() == (-0.02, 1.02)
         assert axes.get_xlim()[0] == 0.0
-    assert "bands: 90 %; overturning exceeds every limit" in figure.get_suptitle()
+    assert "overturning exceeds every limit" in figure.get_suptitle().replace("\n", " ")
 
 
 @needs_compiled_kernels

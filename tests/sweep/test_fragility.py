@@ -20,7 +20,14 @@ from rpscli.report.study.scatter import (
     records_without_period,
 )
 from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit, probit_fit, separated
+from rpscli.sweep.fits.lognormal import (
+    Bootstrap,
+    Lognormal,
+    band,
+    lognormal_fit,
+    probit_fit,
+    separated,
+)
 from rpscli.sweep.intensities import intensity
 from rpscli.sweep.points.layout import lay_out
 from sweep.made_up import Stored, cells, results_of, tabulate
@@ -101,7 +108,48 @@ def test_separated_data_get_a_warning_and_a_sane_beta() -> None:
     assert 0.6 < found.median < 0.9
     # Far from the spike that an unpenalised fit ends in, and no wider than the data.
     assert 0.1 < found.beta < 1.0
-    assert np.isfinite(found.median_band).all()
+    # Every resample would have the same penalty: the data alone say only where the median lies.
+    assert found.between == (0.6, 0.9)
+    assert np.isnan([*found.median_band, *found.beta_band, *np.ravel(found.band)]).all()
+
+
+@pytest.mark.parametrize(
+    ("beyond", "between", "words"),
+    [
+        # two of ten at the strongest level, nothing computed above
+        ([0, 0, 2], (0.8, math.inf), "none at smaller ones, no larger one was computed"),
+        ([3, 10, 10], (0.0, 0.8), "no smaller one was computed, all at larger ones"),
+        ([0, 4, 10], (0.4, 1.6), "none at smaller ones, all at larger ones"),
+    ],
+)
+@pytest.mark.parametrize("members", [1, 20])
+def test_one_level_alone_with_both_outcomes_determines_no_beta(
+    beyond: list[int], between: tuple[float, float], words: str, members: int
+) -> None:
+    """Nor do copies of every point under intensities that differ by 1 % at most."""
+    random = np.random.default_rng(3)
+    level = np.repeat([0.4, 0.8, 1.6], 10 * members)
+    y = np.concatenate([np.repeat(np.arange(10) < n, members) for n in beyond])
+    record = np.tile(np.repeat(np.arange(10), members), 3)
+    im = level * random.uniform(0.99, 1.01, len(level)) if members > 1 else level
+    bootstrap = Bootstrap(100, 0.95, 1)
+    found = lognormal_fit(im, y, record, 1.0 / members, np.array([0.8]), bootstrap, level)
+    assert found.method == "penalised"
+    assert found.note is not None
+    few = next(count for count in beyond if 0 < count < 10)
+    counts = f"alone {few * members} of {10 * members} points exceed the limit, {words}"
+    assert counts in found.note
+    assert found.between == between
+    assert np.isnan([*found.median_band, *found.beta_band, *np.ravel(found.band)]).all()
+
+
+def test_samples_that_determine_nothing_count_beyond_both_ends() -> None:
+    values = np.arange(1.0, 101.0)
+    assert band(values, 0.9) == (5.0, 96.0)  # ranks of 5 % and 95 % of 99 steps, outwards
+    values[[3, 50, 80]] = math.nan
+    assert band(values, 0.9) == (2.0, 99.0)  # three less at either end
+    values[:4] = math.nan
+    assert np.isnan(band(values, 0.9)).all()  # more than a tail of 5 %
 
 
 def test_variations_of_the_same_motions_do_not_pretend_to_more_data() -> None:
@@ -173,15 +221,22 @@ def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
     # A quarter of all samples has the second record twice, and thus one intensity alone.
     im, y = np.array([0.5, 1.0, 1.5, 2.0]), np.array([False, True, False, True])
     cluster = np.array([0, 0, 0, 1])
-    found = lognormal_fit(im, y, cluster, 1.0, np.array([0.8]), Bootstrap(60, 0.9, 1))
+    words = "bootstrap samples of the records determine no fragility"
+    found, none = (
+        lognormal_fit(im, y, cluster, 1.0, np.array([0.8]), Bootstrap(60, confidence, 1))
+        for confidence in (0.1, 0.9)
+    )
     assert found.note is not None
     lost = int(found.note.split()[0])
     # Binomial with p = 1/4 and 60 trials: outside of these has a chance below 0.1 %.
     assert 4 <= lost <= 27
-    assert found.note == f"{lost} of 60 bootstrap samples have no fit"
+    assert found.note == f"{lost} of 60 {words}"
     # Their slopes would be anything up to 1e275.
     assert np.abs(np.log(found.beta_band)).max() < 50.0
     assert 0.0 <= found.band[0][0] <= found.band[1][0] <= 1.0
+    assert none.note == f"{lost} of 60 {words}: too many for bands"
+    assert np.isnan([*none.median_band, *none.beta_band, *np.ravel(none.band)]).all()
+    assert (none.median, none.beta) == (found.median, found.beta)
 
 
 def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Make) -> None:
@@ -215,7 +270,8 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     assert rotation.observed.intensity.tolist() == pytest.approx([0.2, 0.4, 0.8], rel=1e-12)
     # Each of three limits counts the 18 overturned histories; drift and overturning are separated.
     counts = f"36 of {rotation.exceeded + 18} histories beyond a limit overturned"
-    assert len(report.notes) == 4
+    assert len(report.notes) == 3
+    assert report.notes[2].startswith("drift_ratio > 0.01; overturning: the data are separated")
     assert report.notes[0].startswith("pools 2 values of podium.bearing.slenderness and 3 values")
     assert report.notes[1].endswith(counts)
 

@@ -17,7 +17,14 @@ from scipy.special import ndtr
 
 from rpscli.errors import CaseError
 from rpscli.report.study.risk import probability
-from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard
+from rpscli.sweep.fits.hazard import (
+    Hazard,
+    annual_rate,
+    exceeded,
+    rate_of_shares,
+    rates_above,
+    read_hazard,
+)
 from sweep.small_studies import STUDY
 
 KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5]))
@@ -70,6 +77,33 @@ def test_no_spread_is_too_wide() -> None:
         assert 0.0 < annual_rate(KINKED, 0.5, beta) <= KINKED.rate[0]
 
 
+def test_a_rate_straight_from_shares_is_what_quadrature_gives() -> None:
+    """Shares between levels are linear in ln(im), and stay outside as they are at the ends."""
+    levels, shares = np.array([0.15, 0.3, 0.5, 2.0, 3.0]), np.array([0.1, 0.05, 0.4, 0.8, 0.9])
+    # On a grid that holds every kink: mean share times the rate of each small step.
+    points = np.concatenate([KINKED.intensity, levels, [1e4]])
+    fine = np.exp(np.linspace(np.log(0.1), np.log(1e4), 400_001))
+    at = np.unique(np.concatenate([points, fine]))
+    x, y = np.log(KINKED.intensity), np.log(KINKED.rate)
+    ends = np.interp(np.log(at), x, y)
+    last = (y[-1] - y[-2]) / (x[-1] - x[-2])
+    rate = np.exp(np.where(at > 1.6, y[-1] + last * (np.log(at) - x[-1]), ends))
+    probable = np.interp(np.log(at), np.log(levels), shares)
+    expected = float(-np.diff(rate) @ (probable[1:] + probable[:-1]) / 2.0)
+    # Trapezoids over steps of 3e-5 of ln(im) are exact to their square.
+    assert rate_of_shares(KINKED, levels, shares) == pytest.approx(expected, rel=1e-8)
+    assert rate_of_shares(KINKED, np.array([0.01]), np.array([0.3])) == pytest.approx(0.3 * 3e-2)
+    flat = Hazard(np.array([0.1, 0.5, 1.0]), np.array([1e-2, 1e-2, 1e-3]))
+    step = rate_of_shares(flat, np.array([0.1, 0.5]), np.array([0.0, 1.0]))
+    assert step == pytest.approx(1e-2)  # up to 0.5 no motion is counted, from there on all
+
+
+def test_rates_of_the_motion_are_those_of_the_curve() -> None:
+    found = exceeded(KINKED, np.array([0.1, 0.2, math.sqrt(0.08), 1.6, 3.2]))
+    expected = [3e-2, 1e-2, math.sqrt(1e-2 * 2e-3), 3e-5, 3e-6]
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
 def test_ten_percent_in_fifty_years_is_once_in_475() -> None:
     assert probability(1.0 / 474.561, 50.0) == pytest.approx(0.1, rel=1e-5)
 
@@ -85,11 +119,15 @@ def test_units_and_comments_of_a_hazard_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "parts"),
     [
-        ("", ("at least two rows", "`PGV [m/s],rate [1/year]`")),
+        ("", ("at least two rows", "`PGV [cm/s],rate [1/year]`")),
         (HEADER + "10,0.1\n", ("at least two rows",)),
-        ("PGA [g],rate [1/year]\n1,1\n2,1\n", (":1:", "the header", "PGA [g]", "PGV [m/s]")),
+        ("PGA [g],rate [1/year]\n1,1\n2,1\n", (":1:", "the header", "PGA [g]", "PGV [cm/s]")),
         ("PGV [g],rate [1/year]\n1,1\n2,1\n", (":1:", "1 g", "a velocity")),
-        ("PGV,rate\n1,1\n2,1\n", (":1:", "the header")),
+        ("PGV,rate\n1,1\n2,1\n", (":1:", "the header", "lacks the unit of 'PGV', 'rate'")),
+        ("PGV,rate [1/year]\n1,1\n2,1\n", ("the unit of 'PGV': write `PGV [cm/s],rate",)),
+        ("PGV [cm/s],rate [%]\n1,1\n2,1\n", ("the unit of rate must be one of 1/year",)),
+        ("PGV [cm/s],rate [1/a],84 [1/a]\n1,1,1\n2,1,1\n", ("'84' must be a fractile",)),
+        ("PGV [m/s],mean [1/a],0.84 [1/a]\n1,1,1\n2,1,2\n", (":3:", "'2'", "not more frequent")),
         (HEADER + "10,0.1\n5,0.01\n", (":3:", "'5'", "above the row before")),
         (HEADER + "10,0.1\n20,0.2\n", (":3:", "'0.2'", "not more frequent")),
         (HEADER + "10,0.1\n20,0\n", (":3:", "'20,0'", "two numbers > 0")),
@@ -130,13 +168,84 @@ def test_a_study_reports_its_risk(workplace: Path, sweep_json: Callable[..., Any
         fit = float(row["median [m/s]"]), float(row["beta [-]"])
         assert rate == pytest.approx(annual_rate(hazard, *fit), rel=1e-8)
         assert float(row["return_period [year]"]) == pytest.approx(1.0 / rate)
-        low, high = (float(row[f"annual_rate_{end} [1/year]"]) for end in ("low", "high"))
-        assert low <= high
+        low, high = (row[f"annual_rate_{end} [1/year]"] for end in ("low", "high"))
+        assert (low == "") == (high == "")
+        assert not low or float(low) < rate < float(high)
         assert float(row["probability_in_50_years [-]"]) == pytest.approx(-math.expm1(-50 * rate))
     with (workplace / "out" / "risk_contributions.csv").open(encoding="utf-8") as file:
         parts = list(csv.DictReader(file))
     assert sum(float(part["share [-]"]) for part in parts) == pytest.approx(len(known), rel=1e-8)
     assert (workplace / "out" / "risk.png").exists()
+
+
+def test_margins_and_dispersions_are_those_of_fema_p695(
+    workplace: Path,
+    sweep_json: Callable[..., Any],
+    sweep: Callable[..., Result],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    options = (
+        "{hazard: {file: hazard.csv, measure: PGV, component: component}, at: {MCE: 60 cm/s},"
+        " spectral_shape: 1.2, resamples: 50, limits: {rotation_ratio: 0.2},"
+        " dispersion: {design_requirements: 0.2, test_data: 0.3, modelling: 0.4}}"
+    )
+    with_risk(
+        workplace,
+        options,
+        "PGV [cm/s],mean [1/year],0.84 [1/year]\n1,1,3\n10,0.1,0.3\n100,1e-3,3e-3\n",
+    )
+    found = sweep_json("study.yaml", "-o", "out")["reports"]["risk"]
+    known = [row for row in found["rows"] if row["median"] is not None]
+    assert known
+    hazard = read_hazard(workplace / "hazard.csv", "PGV")
+    assert list(hazard.fractiles) == [0.84]
+    for row in known:
+        total = math.sqrt(row["beta"] ** 2 + 0.2**2 + 0.3**2 + 0.4**2)
+        assert row["beta_total"] == pytest.approx(total, rel=1e-12)
+        assert row["annual_rate"] == pytest.approx(annual_rate(hazard, row["median"], total))
+        own = annual_rate(hazard, row["median"], row["beta"])
+        assert row["annual_rate_of_records"] == pytest.approx(own)
+        # Three times the mean curve throughout.
+        assert row["annual_rate_of_hazard_0.84"] == pytest.approx(3.0 * row["annual_rate"])
+        tail = float(rates_above(hazard, row["median"], total, np.array([2.7]))[0])
+        assert row["share_beyond_computed"] == pytest.approx(tail / row["annual_rate"])
+        tail = float(rates_above(hazard, row["median"], total, np.array([1.0]))[0])
+        assert row["share_beyond_hazard"] == pytest.approx(tail / row["annual_rate"])
+    for row, margin in zip(known, [m for m in found["at"] if m["CMR"] is not None], strict=True):
+        cmr = row["median"] / 0.6
+        assert (margin["name"], margin["PGV"]) == ("MCE", pytest.approx(0.6))
+        assert margin["CMR"] == pytest.approx(cmr)
+        assert margin["ACMR"] == pytest.approx(1.2 * cmr)
+        below = -math.log(1.2 * cmr)
+        assert margin["probability"] == pytest.approx(ndtr(below / row["beta_total"]))
+        assert margin["probability_of_records"] == pytest.approx(ndtr(below / row["beta"]))
+    assert "modelling 0.4" in found["remark"]
+    monkeypatch.setenv("COLUMNS", "400")
+    shown = sweep("study.yaml", "-o", "out").stdout
+    for words in ("beta total", "rate of hazard 0.84", "ACMR", "MCE", "95 % bands of the choice"):
+        assert words in " ".join(shown.split())
+    with_risk(workplace, options.replace("60 cm/s", "60 cm"), HEADER + "1,1\n10,0.1\n")
+    assert "at: is a length, but must be a velocity" in sweep("study.yaml", "-o", "out").stderr
+
+
+def test_values_that_are_lists_are_groups_too(
+    workplace: Path, sweep_json: Callable[..., Any]
+) -> None:
+    """Devices are lists of mappings, which cannot be keys of a dictionary."""
+    devices = "vary: [podium.devices: [[], [{kind: friction, force: 1 kN}]]]\n"
+    text = STUDY[: STUDY.index("vary:")] + devices + STUDY[STUDY.index("records:") :]
+    text = text.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.9, 2.7]}")
+    options = "limits: {rotation_ratio: 0.2}"
+    risk = f"risk: {{hazard: {{file: hazard.csv, measure: PGV}}, {options}}}"
+    text += f"reports: [fragility: {{{options}}}, {risk}]\n"
+    (workplace / "study.yaml").write_text(text, encoding="utf-8")
+    (workplace / "hazard.csv").write_text(HEADER + "1,1\n10,0.1\n", encoding="utf-8")
+    found = sweep_json("study.yaml", "-o", "out")
+    rows = found["reports"]["fragility"]["rows"]
+    assert [row["podium.devices"] for row in rows] == 2 * [
+        [],
+        [{"kind": "friction", "force": "1 kN"}],
+    ]
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, StrictBool, create_model
+from pydantic_core import PydanticCustomError
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import LIMITS
@@ -17,16 +19,17 @@ from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.fields import DampingRatio, Quantity, Section, Whole
 from rpscli.case.schema.limits import described
 from rpscli.case.study.reports import ReportOptions, VariedKeys
-from rpscli.case.study.schema import PositiveNumbers, Seed
-from rpscli.records.measures import AT_PERIOD, Measure
+from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Seed
+from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import Layout, colour, left_out, marker, over, panel_figure, remarks
 from rpscli.report.study.report import Found, Report
-from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
+from rpscli.report.table import Column
+from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import Share, share_of
+from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.study_results import StudyResults
@@ -70,10 +73,10 @@ class BandOptions(MeasureOptions):
     """Options of reports whose curves have bands."""
 
     resamples: Annotated[int, Whole(0, 10_000)] = Field(
-        200, description="bootstrap samples of the records for the bands; 0 = none"
+        400, description="bootstrap samples of the records for the bands; 0 = none"
     )
     confidence: Annotated[float, Quantity(above=0, below=1)] = Field(
-        0.9, description="probability inside the bands"
+        CONFIDENCE, description="probability inside the bands, which hold the choice of records"
     )
     seed: Seed = Field(1, description="of the bootstrap")
 
@@ -83,11 +86,46 @@ class BandOptions(MeasureOptions):
         return Bootstrap(self.resamples, self.confidence, self.seed)
 
 
+Dispersion = Annotated[float, Quantity(symbol="standard deviation of ln", at_least=0, at_most=2)]
+
+
+class DispersionSection(Section):
+    """Uncertainties in quadrature with the scatter of records (FEMA P695, section 7.3.4)."""
+
+    record_to_record: Dispersion | None = None
+    """in place of the beta of the fit, such as 0.4"""
+    design_requirements: Dispersion = 0.0
+    """beta_DR, 0.1 (superior) to 0.5 (poor)"""
+    test_data: Dispersion = 0.0
+    """beta_TD, 0.1 to 0.5"""
+    modelling: Dispersion = 0.0
+    """beta_MDL, 0.1 to 0.5"""
+
+    @property
+    def given(self) -> list[tuple[str, float]]:
+        """Those that the study gives."""
+        return [(key, value) for key, value in self if value]
+
+    def total(self, beta: Any) -> Any:
+        """beta_TOT from that of records."""
+        own = beta if self.record_to_record is None else self.record_to_record + 0.0 * beta
+        return np.sqrt(own**2 + self.design_requirements**2 + self.test_data**2 + self.modelling**2)
+
+
 class FragilityOptions(BandOptions):
     """Probability of exceeding a limit state against an intensity measure."""
 
     limits: LimitStates = Field(LimitStates(), description="limit states")
     series: VariedKeys | None = Field(None, description="varied keys, one curve for each value")
+    dispersion: DispersionSection = Field(
+        DispersionSection(), description="uncertainty of more than the records"
+    )
+    at: dict[str, Option] = Field(
+        {}, description="intensities by name, {MCE: 0.6 m/s}: collapse margin ratios, probabilities"
+    )
+    spectral_shape: PositiveNumber = Field(
+        1.0, description="factor SSF of FEMA P695 on collapse margin ratios, made for Sa(T1)"
+    )
 
 
 class LimitState(NamedTuple):
@@ -125,7 +163,9 @@ class Observed(NamedTuple):
 class Fragility:
     """Data and fit of one limit state of one group of systems; `failed` points are left out.
 
-    `overturned` of the points that exceed the limit do so because they overturned.
+    `overturned` of the points that exceed the limit do so because they overturned. `place` is that
+    of the group, `total` the beta with what is uncertain besides the records, `largest` the largest
+    intensity that was computed.
     """
 
     values: tuple[object, ...]
@@ -137,6 +177,9 @@ class Fragility:
     exceeded: int
     overturned: int
     failed: int
+    place: int
+    total: float
+    largest: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,21 +199,25 @@ class Fragilities:
     @property
     def notes(self) -> list[str]:
         """What is pooled, what overturning does to limits, and what keeps fits from being plain."""
+        return [
+            *self.systems.notes,
+            *self._overturned,
+            *told(self, ((curve, curve.fit.note) for curve in self.curves)),
+        ]
+
+    @property
+    def _overturned(self) -> Iterator[str]:
         limited = [curve for curve in self.curves if curve.limit.threshold is not None]
         fallen = sum(curve.overturned for curve in limited)
-        notes = list(self.systems.notes)
         if fallen:
             exceeded = sum(curve.exceeded for curve in limited)
             counts = f"{fallen} of {exceeded} histories beyond a limit"
-            notes.append(f"an overturned history exceeds every limit: {counts} overturned")
-        return notes + [
-            f"{self.named(curve)}: {curve.fit.note}" for curve in self.curves if curve.fit.note
-        ]
+            yield f"an overturned history exceeds every limit: {counts} overturned"
 
     def named(self, curve: Fragility) -> str:
         """A curve's limit state with the values of its systems."""
-        keys = zip(self.systems.keys, curve.values, strict=True)
-        return curve.limit.label + "".join(f", {key} = {value}" for key, value in keys)
+        values = labels(self.systems.keys, curve.values)
+        return f"{curve.limit.label}, {values}" if values else curve.limit.label
 
 
 def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
@@ -178,7 +225,9 @@ def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
     measured, limits = study.intensity(options), tuple(limit_states(options))
     systems = grouping(study.table, options.series, (INTENSITY,))
     curves = tuple(
-        _fragility(measured, options, group, limit) for limit in limits for group in systems.groups
+        _fragility(measured, options, (place, group), limit)
+        for limit in limits
+        for place, group in enumerate(systems.groups)
     )
     return Fragilities(measured, options.confidence, systems, limits, curves)
 
@@ -194,17 +243,22 @@ def limit_states(options: FragilityOptions) -> Iterator[LimitState]:
 
 
 def _fragility(
-    measured: Intensity, options: FragilityOptions, group: Histories, limit: LimitState
+    measured: Intensity, options: FragilityOptions, placed: tuple[int, Histories], limit: LimitState
 ) -> Fragility:
+    place, group = placed
     table, points = group.table, group.points
     kept = points[measured.values[points] > 0.0]
     intensity = measured.values[kept]
     beyond = exceeds(table, limit.result, limit.threshold or 0.0)[kept]
     grid = intensity_grid(intensity)
+    fit = fragility_fit(table, kept, intensity, beyond, grid, options.bootstrap)
     return Fragility(
+        place=place,
         values=group.values,
         limit=limit,
-        fit=fragility_fit(table, kept, intensity, beyond, grid, options.bootstrap),
+        fit=fit,
+        total=float(options.dispersion.total(fit.beta)),
+        largest=float(intensity.max(initial=0.0)),
         grid=grid,
         observed=binned(table, kept, intensity, beyond),
         counted=len(kept),
@@ -228,7 +282,11 @@ def fragility_fit(
     # Motions over points: directions, samples and members of an ensemble share a motion.
     shaken = layout.recordings[points] * len(layout.scales) + layout.places[2][points]
     weight = len(np.unique(shaken)) / max(len(points), 1)
-    return lognormal_fit(intensity, beyond, cluster, weight, grid, bootstrap)
+    # Members of an ensemble perturb one intensity, and tell no others.
+    _, cell = np.unique(points // len(table.layout.members), return_inverse=True)
+    means = np.bincount(cell, np.log(intensity)) / np.bincount(cell)
+    level = np.exp(np.round(means, 9))[cell] if len(means) < len(points) else intensity
+    return lognormal_fit(intensity, beyond, cluster, weight, grid, bootstrap, level)
 
 
 def intensity_grid(intensities: Array) -> Array:
@@ -256,14 +314,77 @@ def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iter
         yield f"{options.measure} at T1 needs storeys; give the report a `period`"
 
 
+def named_intensities(layout: StudyPoints, options: FragilityOptions) -> dict[str, float]:
+    """The intensities under `at` in SI; raises pydantic's error if one is none."""
+    scaled = layout.plan.measure
+    measure = options.measure or (scaled.measure if scaled else "PGV")
+    bounds = Quantity(MEASURE_UNITS[measure], symbol=measure, above=0)
+    return {name: float(bounds.number(value)) for name, value in options.at.items()}
+
+
+def fragility_faults(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
+    """What keeps a report from having its measure, or the intensities that it names."""
+    yield from measure_without_period(layout, options)
+    yield from wrong_intensities(layout, options)
+
+
+def wrong_intensities(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
+    """What is no intensity under `at`."""
+    try:
+        named_intensities(layout, options)
+    except PydanticCustomError as error:
+        yield f"at: {error.message()}"
+
+
+def told(found: Fragilities, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
+    """Notes on curves, each once with all that it is about."""
+    by_text: dict[str, list[str]] = {}
+    for curve, text in notes:
+        if text:
+            by_text.setdefault(text, []).append(found.named(curve))
+    for text, named in by_text.items():
+        yield f"{'; '.join(named)}: {text}"
+
+
+def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) -> list[Column]:
+    """Collapse margin ratios and probabilities at the intensities that the report names.
+
+    CMR is the median over the intensity, ACMR = SSF CMR, and the probability that of a lognormal
+    variable with the dispersion beta_TOT, Phi(-ln(ACMR)/beta_TOT): FEMA P695 (2009), chapter 7.
+    """
+    from scipy.special import ndtr
+
+    factor, total = options.spectral_shape, options.dispersion.total
+    rows = []
+    for name, value in named_intensities(study.table.layout, options).items():
+        for curve in found.curves:
+            fit = curve.fit
+            medians, betas = (
+                np.append(one, many)
+                for one, many in zip((fit.median, fit.beta), fit.resampled, strict=True)
+            )
+            acmr = factor * medians / value
+            probable = ndtr(-np.log(acmr) / total(betas))
+            ends = band(probable[1:], options.confidence)
+            of_records = ndtr(-math.log(acmr[0]) / fit.beta) if fit.fitted else math.nan
+            rows.append((
+                curve.values, curve.limit.label, name, value, medians[0] / value, acmr[0], fit.beta,
+                curve.total, of_records, probable[0], *ends,
+            ))  # fmt: skip
+    heads = {"limit": "-", "name": "-", found.intensity.measure: found.intensity.unit}
+    heads |= dict.fromkeys(("CMR", "ACMR", "beta", "beta_total", "probability_of_records"), "-")
+    heads |= dict.fromkeys(("probability", "probability_low", "probability_high"), "-")
+    return keyed(found.systems.keys, heads, rows)
+
+
 def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     """Curves, and the data that they go through."""
     found = fragilities(study, options)
     keys, measure, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
     curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
-    counted = attrgetter("counted", "exceeded", "overturned", "failed", "fit.note")
+    counted = attrgetter("total", "exceeded", "counted", "overturned", "failed", "fit.note")
     fits = [(*of, measure, *fit_cells(curve.fit), *counted(curve)) for of, curve in curves]
-    counts = ("counted", "exceeded", "overturned_among_them", "failed", "note")
+    counts = ("beta_total", "exceeded", "counted", "overturned_among_them", "failed", "note")
     fit_heads = {"limit": "-", "intensity": "-", **fit_units(unit), **dict.fromkeys(counts, "-")}
     lines = [
         (*of, *numbers)
@@ -281,13 +402,25 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     observed_heads = {"limit": "-", measure: unit, **dict.fromkeys(of_shares, "-")}
     tables = {
         "": keyed(keys, fit_heads, fits),
+        **({"_at": margins(study, options, found)} if options.at else {}),
         "_curves": keyed(keys, line_heads, lines),
         "_observed": keyed(keys, observed_heads, observed),
     }
     drawable = any(curve.fit.fitted for curve in found.curves)
-    return Found(
-        tables, (lambda title: fragility_figure(found, title)) if drawable else None, found.notes
-    )
+    main = dict.fromkeys((*keys, "limit", "median", "beta", *counts[:3]), "")
+    if not options.dispersion.given:
+        del main["beta_total"]
+    shown = {"": main} | ({"_at": {}} if options.at else {})
+    figure = (lambda title: fragility_figure(found, title)) if drawable else None
+    return Found(tables, figure, found.notes, shown=shown, remark=what_bands_hold(options))
+
+
+def what_bands_hold(options: FragilityOptions) -> str:
+    """What stands below numbers with bands."""
+    level = f"in brackets: {style.percent(options.confidence)} bands of the choice of records"
+    given = ", ".join(f"{key.replace('_', ' ')} {v:g}" for key, v in options.dispersion.given)
+    beyond = f"beta total: in quadrature with {given}" if given else "they hold no modelling error"
+    return f"{level} (bootstrap of {options.resamples}); {beyond}; -: not determined"
 
 
 def fit_units(unit: str) -> dict[str, str]:
@@ -306,21 +439,24 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
 
     Curves that could not be fitted are not drawn, nor are limit states without any.
     """
-    values = dict.fromkeys(c.values for c in report.curves)
-    place_of = {each: place for place, each in enumerate(values)}
+    from scipy.special import ndtr
+
+    groups = len(report.systems.groups)
     limits = [limit for limit in report.limits if report.fitted(limit)]
     panels = [report.fitted(limit) for limit in limits]
 
     def draw(axes: Axes, curves: list[Fragility]) -> None:
         for curve in curves:
-            place = place_of[curve.values]
-            shade = colour(place, len(place_of))
+            place, shade = curve.place, colour(curve.place, groups)
             dashes = "--" if curve.fit.method == "penalised" else "-"
             axes.plot(
                 curve.grid, curve.fit.curve, dashes, color=shade, lw=1.4,
                 marker=marker(place), ms=3.2, markevery=[],  # the legend shows both
                 label=labels(report.systems.keys, curve.values) or None,
             )  # fmt: skip
+            if curve.total != curve.fit.beta:
+                total = ndtr(np.log(curve.grid / curve.fit.median) / curve.total)
+                axes.plot(curve.grid, total, ":", color=shade, lw=1.0)
             if len(curves) <= MOST_BANDS:
                 axes.fill_between(curve.grid, *curve.fit.band, color=shade, alpha=0.15, lw=0)
             axes.plot(
@@ -328,9 +464,16 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
                 marker=marker(place), ms=3.2, alpha=0.8,
             )  # fmt: skip
         axes.set_ylim(-0.02, 1.02)
-        axes.set_xlim(left=0.0, auto=True)
+        axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
+        beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
 
-    notes = ["markers: observed", f"bands: {style.percent(report.confidence)}"]
+    drawn = [curve for panel in panels for curve in panel]
+    some_bands = any(np.isfinite(curve.fit.band[0]).any() for curve in drawn)
+    band_words = f"bands: {style.percent(report.confidence)}, the choice of records"
+    notes = ["markers: observed", band_words if some_bands else "no bands are determined"]
+    if any(curve.total != curve.fit.beta for curve in drawn):
+        notes.append("dotted: with further dispersion")
+    notes.append(BEYOND_COMPUTED)
     if any(c.fit.method == "penalised" for c in report.curves):
         notes.append("dashed: separated data, penalised fit")
     if any(limit.threshold is not None for limit in limits):
@@ -350,6 +493,15 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
         y_label="probability of exceedance",
         note=remarks(*notes),
     )
+
+
+BEYOND_COMPUTED = "grey: stronger than computed"
+
+
+def beyond_computed(axes: Axes, largest: float, end: float) -> None:
+    """Shade what is beyond the largest intensity that was computed."""
+    if largest < end:
+        axes.axvspan(largest, end, color=style.GREY, alpha=0.15, lw=0, zorder=0)
 
 
 def limit_name(limit: LimitState) -> str:
@@ -381,6 +533,6 @@ def measure_name(intensity: Intensity) -> str:
 REPORT = Report(
     FragilityOptions,
     fragility,
-    requires=measure_without_period,
+    requires=fragility_faults,
     results=lambda options: [limit.result for limit in limit_states(options)],
 )

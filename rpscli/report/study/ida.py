@@ -78,7 +78,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
         # Evenly through all of them: more would only blacken the panel.
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
             axes.plot(
-                *_run_out(curve, levels, edge), color=style.GREY, lw=0.5, alpha=0.5,
+                *_run_out(curve, levels, edge), color=style.GREY, lw=0.6, alpha=0.8,
                 label="single curves",
             )  # fmt: skip
         for fractile, (colour, line), share in zip(panel.fractiles, LINES, FRACTILES, strict=True):
@@ -97,7 +97,11 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
             x_label=quantity.axis_label,
             y_label=f"{name} [{level_unit}]",
             limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
-            note=remarks(over(found.pooled), left_out(found.failed)),
+            note=remarks(
+                "level to the right: overturned at the next intensity" if found.overturned else "",
+                over(found.pooled),
+                left_out(found.failed),
+            ),
         ),
         found.notes,
     )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, TypeVar
 
 from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.schema.fields import Quantity
@@ -13,7 +14,8 @@ from rpscli.case.study.reports import Check, ReportOptions
 from rpscli.case.study.schema import Analysis
 from rpscli.report.figures.look import USUAL, Look, figure_files
 from rpscli.report.figures.style import Target, kept_figure
-from rpscli.report.table import Column, csv_text
+from rpscli.report.study.labels import plain, symbol
+from rpscli.report.table import Column, Part, Table, csv_text, headed, percent, records, shown
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.study_results import StudyResults
 
@@ -30,6 +32,9 @@ Statistic = Annotated[
 ]
 """What stands for several histories."""
 
+ENDS = ("_low", "_high")
+"""Of names of columns that hold the ends of a band."""
+
 Options = TypeVar("Options", bound=ReportOptions)
 Tables = Mapping[str, list[Column]]
 """Columns of each CSV file, by what follows the report's name in the file's."""
@@ -41,7 +46,9 @@ class Found:
 
     `figure` makes the file of its figure under a title; None where nothing can be drawn. `notes`
     are what the user should know about the numbers, `findings` the main ones in lines for the
-    terminal, `texts` further files, by what follows the report's name in the file's.
+    terminal, `texts` further files, by what follows the report's name in the file's. `shown` has
+    labels of columns of tables that are for the terminal too, none if all are; `remark` stands
+    below them.
     """
 
     tables: Tables
@@ -49,6 +56,20 @@ class Found:
     notes: Sequence[str] = ()
     findings: Sequence[tuple[str, str]] = ()
     texts: Mapping[str, str] = field(default_factory=dict)
+    shown: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    remark: str = ""
+
+    def parts(self) -> Iterator[Part]:
+        """What a terminal and a page show of its tables."""
+        for suffix, labels in self.shown.items():
+            yield _readable(self.tables[suffix], labels)
+        if self.remark:
+            yield self.remark
+
+    def document(self) -> dict[str, Any]:
+        """The same in JSON, with all columns."""
+        rows = {suffix.lstrip("_") or "rows": records(self.tables[suffix]) for suffix in self.shown}
+        return {**rows, "remark": self.remark} if rows else {}
 
     def drawn(self, title: str, target: Target | Axes | None = None) -> Target:
         """Its figure, which is no file yet; drawn into the target if there is one."""
@@ -63,6 +84,41 @@ class Found:
             yield f"{stem}{suffix}", text
         if self.figure is not None:
             yield from figure_files({stem: partial(self.figure, title)}, look).items()
+
+
+def with_band(value: float, low: float, high: float) -> str:
+    """A value and the band around it.
+
+    >>> with_band(0.25, 0.125, 0.5), with_band(0.25, math.nan, math.nan), with_band(*[math.nan] * 3)
+    ('0.250 (0.12 to 0.50)', '0.250 (no band)', '-')
+    """
+    if not math.isfinite(value):
+        return "-"
+    known = math.isfinite(low) and math.isfinite(high)
+    return f"{shown(value, 3)} ({f'{shown(low, 2)} to {shown(high, 2)}' if known else 'no band'})"
+
+
+def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
+    """The columns that have labels, or all; a value and the ends of its band are one cell."""
+    known = {column.name: list(column.values) for column in columns}
+    heads, cells, words = [], [], 0
+    for column in columns:
+        name, unit, values = column.name, column.unit, known[column.name]
+        if name.endswith(ENDS) or (labels and name not in labels):
+            continue
+        own = labels.get(name) or symbol(name)
+        heads.append(headed(own, "-" if own.endswith(unit) else unit))
+        if any(isinstance(value, str | list) for value in values) or "." in name:
+            words = len(heads)
+            cells.append([plain(value) for value in values])
+        elif name + ENDS[0] in known:
+            rows = zip(values, *(known[name + end] for end in ENDS), strict=True)
+            cells.append([with_band(*row) for row in rows])
+        elif name.startswith("share_"):
+            cells.append(["-" if math.isnan(value) else percent(value, 1.0) for value in values])
+        else:
+            cells.append([shown(value, 3) for value in values])
+    return Table.of_texts(heads, zip(*cells, strict=True), words=words, keys=words)
 
 
 @dataclass(frozen=True)

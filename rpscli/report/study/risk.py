@@ -13,22 +13,38 @@ from pydantic import Field
 from rpscli.case.schema.fields import Quantity, Section, Text
 from rpscli.errors import CaseError
 from rpscli.records.measures import AT_PERIOD, Measure
+from rpscli.records.pair_measure import SHOWN, Of
+from rpscli.report.figures import style
 from rpscli.report.study.fragility import (
+    BEYOND_COMPUTED,
+    MOST_BANDS,
     Fragilities,
     Fragility,
     FragilityOptions,
     LimitState,
+    beyond_computed,
     fragilities,
     limit_name,
     limit_states,
+    margins,
     measure_name,
     side_by_side,
+    told,
+    what_bands_hold,
+    wrong_intensities,
 )
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import Layout, colour, log_ticks, over, panel_figure, remarks
-from rpscli.report.study.report import Found, Report
-from rpscli.sweep.fits.hazard import Hazard, annual_rate, rates_above, read_hazard
-from rpscli.sweep.fits.lognormal import NOTHING, Band, percentiles
+from rpscli.report.study.report import Found, Report, with_band
+from rpscli.sweep.fits.hazard import (
+    Hazard,
+    annual_rate,
+    exceeded,
+    rate_of_shares,
+    rates_above,
+    read_hazard,
+)
+from rpscli.sweep.fits.lognormal import NOTHING, Band, band
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
@@ -46,9 +62,11 @@ class HazardSection(Section):
     """A hazard curve: how often a year each intensity is exceeded at the site."""
 
     file: Text = Field(
-        description="CSV with the header `PGV [cm/s],rate [1/year]`, seen from the study's folder"
+        description="CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it,"
+        " `0.16 [1/year]`; seen from the study's folder"
     )
     measure: Measure = Field(description="of its first column")
+    component: Of | None = Field(None, description="of the two horizontal ones: what it is of")
 
 
 class RiskOptions(FragilityOptions):
@@ -66,7 +84,10 @@ class Risk:
 
     `rates` (bins,) are from motions between `edges` (bins + 1,), the last of which is infinite.
     `band` encloses the confidence asked for over the bootstrap samples of the fragility; `half` is
-    the intensity that half of the rate comes from below.
+    the intensity that half of the rate comes from below. `of_records` is the rate without other
+    uncertainties, `of_shares` that straight from the observed shares, `of_hazard` (fractiles,)
+    those of the further hazard curves. Shares of the rate come from beyond the largest intensity
+    that was computed, and from beyond the hazard curve.
     """
 
     fragility: Fragility
@@ -75,7 +96,16 @@ class Risk:
     edges: Array
     rates: Array
     half: float
+    of_records: float
+    of_shares: float
+    of_hazard: tuple[float, ...]
+    beyond_computed: float
     notes: tuple[str, ...]
+
+    @property
+    def beyond_hazard(self) -> float:
+        """Share of the rate."""
+        return float(self.rates[-1] / self.rate)
 
 
 def probability(rate: float, years: float) -> float:
@@ -94,6 +124,7 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
         yield f"measure: {options.measure} is not hazard.measure: {measure}; take the first out"
     if measure in AT_PERIOD and options.period is None:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
+    yield from wrong_intensities(layout, options.model_copy(update={"measure": measure}))
     try:
         hazard_of(layout, options)
     except CaseError as error:
@@ -110,28 +141,41 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     hazard = hazard_of(study.table.layout, options)
     options = options.model_copy(update={"measure": options.hazard.measure})
     found = fragilities(study, options)
-    risks = [risk_of(curve, hazard, options.confidence) for curve in found.curves]
+    risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
     keys, measured, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
     life = f"probability_in_{options.years:g}_years"
-    heads = {"limit": "-"}
-    heads |= dict.fromkeys(("annual_rate", "annual_rate_low", "annual_rate_high"), "1/year")
-    heads |= {"return_period": "year"} | dict.fromkeys((life, f"{life}_low", f"{life}_high"), "-")
-    heads |= {f"half_from_{measured}_below": unit, "median": unit, "beta": "-", "note": "-"}
+    ends, rate_unit = ("low", "high"), "1/year"
+    heads = {"limit": "-", "annual_rate": rate_unit, "return_period": "year"}
+    heads |= {f"annual_rate_{end}": rate_unit for end in ends}
+    heads |= {life: "-"} | {f"{life}_{end}": "-" for end in ends}
+    heads |= {"median": unit, "beta": "-", "beta_total": "-", "confidence": "-"}
+    heads |= {"annual_rate_of_records": rate_unit, "annual_rate_of_shares": rate_unit}
+    heads |= {f"annual_rate_of_hazard_{share:g}": rate_unit for share in hazard.fractiles}
+    heads |= {f"half_from_{measured}_below": unit}
+    heads |= {"share_beyond_computed": "-", "share_beyond_hazard": "-", "note": "-"}
     rows = [
         (
             each.fragility.values,
             each.fragility.limit.label,
-            *rates,
+            each.rate,
             1.0 / each.rate if each.rate > 0.0 else math.nan,
-            *(probability(rate, options.years) for rate in rates),
-            each.half,
+            *each.band,
+            *(probability(rate, options.years) for rate in (each.rate, *each.band)),
             fit.median,
             fit.beta,
+            each.fragility.total,
+            options.confidence,
+            each.of_records,
+            each.of_shares,
+            *each.of_hazard,
+            each.half,
+            each.beyond_computed,
+            each.beyond_hazard,
             "; ".join(filter(None, [fit.note, *each.notes])) or None,
         )
         for each in risks
-        for fit, rates in [(each.fragility.fit, (each.rate, *each.band))]
+        for fit in [each.fragility.fit]
     ]
     part_heads = {
         "limit": "-", f"{measured}_from": unit, f"{measured}_to": unit, "annual_rate": "1/year",
@@ -142,102 +186,150 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         for each in known
         for low, high, rate in zip(each.edges, each.edges[1:], each.rates, strict=False)
     ]
-    notes = dict.fromkeys(
-        f"{found.named(each.fragility)}: {note}" for each in risks for note in each.notes
-    )
+    tables = {"": keyed(keys, heads, rows), "_contributions": keyed(keys, part_heads, parts)}
+    main = dict.fromkeys((*keys, "limit"), "") | {
+        "annual_rate": "annual rate", "return_period": "return period",
+        life: f"P in {options.years:g} years", "median": "median", "beta": "beta",
+        "beta_total": "beta total", "annual_rate_of_records": "rate of records alone",
+        "annual_rate_of_shares": "rate of shares",
+        **{f"annual_rate_of_hazard_{s:g}": f"rate of hazard {s:g}" for s in hazard.fractiles},
+        f"half_from_{measured}_below": "half from below",
+        "share_beyond_computed": "from beyond computed",
+        "share_beyond_hazard": "from beyond hazard",
+    }  # fmt: skip
+    if not options.dispersion.given:
+        del main["beta_total"], main["annual_rate_of_records"]
+    if options.at:
+        tables["_at"] = margins(study, options, found)
     return Found(
-        {"": keyed(keys, heads, rows), "_contributions": keyed(keys, part_heads, parts)},
+        tables,
         (lambda title: risk_figure(found, known, options.years, title)) if known else None,
-        [*found.notes, *notes],
+        [*_report_notes(found, known, options.hazard.component), *found.notes],
+        shown={"": main} | ({"_at": {}} if options.at else {}),
+        remark=f"{what_bands_hold(options)}; rate of shares: of the observed ones, no lognormal",
     )
 
 
-def risk_of(fragility: Fragility, hazard: Hazard, confidence: float) -> Risk:
+def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
     """The annual rate of one fragility, with what contributes to it."""
     low, high = hazard.intensity[[0, -1]]
     edges = np.append(np.geomspace(low, high, BINS + 1), math.inf)
-    if not fragility.fit.fitted:
-        none = np.full(BINS + 1, math.nan)
-        return Risk(fragility, math.nan, NOTHING, edges, none, math.nan, ())
-    fit = fragility.fit
-    above = np.append(rates_above(hazard, fit.median, fit.beta, edges[:-1]), 0.0)
-    tails = (50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence))
-    # A sample in which fewer exceed the limit in stronger motions has no lognormal fragility.
+    fit, total, observed = fragility.fit, fragility.total, fragility.observed
+    of_shares = (
+        rate_of_shares(hazard, observed.intensity, observed.share)
+        if observed.share.any()
+        else math.nan
+    )
+    if not fit.fitted:
+        none, nan = np.full(BINS + 1, math.nan), math.nan
+        lost = (nan,) * len(hazard.fractiles)
+        return Risk(fragility, nan, NOTHING, edges, none, nan, nan, of_shares, lost, nan, ())
+    at = np.append(edges[:-1], max(fragility.largest, low))
+    above = rates_above(hazard, fit.median, total, at)
+    medians, betas = fit.resampled
     sampled = [
-        annual_rate(hazard, median, beta)
-        for median, beta in zip(*fit.resampled, strict=True)
-        if 0.0 < beta < math.inf and 0.0 < median < math.inf
+        annual_rate(hazard, *pair) if pair[0] > 0.0 else math.nan
+        for pair in zip(medians, options.dispersion.total(betas), strict=True)
     ]
-    lost = len(fit.resampled[0]) - len(sampled)
+    rate, curves = float(above[0]), [hazard.fractile(share) for share in hazard.fractiles]
     return Risk(
         fragility=fragility,
-        rate=float(above[0]),
-        band=percentiles(np.array(sampled), tails),
+        rate=rate,
+        band=band(np.array(sampled), options.confidence),
         edges=edges,
-        rates=-np.diff(above),
-        half=_half(hazard, fragility),
-        notes=tuple(_notes(fragility, hazard, above, lost)),
+        rates=-np.diff(np.append(above[:-1], 0.0)),
+        half=_half(hazard, fit.median, total),
+        of_records=annual_rate(hazard, fit.median, fit.beta),
+        of_shares=of_shares,
+        of_hazard=tuple(annual_rate(curve, fit.median, total) for curve in curves),
+        beyond_computed=float(above[-1] / rate),
+        notes=tuple(_notes(fragility, hazard, rate)),
     )
 
 
-def _half(hazard: Hazard, fragility: Fragility) -> float:
+def _half(hazard: Hazard, median: float, beta: float) -> float:
     """The intensity below and above which motions contribute the same."""
-    fit = fragility.fit
     low, high = np.log(hazard.intensity[0]), np.log(hazard.intensity[-1]) + 10.0
-    whole = annual_rate(hazard, fit.median, fit.beta)
+    whole = annual_rate(hazard, median, beta)
     for _ in range(60):  # halving, to the last digits
         middle = 0.5 * (low + high)
-        rest = rates_above(hazard, fit.median, fit.beta, np.exp([middle]))[0]
+        rest = rates_above(hazard, median, beta, np.exp([middle]))[0]
         low, high = (middle, high) if rest > 0.5 * whole else (low, middle)
     return float(np.exp(low))
 
 
-def _notes(fragility: Fragility, hazard: Hazard, above: Array, lost: int) -> Iterator[str]:
-    first = math.log(hazard.intensity[0] / fragility.fit.median)
-    probable = 0.5 * math.erfc(-first / fragility.fit.beta / math.sqrt(2.0))
-    if hazard.rate[0] * probable / above[0] > CLEARLY:
+def _notes(fragility: Fragility, hazard: Hazard, rate: float) -> Iterator[str]:
+    """What is doubtful about one rate."""
+    fit = fragility.fit
+    first = math.log(hazard.intensity[0] / fit.median)
+    probable = 0.5 * math.erfc(-first / fragility.total / math.sqrt(2.0))
+    if hazard.rate[0] * probable / rate > CLEARLY:
         yield (
             "the fragility is not negligible at the first intensity of the hazard curve, below"
             " which nothing is counted; begin the curve with weaker motions"
         )
-    if (beyond := above[-2] / above[0]) > CLEARLY:
+    if fit.method == "penalised":
+        below, above = fit.between
+        most = exceeded(hazard, np.array([max(below, hazard.intensity[0])]))[0]
+        least = exceeded(hazard, np.array([above]))[0] if above < math.inf else 0.0
+        yield f"separated data say no more than that the rate is between {least:.2g} and {most:.2g}"
+
+
+def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> Iterator[str]:
+    """What comes from beyond what is known, and of which component the hazard is."""
+    places = {
+        "beyond_computed": "the largest intensity computed, by the fitted curve; add intensities",
+        "beyond_hazard": "the last intensity of the hazard curve, which is continued with its last"
+        " slope; extend the curve",
+    }
+    for name, place in places.items():
+        far = [each for each in risks if getattr(each, name) > CLEARLY]
+        if far:
+            worst = max(far, key=lambda each: float(getattr(each, name)))
+            share = f"{'up to ' * (len(far) > 1)}{100.0 * getattr(worst, name):.0f} %"
+            which = f"({found.named(worst.fragility)}; above 5 % in {len(far)} of {len(risks)})"
+            yield f"{share} of the annual rate {which} come from beyond {place}"
+    if of != "component":
+        known = f"is of {SHOWN.get(of, of)}" if of else "does not say of which component it is"
         yield (
-            f"{100.0 * beyond:.0f} % of the annual rate come from beyond the last intensity of the"
-            " hazard curve, which is continued with its last slope; extend the curve"
+            f"the hazard curve {known} (hazard: component), while the study's intensities are those"
+            " of single components, which lie on either side of the measures of a pair"
         )
-    if lost:
-        yield (
-            f"{lost} bootstrap samples have fragilities that do not grow with the intensity, and"
-            " are left out of the bands"
-        )
+    yield from told(found, ((each.fragility, "; ".join(each.notes)) for each in risks))
 
 
 def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: str) -> bytes:
     """One panel a limit state: what share of its rate comes from which intensities."""
     limits = [limit for limit in found.limits if found.fitted(limit)]
-    values = list(dict.fromkeys(each.fragility.values for each in risks))
+    groups, (low, high) = len(found.systems.groups), _shown(risks)
+    last = float(risks[0].edges[-2])
 
     def draw(axes: Axes, limit: LimitState) -> None:
-        for each in risks:
-            if each.fragility.limit != limit:
-                continue
-            place = values.index(each.fragility.values)
-            shade = colour(place, len(values))
-            axes.stairs(
-                100.0 * each.rates[:-1] / each.rate, each.edges[:-1], color=shade, lw=1.4,
-                label=labels(found.systems.keys, each.fragility.values) or None,
-            )  # fmt: skip
-            axes.axvline(each.half, color=shade, lw=0.8, ls="--")
+        of_limit = [each for each in risks if each.fragility.limit == limit]
+        for row, each in enumerate(of_limit):
+            shade = colour(each.fragility.place, groups)
+            name = labels(found.systems.keys, each.fragility.values)
+            shares = 100.0 * each.rates / each.rate
+            axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
+            if high > last:
+                axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
+            axes.axvline(each.half, ymax=0.82, color=shade, lw=0.8, ls="--")
+            if len(of_limit) <= MOST_BANDS:
+                words = _chance(each, years)
+                axes.text(
+                    0.02, 0.97 - 0.075 * row, words, color=shade, transform=axes.transAxes,
+                    va="top", fontsize=0.85 * style.small(),
+                )  # fmt: skip
+        beyond_computed(axes, max(each.fragility.largest for each in of_limit), high)
 
     def limit_axes(axes: Axes) -> None:
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
         log_ticks(axes.xaxis)
-        axes.set_xlim(*_shown(risks))
-        axes.set_ylim(bottom=0.0)
+        axes.set_xlim(low, high)
+        axes.set_ylim(0.0, 1.25 * axes.get_ylim()[1])  # room for the numbers
 
-    names = [f"{limit_name(limit)}\n{_chance(risks, limit, years)}" for limit in limits]
     return panel_figure(
-        Layout(names, side_by_side(len(limits))),
+        Layout([limit_name(limit) for limit in limits], side_by_side(len(limits))),
         limits,
         draw,
         title=title,
@@ -245,28 +337,30 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
         y_label="share of the annual rate [%]",
         limits=limit_axes,
         note=remarks(
-            f"P: probability in {years:g} years",
+            f"P in {years:g} years, {style.percent(found.confidence)} bands of the"
+            " choice of records",
             "dashed: half of the rate from either side",
+            "dotted: all from beyond the hazard curve" if high > last else "",
+            BEYOND_COMPUTED,
             over(found.systems.pooled),
         ),
     )
 
 
 def _shown(risks: Sequence[Risk]) -> tuple[float, float]:
-    """The intensities from which more than a hundredth of the largest share comes."""
+    """The intensities from which more than a hundredth of the largest share comes, and halves."""
     lows, highs = [], []
     for each in risks:
-        counting = np.flatnonzero(each.rates[:-1] >= 0.01 * each.rates[:-1].max())
+        counting = np.flatnonzero(each.rates >= 0.01 * each.rates[:-1].max())
+        last = float(each.edges[-2])
         lows.append(float(each.edges[counting[0]]))
-        highs.append(float(each.edges[counting[-1] + 1]))
+        highs += [min(float(each.edges[counting[-1] + 1]), 1.4 * last), each.half]
     return 0.9 * min(lows), 1.1 * max(highs)
 
 
-def _chance(risks: Sequence[Risk], limit: LimitState, years: float) -> str:
-    """Probability within a life, of the only curve or of the least and the largest."""
-    rates = [each.rate for each in risks if each.fragility.limit == limit]
-    ends = [f"{probability(rate, years):.2g}" for rate in (min(rates), max(rates))]
-    return f"P = {' to '.join(dict.fromkeys(ends))}"
+def _chance(risk: Risk, years: float) -> str:
+    """The probability within a life, with its band."""
+    return f"P = {with_band(*(probability(rate, years) for rate in (risk.rate, *risk.band)))}"
 
 
 REPORT = Report(

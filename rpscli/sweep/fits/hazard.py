@@ -18,8 +18,8 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -34,18 +34,31 @@ from rpscli.units import si_value
 Array = NDArray[np.float64]
 
 RATE_UNITS = ("1/year", "1/yr", "1/a")
+USUAL: dict[Measure, str] = {"PGA": "g", "Sa": "g", "PGV": "cm/s"}
+"""Units in which hazard curves of a measure come."""
 
 
 @dataclass(frozen=True, eq=False)
 class Hazard:
-    """Ascending intensities (points,) in SI, and how often a year they are exceeded [1/year]."""
+    """Ascending intensities (points,) in SI, and how often a year they are exceeded [1/year].
+
+    `fractiles` are further curves (points,), by the share of the site's models that they are above.
+    """
 
     intensity: Array
     rate: Array
+    fractiles: Mapping[float, Array] = field(default_factory=dict)
+
+    def fractile(self, share: float) -> Hazard:
+        """One of the further curves."""
+        return Hazard(self.intensity, self.fractiles[share])
 
 
 def read_hazard(path: Path, measure: Measure) -> Hazard:
-    """A hazard curve from a CSV file with the header ``PGV [cm/s],rate [1/year]``."""
+    """A hazard curve from a CSV file with the header ``PGV [cm/s],rate [1/year]``.
+
+    Further columns are fractiles of the curve, headed ``0.16 [1/year]``.
+    """
     text = read_text(path)
     rows = [
         (line, row)
@@ -56,48 +69,91 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
         raise CaseError(
             f"{path}: a hazard curve has a header, {_header(measure)}, and at least two rows"
         )
-    factor = _unit(path, *rows[0], measure)
-    points = np.array([_numbers(path, line, row) for line, row in rows[1:]])
-    for (line, row), wrong in zip(rows[2:], np.diff(points[:, 0]) <= 0.0, strict=True):
-        if wrong:
+    factor, shares = _head(path, *rows[0], measure)
+    points = np.array([_numbers(path, line, row, len(shares) + 2) for line, row in rows[1:]])
+    for (line, row), steps in zip(rows[2:], np.diff(points, axis=0), strict=True):
+        if steps[0] <= 0.0:
             raise CaseError(f"{path}:{line}: {shown(row[0])} must be above the row before")
-    for (line, row), wrong in zip(rows[2:], np.diff(points[:, 1]) > 0.0, strict=True):
-        if wrong:
+        if (steps[1:] > 0.0).any():
+            rate = row[1 + int(np.argmax(steps[1:] > 0.0))]
             raise CaseError(
-                f"{path}:{line}: the rate {shown(row[1])} is above that of the row before; stronger"
+                f"{path}:{line}: the rate {shown(rate)} is above that of the row before; stronger"
                 " motions are not more frequent"
             )
-    return Hazard(points[:, 0] * factor, points[:, 1])
+    return Hazard(points[:, 0] * factor, points[:, 1], dict(zip(shares, points.T[2:], strict=True)))
 
 
 def _header(measure: Measure) -> str:
-    return f"`{measure} [{MEASURE_UNITS[measure]}],rate [1/year]`"
+    return f"`{measure} [{USUAL.get(measure, MEASURE_UNITS[measure])}],rate [1/year]`"
 
 
-def _unit(path: Path, line: int, row: Sequence[str], measure: Measure) -> float:
-    """Factor to SI from the header."""
+def _head(
+    path: Path, line: int, row: Sequence[str], measure: Measure
+) -> tuple[float, tuple[float, ...]]:
+    """Factor to SI, and the fractiles of further columns."""
     heads = [cell.strip().removesuffix("]").partition("[") for cell in row]
     names = [name.strip().lower() for name, _, _ in heads]
     units = [unit.strip() for _, _, unit in heads]
-    if names != [measure.lower(), "rate"] or units[1] not in RATE_UNITS:
+    wrong = f"{path}:{line}: the header {shown(','.join(row))}"
+    if names[:2] not in ([measure.lower(), "rate"], [measure.lower(), "mean"]):
         raise CaseError(
-            f"{path}:{line}: the header {shown(','.join(row))} must be {_header(measure)}"
+            f"{wrong} must be {_header(measure)}, and fractiles behind it, `0.16 [1/year]`"
         )
+    if missing := [shown(row[place]) for place, unit in enumerate(units) if not unit]:
+        raise CaseError(f"{wrong} lacks the unit of {', '.join(missing)}: write {_header(measure)}")
+    shares = []
+    for name, unit in zip(names[1:], units[1:], strict=True):
+        if unit not in RATE_UNITS:
+            raise CaseError(f"{wrong}: the unit of {name} must be one of {', '.join(RATE_UNITS)}")
+    for name in names[2:]:
+        try:
+            shares.append(float(name))
+        except ValueError:
+            shares.append(math.nan)
+        if not 0.0 < shares[-1] < 1.0:
+            raise CaseError(f"{wrong}: {shown(name)} must be a fractile, as in `0.84 [1/year]`")
     try:
-        return si_value(f"1 {units[0]}", MEASURE_UNITS[measure])
+        return si_value(f"1 {units[0]}", MEASURE_UNITS[measure]), tuple(shares)
     except ValueError as error:
         raise CaseError(f"{path}:{line}: the unit of {measure}: 1 {units[0]} {error}") from None
 
 
-def _numbers(path: Path, line: int, row: Sequence[str]) -> tuple[float, float]:
+def _numbers(path: Path, line: int, row: Sequence[str], count: int) -> tuple[float, ...]:
     try:
-        intensity, rate = map(float, row)
+        found = tuple(map(float, row))
     except ValueError:
-        intensity = rate = math.nan
-    if not (0.0 < intensity < math.inf and 0.0 < rate < math.inf):
-        text = f"{shown(','.join(row))} must be two numbers > 0, an intensity and its annual rate"
-        raise CaseError(f"{path}:{line}: {text}")
-    return intensity, rate
+        found = ()
+    if len(found) != count or not all(0.0 < value < math.inf for value in found):
+        number = "two" if count == 2 else str(count)
+        text = f"must be {number} numbers > 0, an intensity and its annual rate"
+        raise CaseError(f"{path}:{line}: {shown(','.join(row))} {text}")
+    return found
+
+
+def exceeded(hazard: Hazard, intensities: Array) -> Array:
+    """(n,) how often a year the ground motion is above intensities [1/year]."""
+    x, height = np.log(hazard.intensity), np.log(hazard.rate)
+    at = np.log(intensities)
+    first = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    slopes = np.diff(height) / np.diff(x)
+    return np.asarray(np.exp(height[first] + slopes[first] * (at - x[first])))
+
+
+def rate_of_shares(hazard: Hazard, intensities: Array, shares: Array) -> float:
+    """The annual rate straight from shares (levels,) that exceed the limit [1/year].
+
+    Between ascending intensities the share is linear in their logarithm, outside it stays as it is
+    at the ends. Integrated by parts: P(im_0) H(im_0) + integral of H dP, where the mean of a power
+    law over a step of the logarithm is the logarithmic mean of its ends.
+    """
+    levels = intensities[intensities > hazard.intensity[0]]
+    grid = np.unique(np.concatenate([hazard.intensity, levels]))
+    rates = exceeded(hazard, grid)
+    probable = np.interp(np.log(grid), np.log(intensities), shares)
+    ratio = np.log(rates[:-1] / rates[1:])
+    flat = ratio < 1e-9
+    means = np.where(flat, rates[1:], -np.diff(rates) / np.where(flat, 1.0, ratio))
+    return float(probable[0] * rates[0] + np.diff(probable) @ means)
 
 
 def annual_rate(hazard: Hazard, median: float, beta: float) -> float:

@@ -3,7 +3,10 @@
 It is a probit regression on the logarithm of the intensity, P(y = 1) = Phi(a + b x), for many
 weightings of the data at once. With data that some x separates the likelihood has no maximum: b
 grows without end. Jeffreys' prior as a penalty, the log of the root of the information's
-determinant, keeps the estimates finite, and takes away most of their bias in small samples.
+determinant, keeps the estimates finite, and takes away most of their bias in small samples. But
+beta is then the prior's, and would be in every bootstrap sample: such data have no bands. Where
+samples of other data are separated, or fall with the intensity, they determine nothing, and count
+as beyond both ends of a band; if they are more than its tails there is none.
 
 References
 ----------
@@ -44,8 +47,10 @@ class Lognormal:
     """Phi(ln(im/median)/beta); NaN where there is no fit.
 
     `note` tells what keeps the fit from being an ordinary one. `curve` and `band` are at the
-    intensities asked for; the bands enclose the confidence asked for. `resampled` are median and
-    beta, each (samples,), of the bootstrap samples that could be fitted.
+    intensities asked for; the bands enclose the confidence asked for, and are NaN where they are
+    not determined. `resampled` are median and beta, each (samples,), of the bootstrap samples, NaN
+    of those that determine neither. Separated data say no more than that the median lies `between`
+    an intensity up to which no point exceeds the limit and one from which all do.
     """
 
     method: Method
@@ -57,6 +62,7 @@ class Lognormal:
     curve: Array
     band: tuple[Array, Array]
     resampled: tuple[Array, Array]
+    between: Band = (0.0, math.inf)
 
     @property
     def fitted(self) -> bool:
@@ -71,61 +77,72 @@ def lognormal_fit(
     weight: float,
     grid: Array,
     bootstrap: Bootstrap,
+    level: Array | None = None,
 ) -> Lognormal:
     """A lognormal distribution function through data (points,), at the intensities of a grid.
 
     The bootstrap draws whole clusters, which are records. A point has a weight below 1 where many
     variations share a motion, which do not tell as much as so many motions would; the penalty is
-    the stronger for it.
+    the stronger for it. A `level` (points,) is the intensity without small perturbations, which
+    cannot tell what intensities do: by it data are called separated.
     """
     x = np.log(intensity)
-    note = _hopeless(x, exceeded)
+    level = intensity if level is None else level
+    note = _hopeless(level, exceeded)
     if note is not None:
         return _no_fit(note, grid)
     once = np.full((1, len(x)), weight)
-    apart = bool(separated(x, exceeded, once)[0])
+    apart = bool(separated(level, exceeded, once)[0])
     fit = probit_fit(x, exceeded, once, np.array([apart]))
     if not fit.converged[0]:
         return _no_fit(f"the fit did not converge in {MOST_STEPS} steps", grid)
     if not fit.slope[0] > 0.0:
         return _no_fit("the share does not grow with the intensity", grid)
     median, beta = _moments(fit)
-    fits, lost = _resampled(x, exceeded, cluster, weight, bootstrap)
+    between, note = _separation(level, exceeded) if apart else ((0.0, math.inf), None)
+    fits, lost = _resampled(x, level, exceeded, cluster, weight, bootstrap, apart=apart)
     medians, betas = _moments(fits)
-    tails = (50.0 * (1.0 - bootstrap.confidence), 50.0 * (1.0 + bootstrap.confidence))
     return Lognormal(
         method="penalised" if apart else "maximum likelihood",
-        note="; ".join([_separated_note(x, exceeded)] * apart + lost) or None,
+        note=note or lost,
         median=float(median[0]),
         beta=float(beta[0]),
-        median_band=percentiles(medians, tails),
-        beta_band=percentiles(betas, tails),
+        median_band=band(medians, bootstrap.confidence),
+        beta_band=band(betas, bootstrap.confidence),
         curve=_probability(fit, grid)[0],
-        band=_band(fits, grid, tails),
+        band=bands(_probability(fits, grid), bootstrap.confidence),
         resampled=(medians, betas),
+        between=between,
     )
 
 
-def _hopeless(x: Array, y: NDArray[np.bool_]) -> str | None:
+def _hopeless(level: Array, y: NDArray[np.bool_]) -> str | None:
     """Why no fragility can be had from the data."""
-    if not len(x):
+    if not len(level):
         return "no point is left"
     if not y.any():
         return "no point exceeds the limit; larger intensities are needed"
     if y.all():
         return "every point exceeds the limit; smaller intensities are needed"
-    return "all points have one intensity" if len(np.unique(x)) == 1 else None
+    return "all points have one intensity" if len(np.unique(level)) == 1 else None
 
 
-def _separated_note(x: Array, y: NDArray[np.bool_]) -> str:
-    low, high = math.exp(x[~y].max()), math.exp(x[y].min())
-    if low == high:
-        where = f"below {low:.4g} no point exceeds the limit, above all do"
+def _separation(level: Array, y: NDArray[np.bool_]) -> tuple[Band, str]:
+    """Between which intensities separated data change from none to all, and what to say of it."""
+    top, bottom = float(level[~y].max()), float(level[y].min())
+    none, every = level[level < bottom], level[level > top]
+    between = float(none.max(initial=0.0)), float(every.min(initial=math.inf))
+    if top < bottom:
+        where = f"up to {top:.4g} no point exceeds the limit, from {bottom:.4g} on all do"
     else:
-        where = f"up to {low:.4g} no point exceeds the limit, from {high:.4g} on all do"
-    return (
-        f"the data are separated: {where}; beta comes from the penalty (Firth), not from the data."
-        " Add records, or intensities in between"
+        here = level == top
+        below = "none at smaller ones" if len(none) else "no smaller one was computed"
+        above = "all at larger ones" if len(every) else "no larger one was computed"
+        counts = f"{int(y[here].sum())} of {int(here.sum())} points exceed the limit"
+        where = f"at the intensity {top:.4g} alone {counts}, {below}, {above}"
+    return between, (
+        f"the data are separated: {where}; beta comes from a penalty (Firth), not from the data, so"
+        " that there are no bands. Add records, or intensities around these"
     )
 
 
@@ -136,46 +153,54 @@ def _no_fit(note: str, grid: Array) -> Lognormal:
 
 
 def _resampled(
-    x: Array, y: NDArray[np.bool_], cluster: Indices, weight: float, bootstrap: Bootstrap
-) -> tuple[Probit, list[str]]:
-    """Fits to bootstrap samples of the records, and in words how many of them have none."""
-    if not bootstrap.resamples:
-        return Probit(np.empty(0), np.empty(0), np.empty(0, dtype=bool)), []
+    x: Array,
+    level: Array,
+    y: NDArray[np.bool_],
+    cluster: Indices,
+    weight: float,
+    bootstrap: Bootstrap,
+    *,
+    apart: bool,
+) -> tuple[Probit, str | None]:
+    """Fits to bootstrap samples of the records, NaN of those without, and how many these are."""
+    count = 0 if apart else bootstrap.resamples
     generator = np.random.default_rng(bootstrap.seed)
     names, place = np.unique(cluster, return_inverse=True)
     even = np.full(len(names), 1.0 / len(names))
-    drawn = generator.multinomial(len(names), even, size=bootstrap.resamples).astype(float)
+    drawn = generator.multinomial(len(names), even, size=count).astype(float)
     rows = max(1, LARGEST_ARRAY // len(x))
-    parts = [
-        _fits(x, y, weight * drawn[first : first + rows, place])
-        for first in range(0, len(drawn), rows)
-    ]
+    parts = [Probit(np.empty(0), np.empty(0), np.empty(0, dtype=bool))]
+    for first in range(0, count, rows):
+        weights = weight * drawn[first : first + rows, place]
+        unknown = separated(level, y, weights)
+        fit = probit_fit(x, y, weights, unknown, CLOSE_ENOUGH_RESAMPLED)
+        parts.append(fit._replace(converged=fit.converged & ~unknown))
     found = Probit(*(np.concatenate(values) for values in zip(*parts, strict=True)))
-    kept = found.converged
-    lost = int((~kept).sum())
-    notes = [f"{lost} of {bootstrap.resamples} bootstrap samples have no fit"] if lost else []
-    return Probit(found.intercept[kept], found.slope[kept], kept[kept]), notes
+    kept = found.converged & (found.slope > 0.0)
+    intercept, slope = (np.where(kept, values, math.nan) for values in found[:2])
+    note = None
+    if lost := int((~kept).sum()):
+        none = "" if lost <= 0.5 * (1.0 - bootstrap.confidence) * count else ": too many for bands"
+        note = f"{lost} of {count} bootstrap samples of the records determine no fragility{none}"
+    return Probit(intercept, slope, kept), note
 
 
-def _band(fits: Probit, grid: Array, tails: tuple[float, float]) -> tuple[Array, Array]:
-    if not len(fits.slope):
-        nothing = np.full(len(grid), math.nan)
-        return nothing, nothing
-    low, high = np.percentile(_probability(fits, grid), tails, axis=0)
-    return low, high
+def bands(values: Array, confidence: float) -> tuple[Array, Array]:
+    """Ends (n,) that enclose the confidence of values (samples, n); NaN counts beyond both."""
+    if not len(values):
+        return (np.full(values.shape[1:], math.nan),) * 2
+    tail = 50.0 * (1.0 - confidence)
+    unknown = np.isnan(values)
+    low = np.percentile(np.where(unknown, -np.inf, values), tail, axis=0, method="lower")
+    high = np.percentile(np.where(unknown, np.inf, values), 100.0 - tail, axis=0, method="higher")
+    known = np.isfinite(low) & np.isfinite(high)
+    return np.where(known, low, math.nan), np.where(known, high, math.nan)
 
 
-def _fits(x: Array, y: NDArray[np.bool_], weights: Array) -> Probit:
-    return probit_fit(x, y, weights, separated(x, y, weights), CLOSE_ENOUGH_RESAMPLED)
-
-
-def percentiles(values: Array, tails: tuple[float, float]) -> Band:
-    """Percentiles [%] of the values that are finite; NaN without any."""
-    known = values[np.isfinite(values)]
-    if not len(known):
-        return NOTHING
-    low, high = np.percentile(known, tails).tolist()
-    return low, high
+def band(values: Array, confidence: float) -> Band:
+    """The same of single values (samples,)."""
+    low, high = bands(values, confidence)
+    return float(low), float(high)
 
 
 def _moments(fit: Probit) -> tuple[Array, Array]:
