@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Generic, TypeVar, cast, overload
@@ -16,6 +16,7 @@ from rpscli.analyses.trace import DeviceDemand, device_demands
 from rpscli.frozen import frozen
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
+from rpscli.model.superstructure import Superstructure
 from rpscli.physics.core.records import Record, record_type
 from rpscli.physics.planar import geometry, state
 from rpscli.shown import Shown, with_unit
@@ -49,10 +50,9 @@ class Histories:
         return outcomes_of(self.left)
 
     def column(self, name: str) -> Array:
-        """The values of a result of the table of results: a field of the kernel's, or made here."""
-        field = KERNEL_FIELDS.get(name)
-        values: Array = self.left[field] if field else getattr(self, name)
-        return values
+        """The values of the attribute of `Demand` with this name."""
+        result = vars(Demand)[name]
+        return np.asarray(result.made(self) if result.made else self.left[KERNEL_FIELDS[name]])
 
     def columns(self, quantities: Iterable[ResultQuantity]) -> dict[str, Array]:
         """Finite values by name; NaN where there is none."""
@@ -62,48 +62,34 @@ class Histories:
             column[~np.isfinite(column)] = np.nan
         return values
 
-    def _kept(self, field: str) -> Array:
-        values: Array = self.left[field]
-        return values
-
-    def _each(self, constant: Callable[[PodiumStructure], Any]) -> Array:
+    def each(self, constant: Callable[[PodiumStructure], Any]) -> Array:
         """Of the structure of each history; NaN for None."""
         found = np.array([constant(structure) for structure in self.structures], np.float64)
         return np.asarray(found[self.number])
 
-    @property
-    def max_rotation_time(self) -> Array:
-        """Of those that rotated."""
-        return np.where(self._kept("max_theta") > 0.0, self._kept("max_theta_time"), np.nan)
+    def of_building(self, constant: Callable[[Superstructure], Any]) -> Array:
+        """Of each storey of the building of each history (histories, n); NaN for None."""
+        unknown = np.full(self.storeys, np.nan)
+
+        def known(structure: PodiumStructure) -> Array:
+            building = structure.superstructure
+            values = None if building is None else constant(building)
+            return unknown if values is None else values
+
+        return self.each(known)
 
     @cached_property
     def critical_rotation(self) -> Array:
         """theta_cr."""
-        return self._each(lambda structure: structure.critical_rotation)
-
-    @property
-    def rotation_ratio(self) -> Array:
-        """max |theta|/theta_cr."""
-        return self._kept("max_theta") / self.critical_rotation
-
-    @property
-    def critical_passage_time(self) -> Array:
-        """Of those that passed theta_cr."""
-        time = self._kept("critical_time")
-        return np.where(time >= 0.0, time, np.nan)
-
-    @property
-    def residual_rotation(self) -> Array:
-        """|theta| at the end."""
-        return np.abs(self._kept("rotation"))
+        return self.each(lambda structure: structure.critical_rotation)
 
     @cached_property
-    def _path(self) -> tuple[Array, Array]:
+    def path(self) -> tuple[Array, Array]:
         """u_b and v_b (3, histories) at the largest rotation, the largest up to theta_cr, the end.
 
         u_b grows with |theta|, v_b up to theta_cr.
         """
-        largest = self._kept("max_theta")
+        largest = self.left["max_theta"]
         highest = np.minimum(largest, self.critical_rotation)
         bearings = [structure.bearing for structure in self.structures]
         rolling, rocking = (
@@ -111,152 +97,39 @@ class Histories:
             for phases in ([b.rolling for b in bearings], [b.rocking for b in bearings])
         )
         beta = np.array([b.beta for b in bearings])[self.number]
-        rotations = np.array([largest, highest, self.residual_rotation])
+        rotations = np.array([largest, highest, self.column("residual_rotation")])
         _, _, u, v = geometry.path_along(rolling, rocking, beta, rotations)
         diameter = 2.0 * np.array([b.semi_diagonal for b in bearings])[self.number]
         return diameter * u, diameter * v
 
-    @property
-    def max_cap_beam_displacement(self) -> Array:
-        """u_b at the largest rotation."""
-        return np.asarray(self._path[0][0])
-
-    @property
-    def max_lift(self) -> Array:
-        """v_b at the largest rotation up to theta_cr."""
-        return np.asarray(self._path[1][1])
-
-    @property
-    def residual_displacement(self) -> Array:
-        """u_b at the end."""
-        return np.asarray(self._path[0][2])
-
-    @property
-    def storey_shears(self) -> Array:
+    def of_storeys(self, field: str) -> Array:
         """(histories, n)."""
-        return self._kept("storey_shear")[:, : self.storeys]
+        values: Array = self.left[field][:, : self.storeys]
+        return values
 
-    @property
-    def floor_accelerations(self) -> Array:
-        """(histories, n)."""
-        return self._kept("floor_acceleration")[:, : self.storeys]
-
-    @property
-    def max_base_shear(self) -> Array:
-        """Of the first storey; 0 without one."""
-        return self.storey_shears[:, 0] if self.storeys else np.zeros(len(self.left))
-
-    @property
-    def base_shear_ratio(self) -> Array:
-        """max_base_shear over V_st."""
-        static = self._each(lambda structure: structure.static_base_shear or None)
-        return self.max_base_shear / static
-
-    @property
-    def uplift_shear_ratio(self) -> Array:
-        """max_base_shear over M_tot times the ground acceleration that uplifts with devices."""
-        shear = self._each(
-            lambda s: s.superstructure_mass * uplift_acceleration(s) or None if s.devices else None
-        )
-        return self.max_base_shear / shear
-
-    @property
-    def max_floor_acceleration(self) -> Array:
-        """Largest of all floors."""
-        return _largest(self.floor_accelerations)
-
-    @property
-    def max_drifts(self) -> Array:
-        """(histories, n)."""
-        if not self.storeys:
-            return self.storey_shears
-        return self.storey_shears / self._each(
-            lambda s: s.superstructure and s.superstructure.stiffnesses
-        )
-
-    @property
-    def drift_ratio(self) -> Array:
-        """Largest of all storeys."""
-        unknown = np.full(self.storeys, np.nan)
-
-        def heights(structure: PodiumStructure) -> Array:
-            building = structure.superstructure
-            known = None if building is None else building.storey_heights
-            return unknown if known is None else known
-
-        return _largest(self.max_drifts / self._each(heights))
-
-    @property
-    def friction_demand(self) -> Array:
-        """Largest |F|/N of both ends."""
-        return np.maximum(self._kept("friction_top"), self._kept("friction_bottom"))
-
-    @property
-    def friction_ratio(self) -> Array:
-        """friction_demand over the coefficient."""
-        return self.friction_demand / self._each(lambda structure: structure.friction)
-
-    @property
-    def uplifts(self) -> Array:
-        """Events."""
-        return self._kept("events")[:, state.UPLIFT]
-
-    @property
-    def impacts(self) -> Array:
-        """Events."""
-        return self._kept("events")[:, state.IMPACT]
-
-    @property
-    def max_damper_force(self) -> Array:
-        """Of viscous and friction dampers."""
-        return self._largest_force("max_damper_force")
-
-    @property
-    def max_stop_force(self) -> Array:
-        """Of stops."""
-        return self._largest_force("max_stop_force")
-
-    def _largest_force(self, result: str) -> Array:
-        """Of the devices whose laws name a result."""
+    def of_devices(self, value: Callable[[Device, dict[str, Array]], Array | None]) -> Array:
+        """Largest value of the devices of each history, of what it left in their slots."""
         found = np.full((len(self.left), state.SLOTS), np.nan)
-        for rows, i, device in self._devices():
-            if result in device.results:
-                found[rows, i] = self._kept("device_force")[rows, i]
-        return np.asarray(np.fmax.reduce(found, axis=1))
-
-    @property
-    def lost_prestress(self) -> Array:
-        """Largest part that a tendon has lost of its prestress."""
-        found = np.full((len(self.left), state.SLOTS), np.nan)
-        for rows, i, device in self._devices():
-            if prestress := device.remaining_prestress(0.0):
-                permanent = self._kept("permanent")[rows, i].tolist()
-                remaining = [device.remaining_prestress(length) for length in permanent]
-                found[rows, i] = 1.0 - np.array(remaining, np.float64) / prestress
-        return np.asarray(np.fmax.reduce(found, axis=1))
-
-    def _devices(self) -> Iterator[tuple[NDArray[np.int64], int, Device]]:
-        """Numbers of the histories of each structure, and the slots and laws of its devices."""
         for number, structure in enumerate(self.structures):
+            rows = np.flatnonzero(self.number == number)
             for i, device in enumerate(structure.devices):
-                yield np.flatnonzero(self.number == number), i, device
+                left = {name: self.left[name][rows, i] for name in ("device_force", "permanent")}
+                if (values := value(device, left)) is not None:
+                    found[rows, i] = values
+        return np.asarray(np.fmax.reduce(found, axis=1))
 
-    @property
-    def energy_devices(self) -> Array:
-        """Of all devices."""
-        return np.asarray(self._kept("device_energy").sum(axis=1))
-
-
-def _largest(values: Array) -> Array:
-    """Of each row; NaN of empty ones."""
-    return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
+    def largest_force(self, result: str) -> Array:
+        """Of the devices whose laws name a result."""
+        return self.of_devices(
+            lambda device, left: left["device_force"] if result in device.results else None
+        )
 
 
 class _Result(Generic[T]):
-    """An attribute of `Demand`: the result of its name, of a batch of one history."""
+    """An attribute of `Demand`, and a column of `Histories`: a field of the kernel's, or made."""
 
-    def __init__(self, doc: str) -> None:
-        self.__doc__ = doc
+    def __init__(self, doc: str, made: Callable[[Histories], Array] | None = None) -> None:
+        self.__doc__, self.made = doc, made
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
@@ -280,6 +153,25 @@ class _Optional(_Result[float | None]):
 
     def _told(self, value: Any) -> Any:
         return None if np.isnan(value) else float(value)
+
+
+def _largest(values: Array) -> Array:
+    """Of each row; NaN of empty ones."""
+    return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
+
+
+def _uplift_shear(structure: PodiumStructure) -> float | None:
+    """M_tot times the ground acceleration that uplifts; None without devices."""
+    mass = structure.superstructure_mass if structure.devices else 0.0
+    return mass * uplift_acceleration(structure) or None
+
+
+def _lost(device: Device, left: dict[str, Array]) -> Array | None:
+    """The share of its prestress that a device has lost."""
+    if not (prestress := device.remaining_prestress(0.0)):
+        return None
+    remaining = [device.remaining_prestress(length) for length in left["permanent"].tolist()]
+    return 1.0 - np.array(remaining, np.float64) / prestress
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -322,55 +214,94 @@ class Demand(Shown):
         return self.outcome == "stays_tilted"
 
     max_rotation = _Result[float]("Largest |theta|, turning points between samples included [rad].")
-    max_rotation_time = _Optional("When |theta| was largest [s]; None if there was no rotation.")
-    rotation_ratio = _Result[float]("max |theta|/theta_cr.")
-    critical_rotation = _Result[float]("theta_cr [rad].")
+    max_rotation_time = _Optional(
+        "When |theta| was largest [s]; None if there was no rotation.",
+        lambda h: np.where(h.left["max_theta"] > 0.0, h.left["max_theta_time"], np.nan),
+    )
+    rotation_ratio = _Result[float](
+        "max |theta|/theta_cr.", lambda h: h.left["max_theta"] / h.critical_rotation
+    )
+    critical_rotation = _Result[float]("theta_cr [rad].", lambda h: h.critical_rotation)
     critical_passage_time = _Optional(
-        "When |theta| passed theta_cr for the first time [s]; None if never."
+        "When |theta| passed theta_cr for the first time [s]; None if never.",
+        lambda h: np.where(h.left["critical_time"] >= 0.0, h.left["critical_time"], np.nan),
     )
-    max_cap_beam_displacement = _Result[float]("Largest |u_b| [m]; u_b grows with |theta|.")
+    max_cap_beam_displacement = _Result[float](
+        "Largest |u_b| [m]; u_b grows with |theta|.", lambda h: h.path[0][0]
+    )
     max_lift = _Result[float](
-        "Largest v_b, by which the building is lifted [m]; it grows up to theta_cr."
+        "Largest v_b, by which the building is lifted [m]; it grows up to theta_cr.",
+        lambda h: h.path[1][1],
     )
-    residual_rotation = _Result[float]("|theta| at the end of the history [rad].")
-    residual_displacement = _Result[float]("|u_b| at the end [m]; 0 in full contact.")
+    residual_rotation = _Result[float](
+        "|theta| at the end of the history [rad].", lambda h: np.abs(h.left["rotation"])
+    )
+    residual_displacement = _Result[float](
+        "|u_b| at the end [m]; 0 in full contact.", lambda h: h.path[0][2]
+    )
     max_damper_force = _Optional(
-        "Largest force of a viscous or friction damper [N]; None without one."
+        "Largest force of a viscous or friction damper [N]; None without one.",
+        lambda h: h.largest_force("max_damper_force"),
     )
-    max_stop_force = _Optional("Largest force of a stop [N]; None without one.")
+    max_stop_force = _Optional(
+        "Largest force of a stop [N]; None without one.",
+        lambda h: h.largest_force("max_stop_force"),
+    )
     lost_prestress = _Optional(
-        "Largest part of its prestress that a tendon has lost; None without prestress."
+        "Largest part of its prestress that a tendon has lost; None without prestress.",
+        lambda h: h.of_devices(_lost),
     )
-    energy_devices = _Result[float]("Energy dissipated in all devices [J].")
+    energy_devices = _Result[float](
+        "Energy dissipated in all devices [J].", lambda h: h.left["device_energy"].sum(axis=1)
+    )
     storey_shears = _Result[Array](
-        "(n,) largest elastic shears k_i d_i [N], from the bottom, within steps too."
+        "(n,) largest elastic shears k_i d_i [N], from the bottom, within steps too.",
+        lambda h: h.of_storeys("storey_shear"),
     )
     floor_accelerations = _Result[Array](
-        "(n,) largest absolute accelerations [m/s2], from the bottom, on both sides of impacts."
+        "(n,) largest absolute accelerations [m/s2], from the bottom, on both sides of impacts.",
+        lambda h: h.of_storeys("floor_acceleration"),
     )
     max_floor_acceleration = _Optional(
-        "Largest of `floor_accelerations` [m/s2]; None without a superstructure."
+        "Largest of `floor_accelerations` [m/s2]; None without a superstructure.",
+        lambda h: _largest(h.column("floor_accelerations")),
     )
     max_base_shear = _Result[float](
-        "Largest elastic shear of the first storey [N]; 0 without a superstructure."
+        "Largest elastic shear of the first storey [N]; 0 without a superstructure.",
+        lambda h: h.column("storey_shears")[:, 0] if h.storeys else np.zeros(len(h.left)),
     )
     base_shear_ratio = _Optional(
-        "max_base_shear over V_st = M_tot g tan(alpha); None without a superstructure."
+        "max_base_shear over V_st = M_tot g tan(alpha); None without a superstructure.",
+        lambda h: h.column("max_base_shear") / h.each(lambda s: s.static_base_shear or None),
     )
     uplift_shear_ratio = _Optional(
         "max_base_shear over the base shear at quasi-static uplift against weight and devices; None"
-        " without either a superstructure or devices."
+        " without either a superstructure or devices.",
+        lambda h: h.column("max_base_shear") / h.each(_uplift_shear),
     )
-    max_drifts = _Result[Array]("(n,) largest storey drifts [m].")
-    drift_ratio = _Optional("Largest drift over storey height; None where no heights are given.")
+    max_drifts = _Result[Array](
+        "(n,) largest storey drifts [m].",
+        lambda h: h.column("storey_shears") / h.of_building(lambda b: b.stiffnesses),
+    )
+    drift_ratio = _Optional(
+        "Largest drift over storey height; None where no heights are given.",
+        lambda h: _largest(h.column("max_drifts") / h.of_building(lambda b: b.storey_heights)),
+    )
     friction_demand = _Result[float](
-        "Largest |F|/N at either end of the columns: the friction that no sliding needs."
+        "Largest |F|/N at either end of the columns: the friction that no sliding needs.",
+        lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"]),
     )
     friction_ratio = _Optional(
-        "friction_demand over the coefficient of friction; None where that is not given."
+        "friction_demand over the coefficient of friction; None where that is not given.",
+        lambda h: h.column("friction_demand") / h.each(lambda structure: structure.friction),
     )
-    uplifts = _Result[int]("Number of uplifts from full contact.")
-    impacts = _Result[int]("Number of impacts, those that end in re-contact included.")
+    uplifts = _Result[int](
+        "Number of uplifts from full contact.", lambda h: h.left["events"][:, state.UPLIFT]
+    )
+    impacts = _Result[int](
+        "Number of impacts, those that end in re-contact included.",
+        lambda h: h.left["events"][:, state.IMPACT],
+    )
     duration = _Result[float]("Length of the history with its free vibration [s].")
     energy_impact = _Result[float]("Net energy lost at impacts and re-contacts [J].")
     energy_created = _Result[float](
