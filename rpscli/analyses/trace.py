@@ -132,17 +132,6 @@ class DeviceTrace(Frozen):
         )
 
 
-def cap_beam_forces(
-    structure: PodiumStructure, devices: DeviceTrace, rotation: Array
-) -> tuple[Array, Array]:
-    """Forces of all devices on the cap beam, to the right and downwards, (samples,) [N]."""
-    push, pull = np.zeros(len(rotation)), np.zeros(len(rotation))
-    for i, device in enumerate(structure.devices):
-        across, down = device.beam_forces(structure, rotation, devices.force[:, i])
-        push, pull = push + across, pull + down
-    return push, pull
-
-
 BLOCK = 50_000
 """Samples whose quantities are derived at once."""
 
@@ -250,6 +239,9 @@ def _derived(
     structure: PodiumStructure, run: SampledHistory, all_devices: DeviceTrace, rows: slice
 ) -> dict[str, Array]:
     """What follows from some samples, by the names of `Trace`."""
+    # Imported here: numba is slow, and the command line imports this module's classes.
+    from rpscli.physics.planar.equation_of_motion import cap_beam_acceleration, contact_forces
+
     samples, building = run.samples[rows], structure.superstructure
     theta, rate = samples.theta, samples.theta_dot
     u, du = run.floors[rows, 0], run.floors[rows, 1]
@@ -264,18 +256,29 @@ def _derived(
         shears = building.stiffnesses * drifts
         forces = (u - base[:, None]) @ building.stiffness_matrix
         forces = forces + (du - base_rate[:, None]) @ building.damping_matrix
-    devices = all_devices.at(rows)
+    devices, V = all_devices.at(rows), forces.sum(axis=1)
     stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
-    stored += devices.stored.sum(axis=1)
-    stored += 0.5 * tilting_inertia(structure, B, C) * rate**2
+    stored += devices.stored.sum(axis=1) + 0.5 * tilting_inertia(structure, B, C) * rate**2
     if building is not None:
         stored += 0.5 * du**2 @ building.masses
-    V = forces.sum(axis=1)
-    push, pull = cap_beam_forces(structure, devices, theta)
-    across, upwards = base_accelerations(structure, samples, B, C)
+    push, pull = np.zeros_like(theta), np.zeros_like(theta)
+    for i, device in enumerate(structure.devices):
+        to_the_right, down = device.beam_forces(structure, theta, devices.force[:, i])
+        push, pull = push + to_the_right, pull + down
+    side = np.sign(theta) + (theta == 0.0) * np.sign(samples.theta_ddot)
+    c = np.where(samples.phase == state.ROLLING, b.rolling.c, b.rocking.c)
+    moves = samples.phase != state.FULL_CONTACT
+    across, upwards = (
+        np.where(moves, acceleration, 0.0)
+        for acceleration in cap_beam_acceleration(
+            side, diameter, c, B, C, rate, side * samples.theta_ddot
+        )
+    )
     a_v = 0.0 if up is None else prolonged(run.motion.samples[up, rows], len(samples))
-    shear_top, shear_bottom, normal_top, normal_bottom = _contact_forces(
-        structure, across, upwards, V + push, a_g, a_v, pull
+    masses = structure.cap_beam_mass, structure.superstructure_mass, structure.columns_mass
+    of_arrays = cast("Callable[..., tuple[Array, ...]]", contact_forces)
+    shear_top, shear_bottom, normal_top, normal_bottom = of_arrays(
+        *masses, across, upwards, V + push, a_g, structure.gravity + a_v, pull
     )
     beam = 0.5 * structure.columns_mass + structure.cap_beam_mass
     return {
@@ -293,58 +296,10 @@ def _derived(
     }
 
 
-def _contact_forces(
-    structure: PodiumStructure,
-    across: Array,
-    upwards: Array,
-    V: Array,
-    a_g: Array,
-    a_v: Array | float,
-    pull: Array,
-) -> tuple[Array, Array, Array, Array]:
-    """Those of the kernels, for many samples at once."""
-    # Imported here: numba is slow, and the command line imports this module's classes.
-    from rpscli.physics.planar.equation_of_motion import contact_forces
-
-    forces_of = cast("Callable[..., tuple[Array, Array, Array, Array]]", contact_forces)
-    return forces_of(
-        structure.cap_beam_mass,
-        structure.superstructure_mass,
-        structure.columns_mass,
-        across,
-        upwards,
-        V,
-        a_g,
-        structure.gravity + a_v,
-        pull,
-    )
-
-
 def prolonged(acceleration: Array, samples: int) -> Array:
     """The acceleration at so many samples [m/s2]: zero after the record's end."""
     length = min(samples, len(acceleration))
     return np.pad(acceleration[:length], (0, samples - length))
-
-
-def base_accelerations(
-    structure: PodiumStructure, samples: Record, B: Array, C: Array
-) -> tuple[Array, Array]:
-    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8), 0 in full contact."""
-    from rpscli.physics.planar.equation_of_motion import cap_beam_acceleration
-
-    b = structure.bearing
-    side = np.sign(samples.theta) + (samples.theta == 0.0) * np.sign(samples.theta_ddot)
-    across, upwards = cap_beam_acceleration(
-        side,
-        2.0 * b.semi_diagonal,
-        np.where(samples.phase == state.ROLLING, b.rolling.c, b.rocking.c),
-        B,
-        C,
-        samples.theta_dot,
-        side * samples.theta_ddot,
-    )
-    moves = samples.phase != state.FULL_CONTACT
-    return np.where(moves, across, 0.0), np.where(moves, upwards, 0.0)
 
 
 def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
