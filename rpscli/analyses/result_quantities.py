@@ -86,7 +86,7 @@ NEEDS = {
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "superstructure, devices": "a superstructure and podium.devices",
     "podium.friction": "podium.friction in the case",
-    "columns": "podium.plan and superstructure.vertical_period in the case: without them it leaves"
+    "columns": "podium.plan and superstructure.vertical_period in the case, without which it leaves"
     " out the overturning moment and the shock of impacts",
     "damper": "a damper in podium.devices",
     "stop": "a stop in podium.devices",

@@ -177,37 +177,20 @@ class TimeHistoryResult(Demand):
         """Envelopes at the `top` and at the `bottom` of a column.
 
         All columns carry alike, but for the overturning moment where their rows are given; where
-        the case does not give their number, these are the forces of all columns together.
-        `left_out` says what axial forces do not hold.
+        the case does not give their number, these are the forces of all columns together. What
+        axial forces do not hold: `structure.left_out_of_columns`.
         """
-        st, history = self.structure, self.history
+        st, history, axial = self.structure, self.history, self.axial
         upper = st.cap_beam_mass + st.superstructure_mass
-        weights = st.gravity * upper, st.gravity * (upper + st.columns_mass)
-        return {
-            end: ColumnForces(
-                float(history[f"shear_{end}"]) / st.columns,
-                self.axial.largest[end]
-                if self.axial
-                else float(history[f"heavy_{end}"]) * weight / st.columns,
-                self.axial.least[end]
-                if self.axial
-                else float(history[f"normal_{end}"]) * weight / st.columns,
-            )
-            if weight > 0.0
-            else ColumnForces(0.0, 0.0, 0.0)
-            for end, weight in zip(("top", "bottom"), weights, strict=True)
-        }
-
-    @property
-    def left_out(self) -> tuple[str, ...]:
-        """What the axial forces of columns do not hold, and the key that would give it."""
-        st, building = self.structure, self.structure.superstructure
-        if building is None:
-            return ()
-        moment = () if st.rows else ("the overturning moment of the building (podium.plan)",)
-        if building.vertical_period is None:
-            return (*moment, "the shock of impacts (superstructure.vertical_period)")
-        return moment
+        found = {}
+        for end, mass in (("top", upper), ("bottom", upper + st.columns_mass)):
+            weight = st.gravity * mass
+            forces = (float(history[f"{of}_{end}"]) * weight for of in ("heavy", "normal"))
+            largest, least = (force / st.columns for force in forces)
+            if axial is not None:
+                largest, least = axial.largest[end], axial.least[end]
+            found[end] = ColumnForces(float(history[f"shear_{end}"]) / st.columns, largest, least)
+        return found if upper > 0.0 else found | {"top": ColumnForces(0.0, 0.0, 0.0)}
 
     @property
     def overturning_ratio(self) -> float | None:

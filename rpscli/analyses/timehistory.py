@@ -68,7 +68,7 @@ def time_history(
         fixed_base=fixed,
         motion=motion,
     )
-    if not structure.tells_column_forces:
+    if structure.superstructure is None or len(structure.left_out_of_columns) > 1:
         return result
     dense = denser_trace(result, AXIAL_STEP)
     return replace(result, axial=axial_forces(structure, dense, result.events))

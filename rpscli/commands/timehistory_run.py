@@ -129,10 +129,10 @@ def compute(
         limits = case_conditions(case.limits, overturning=True)
         limits = [*with_friction(limits, case.structure), *conditions]
         for limit in limits:
-            unknown = limit.name in LIMITS and LIMITS[limit.name].needs == "columns"
-            if limit.name in found and (found[limit.name] is None or (unknown and result.left_out)):
-                needs = NEEDS[LIMITS[limit.name].needs]
-                raise UsageError(f"{limit.source}: {limit.name} needs {needs}")
+            needs = LIMITS[limit.name].needs if limit.name in found else ""
+            partial = needs == "columns" and case.structure.left_out_of_columns
+            if needs and (found[limit.name] is None or partial):
+                raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
         records = Records.of([result.outcome], [demands], [result.record.source])
         verdicts = judged_records(records, [request.label], limits)
         error = _exceeded(verdicts)

@@ -112,16 +112,16 @@ class PodiumStructure(Shown):
         }
 
     @property
-    def tells_column_forces(self) -> bool:
-        """Whether something is known of how columns share, or of the shock of impacts."""
+    def left_out_of_columns(self) -> tuple[str, ...]:
+        """What axial forces of single columns do not hold, and the key that would give it."""
         building = self.superstructure
-        return building is not None and bool(self.rows or building.vertical_period)
-
-    @property
-    def column_forces_known(self) -> bool:
-        """Whether both are, so that a column may be designed by its forces."""
-        building = self.superstructure
-        return building is not None and bool(self.rows and building.vertical_period)
+        keys = {
+            "the overturning moment of the building (podium.plan)": self.rows,
+            "the shock of impacts (superstructure.vertical_period)": (
+                building and building.vertical_period
+            ),
+        }
+        return () if building is None else tuple(what for what, given in keys.items() if not given)
 
     @property
     def storeys(self) -> int:

@@ -158,7 +158,7 @@ def needs_of(name: str) -> str:
     """What a study must have for a result, in words."""
     needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *SAMPLED)}[name]
     if name in {quantity.name for quantity in SAMPLED}:
-        alike = f" and {needs} in all systems" if needs else ""
+        alike = f", and in all systems {needs}" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"
     return f"{name} needs {needs}, which not every system of the study has"
 
@@ -174,7 +174,7 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     ),
     "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
     "podium.friction": lambda structure: structure.friction is not None,
-    "columns": lambda structure: structure.column_forces_known,
+    "columns": lambda structure: not structure.left_out_of_columns,
     "damper": _device_with("max_damper_force"),
     "stop": _device_with("max_stop_force"),
     "tendon": _device_with("lost_prestress"),
