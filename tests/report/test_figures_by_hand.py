@@ -31,7 +31,13 @@ from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
 from rpscli.report.study import directions
 from rpscli.report.study.comparison import comparison_figure
-from rpscli.report.study.comparison_numbers import Compared, ComparisonReport, Curve, Outcomes
+from rpscli.report.study.comparison_numbers import (
+    Compared,
+    Comparison,
+    ComparisonOptions,
+    Curve,
+    Outcomes,
+)
 from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
 from rpscli.report.study.heights import DemandSample, demand_sample_figure
 from rpscli.report.study.risk import Risk, risk_figure
@@ -40,8 +46,9 @@ from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
 from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.statistics.grouping import Grouping
-from rpscli.sweep.statistics.observations import Agreement, Pairs, maxima
-from rpscli.sweep.table import Table
+from rpscli.sweep.statistics.observations import Agreement, maxima
+from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import Indices
 
 Array = NDArray[np.float64]
 
@@ -227,23 +234,22 @@ def compared() -> dict[str, Axes]:
     computed = np.array([[1.0, 0.0, 1.0, 1.0, NAN], [0.02, 0.01, INF, NAN, 0.03]])
     pairs = np.array([0, 1, 2, 3]), np.array([0, 1, 2, 4])
     rotations = maxima(computed[1, pairs[1]], observed[1, pairs[1]])
-    places = np.arange(5)
-    report = ComparisonReport(
-        table=cast("Table", None),
+
+    def of(quantity: int) -> tuple[Indices, Array, Array, int]:
+        """Points, the last one first, and what was observed and computed there."""
+        places = pairs[quantity]
+        return 4 - places, observed[quantity, places], computed[quantity, places], 0
+
+    report = Comparison(cast("StudyResults", None), ComparisonOptions(confidence=0.9))
+    vars(report).update(
         intensity=Intensity("PGA", "m/s2", None, np.array([1.0, 2.0, 3.0, 5.0, 8.0])),
-        confidence=0.9,
-        system_keys=(ALPHA,),
-        fit_keys=(RHO,),
-        quantities=(OVERTURNED, "max_rotation"),
-        pairs=Pairs(places[::-1], places, observed, ()),
-        computed=computed,
-        compared=(
-            Compared((0.1,), (0.5,), "fitted", OVERTURNED, outcomes, pairs[0], 0),
-            Compared((0.1,), (0.5,), "held out", OVERTURNED, outcomes, pairs[0], 0),
-            Compared((0.2,), (0,), "held out", "max_rotation", rotations, pairs[1], 0),
-        ),
-        candidates=(),
-        pooling=(),
+        systems=Grouping((ALPHA,), (), (), ()),
+        chosen_keys=(RHO,),
+        compared=[
+            Compared((0.1,), (0.5,), "fitted", OVERTURNED, outcomes, *of(0)),
+            Compared((0.1,), (0.5,), "held out", OVERTURNED, outcomes, *of(0)),
+            Compared((0.2,), (0,), "held out", "max_rotation", rotations, *of(1)),
+        ],
     )
     figure = drawn(comparison_figure, report)
     assert "records: held out   |   bands: 90 %" in figure.get_suptitle()

@@ -17,14 +17,13 @@ from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import CaseError
 from rpscli.report.study.comparison import REPORT, findings
 from rpscli.report.study.comparison_numbers import (
+    Comparison,
     ComparisonOptions,
-    ComparisonReport,
     Outcomes,
-    comparison_report,
     uncomparable,
 )
 from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.statistics.observations import Maxima, agreement, threshold
+from rpscli.sweep.statistics.observations import Maxima, agreement, record_of, threshold
 from sweep.made_up import ALPHA, place, results_of, stored, tabulate
 from sweep.small_studies import Make
 
@@ -50,10 +49,10 @@ def seen(*rows: str, head: str = "record,title,overturned") -> None:
 
 def report(
     layout: StudyPoints, options: ComparisonOptions, answer: Callable[[dict[str, object]], Any]
-) -> ComparisonReport:
+) -> Comparison:
     table = tabulate(layout, (answer(place(layout, n)) for n in range(len(layout))))
     assert not list(uncomparable(layout, options))
-    return comparison_report(results_of(table), options)
+    return Comparison(results_of(table), options)
 
 
 def overturns(at: dict[str, object]) -> Any:
@@ -90,18 +89,19 @@ def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
 def test_a_fit_learns_from_one_part_and_is_judged_on_the_other(study_of: Make) -> None:
     seen(*half("left", 4), *half("right", 6))
     options = ComparisonOptions.model_validate({"resamples": 0, "fit": {"share": 0.5, "seed": 3}})
-    found = report(lay_out(study_of(STUDY)), options, overturns)
+    layout = lay_out(study_of(STUDY))
+    found = report(layout, options, overturns)
     parts = {(each.values[0], each.part): each for each in found.compared}
     for title in ("left", "right"):
         fitted, held = parts[title, "fitted"], parts[title, "held out"]
-        both = [set(found.pairs.records[each.pairs].tolist()) for each in (fitted, held)]
+        both = [set(record_of(layout, each.points).tolist()) for each in (fitted, held)]
         assert len(both[0]) == len(both[1]) == RECORDS // 2
         assert both[0] | both[1] == set(range(RECORDS))
         assert fitted.chosen == held.chosen
     assert [row.taken for row in found.candidates].count(True) == 2
     again = report(lay_out(study_of(STUDY)), options, overturns)
     for mine, theirs in zip(found.compared, again.compared, strict=True):
-        np.testing.assert_array_equal(mine.pairs, theirs.pairs)
+        np.testing.assert_array_equal(mine.points, theirs.points)
 
 
 def test_what_is_held_out_has_no_say_in_the_fit(study_of: Make) -> None:
@@ -111,7 +111,7 @@ def test_what_is_held_out_has_no_say_in_the_fit(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY))
     found = report(layout, options, overturns)
     held = next(each for each in found.compared if each.part == "held out")
-    turned = set(found.pairs.records[held.pairs].tolist())
+    turned = set(record_of(layout, held.points).tolist())
     seen(*(
         f"{SOURCE.format(n)},left,{int((n <= 4) != (n - 1 in turned))}"
         for n in range(1, RECORDS + 1)

@@ -13,11 +13,10 @@ from rpscli.report.figures import style
 from rpscli.report.study.comparison_numbers import (
     FITTED,
     Compared,
+    Comparison,
     ComparisonOptions,
-    ComparisonReport,
     Curve,
     Outcomes,
-    comparison_report,
     fit_faults,
     uncomparable,
 )
@@ -45,7 +44,7 @@ TOLD = {(1, 1): "both", (0, 1): "computed only", (1, 0): "observed only", (0, 0)
 
 def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
     """Compare every system, or the best one of each group, with its observations."""
-    report = comparison_report(study, options)
+    report = Comparison(study, options)
     return Found(
         comparison_tables(report),
         (lambda title: comparison_figure(report, title)) if report.judged else None,
@@ -54,7 +53,7 @@ def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
     )
 
 
-def comparison_tables(report: ComparisonReport) -> dict[str, list[Column]]:
+def comparison_tables(report: Comparison) -> dict[str, list[Column]]:
     """Outcomes, fragilities, maxima, every pair, and what choices of the fit were worth."""
     measured = report.intensity
     told = (
@@ -87,8 +86,9 @@ def comparison_tables(report: ComparisonReport) -> dict[str, list[Column]]:
     chosen = [
         ((*row.values, *row.chosen), row.worth.misfit, row.worth.count_off, str(row.taken).lower())
         for row in report.candidates
+        if report.options.fit is not None
     ]
-    keys = (*report.system_keys, *report.fit_keys)
+    keys = (*report.systems.keys, *report.chosen_keys)
 
     def named(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[Column]:
         of_part = [((*each.values, *each.chosen), each.part, *cells) for each, *cells in rows]
@@ -122,25 +122,21 @@ def _curves(found: Outcomes) -> tuple[tuple[str, Curve], ...]:
     return (("observed", found.observed), ("computed", found.computed))
 
 
-def _pair_rows(report: ComparisonReport) -> Iterator[tuple[Any, ...]]:
+def _pair_rows(report: Comparison) -> Iterator[tuple[Any, ...]]:
     """Every pair: hits and misses by record."""
     for each in report.compared:
-        quantity = report.quantities.index(each.quantity)
-        for place in each.pairs.tolist():
-            point = int(report.pairs.points[place])
-            request = report.table.layout[point].record
+        values = zip(each.points.tolist(), each.observed, each.computed, strict=True)
+        for point, observed, computed in values:
+            request = report.study.table.layout[point].record
             assert request is not None, "points of histories have a record"
-            observed = report.pairs.values[quantity, place]
-            computed = report.computed[quantity, place]
             told = TOLD[int(observed), int(computed)] if each.quantity == OVERTURNED else None
-            intensity = report.intensity.values[point]
             yield (
-                each, request.source, point + 1, intensity, each.quantity, observed,
-                reached(computed), told,
+                each, request.source, point + 1, report.intensity.values[point], each.quantity,
+                observed, reached(computed), told,
             )  # fmt: skip
 
 
-def comparison_figure(report: ComparisonReport, title: str) -> bytes:
+def comparison_figure(report: Comparison, title: str) -> bytes:
     """One panel a system and quantity, of the records that count: held out, or all."""
     judged = report.judged
     shown = judged[: 2 * MOST_ROWS]
@@ -148,7 +144,7 @@ def comparison_figure(report: ComparisonReport, title: str) -> bytes:
     down = -(-len(shown) // across)
 
     def draw(figure: Figure) -> None:
-        notes = [f"records: {judged[0].part}", f"bands: {style.percent(report.confidence)}"]
+        notes = [f"records: {judged[0].part}", f"bands: {style.percent(report.options.confidence)}"]
         if len(judged) > len(shown):
             notes.append(f"the first {len(shown)} of {len(judged)} panels")
         style.heading(figure, title, *notes)
@@ -164,12 +160,12 @@ def comparison_figure(report: ComparisonReport, title: str) -> bytes:
     return style.picture(draw, 0.6 + 3.1 * down, style.WIDTH if across > 1 else 0.7 * style.WIDTH)
 
 
-def _head(axes: Axes, report: ComparisonReport, each: Compared, line: str) -> None:
-    system = labels((*report.system_keys, *report.fit_keys), (*each.values, *each.chosen))
+def _head(axes: Axes, report: Comparison, each: Compared, line: str) -> None:
+    system = labels((*report.systems.keys, *report.chosen_keys), (*each.values, *each.chosen))
     axes.set_title(f"{system}\n{line}" if system else line, fontsize=style.small())
 
 
-def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: Outcomes) -> None:
+def _draw_outcomes(axes: Axes, report: Comparison, each: Compared, found: Outcomes) -> None:
     """Both fragilities through their data; below and above, the outcomes that differ."""
     for (name, curve), colour, marker in zip(
         _curves(found), (style.BLACK, style.BLUE), "os", strict=True
@@ -183,9 +179,7 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
         axes.plot(
             curve.binned.intensity, curve.binned.share, ls="", marker=marker, ms=3.2, color=colour
         )
-    intensity = report.intensity.values[report.pairs.points[each.pairs]]
-    quantity = report.quantities.index(each.quantity)
-    differ = report.computed[quantity, each.pairs] - report.pairs.values[quantity, each.pairs]
+    intensity, differ = report.intensity.values[each.points], each.computed - each.observed
     for sign, height, name in (
         (1.0, 1.05, "above: computed only"),
         (-1.0, -0.05, "below: observed only"),
@@ -210,11 +204,9 @@ def _draw_outcomes(axes: Axes, report: ComparisonReport, each: Compared, found: 
     )
 
 
-def _draw_maxima(axes: Axes, report: ComparisonReport, each: Compared, found: Maxima) -> None:
+def _draw_maxima(axes: Axes, report: Comparison, each: Compared, found: Maxima) -> None:
     """Computed over observed maxima; overturned histories at the upper edge."""
-    quantity = report.quantities.index(each.quantity)
-    observed = report.pairs.values[quantity, each.pairs]
-    computed = report.computed[quantity, each.pairs]
+    observed, computed = each.observed, each.computed
     drawn = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
     axes.plot(observed[drawn], computed[drawn], ls="", marker="o", ms=3.2, color=style.BLUE)
     if drawn.any():
@@ -239,12 +231,12 @@ def _draw_maxima(axes: Axes, report: ComparisonReport, each: Compared, found: Ma
     axes.set(xlabel=f"observed {name}", ylabel=f"computed {name}")
 
 
-def findings(report: ComparisonReport) -> list[tuple[str, str]]:
+def findings(report: Comparison) -> list[tuple[str, str]]:
     """The agreement in lines for the terminal."""
     lines = []
     for each in report.compared:
-        chosen = labels(report.fit_keys, each.chosen) if each.part == FITTED else ""
-        system = ", ".join(filter(None, [labels(report.system_keys, each.values), chosen]))
+        chosen = labels(report.chosen_keys, each.chosen) if each.part == FITTED else ""
+        system = ", ".join(filter(None, [labels(report.systems.keys, each.values), chosen]))
         head = ", ".join(filter(None, [system, f"{each.part} records"]))
         lines.append((head, _sentence(each)))
         if isinstance(each.found, Outcomes):

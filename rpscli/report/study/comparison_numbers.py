@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -32,7 +33,14 @@ from rpscli.sweep.fits.lognormal import Lognormal
 from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import demand, fractiles
-from rpscli.sweep.statistics.grouping import axis_keys, pooled, pooling_notes, shown_keys
+from rpscli.sweep.statistics.grouping import (
+    INTENSITY,
+    Grouping,
+    axis_keys,
+    grouping,
+    own_keys,
+    shown_keys,
+)
 from rpscli.sweep.statistics.observations import (
     Agreement,
     Flags,
@@ -48,7 +56,7 @@ from rpscli.sweep.statistics.observations import (
     unpaired,
 )
 from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
+from rpscli.sweep.table import Array, Indices
 
 BASELINES: tuple[Measure, ...] = ("PGA", "PGV")
 """Measures whose thresholds a model has to beat."""
@@ -98,11 +106,11 @@ class Outcomes(NamedTuple):
     computed: Curve
 
 
-@dataclass(frozen=True, eq=False)
-class Compared:
+class Compared(NamedTuple):
     """One quantity of one system in one part of the records.
 
-    `chosen` are values of the keys of the fit; `pairs` are places in the pairs of the report.
+    `chosen` are values of the keys of the fit; `points` (m,) those that did not fail, with what was
+    `observed` and `computed` there.
     """
 
     values: tuple[object, ...]
@@ -110,7 +118,9 @@ class Compared:
     part: str
     quantity: str
     found: Outcomes | Maxima
-    pairs: Indices
+    points: Indices
+    observed: Array
+    computed: Array
     failed: int
 
 
@@ -119,29 +129,166 @@ class Candidate(NamedTuple):
 
     values: tuple[object, ...]
     chosen: tuple[object, ...]
+    points: Indices
     worth: Worth
     taken: bool
 
 
 @dataclass(frozen=True, eq=False)
-class ComparisonReport:
-    """All of it.
+class Comparison:
+    """A study beside its observations: every system, or the best one of each group."""
 
-    `computed` (quantities, pairs) is 1 for overturned, and infinite for maxima of overturned
-    histories.
-    """
+    study: StudyResults
+    options: ComparisonOptions
 
-    table: Table
-    intensity: Intensity
-    confidence: float
-    system_keys: tuple[str, ...]
-    fit_keys: tuple[str, ...]
-    quantities: tuple[str, ...]
-    pairs: Pairs
-    computed: Array
-    compared: tuple[Compared, ...]
-    candidates: tuple[Candidate, ...]
-    pooling: tuple[str, ...]
+    @cached_property
+    def observed(self) -> Observed:
+        """What was observed."""
+        observed = self.study.table.layout.study.observed
+        assert observed is not None, "`unpaired` was asked before"
+        return observed
+
+    @cached_property
+    def pairs(self) -> Pairs:
+        """Points with an observation."""
+        return observed_pairs(self.study.table.layout, self.observed)
+
+    @cached_property
+    def fit_keys(self) -> tuple[str, ...]:
+        """Keys of the fit, as the study has them."""
+        return _fit_keys(self.study.table.layout, self.observed, self.options.fit)
+
+    @cached_property
+    def systems(self) -> Grouping:
+        """What is compared by itself; a fit chooses within it."""
+        return grouping(self.study.table, besides=self.fit_keys)
+
+    @cached_property
+    def chosen_keys(self) -> tuple[str, ...]:
+        """Keys of the fit, as tables call them."""
+        return shown_keys(self.study.table.layout, self.fit_keys)
+
+    @cached_property
+    def intensity(self) -> Intensity:
+        """Of every point, in the measure of the fragilities."""
+        return self.study.intensity(self.options)
+
+    @cached_property
+    def baselines(self) -> list[Intensity]:
+        """Measures whose thresholds are judged beside the model."""
+        found = [self.study.intensity(MeasureOptions(measure=each)) for each in BASELINES]
+        return found if self.intensity.measure in BASELINES else [*found, self.intensity]
+
+    @cached_property
+    def computed(self) -> Array:
+        """(quantities, pairs) values, 1 for overturned, infinite maxima; NaN of failed points."""
+        table = self.study.table
+        fallen = np.where(table.failed, np.nan, table.overturned)
+        values = [
+            fallen if name == OVERTURNED else demand(table, table.columns[name])
+            for name in self.observed.quantities
+        ]
+        return np.array(values)[:, self.pairs.points]
+
+    @cached_property
+    def parts(self) -> Mapping[str, Flags]:
+        """Pairs of each part of the records; the first one is learnt from."""
+        of, fit = self.study.table.layout.recordings[self.pairs.points], self.options.fit
+        if fit is None:
+            return {ALL: np.ones(len(of), dtype=bool)}
+        records = np.unique(of)
+        count = min(max(round(fit.share * len(records)), 1), len(records) - 1)
+        drawn = np.random.default_rng(fit.seed).permutation(records)[:count]
+        fitted = np.isin(of, drawn)
+        return {FITTED: fitted, HELD_OUT: ~fitted}
+
+    def _places(self, points: Indices, part: Flags, quantity: int) -> Indices:
+        """Pairs of some points in a part, where the quantity was observed."""
+        seen = np.isfinite(self.pairs.values[quantity])
+        return np.flatnonzero(np.isin(self.pairs.points, points) & part & seen)
+
+    def _learnt(self, points: Indices, quantity: int) -> Indices:
+        return self._places(points, next(iter(self.parts.values())), quantity)
+
+    @cached_property
+    def candidates(self) -> list[Candidate]:
+        """Every choice of every system; the one that is taken is compared."""
+        found = []
+        for system in self.systems.groups:
+            choices = system.parts(self.fit_keys)
+            worths = [self._worth(choice.every) for choice in choices]
+            best = best_place(worths)
+            found += [
+                Candidate(system.values, choice.values, choice.every, worths[n], taken=n == best)
+                for n, choice in enumerate(choices)
+            ]
+        return found
+
+    def _worth(self, points: Indices) -> Worth:
+        """What a fit makes small, for the first quantity of the observations."""
+        places = self._learnt(points, 0)
+        computed, observed = self.computed[0, places], self.pairs.values[0, places]
+        known = ~np.isnan(computed)
+        computed, observed = computed[known], observed[known]
+        if not len(computed):
+            return Worth(math.inf, math.inf, 0.0)
+        if self.observed.quantities[0] == OVERTURNED:
+            return outcome_worth(computed == 1.0, observed == 1.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            off = np.abs(np.log(computed / observed))
+        return Worth(float(fractiles(np.nan_to_num(off, nan=np.inf), [0.5])[0]), 0.0, 0.0)
+
+    @cached_property
+    def compared(self) -> list[Compared]:
+        """Every quantity of every system in every part."""
+        taken = [candidate for candidate in self.candidates if candidate.taken]
+        return [found for candidate in taken for found in self._compared(candidate)]
+
+    def _compared(self, best: Candidate) -> Iterator[Compared]:
+        for quantity, name in enumerate(self.observed.quantities):
+            for part, flags in self.parts.items():
+                places = self._places(best.points, flags, quantity)
+                known = places[~np.isnan(self.computed[quantity, places])]
+                if not len(places):
+                    continue
+                points, observed = self.pairs.points[known], self.pairs.values[quantity, known]
+                computed = self.computed[quantity, known]
+                found = (
+                    self._outcomes(points, computed == 1.0, observed == 1.0, best, quantity)
+                    if name == OVERTURNED
+                    else maxima(computed, observed)
+                )
+                failed = len(places) - len(known)
+                yield Compared(
+                    best.values, best.chosen, part, name, found, points, observed, computed, failed
+                )
+
+    def _outcomes(
+        self, points: Indices, computed: Flags, observed: Flags, best: Candidate, quantity: int
+    ) -> Outcomes:
+        table, intensity = self.study.table, self.intensity.values[points]
+        cluster, shaken = table.layout.clusters[points], intensity > 0.0
+        grid = intensity_grid(intensity[shaken])
+
+        def curve(beyond: Flags) -> Curve:
+            data = table, points[shaken], intensity[shaken], beyond[shaken]
+            return Curve(fragility_fit(*data, grid, self.options.bootstrap), binned(*data), grid)
+
+        learnt = self._learnt(best.points, quantity)
+        thresholds = []
+        for measured in self.baselines:
+            values = measured.values[self.pairs.points[learnt]]
+            if (known := values > 0.0).any():
+                overturned = self.pairs.values[quantity, learnt[known]] == 1.0
+                value = threshold(values[known], overturned)
+                counts = agreement(measured.values[points] >= value, observed, cluster)
+                thresholds.append(Threshold(measured.measure, measured.unit, value, counts))
+        return Outcomes(
+            agreement(computed, observed, cluster),
+            tuple(thresholds),
+            curve(observed),
+            curve(computed),
+        )
 
     @property
     def judged(self) -> list[Compared]:
@@ -151,53 +298,12 @@ class ComparisonReport:
     @property
     def notes(self) -> Iterator[str]:
         """What was left out, and what the user might take the numbers for."""
-        yield from (*self.pairs.notes, *self.pooling)
-        ends: dict[tuple[object, ...], list[bool]] = {}
-        for each in self.candidates:
-            ends.setdefault(each.values, []).append(each.taken)
-        if any(len(taken) > 2 and (taken[0] or taken[-1]) for taken in ends.values()):
-            yield "the fit chose a value at an end of its axis; extend the axis"
-
-
-def comparison_report(study: StudyResults, options: ComparisonOptions) -> ComparisonReport:
-    """Compare every system, or the best one of each group, with its observations."""
-    table, layout = study.table, study.table.layout
-    observed = layout.study.observed
-    assert observed is not None, "`unpaired` was asked before"
-    pairs = observed_pairs(layout, observed)
-    fit_keys = _fit_keys(_leading(layout), observed, options.fit)
-    system_keys = tuple(key for key in _leading(layout) if not _same_axis(layout, key, fit_keys))
-    measured = study.intensity(options)
-    baselines = [study.intensity(MeasureOptions(measure=measure)) for measure in BASELINES]
-    if measured.measure not in BASELINES:
-        baselines.append(measured)
-    work = _Work(table, options, measured, baselines, observed.quantities, pairs)
-    compared: list[Compared] = []
-    candidates: list[Candidate] = []
-    for system in groups(layout, system_keys):
-        best = Group((), system.points)
-        if options.fit is not None:
-            rows = [
-                Candidate(system.values, group.values, work.worth(group.points), taken=False)
-                for group in groups(layout, fit_keys, system.points)
-            ]
-            place = best_place([row.worth for row in rows])
-            candidates += [row._replace(taken=n == place) for n, row in enumerate(rows)]
-            best = groups(layout, fit_keys, system.points)[place]
-        compared += work.compared(system.values, best)
-    return ComparisonReport(
-        table=table,
-        intensity=measured,
-        confidence=options.confidence,
-        system_keys=shown_keys(layout, system_keys),
-        fit_keys=shown_keys(layout, fit_keys),
-        quantities=observed.quantities,
-        pairs=pairs,
-        computed=work.computed,
-        compared=tuple(compared),
-        candidates=tuple(candidates),
-        pooling=pooling_notes(pooled(layout, (*system_keys, *fit_keys, "scale"))),
-    )
+        yield from (*self.pairs.notes, *self.systems.notes)
+        for _, choices in groupby(self.candidates, lambda candidate: candidate.values):
+            taken = [candidate.taken for candidate in choices]
+            if len(taken) > 2 and (taken[0] or taken[-1]):
+                yield "the fit chose a value at an end of its axis; extend the axis"
+                return
 
 
 def fit_faults(_: Document, axes: Sequence[Axis], request: ReportRequest) -> Iterator[Fault]:
@@ -223,7 +329,7 @@ def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[st
     observed = layout.study.observed
     if options.fit is None or observed is None:
         return
-    keys = _fit_keys(_leading(layout), observed, options.fit)
+    keys = _fit_keys(layout, observed, options.fit)
     named = [key for key in observed.keys if _same_axis(layout, key, keys)]
     if not keys or named:
         which = f"{listed(named, 'and')} tells what was observed" if named else "no key is left"
@@ -232,122 +338,14 @@ def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[st
         yield "fit: less than two recordings are observed, and one part must be held out"
 
 
-def _leading(layout: StudyPoints) -> tuple[str, ...]:
-    """What tells systems apart: the first key of every axis, and the scale."""
-    return (*leading_keys(layout), "scale") if len(layout.scales) > 1 else leading_keys(layout)
-
-
-def _fit_keys(
-    leading: Sequence[str], observed: Observed, fit: FitSection | None
-) -> tuple[str, ...]:
+def _fit_keys(layout: StudyPoints, observed: Observed, fit: FitSection | None) -> tuple[str, ...]:
     if fit is None:
         return ()
     if fit.keys is not None:
         return tuple(fit.keys)
-    return tuple(key for key in leading if key not in (*observed.keys, "scale"))
+    return tuple(key for key in own_keys(layout) if key not in (*observed.keys, INTENSITY))
 
 
 def _same_axis(layout: StudyPoints, key: str, keys: Iterable[str]) -> bool:
     """Whether a key belongs to the axis of one of others."""
     return bool(set(axis_keys(layout, key)) & set(keys))
-
-
-@dataclass(frozen=True, eq=False)
-class _Work:
-    """What all comparisons of a report share."""
-
-    _table: Table
-    _options: ComparisonOptions
-    _measured: Intensity
-    _baselines: Sequence[Intensity]
-    _quantities: Sequence[str]
-    _pairs: Pairs
-
-    @cached_property
-    def computed(self) -> Array:
-        """(quantities, pairs) computed values; NaN of failed points."""
-        table = self._table
-        fallen = np.where(table.failed, np.nan, table.overturned)
-        values = [
-            fallen if name == OVERTURNED else demand(table, table.columns[name])
-            for name in self._quantities
-        ]
-        return np.array(values)[:, self._pairs.points]
-
-    @cached_property
-    def _parts(self) -> Mapping[str, Flags]:
-        """Pairs of each part of the records."""
-        clusters = self._table.layout.recordings[self._pairs.points]
-        records, fit = np.unique(clusters), self._options.fit
-        if fit is None:
-            return {ALL: np.ones(len(self._pairs.points), dtype=bool)}
-        count = min(max(round(fit.share * len(records)), 1), len(records) - 1)
-        drawn = np.random.default_rng(fit.seed).permutation(records)[:count]
-        fitted = np.isin(clusters, drawn)
-        return {FITTED: fitted, HELD_OUT: ~fitted}
-
-    def _chosen(self, points: Indices, part: str, quantity: int) -> Indices:
-        """Places of the pairs of some points in a part, where the quantity was observed."""
-        seen = np.isfinite(self._pairs.values[quantity])
-        return np.flatnonzero(np.isin(self._pairs.points, points) & self._parts[part] & seen)
-
-    def worth(self, points: Indices) -> Worth:
-        """What a fit makes small, for the first quantity of the observations."""
-        places = self._chosen(points, FITTED, 0)
-        computed, observed = self.computed[0][places], self._pairs.values[0][places]
-        known = ~np.isnan(computed)
-        computed, observed = computed[known], observed[known]
-        if not len(computed):
-            return Worth(math.inf, math.inf, 0.0)
-        if self._quantities[0] == OVERTURNED:
-            return outcome_worth(computed == 1.0, observed == 1.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            off = np.abs(np.log(computed / observed))
-        return Worth(float(fractiles(np.nan_to_num(off, nan=np.inf), [0.5])[0]), 0.0, 0.0)
-
-    def compared(self, values: tuple[object, ...], best: Group) -> Iterator[Compared]:
-        """Every quantity in every part."""
-        for quantity, name in enumerate(self._quantities):
-            for part in self._parts:
-                places = self._chosen(best.points, part, quantity)
-                known = places[~np.isnan(self.computed[quantity][places])]
-                if not len(places):
-                    continue
-                found = (
-                    self._outcomes(best.points, known, quantity)
-                    if name == OVERTURNED
-                    else maxima(self.computed[quantity, known], self._pairs.values[quantity, known])
-                )
-                failed = len(places) - len(known)
-                yield Compared(values, best.values, part, name, found, known, failed)
-
-    def _outcomes(self, points: Indices, places: Indices, quantity: int) -> Outcomes:
-        computed = self.computed[quantity] == 1.0
-        observed = self._pairs.values[quantity] == 1.0
-        learnt = self._chosen(points, next(iter(self._parts)), quantity)
-        intensity = self._measured.values[self._pairs.points]
-        cluster = self._table.layout.clusters[self._pairs.points]
-        shaken = places[intensity[places] > 0.0]
-        grid = intensity_grid(intensity[shaken])
-        return Outcomes(
-            agreement=agreement(computed[places], observed[places], cluster[places]),
-            thresholds=tuple(self._thresholds(observed, learnt, places)),
-            observed=self._curve(shaken, observed, intensity, grid),
-            computed=self._curve(shaken, computed, intensity, grid),
-        )
-
-    def _curve(self, places: Indices, beyond: Flags, intensity: Array, grid: Array) -> Curve:
-        data = self._table, self._pairs.points[places], intensity[places], beyond[places]
-        return Curve(fragility_fit(*data, grid, self._options.bootstrap), binned(*data), grid)
-
-    def _thresholds(self, observed: Flags, learnt: Indices, judged: Indices) -> Iterator[Threshold]:
-        """Thresholds chosen on one part of the records and judged on another."""
-        for measured in self._baselines:
-            intensity = measured.values[self._pairs.points]
-            known = learnt[intensity[learnt] > 0.0]
-            if len(known):
-                value = threshold(intensity[known], observed[known])
-                beyond = intensity[judged] >= value
-                cluster = self._table.layout.clusters[self._pairs.points[judged]]
-                counts = agreement(beyond, observed[judged], cluster)
-                yield Threshold(measured.measure, measured.unit, value, counts)
