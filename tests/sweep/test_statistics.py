@@ -16,12 +16,7 @@ from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike
 from rpscli.report.study.ida import IdaOptions, ida
 from rpscli.report.study.lines import LinesOptions, lines
 from rpscli.report.study.scatter import DemandOptions, ScatterOptions, demand, scatter
-from rpscli.report.study.table import (
-    OverturningOptions,
-    TableOptions,
-    overturning,
-    statistic_table,
-)
+from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, TableOptions
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.table import groups
@@ -100,7 +95,7 @@ def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
     swap = "podium.bearing.curvature_ratio: [critical, 0.5, 0]"
     changes = (swap, f"podium.devices: [[], {friction}]")
     table = table_of(study_of, lambda _: stored(), changes)
-    found = cells(overturning(results_of(table), OverturningOptions()))
+    found = cells(OVERTURNING.make(results_of(table), OverturningOptions()))
     assert found["podium.devices=none;counted"] == [3] * 4
     assert [name for name in found if name.endswith(";number")] == [
         "podium.devices=none;number", "podium.devices=friction 300 kN;number"
@@ -117,20 +112,20 @@ def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -
         return stored("overturned_rolling" if at[RHO] == 0 and at["scale"] == 1.0 else "survived")
 
     results = results_of(table_of(study_of, answer))
-    apart = overturning(results, OverturningOptions())
+    apart = OVERTURNING.make(results, OverturningOptions())
     found = cells(apart)
     assert apart.notes == ()
     assert (found[ALPHA], found["scale"]) == ([0.10, 0.10, 0.15, 0.15], [0.5, 1.0] * 2)
     assert found[f"{RHO}=0;number"] == [0, 2, 0, 2]
     assert found[f"{RHO}=0;counted"] == [3, 2, 3, 2]
-    pooled = overturning(results, OverturningOptions(rows=(ALPHA,)))
+    pooled = OVERTURNING.make(results, OverturningOptions(rows=(ALPHA,)))
     assert "pools 2 intensities" in pooled.notes[0]
     found = cells(pooled)
     assert found[ALPHA] == [0.10, 0.15]
     for rho, share in (("critical", 0.0), ("0.5", 0.0), ("0", 2 / 5)):
         assert found[f"{RHO}={rho}"] == [share] * 2
     assert (found["counted"], found["failed"]) == ([15, 15], [3, 3])
-    turned = cells(overturning(results, OverturningOptions(rows=(RHO,), columns=("scale",))))
+    turned = cells(OVERTURNING.make(results, OverturningOptions(rows=(RHO,), columns=("scale",))))
     assert (turned["scale=0.5"][2], turned["scale=1"][2]) == (0.0, 1.0)
 
 
@@ -152,10 +147,13 @@ def test_tables_show_statistics_in_which_an_overturned_history_is_the_largest(
         ("mean", [2, 1.5]),
     ):
         options = TableOptions(statistic=statistic, rows=("scale",), columns=(ALPHA,))
-        found = cells(statistic_table(results, options))
+        found = cells(TABLE.make(results, options))
         assert found[f"{ALPHA}=0.1"] == found[f"{ALPHA}=0.15"] == values
         assert found[f"{ALPHA}=0.1;overturned"] == [0, 3]
         assert found[f"{ALPHA}=0.1;counted"] == [9, 9]
+    own = OverturningOptions(rows=("scale",), columns=(ALPHA,))
+    shares = TABLE.make(results, TableOptions(statistic="overturned", **dict(own)))
+    assert cells(shares) == cells(OVERTURNING.make(results, own))
 
 
 def test_scatter_holds_what_stood(study_of: Make) -> None:

@@ -26,11 +26,13 @@ if TYPE_CHECKING:
 else:
     DemandName = Literal[tuple(quantity.name for quantity in DEMANDS)]
 
-Statistic = Annotated[
-    float | Literal["mean", "median", "largest"],
-    Quantity(symbol="a fractile", above=0, below=1, words=("mean", "median", "largest")),
-]
+_WORDS = ("mean", "median", "largest")
+Statistic = Annotated[float | str, Quantity(symbol="a fractile", above=0, below=1, words=_WORDS)]
 """What stands for several histories."""
+StatisticOrShare = Annotated[
+    float | str, Quantity(symbol="a fractile", above=0, below=1, words=(*_WORDS, "overturned"))
+]
+"""The same, or the share that overturned."""
 
 ENDS = ("_low", "_high")
 """Of names of columns that hold the ends of a band."""
@@ -136,6 +138,16 @@ class Report(Generic[Options]):
     results: Callable[[Options], Iterable[str]] = lambda _: ()
     requires: Callable[[StudyPoints, Options], Iterable[str]] = lambda *_: ()
     analyses: tuple[Analysis, ...] = ("timehistory",)
+
+
+def preset(of: Report[Any], options: type[Options], **fixed: object) -> Report[Options]:
+    """A kind whose options are some of those of another one; the others are fixed."""
+    whole = of.options.model_construct
+
+    def make(study: StudyResults, chosen: Options) -> Found:
+        return of.make(study, whole(**{**dict(chosen), **fixed}))
+
+    return Report(options, make)
 
 
 def add_notes(notes: list[str], name: str, found: Iterable[str]) -> None:

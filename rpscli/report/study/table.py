@@ -14,13 +14,13 @@ from rpscli.report.figures import style
 from rpscli.report.figures.look import SMALL
 from rpscli.report.study.labels import key_columns, label, labels, plain
 from rpscli.report.study.panels import left_out, over
-from rpscli.report.study.report import DemandName, Found, Report, Statistic
+from rpscli.report.study.report import DemandName, Found, Report, StatisticOrShare, preset
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.statistics.grouping import Histories, grouping, shown_keys, statistic_words
 from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import groups, leading_keys
+from rpscli.sweep.table import Table, groups, leading_keys
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,13 +40,13 @@ class OverturningOptions(ReportOptions):
 
 
 class TableOptions(OverturningOptions):
-    """A statistic of a demand, as a table."""
+    """A statistic of a demand, or the share that overturns, as a table."""
 
     result: DemandName = Field("rotation_ratio", description="of which the statistic is taken")
-    statistic: Statistic = Field(
+    statistic: StatisticOrShare = Field(
         "median",
         description="of the histories of a cell; an overturned one is larger than any demand, but"
-        " for the mean, which is that of survivors",
+        " for the mean, which is that of survivors; overturned: the share of them, of any result",
     )
 
 
@@ -66,34 +66,26 @@ class Shown(NamedTuple):
     shade: Callable[[Histories], float]
 
 
-def overturning(study: StudyResults, options: OverturningOptions) -> Found:
-    """Count the overturned points of each system, at each intensity unless the study says else."""
+def _share() -> Shown:
+    """How many overturned."""
 
     def numbers(cell: Histories) -> dict[str, float | int | str | None]:
         share = cell.overturned
-        return {
-            "": share.fraction,
-            ";low": share.low,
-            ";high": share.high,
-            ";number": share.number,
-            ";counted": share.of,
-        }
+        ends = {";low": share.low, ";high": share.high}
+        return {"": share.fraction, **ends, ";number": share.number, ";counted": share.of}
 
     def texts(cell: Histories) -> tuple[str, str]:
         share = cell.overturned
         return f"{share.fraction:.2f}", f"{share.number} of {share.of}, {share.interval}"
 
     words = "overturned: share, number, 95 % interval"
-    shown = Shown(
-        "overturned", "-", words, numbers, texts, lambda cell: cell.overturned.fraction or 0.0
-    )
-    return _table(study, options, shown)
+    return Shown("overturned", "-", words, numbers, texts, lambda c: c.overturned.fraction or 0.0)
 
 
-def statistic_table(study: StudyResults, options: TableOptions) -> Found:
-    """The statistic of each system, at each intensity unless the study says else."""
-    values = study.table.columns[options.result]
-    known = values[np.isfinite(values) & ~study.table.overturned]
+def _statistic(table: Table, options: TableOptions) -> Shown:
+    """A statistic of a demand."""
+    values = table.columns[options.result]
+    known = values[np.isfinite(values) & ~table.overturned]
     largest = known.max(initial=0.0) or 1.0
 
     def statistic(cell: Histories) -> float:
@@ -104,11 +96,9 @@ def statistic_table(study: StudyResults, options: TableOptions) -> Found:
         return {"": reached(statistic(cell)), ";counted": len(cell), ";overturned": fallen}
 
     def texts(cell: Histories) -> tuple[str, str]:
-        found, fallen = statistic(cell), cell.overturned.number
-        if np.isnan(found):
-            return "-", f"{fallen} of {len(cell)} overturned"
+        found, fallen = statistic(cell), f"{cell.overturned.number} of {len(cell)} overturned"
         words = "overturned" if np.isinf(found) else f"{found:.3g}"
-        return words, f"{fallen} of {len(cell)} overturned"
+        return "-" if np.isnan(found) else words, fallen
 
     quantity = SCALARS["timehistory"][options.result]
     words = f"{quantity.in_unit(quantity.unit)}: {statistic_words(options.statistic)}"
@@ -117,12 +107,18 @@ def statistic_table(study: StudyResults, options: TableOptions) -> Found:
         found = statistic(cell)
         return 0.8 if np.isinf(found) else float(0.6 * found / largest)
 
-    shown = Shown(options.result, quantity.unit, words, numbers, texts, shade)
-    return _table(study, options, shown)
+    return Shown(options.result, quantity.unit, words, numbers, texts, shade)
 
 
-def _table(study: StudyResults, options: OverturningOptions, shown: Shown) -> Found:
-    table, layout = study.table, study.table.layout
+def table_report(study: StudyResults, options: TableOptions) -> Found:
+    """Each system, at each intensity unless the study says else."""
+    table = study.table
+    shown = _share() if options.statistic == "overturned" else _statistic(table, options)
+    return _table(table, options, shown)
+
+
+def _table(table: Table, options: OverturningOptions, shown: Shown) -> Found:
+    layout = table.layout
     across = options.columns
     if across is None:
         across = tuple(key for key in leading_keys(layout)[-1:] if key not in (options.rows or ()))
@@ -186,5 +182,5 @@ def _table(study: StudyResults, options: OverturningOptions, shown: Shown) -> Fo
     return Found({"": written}, picture, rows.notes)
 
 
-OVERTURNING = Report(OverturningOptions, overturning)
-TABLE = Report(TableOptions, statistic_table, results=lambda options: [options.result])
+TABLE = Report(TableOptions, table_report, results=lambda options: [options.result])
+OVERTURNING = preset(TABLE, OverturningOptions, statistic="overturned")
