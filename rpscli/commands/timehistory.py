@@ -18,8 +18,7 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
     fail_on_option,
-    film_options,
-    film_part_options,
+    history_film_options,
     result_options,
     several_cases_options,
 )
@@ -60,8 +59,7 @@ from rpscli.report.figures.look import Look, drawn_with
     "End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
     f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units); repeatable."
 )
-@film_part_options
-@film_options
+@history_film_options
 @click.option(
     "--floor-spectra",
     is_flag=True,

@@ -83,7 +83,7 @@ def _gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decor
     def decorate(function: Command) -> Command:
         @functools.wraps(function)
         def command(**given: Any) -> None:
-            made = make(**{key: given.pop(key) for key in taken})
+            made = make(**{key: given.pop(key) for key in taken if key in given})
             function(**{name: made}, **given)
 
         return _all(*options)(command)
@@ -178,57 +178,58 @@ figure_options = _gathered(
 """--figures, --columns and --style, as `look`."""
 
 
-def film_options(function: Command) -> Command:
-    """--animate and --animate-size, as `film`; with a history's speed and part, if it has them."""
+def _film(
+    file: Path | None,
+    size: int | None,
+    speed: float | None = None,
+    first: float | None = None,
+    last: float | None = None,
+) -> FilmRequest | None:
+    wishes = {"size": size, "speed": speed, "first": first, "last": last}
+    asked: dict[str, Any] = {name: value for name, value in wishes.items() if value is not None}
+    if asked and file is None:
+        raise UsageError("options that begin with --animate- go with --animate FILE")
+    return None if file is None else FilmRequest(file, **asked)
 
-    @click.option(
+
+_FILM = (
+    click.option(
         "--animate",
         "file",
         type=click.Path(path_type=Path),
         metavar="FILE",
         help=f"Also draw an animation: {' or, with ffmpeg, '.join(RATES)}.",
-    )
-    @click.option(
+    ),
+    click.option(
         "--animate-size",
+        "size",
         type=click.IntRange(200, 4000),
         metavar="PIXELS",
         help=f"Width of the animation; {USUAL_SIZE} by default.",
-    )
-    @functools.wraps(function)
-    def command(*, file: Path | None, **rest: Any) -> None:
-        wishes = {
-            name: rest.pop(f"animate_{name}")
-            for name in ("size", "speed", "first", "last")
-            if f"animate_{name}" in rest
-        }
-        asked = {name: value for name, value in wishes.items() if value is not None}
-        if asked and file is None:
-            raise UsageError("options that begin with --animate- go with --animate FILE")
-        function(film=None if file is None else FilmRequest(file, **asked), **rest)
-
-    return command
-
-
+    ),
+)
 _SECOND = click.FloatRange(min=0.0)
-film_part_options = _all(
+_PART = (
     click.option(
         "--animate-speed",
+        "speed",
         type=click.FloatRange(min=0.0, min_open=True),
         metavar="FACTOR",
         help="Times real time: 0.5 shows it half as fast; by default it fits 9 s.",
     ),
     click.option(
         "--animate-from",
-        "animate_first",
+        "first",
         type=_SECOND,
         metavar="S",
         help="Its beginning, in seconds; where the motion begins by default.",
     ),
-    click.option(
-        "--animate-to", "animate_last", type=_SECOND, metavar="S", help="Its end, in seconds."
-    ),
+    click.option("--animate-to", "last", type=_SECOND, metavar="S", help="Its end, in seconds."),
 )
-"""Speed and part of a history; above `film_options`."""
+film_options = _gathered("film", _film, *_FILM)
+"""--animate and --animate-size, as `film`."""
+history_film_options = _gathered("film", _film, *_PART, *_FILM)
+"""The same, with speed and part of a history."""
 
 run_options = _all(
     click.option(
