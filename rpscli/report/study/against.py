@@ -191,8 +191,10 @@ def contrast(study: StudyResults, options: ContrastOptions) -> Found:
     if panels is None:
         panels = own_keys(layout, (*leading_keys(layout), *inner))
     found = grouping(table, (*panels, *inner), (key,), reference.points)
-    mine = dict(zip(reference.points.tolist(), system.points.tolist(), strict=True))
-    cells = [_cell(table, options, group, mine) for group in found.groups]
+    cells = [
+        _cell(options, group, pairs_of(table, reference, system, group.every))
+        for group in found.groups
+    ]
     columns = keyed(
         found.keys, {"pairs": "-", "failed": "-"},
         [(cell.values, cell.pairs, cell.failed) for cell in cells],
@@ -231,12 +233,9 @@ class Contrast(NamedTuple):
     overturned: tuple[Share, Share]
 
 
-def _cell(
-    table: Table, options: ContrastOptions, group: Histories, mine: dict[int, int]
-) -> Contrast:
-    points = np.array([mine[n] for n in group.every.tolist()])
-    known = ~(table.failed[points] | table.failed[group.every])
-    ours, theirs = points[known], group.every[known]
+def _cell(options: ContrastOptions, group: Histories, pairs: Pairs) -> Contrast:
+    """Of points of the reference, each with that of the system that is compared."""
+    table, theirs, ours = group.table, pairs.points, pairs.references
     stood = ~(table.overturned[ours] | table.overturned[theirs])
     ratios, behind = [], []
     for name in options.results:
@@ -245,7 +244,7 @@ def _cell(
         ratios.append(fractiles(ratio, list(FRACTILES.values())))
         behind.append(int((~np.isnan(ratio)).sum()))
     both = Histories(table, (), ours).overturned, Histories(table, (), theirs).overturned
-    return Contrast(group.values, len(ours), int((~known).sum()), np.array(ratios), behind, both)
+    return Contrast(group.values, len(ours), pairs.failed, np.array(ratios), behind, both)
 
 
 def _left_out_of_ratios(cells: Sequence[Contrast]) -> Iterator[str]:
