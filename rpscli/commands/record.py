@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,16 +20,13 @@ from rpscli.commands.shell.options import (
     terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder, Run, write_whole
-from rpscli.report.table import Part, Table, shown
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.measures import IntensityMeasures
 
 
 DAMPING = 0.05
@@ -93,7 +90,7 @@ def _result(
 ) -> None:
     """What was read and how strong it is, as document or table."""
     from rpscli.records.measures import intensity_measures
-    from rpscli.report.tables.motions import record_document
+    from rpscli.report.tables.motions import record_document, record_table
 
     measures = intensity_measures(motion)
     document = {
@@ -101,26 +98,7 @@ def _result(
     }  # fmt: skip
     if files is not None:
         document["files"] = files
-    terminal.result(document, record_tables(motion, measures))
-
-
-def record_tables(motion: GroundMotion, measures: IntensityMeasures) -> Iterator[Part]:
-    """What was read, and how strong it is."""
-    rows = [
-        ("source", motion.source),
-        ("format", motion.format),
-        ("understood", motion.description or "-"),
-        ("samples", f"{motion.npts} at {motion.dt:g} s"),
-        ("duration", f"{shown(motion.duration)} s"),
-        ("PGA", f"{shown(measures.pga)} m/s2 = {measures.pga / STANDARD_GRAVITY:.4f} g"),
-        ("PGV", f"{shown(measures.pgv)} m/s"),
-        ("PGD", f"{shown(measures.pgd)} m"),
-        ("Arias intensity", f"{shown(measures.arias)} m/s"),
-        ("CAV", f"{shown(measures.cav)} m/s"),
-        ("significant duration, 5-75 %", f"{shown(measures.d5_75)} s"),
-        ("significant duration, 5-95 %", f"{shown(measures.d5_95)} s"),
-    ]
-    yield Table.listing([("name", motion.name), *rows])
+    terminal.result(document, [record_table(motion, measures)])
 
 
 @click.command("info")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,14 +18,13 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.commands.timehistory_run import HistoryRequest, HistoryResult, compute, history_requests
 from rpscli.errors import UsageError
-from rpscli.report.documents import heading, versions
+from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import RUN_FILE
-from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
+from rpscli.report.html.page import Block, Notice, Section, page_look
 from rpscli.report.table import Table
 
 if TYPE_CHECKING:
-    from rpscli.analyses.results import TimeHistoryResult
     from rpscli.case.conditions import Condition
     from rpscli.errors import RpsError
 
@@ -108,18 +107,6 @@ def _shortened(path: Path) -> Path:
     return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
 
 
-CAPTIONS = {
-    "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
-    " the events.",
-    "displacements": "Displacements to the ground against time.",
-    "moment_rotation": "Moment about the contact points against rotation, and what the weight alone"
-    " does.",
-    "energy": "Where the energy of the ground has gone.",
-    "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
-    "devices": "Force against displacement of each device between ground and cap beam.",
-}
-
-
 @dataclass(frozen=True)
 class PageDone:
     """A page's title and sections, the document that says what was found, and its error."""
@@ -140,108 +127,30 @@ def case_page(
     terminal: Terminal,
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
+    from rpscli.report.html.case_page import History, case_sections
+
     case = given.case
+    made = partial(case_sections, case, given.request.overrides, _commands(given, motion), look)
     if case.record is None and motion.record is None:
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
-        sections = _sections(given, motion, None, look, ())
+        sections = made(case.warnings)
         return PageDone(case.title, "Structure", sections, concluded(document, None), None)
     # A place for the files, which are not written there.
     (request,) = history_requests([given], [motion], OutputRequest(Path(), force=True))
     announce_compilation(terminal, moving=True)
     done, result = compute(request, conditions, page_look(look), terminal)
-    terminal.warn(done.document["warnings"])
+    warnings = done.document["warnings"]
+    terminal.warn(warnings)
     stored = () if earlier is None else _stored(earlier, request, done)
-    sections = _sections(given, motion, (request, done, result), look, stored)
+    files = [(path.name, content) for path, content in request.folder.contents.items()]
+    history = History(request.ground, result, done.verdicts, files)
     return PageDone(
-        case.title, f"Time history under {result.record.name}", sections, done.document, done.error
+        case.title,
+        f"Time history under {result.record.name}",
+        made(warnings, history, stored),
+        done.document,
+        done.error,
     )
-
-
-def _sections(
-    given: CaseInput,
-    motion: MotionRequest,
-    history: tuple[HistoryRequest, HistoryResult, TimeHistoryResult] | None,
-    look: Look,
-    stored: Sequence[Block],
-) -> list[Section]:
-    from rpscli.commands.record import record_tables
-    from rpscli.records.measures import intensity_measures
-    from rpscli.report.html import sections as shared
-
-    case = given.case
-    made = [
-        shared.structure_section(case.structure, case.title, look),
-        Section("Input", _input(given, history and history[0])),
-        shared.derived_section(case.structure, case.document["podium"]),
-    ]
-    if history is None:
-        text = "The case names no ground motion: this page ends with what follows without one."
-        made.insert(0, Section("In short", [text, *notices(case.warnings)]))
-    else:
-        request, done, result = history
-        ground: list[Block] = [*record_tables(result.record, intensity_measures(result.record))]
-        ground += [shared.motion_pictures(each, look) for each in request.ground.named.values()]
-        made.insert(0, Section("In short", list(_in_short(done, result))))
-        made += [Section("Ground motion", ground), Section("Response", _response(request, result))]
-    repeat: list[Block] = [*_repeat(given, motion), *stored]
-    return [*made, shared.hidden_section(), Section("How to repeat it", repeat)]
-
-
-def _in_short(done: HistoryResult, result: TimeHistoryResult) -> Iterator[Block]:
-    from rpscli.commands.timehistory_tables import limits_table, outcome_text
-    from rpscli.report.study.statistics import verdicts_in_short
-
-    yield f"Outcome: {outcome_text(result)}."
-    if result.failure:
-        yield Notice(result.failure)
-    if done.verdicts:
-        yield verdicts_in_short(done.verdicts, f"{len(done.verdicts)} limits")
-        yield limits_table(done.verdicts)
-    else:
-        yield "No limits were set."
-    yield from notices(done.document["warnings"])
-
-
-def notices(texts: Sequence[str]) -> Iterator[Block]:
-    """What must be read before the numbers are used."""
-    return (Notice(f"Warning: {text}") for text in texts)
-
-
-def _response(request: HistoryRequest, result: TimeHistoryResult) -> list[Block]:
-    from rpscli.commands.timehistory_tables import outcome_table, storeys_table
-
-    tables = [outcome_table(result)]
-    if result.structure.storeys:
-        tables.append(storeys_table(result))
-    files = ((path.name, content) for path, content in request.folder.contents.items())
-    drawn = [Picture(found, CAPTIONS[stem]) for stem, found in pictures(files)]
-    return [*tables, *drawn]
-
-
-def _input(given: CaseInput, request: HistoryRequest | None) -> list[Block]:
-    from rpscli.report.html.sections import input_table, listing
-
-    case = given.case
-    motions = {}
-    if request is not None:
-        ground = request.ground
-        for component, each in ground.named.items():
-            name = f"{component} record".removeprefix("horizontal ")
-            motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
-            motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
-    origin = listing(
-        ("case", case.source),
-        ("SHA-256 of its text", case.digest),
-        ("overridden values", ", ".join(given.request.overrides)),
-        *motions.items(),
-        ("made by", programs()),
-    )
-    return [origin, "The case in SI units, with all defaults:", input_table(case.document)]
-
-
-def programs() -> str:
-    """What made the numbers, with versions."""
-    return ", ".join(f"{name} {version}" for name, version in versions().items() if version)
 
 
 def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
@@ -249,7 +158,8 @@ def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
     return [source, *(word for override in overrides for word in ("--set", override))]
 
 
-def _repeat(given: CaseInput, motion: MotionRequest) -> Iterator[Block]:
+def _commands(given: CaseInput, motion: MotionRequest) -> list[list[str]]:
+    """That make the same again."""
     words = subject_words(given.request.source, given.request.overrides)
     options = {
         "--record": motion.record,
@@ -259,11 +169,8 @@ def _repeat(given: CaseInput, motion: MotionRequest) -> Iterator[Block]:
     }
     for option, value in options.items():
         words += [] if value is None else [option, value]
-    lines = [shlex.join(["rps", "report", *words])]
-    if given.case.record is not None or motion.record is not None:
-        lines.insert(0, shlex.join(["rps", "timehistory", *words]))
-    yield "From the folder in which this page was made, with the same versions:"
-    yield Code("\n".join(lines))
+    without = given.case.record is None and motion.record is None
+    return [["rps", command, *words] for command in ("timehistory", "report")[without:]]
 
 
 def _stored(earlier: Earlier, request: HistoryRequest, done: HistoryResult) -> list[Block]:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rpscli.commands.inputs import RESULTS
-from rpscli.commands.report_case import Earlier, PageDone, notices, programs, subject_words
+from rpscli.commands.report_case import Earlier, PageDone, subject_words
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import Terminal
@@ -17,9 +15,16 @@ from rpscli.commands.study import begin, compute, read, study_heading, summary_t
 from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
-from rpscli.report.html import sections as shared
-from rpscli.report.html.page import Block, Code, Picture, Section, page_look, pictures
-from rpscli.report.html.sections import motions_section
+from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
+from rpscli.report.html.sections import (
+    input_table,
+    listing,
+    motions_section,
+    notices,
+    page_sections,
+    programs,
+    repeated,
+)
 from rpscli.report.study.labels import label
 from rpscli.report.table import Table
 from rpscli.sweep.evaluation.context import resolved
@@ -98,36 +103,26 @@ def _sections(
     folder: Path,
     look: Look,
 ) -> list[Section]:
-    first = resolved(run.layout.plan, run.layout[0].values)
-    drawn: list[Block] = [
-        Picture(each, _caption(study, stem)) for stem, each in pictures(found.files.items())
-    ]
-    statistics, ground = list[Block](), Section("Ground motions", [])
+    layout = study.layout
+    first = resolved(layout.plan, layout[0].values)
+    drawn = [Picture(each, _caption(study, stem)) for stem, each in pictures(found.files.items())]
+    results = [Section("Figures", drawn)]
     if run.summary:
-        statistics += [*summary_tables(run.summary), *found.parts]
-        ground = motions_section(*_motions(study), study.title, look)
-    return [
-        Section("In short", list(_in_short(run, found, notes))),
-        _of_first(shared.structure_section(first.structure, study.title, look), study),
-        Section("Input", list(_input(study, first))),
-        _of_first(shared.derived_section(first.structure, first.document["podium"]), study),
-        ground,
-        Section("Statistics", statistics),
-        Section("Figures", drawn),
-        shared.hidden_section(),
-        Section("How to repeat it", list(_repeat(study, folder))),
-    ]
-
-
-def _of_first(section: Section, study: Study) -> Section:
-    """A section about one system says which."""
-    layout, systems = study.layout, len(study.layout.combinations)
-    if systems == 1:
-        return section
-    values = zip(layout.plan.keys, layout[0].values, strict=True)
-    which = ", ".join(label(key, value) for key, value in values)
-    text = f"The first of {systems} systems: {which}."
-    return replace(section, blocks=[text, *section.blocks])
+        statistics = Section("Statistics", [*summary_tables(run.summary), *found.parts])
+        results = [motions_section(*_motions(study), study.title, look), statistics, *results]
+    which = []
+    if (systems := len(layout.combinations)) > 1:
+        values = zip(layout.plan.keys, layout[0].values, strict=True)
+        named = ", ".join(label(key, value) for key, value in values)
+        which = [f"The first of {systems} systems: {named}."]
+    words = subject_words(layout.study.source, study.overrides)
+    stored = (
+        f"Every point is stored in {folder}; points.csv there has them all, failed.csv the"
+        " command that computes each failed point alone."
+    )
+    short, inputs = _in_short(run, found, notes), _input(study, first)
+    repeat = [*repeated(["rps", "sweep", *words], ["rps", "report", *words]), stored]
+    return page_sections(first, study.title, look, short, inputs, results, repeat, which)
 
 
 def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator[Block]:
@@ -170,7 +165,7 @@ def _caption(study: Study, stem: str) -> str:
 
 def _input(study: Study, first: Case) -> Iterator[Block]:
     checked, plan = study.layout.study, study.layout.plan
-    yield shared.listing(
+    yield listing(
         ("study", checked.source),
         ("SHA-256 of its text", checked.digest),
         ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
@@ -179,17 +174,7 @@ def _input(study: Study, first: Case) -> Iterator[Block]:
         ("made by", programs()),
     )
     yield "The study as it is written:"
-    yield shared.input_table(checked.document.content)
+    yield input_table(checked.document.content)
     which = "The case" if len(study.layout.combinations) == 1 else "Its first system"
     yield f"{which} in SI units, with all defaults:"
-    yield shared.input_table(first.document)
-
-
-def _repeat(study: Study, folder: Path) -> Iterator[Block]:
-    words = subject_words(study.layout.study.source, study.overrides)
-    yield "From the folder in which this page was made, with the same versions:"
-    yield Code(f"{shlex.join(['rps', 'sweep', *words])}\n{shlex.join(['rps', 'report', *words])}")
-    yield (
-        f"Every point is stored in {folder}; points.csv there has them all, failed.csv the"
-        " command that computes each failed point alone."
-    )
+    yield input_table(first.document)

@@ -31,6 +31,7 @@ from rpscli.commands.timehistory_run import (
     history_requests,
 )
 from rpscli.errors import CaseError, UsageError, all_made
+from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 
@@ -108,7 +109,7 @@ def _one(
     film: FilmRequest | None,
     terminal: Terminal,
 ) -> None:
-    from rpscli.commands.timehistory_tables import timehistory_tables
+    from rpscli.report.tables.timehistory import timehistory_tables
 
     title = request.given.case.title
     done, result = compute(request, conditions, look, terminal)
@@ -121,5 +122,6 @@ def _one(
     add_summary(request, done)
     write(request.folder, terminal)
     terminal.warn(done.document["warnings"])
-    terminal.result(done.document, timehistory_tables(result, done.verdicts, title))
+    tables = [*timehistory_tables(result, done.verdicts, title), ONE_DIRECTION]
+    terminal.result(done.document, tables)
     leave(done.error)

@@ -12,7 +12,6 @@ from rpscli.analyses.demand import demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.commands.timehistory_tables import timehistory_tables
 from rpscli.model.devices import (
     FrictionDamper,
     RollingResistance,
@@ -24,6 +23,7 @@ from rpscli.model.podium import Device
 from rpscli.physics.planar.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.documents import timehistory_document
 from rpscli.report.tables.analyses import history_columns
+from rpscli.report.tables.timehistory import timehistory_tables
 
 F_D, P, K_T, P_Y, C, A, GAP, K_S, C_S = 3e5, 5e4, 1e7, 1.5e5, 3e5, 0.5, 0.05, 2e7, 3e5
 STRUCTURE = replace(

@@ -30,10 +30,10 @@ from rpscli.report.html.page import (
     written,
 )
 from rpscli.report.html.sections import (
-    derived_section,
-    hidden_section,
+    derived_blocks,
+    hidden_table,
     motion_pictures,
-    structure_section,
+    structure_blocks,
 )
 from rpscli.report.table import Table
 
@@ -71,7 +71,7 @@ def test_text_is_never_taken_for_tags() -> None:
         Notice(HOSTILE),
         Code(HOSTILE),
         Table.of_texts([HOSTILE], [[HOSTILE]]),
-        *structure_section(structure(), HOSTILE, USUAL).blocks,
+        *structure_blocks(structure(), HOSTILE, USUAL),
     ]
     parsed = Parsed(page(HOSTILE, HOSTILE, [Section(HOSTILE, blocks)], HOSTILE))
     assert "script" not in {tag for tag, _ in parsed.tags}
@@ -153,7 +153,7 @@ def test_empty_sections_are_left_out_and_the_others_numbered() -> None:
 
 
 def test_what_the_model_leaves_out_is_read_from_the_theory() -> None:
-    (table,) = hidden_section().blocks
+    table = hidden_table()
     assert isinstance(table, Table)
     assert list(table.heads) == ["assumed", "so the model cannot tell"]
     assert len(table.rows) >= 8
@@ -164,7 +164,7 @@ def test_what_the_model_leaves_out_is_read_from_the_theory() -> None:
 def test_every_derived_number_has_a_row() -> None:
     made = structure()
     podium = {"bearing": {"semi_diagonal": 1.5}, "cap_beam_mass": 2e5, "column_mass": 2e4}
-    table = derived_section(made, podium).blocks[-1]
+    table = derived_blocks(made, podium)[-1]
     assert isinstance(table, Table)
     values = {row[0]: row[4] for row in table.rows}
     assert values["critical rotation"] == f"{made.critical_rotation:.6g}"

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
@@ -13,15 +14,25 @@ from rpscli.case.schema.keys import unit
 from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import ResponseSpectrum, response_spectrum
 from rpscli.report.bundles import bearing_files
+from rpscli.report.documents import versions
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.structure import structure_figure
-from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
+from rpscli.report.html.page import (
+    Block,
+    Code,
+    Notice,
+    Picture,
+    Section,
+    page_look,
+    pictures,
+)
 from rpscli.report.table import Column, Table
 from rpscli.report.tables.derivation import derivations, first_shape
 
 if TYPE_CHECKING:
+    from rpscli.case.case import Case
     from rpscli.model.podium import PodiumStructure
     from rpscli.records.ground_motion import GroundMotion
 
@@ -99,14 +110,53 @@ HIDDEN = "| assumed |"
 """Begins the table of the theory that says what the model cannot tell."""
 
 
-def structure_section(structure: PodiumStructure, title: str, look: Look) -> Section:
+def page_sections(
+    case: Case,
+    title: str,
+    look: Look,
+    short: Iterable[Block],
+    inputs: Iterable[Block],
+    results: Iterable[Section],
+    repeat: Iterable[Block],
+    which: Sequence[Block] = (),
+) -> list[Section]:
+    """All of a page in its order; `which` says of which system structure and formulas are."""
+    structure, podium = case.structure, case.document["podium"]
+    return [
+        Section("In short", [*short]),
+        Section("The structure", [*which, *structure_blocks(structure, title, look)]),
+        Section("Input", [*inputs]),
+        Section("Derived quantities", [*which, *derived_blocks(structure, podium)]),
+        *results,
+        Section("What the model leaves out", [hidden_table()]),
+        Section("How to repeat it", [*repeat]),
+    ]
+
+
+def notices(texts: Iterable[str]) -> Iterator[Block]:
+    """What must be read before the numbers are used."""
+    return (Notice(f"Warning: {text}") for text in texts)
+
+
+def programs() -> str:
+    """What made the numbers, with versions."""
+    return ", ".join(f"{name} {version}" for name, version in versions().items() if version)
+
+
+def repeated(*commands: Sequence[str]) -> Iterator[Block]:
+    """Commands that make the same again."""
+    yield "From the folder in which this page was made, with the same versions:"
+    yield Code("\n".join(map(shlex.join, commands)))
+
+
+def structure_blocks(structure: PodiumStructure, title: str, look: Look) -> list[Block]:
     """The drawings, and the storeys."""
     made = figure_files({"s": lambda: structure_figure(structure, title)}, page_look(look))
     files = [*made.items(), *bearing_files(structure, title, page_look(look))]
     blocks: list[Block] = [Picture(each, CAPTIONS[stem]) for stem, each in pictures(files)]
     if structure.superstructure is not None:
         blocks += ["Storeys, the roof on top:", _storeys(structure)]
-    return Section("The structure", blocks)
+    return blocks
 
 
 def _storeys(structure: PodiumStructure) -> Table:
@@ -130,7 +180,7 @@ def input_table(content: Mapping[str, Any]) -> Table:
     return Table.of_texts(("key", "value", "unit"), rows, words=3)
 
 
-def derived_section(structure: PodiumStructure, podium: Mapping[str, Any]) -> Section:
+def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> list[Block]:
     """Derived quantities with formulas, and with the numbers put in."""
     rows = [
         (
@@ -149,24 +199,17 @@ def derived_section(structure: PodiumStructure, podium: Mapping[str, Any]) -> Se
         f" {THEORY}, sections 1 to 7. f, κ and e_given are factor, loss and restitution of"
         " podium.impact, I is podium.bearing.inertia_ratio."
     )
-    return Section(
-        "Derived quantities",
-        [
-            text,
-            Table.of_texts(
-                ("quantity", "symbol", "formula", "with numbers", "value", "unit"), rows, words=4
-            ),
-        ],
-    )
+    heads = ("quantity", "symbol", "formula", "with numbers", "value", "unit")
+    return [text, Table.of_texts(heads, rows, words=4)]
 
 
-def hidden_section(*more: Block) -> Section:
+def hidden_table() -> Table:
     """What the model leaves out, in the words of the theory."""
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
     lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
     head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
     bare = [[cell.replace("`", "") for cell in row] for row in rows]
-    return Section("What the model leaves out", [Table.of_texts(head, bare, words=2), *more])
+    return Table.of_texts(head, bare, words=2)
 
 
 def listing(*rows: tuple[str, str | None]) -> Table:

@@ -8,11 +8,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
 from rpscli.records.selection import Candidate, Selection
 from rpscli.records.spectrum import ResponseSpectrum
-from rpscli.report.table import Column, picked, records, shown
+from rpscli.report.table import Column, Table, picked, records, shown
 
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:
@@ -24,6 +25,25 @@ def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[s
         "sha256": motion.digest,
         "warnings": motion.warnings,
     }
+
+
+def record_table(motion: GroundMotion, measures: IntensityMeasures) -> Table:
+    """What was read, and how strong it is."""
+    rows = [
+        ("source", motion.source),
+        ("format", motion.format),
+        ("understood", motion.description or "-"),
+        ("samples", f"{motion.npts} at {motion.dt:g} s"),
+        ("duration", f"{shown(motion.duration)} s"),
+        ("PGA", f"{shown(measures.pga)} m/s2 = {measures.pga / STANDARD_GRAVITY:.4f} g"),
+        ("PGV", f"{shown(measures.pgv)} m/s"),
+        ("PGD", f"{shown(measures.pgd)} m"),
+        ("Arias intensity", f"{shown(measures.arias)} m/s"),
+        ("CAV", f"{shown(measures.cav)} m/s"),
+        ("significant duration, 5-75 %", f"{shown(measures.d5_75)} s"),
+        ("significant duration, 5-95 %", f"{shown(measures.d5_95)} s"),
+    ]
+    return Table.listing([("name", motion.name), *rows])
 
 
 def motion_columns(motion: GroundMotion) -> list[Column]:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import EVENTS
-from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
 from rpscli.report.tables.analyses import fixed_base_demands, isolated_demands
 
@@ -43,7 +42,6 @@ def timehistory_tables(
         yield devices_table(result)
     if verdicts:
         yield limits_table(verdicts)
-    yield ONE_DIRECTION
 
 
 def outcome_text(result: TimeHistoryResult) -> str:
