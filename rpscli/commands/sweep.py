@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -87,7 +88,9 @@ def command(
         store.require()
         write(folder, terminal)
     notes = [*given.warnings, *found.notes]
-    terminal.warn_first(notes, "with --json")
+    # Of each report: what one has to say takes no room from the next.
+    for _, of_one in groupby(notes, lambda note: note.partition(": ")[0]):
+        terminal.warn_first(list(of_one), "with --json")
     document = {
         **heading(),
         "command": "sweep",

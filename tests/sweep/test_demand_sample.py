@@ -1,7 +1,7 @@
 """Demands for loss assessment: the files against single histories, and read by pelicun itself.
 
-pelicun wants older versions of scipy and pandas. Where these cannot be had beside all the rest,
-RPS_PELICUN names the Python of an environment that has pelicun.
+pelicun wants older versions of scipy and pandas, so that the long test makes an environment for the
+newest one; RPS_PELICUN may name the Python of one that is there.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ import csv
 import json
 import os
 import subprocess
-import sys
+import venv
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,42 +27,6 @@ from sweep.small_studies import STUDY
 
 VARY = STUDY[STUDY.index("vary:") : STUDY.index("records:")]
 SAMPLE = STUDY.replace(VARY, "").replace("[0.5, 1.0]", "[0.5, 9.0]") + "reports: [demand_sample]\n"
-
-PELICUN = os.environ.get("RPS_PELICUN", sys.executable)
-
-ASSESSMENT = """\
-import json, sys
-from pathlib import Path
-from pelicun.assessment import DLCalculationAssessment
-
-types = {"Overturning": {"Acronym": "OVT", "UnitType": "unitless"}}
-made = DLCalculationAssessment(config_options={"Seed": 1, "CustomDemandTypes": types})
-made.calculate_demand(
-    demand_path=Path(sys.argv[1]).resolve(), collapse_limits=None, length_unit="m",
-    demand_calibration=None, sample_size=int(sys.argv[2]), demand_cloning=None,
-    residual_drift_inference=None, coupled_demands=True,
-)
-sample, units = made.demand.save_sample(save_units=True)
-Path("components.csv").write_text(
-    "ID,Units,Location,Direction,Theta_0,Blocks,Comment\\nC.30.11.001a,ea,1,1,1,1,-\\n"
-)
-made.calculate_asset(
-    num_stories=3, component_assignment_file="components.csv", component_sample_file=None,
-    collapse_fragility_demand_type="OVT", add_irreparable_damage_columns=True,
-)
-made.calculate_damage(
-    length_unit="m", component_database="FEMA P-58",
-    collapse_fragility={"DemandType": "OVT", "CapacityDistribution": "N/A", "CapacityMedian": 0.5,
-                        "Theta_1": "N/A"},
-    irreparable_damage={"DriftCapacityMedian": 0.01, "DriftCapacityLogStd": 0.3},
-    damage_process_approach="FEMA P-58",
-)
-damage = made.damage.save_sample()
-collapsed = [float(value) for value in damage["collapse", "0", "1", "0", "1"]]
-flat = {"-".join(name): [float(v) for v in sample[name]] for name in sample.columns}
-said = {"-".join(name): unit for name, unit in units.items()}
-Path("out.json").write_text(json.dumps({"sample": flat, "units": said, "collapsed": collapsed}))
-"""
 
 
 def sample_of(file: Path) -> dict[str, list[str]]:
@@ -77,7 +42,14 @@ def made(workplace: Path, sweep: Callable[..., Result]) -> Path:
     (workplace / "study.yaml").write_text(SAMPLE, encoding="utf-8")
     result = sweep("study.yaml", "-o", "made")
     assert result.exit_code == 0, result.stderr
-    assert "CustomDemandTypes" in result.stderr
+    assert "run: python -m pelicun.tools.DL_calculation -c demand_sample_1.json" in " ".join(
+        result.stdout.split()
+    )
+    given = json.loads((workplace / "made" / "demand_sample_2.json").read_text())["DL"]
+    assert given["Damage"]["CollapseFragility"]["Theta_1"] == 0.0
+    assert given["Options"]["CustomDemandTypes"]["Overturning"]["Acronym"] == "OVT"
+    assert given["Demands"]["DemandFilePath"] == "demand_sample_2.csv"
+    assert "OVT-0, PFA-0, RID-0, RID-1, RID-2, RID-3 are constant" in result.stderr
     return workplace / "made"
 
 
@@ -113,31 +85,76 @@ def test_the_files_hold_the_demands_of_single_histories(made: Path) -> None:
             assert float(found["1-OVT-0-1"][row]) == overturned
 
 
+@pytest.fixture(scope="module")
+def pelicun(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A Python that has pelicun."""
+    if named := os.environ.get("RPS_PELICUN"):
+        return named
+    place = tmp_path_factory.mktemp("environment")
+    venv.create(place, with_pip=True)
+    python = place / ("Scripts" if os.name == "nt" else "bin") / "python"
+    install = [str(python), "-m", "pip", "install", "-q", "pelicun"]
+    done = subprocess.run(install, capture_output=True, text=True, check=False, env=bare())
+    if done.returncode:
+        pytest.skip(f"pelicun cannot be installed: {done.stderr[-300:]}")
+    return str(python)
+
+
+def bare() -> dict[str, str]:
+    """Without the path of rps, whose environment may hold other versions."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+
+@pytest.mark.long
 @needs_compiled_kernels
-def test_pelicun_reads_them_and_tells_the_collapses(made: Path) -> None:
-    asked = [PELICUN, "-c", "import pelicun"]
-    if subprocess.run(asked, capture_output=True, check=False).returncode:
-        pytest.skip("pelicun is not installed; RPS_PELICUN may name a Python that has it")
-    file = made / "demand_sample_2.csv"
-    # Without the path of rps, whose environment may hold other versions.
-    done = subprocess.run(
-        [PELICUN, "-c", ASSESSMENT, str(file), "3"],
-        cwd=made,
-        env={name: value for name, value in os.environ.items() if name != "PYTHONPATH"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    read = json.loads((made / "out.json").read_text(encoding="utf-8"))
-    written = sample_of(file)
-    assert read["units"]["PFA-0-1"] == "mps2"
-    assert read["units"]["BRD-0-1"] == "m"
-    for name in list(written)[1:]:
-        values = np.array(written[name], dtype=float)
-        np.testing.assert_allclose(read["sample"][name.removeprefix("1-")], values, rtol=1e-9)
-    assert read["collapsed"] == [float(value) for value in written["1-OVT-0-1"]]
-    assert sum(read["collapsed"]) == 2
+def test_pelicun_runs_what_is_printed_and_tells_the_collapses(
+    workplace: Path, sweep_json: Callable[..., Any], pelicun: str
+) -> None:
+    (workplace / "study.yaml").write_text(SAMPLE, encoding="utf-8")
+    found = sweep_json("study.yaml", "-o", "made")
+    first = found["findings"]["demand_sample"][0]["found"]
+    python, *command = first.rpartition("run: ")[2].split()
+    assert python == "python"
+    made = workplace / "made"
+    components = "ID,Units,Location,Direction,Theta_0,Blocks,Comment\nC.30.11.001a,ea,1,1,1,1,-\n"
+    (made / "components.csv").write_text(components, encoding="utf-8")
+
+    def run(number: int) -> tuple[dict[str, Any], list[dict[str, str]]]:
+        asked = [word.replace("demand_sample_1", f"demand_sample_{number}") for word in command]
+        done = subprocess.run(
+            [pelicun, *asked], cwd=made, env=bare(), capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        with (made / "losses" / "DL_summary.csv").open(encoding="utf-8") as text:
+            summary = list(csv.DictReader(text))
+        return json.loads((made / "losses" / "DEM_sample.json").read_text()), summary
+
+    for number, overturned in ((1, 0), (2, 2)):
+        read, summary = run(number)
+        written = sample_of(made / f"demand_sample_{number}.csv")
+        for name in list(written)[1:]:
+            _, kind, level, direction = name.split("-")
+            values = np.array(written[name], dtype=float)
+            np.testing.assert_allclose(read[kind][level][direction], values, rtol=1e-9)
+        collapsed = [float(row["collapse"]) for row in summary]
+        assert collapsed == [float(value) for value in written["1-OVT-0-1"]]
+        assert sum(collapsed) == overturned
+    # The calibration that the warning gives, and the one that it warns of.
+    (warning,) = [text for text in found["warnings"] if "Calibration" in text]
+    assert '{"ALL": {"DistributionFamily": "empirical"}, "PID"' in warning  # one PGA for all
+    file = made / "demand_sample_2.json"
+    given = json.loads(file.read_text())
+    given["DL"]["Demands"] |= {
+        "CoupledDemands": False,
+        "Calibration": json.loads(warning.partition("Calibration: ")[2]),
+        "SampleSize": 50,
+    }
+    file.write_text(json.dumps(given), encoding="utf-8")
+    assert len(run(2)[1]) == 50
+    given["DL"]["Demands"]["Calibration"] = {"ALL": {"DistributionFamily": "lognormal"}}
+    file.write_text(json.dumps(given), encoding="utf-8")
+    with pytest.raises(AssertionError, match="standard normal space"):
+        run(2)
 
 
 def test_what_it_needs(workplace: Path, sweep: Callable[..., Result]) -> None:

@@ -6,8 +6,9 @@ are called event-type-location-direction, and a row of units follows the header.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from rpscli.analyses.floor_spectra import DAMPING, PERIODS
 from rpscli.analyses.result_quantities import STOREY_SHEARS
 from rpscli.case.schema.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions, VariedKeys
+from rpscli.report.documents import json_text
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import (
@@ -281,12 +283,8 @@ def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str
         yield "the sample varies the number of storeys; vary it in an axis instead"
 
 
-HOW = (
-    "for pelicun: OVT is 1 where a history overturned, its other demands are those until then;"
-    ' take it as collapse with "CustomDemandTypes": {"Overturning": {"Acronym": "OVT", "UnitType":'
-    ' "unitless"}} and "CollapseFragility": {"DemandType": "OVT", "CapacityDistribution": "N/A",'
-    ' "CapacityMedian": 0.5}; BRD is the cap beam displacement, RID-0 the residual tilt of columns'
-)
+FITTED = ("PFA", "PID", "BRD")
+"""Types of demands to which pelicun can calibrate distributions, where they vary."""
 
 
 class DemandSample(NamedTuple):
@@ -307,7 +305,7 @@ class DemandSample(NamedTuple):
     overturned: NDArray[np.bool_]
 
 
-def demand_sample(study: StudyResults, _options: DemandSampleOptions) -> Found:
+def demand_sample(study: StudyResults, options: DemandSampleOptions) -> Found:
     """Run the histories once more for the demands of single floors, which are not stored."""
     found = grouping(study.table)
     samples = [_sample(study, group) for group in found.computed]
@@ -316,7 +314,7 @@ def demand_sample(study: StudyResults, _options: DemandSampleOptions) -> Found:
         (group.values, len(group), group.overturned.number, group.failed)
         for group in found.computed
     ]
-    numbers = Column("file", "-", range(1, len(samples) + 1))
+    stem, numbers = options.name or "demand_sample", Column("file", "-", range(1, len(samples) + 1))
     note = remarks(
         "fractiles that overturned are not drawn" if found.overturned else "",
         left_out(sum(group.failed for group in found.computed)),
@@ -324,9 +322,66 @@ def demand_sample(study: StudyResults, _options: DemandSampleOptions) -> Found:
     return Found(
         {"": [numbers, *keyed(found.keys, heads, rows)]},
         (lambda title: demand_sample_figure(found.keys, samples, title, note)) if samples else None,
-        [HOW] * bool(samples),
-        texts={f"_{n}.csv": sample_text(one) for n, one in enumerate(samples, start=1)},
+        list(_calibration_notes(samples)),
+        findings=_how(stem) if samples else (),
+        texts={
+            f"_{n}{suffix}": text
+            for n, one in enumerate(samples, start=1)
+            for suffix, text in {
+                ".csv": sample_text(one),
+                ".json": json_text(pelicun_configuration(one, f"{stem}_{n}.csv")),
+            }.items()
+        },
     )
+
+
+def pelicun_configuration(sample: DemandSample, file: str) -> dict[str, Any]:
+    """What pelicun's DL_calculation takes: demands of a history together, collapse by OVT."""
+    collapse = {"DemandType": "OVT", "CapacityDistribution": "N/A", "CapacityMedian": 0.5}
+    overturning = {"Acronym": "OVT", "UnitType": "unitless"}
+    own = {"ComponentAssignmentFile": "components.csv", "ComponentDatabase": "FEMA P-58"}
+    count = len(sample.points)
+    return {
+        "GeneralInformation": {"units": {"length": "m", "force": "N", "time": "sec"}},
+        "DL": {
+            "Demands": {"DemandFilePath": file, "SampleSize": count, "CoupledDemands": True},
+            "Asset": {"NumberOfStories": sample.drifts.shape[1], **own},
+            "Damage": {
+                "DamageProcess": "FEMA P-58",
+                "CollapseFragility": {**collapse, "Theta_1": 0.0},
+            },
+            "Losses": {"Repair": {"ConsequenceDatabase": "FEMA P-58", "MapApproach": "Automatic"}},
+            "Options": {"Seed": 1, "CustomDemandTypes": {"Overturning": overturning}},
+        },
+    }
+
+
+def _how(stem: str) -> list[tuple[str, str]]:
+    """How pelicun goes on from here."""
+    command = f"python -m pelicun.tools.DL_calculation -c {stem}_1.json --dirnameOutput losses"
+    meaning = "OVT is 1 where a history overturned, which is collapse; its other demands are those"
+    return [
+        ("losses with pelicun", f"write components.csv, then run: {command}"),
+        ("its demands", f"{meaning} until then. BRD: cap beam displacement, RID-0: residual tilt"),
+    ]
+
+
+def _calibration_notes(samples: Sequence[DemandSample]) -> Iterator[str]:
+    """Columns to which no distribution can be fitted."""
+    constant = {
+        name[2:-2]
+        for sample in samples
+        for name, _, values in _columns(sample)
+        if np.ptp(values) == 0.0
+    }
+    if constant:
+        varying = [kind for kind in FITTED if not any(name.startswith(kind) for name in constant)]
+        wanted = {"ALL": "empirical"} | dict.fromkeys(varying, "lognormal")
+        families = {kind: {"DistributionFamily": family} for kind, family in wanted.items()}
+        yield (
+            f"{', '.join(sorted(constant))} are constant, and no distribution can be calibrated to"
+            f" them: leave CoupledDemands, or take it out for Calibration: {json.dumps(families)}"
+        )
 
 
 def _sample(study: StudyResults, group: Histories) -> DemandSample:
