@@ -20,7 +20,8 @@ from rpscli.report.table import Part
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.case.schema.scale_to import ScaleToSection
-    from rpscli.records.ground_motion import GroundMotion, MotionComponents
+    from rpscli.records.clusters import Pair
+    from rpscli.records.ground_motion import MotionComponents
 
 
 RESULTS = Path("results")
@@ -119,12 +120,16 @@ FACTOR = _Factor()
 
 @dataclass(frozen=True)
 class MotionRequest:
-    """What the command line says about the ground motion; None leaves it to the case."""
+    """What the command line says about the ground motion; None leaves it to the case.
+
+    A record that is measured as a pair has both components of that.
+    """
 
     record: str | None = None
     vertical: str | None = None
     scale: float | None = None
     scale_to: str | None = None
+    pair: Pair | None = None
 
     def __post_init__(self) -> None:
         if self.scale is not None and self.scale_to is not None:
@@ -138,13 +143,15 @@ def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator
     if not records:
         yield request
         return
+    from rpscli.records.clusters import pairs
     from rpscli.records.source import expand_sources
 
     single = expand_sources(records)
     if len(single) > 1 and request.vertical is not None:
         raise UsageError(f"--vertical {request.vertical}: belongs to one record, not {len(single)}")
-    for source in single:
-        yield replace(request, record=source)
+    of = None if request.scale_to is None else _parsed_target(request.scale_to).of
+    for source, pair in zip(single, pairs(single, of), strict=True):
+        yield replace(request, record=source, pair=pair)
 
 
 def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
@@ -169,6 +176,7 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     from rpscli.records.source import load_components, load_record
 
     given = case.record if request.record is None else None
+    how: dict[str, Any] = {}
     if request.record is not None:
         motion = load_components(request.record, request.vertical)
     elif given is None:
@@ -179,35 +187,59 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
         motion = load_components(given.source, own, **how)
         if request.vertical is not None:
             motion = replace(motion, vertical=load_record(request.vertical))
-    scale = _factor(case, request, motion.horizontal)
+    if (aim := _target(case, request)) is not None:
+        return _scaled_to(case, request, motion, *aim, how)
+    scale = request.scale
+    if scale is None:
+        scale = 1.0 if given is None else given.scale
     return motion if scale == 1.0 else motion.scaled(scale)
 
 
-def _factor(case: Case, request: MotionRequest, motion: GroundMotion) -> float:
-    """What the command line asks for, else the case, if the record is its own."""
+def _target(case: Case, request: MotionRequest) -> tuple[ScaleToSection, str] | None:
+    """What measure the motion is scaled to, and who asks for it: command line or case."""
     if request.scale is not None:
-        return request.scale
-    own = case.record if request.record is None else None
+        return None
     if request.scale_to is not None:
-        target, source = _parsed_target(request.scale_to), f"--scale-to {request.scale_to}"
-    elif own is not None and own.scale_to is not None:
-        target, source = own.scale_to, f"{case.source}: record.scale_to"
-    else:
-        return 1.0 if own is None else own.scale
-    return _factor_to(case, target, motion, source)
+        return _parsed_target(request.scale_to), f"--scale-to {request.scale_to}"
+    own = case.record if request.record is None else None
+    if own is None or own.scale_to is None:
+        return None
+    return own.scale_to, f"{case.source}: record.scale_to"
 
 
-def _factor_to(case: Case, target: ScaleToSection, motion: GroundMotion, source: str) -> float:
-    from rpscli.records.measures import AT_PERIOD, factor_to, measured
+def _scaled_to(
+    case: Case,
+    request: MotionRequest,
+    motion: MotionComponents,
+    target: ScaleToSection,
+    source: str,
+    how: dict[str, Any],
+) -> MotionComponents:
+    """A motion by the factor that brings a measure of it, or of its pair, to a value."""
+    from rpscli.records.clusters import pairs
+    from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, factor_to, measured
+    from rpscli.records.pair_measure import USUAL, measure_label, pair_measure
+    from rpscli.records.source import load_record
 
-    period = target.period
-    if target.measure in AT_PERIOD and period is None:
+    measure, period = target.measure, target.period
+    if measure in AT_PERIOD and period is None:
         building = case.structure.superstructure
         if building is None:
-            raise UsageError(f"{source}: without storeys {target.measure} has no T1 to be taken at")
+            raise UsageError(f"{source}: without storeys {measure} has no T1 to be taken at")
         period = float(building.periods[0])
-    unscaled = measured(motion, target.measure, period, target.damping)
-    return factor_to(target.value, unscaled, target.measure, motion.source)
+    pair = request.pair
+    if request.record is None and case.record is not None:
+        (pair,) = pairs([case.record.source], target.of)
+    if pair is None:
+        unscaled, of = measured(motion.horizontal, measure, period, target.damping), None
+    else:
+        of = target.of or USUAL
+        one, other = (load_record(each, **how) for each in pair)
+        unscaled = pair_measure(one, other, measure, of, period, target.damping)
+    factor = factor_to(target.value, unscaled, measure, motion.horizontal.source)
+    name = measure_label(measure, of, f"{period:g} s" if measure in AT_PERIOD else "")
+    aim = f"{name} = {target.value:g} {MEASURE_UNITS[measure]}"
+    return replace(motion.scaled(factor), scaled_to=aim)
 
 
 def _parsed_target(text: str) -> ScaleToSection:

@@ -197,10 +197,12 @@ def summary_tables(summary: Summary) -> Iterator[Part]:
     rows = summary.rows[:MOST_ROWS]
     systems = [row.values for row in rows]
     outcomes = []
+    behind = [row.overturned.by for row in rows if row.overturned.behind][:1]
     for row in rows:
         over = row.overturned
-        outcomes.append([str(over.of), str(row.failed), str(over.number), over.interval])
-    heads = ["counted", "failed", "overturned", "95 % interval"]
+        counts = [over.of, *[over.recordings] * len(behind), row.failed, over.number]
+        outcomes.append([*map(str, counts), over.interval])
+    heads = ["counted", *behind, "failed", "overturned", "95 % interval"]
     yield _of_systems(summary, systems, heads, outcomes)
     main = [place for place, quantity in enumerate(summary.quantities) if quantity.demand]
     for first in range(0, len(main), A_TABLE):

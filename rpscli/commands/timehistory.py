@@ -122,6 +122,7 @@ def _one(
     add_summary(request, done)
     write(request.folder, terminal)
     terminal.warn(done.document["warnings"])
-    tables = [*timehistory_tables(result, done.verdicts, title), ONE_DIRECTION]
-    terminal.result(done.document, tables)
+    scaled_to = request.ground.scaled_to
+    tables = timehistory_tables(result, done.verdicts, title, scaled_to)
+    terminal.result(done.document, [*tables, ONE_DIRECTION])
     leave(done.error)

@@ -173,6 +173,6 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
         "case": case_heading(given),
         **timehistory_document(result),
     }
-    document["record"] |= {"scale": ground.scale}
+    document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
     document["warnings"] = [*given.case.warnings, *document["warnings"], *ground.warnings]
     return document

@@ -199,6 +199,8 @@ def _set_document(case: Computed) -> dict[str, Any]:
 def _tables(computed: Sequence[Computed]) -> Iterator[Part]:
     for case in computed:
         yield Heading(case.given.case.title)
+        if aims := dict.fromkeys(filter(None, (each.ground.scaled_to for each in case.requests))):
+            yield f"records scaled to {' or '.join(aims)}"
         (row,) = case.together.rows
         found = zip(case.together.quantities, row.spreads, strict=True)
         main = [(quantity, spread) for quantity, spread in found if quantity.demand]

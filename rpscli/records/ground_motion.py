@@ -253,7 +253,7 @@ class MotionComponents(Frozen):
     """The components of one ground motion: horizontal, and vertical where that is known.
 
     The vertical one is positive upwards and has the same time step; it may be longer or shorter.
-    Both were multiplied by `scale` since they were read.
+    Both were multiplied by `scale` since they were read, which `scaled_to` may say the aim of.
 
     >>> along = GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5, "x", "x.at2", "PEER AT2")
     >>> up = GroundMotion(np.array([1.0, 2.0]), 0.5, "z", "z.at2", "PEER AT2")
@@ -264,6 +264,7 @@ class MotionComponents(Frozen):
     horizontal: GroundMotion
     vertical: GroundMotion | None = None
     scale: float = 1.0
+    scaled_to: str = ""
 
     def __post_init__(self) -> None:
         for name, motion in self.named.items():
@@ -324,7 +325,8 @@ class MotionComponents(Frozen):
     def scaled(self, factor: float) -> MotionComponents:
         """All components times `factor`."""
         named = {name: motion.scaled(factor) for name, motion in self.named.items()}
-        return MotionComponents(**named, scale=self.scale * factor)
+        vertical = named.get("vertical")
+        return MotionComponents(named["horizontal"], vertical, self.scale * factor)
 
     @property
     def warnings(self) -> tuple[str, ...]:

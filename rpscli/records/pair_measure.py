@@ -15,7 +15,7 @@ measure, `spectra_over_directions` spectra, and `of_directions` makes one number
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 Of = Literal["rotd50", "geomean", "rotd100", "larger", "x", "component"]
 """What a measure may be of."""
 
+OF: tuple[Of, ...] = get_args(Of)
+
 USUAL: Of = "rotd50"
 """Of pairs, where nothing else is asked for."""
 
@@ -40,13 +42,15 @@ DIRECTIONS = np.arange(180.0)
 """From the first component towards the second [deg]."""
 
 
-def named(measure: str, of: Of | None) -> str:
-    """A measure as columns and axes name it.
+def measure_label(measure: str, of: Of | None, at: str = "") -> str:
+    """A measure, at a period perhaps, as columns and axes name it.
 
-    >>> named("PGV", "rotd50"), named("PGV", "component"), named("PGV", None)
-    ('PGV(RotD50)', 'PGV', 'PGV')
+    >>> measure_label("PGV", "rotd50"), measure_label("PGV", "component"), measure_label("Sa", "larger", "T1")
+    ('PGV(RotD50)', 'PGV', 'Sa(T1, larger)')
     """
-    return measure if of in (None, "component") else f"{measure}({SHOWN.get(of, of)})"
+    pair = "" if of in (None, "component") else SHOWN.get(of, of)
+    inside = ", ".join(filter(None, (at, pair)))
+    return f"{measure}({inside})" if inside else measure
 
 
 def of_directions(values: Array, of: Of = USUAL) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
 from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
+from rpscli.records.pair_measure import Of, measure_label
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.table import Array, Table
 
@@ -16,11 +17,12 @@ from rpscli.sweep.table import Array, Table
 def unit_of(name: str) -> str:
     """SI unit of a measure or of a varied key; ``-`` for plain numbers and words.
 
-    >>> unit_of("PGA"), unit_of("superstructure.period"), unit_of("scale")
+    >>> unit_of("PGA(RotD50)"), unit_of("superstructure.period"), unit_of("scale")
     ('m/s2', 's', '-')
     """
+    alone = name.partition("(")[0]
     return next(
-        (unit for measure, unit in MEASURE_UNITS.items() if measure == name), key_unit(name)
+        (unit for measure, unit in MEASURE_UNITS.items() if measure == alone), key_unit(name)
     )
 
 
@@ -51,6 +53,13 @@ class Intensity(NamedTuple):
     unit: str
     period: float | None
     values: Array
+    of: Of | None = None
+    """What of pairs it is; None where no record is measured as a pair."""
+
+    @property
+    def name(self) -> str:
+        """As columns call it."""
+        return measure_label(self.measure, self.of)
 
 
 def intensity(table: Table, context: StudyContext, options: Asked) -> Intensity:
@@ -77,11 +86,13 @@ def intensity(table: Table, context: StudyContext, options: Asked) -> Intensity:
             at = period or table.layout.properties[point.system].period
             assert at is not None, "`measure_without_period` was asked before"
         try:
-            unscaled = context.records.intensity(point.record, measure, at, damping)
+            unscaled = context.records.intensity(
+                point.record, measure, at, damping, table.layout.plan.of
+            )
         except RecordError:
             continue
         values[point.number] = unscaled * _effect(measure, table.scale[point.number])
-    return Intensity(measure, MEASURE_UNITS[measure], period, values)
+    return Intensity(measure, MEASURE_UNITS[measure], period, values, table.layout.of)
 
 
 def _effect(measure: Measure, factor: float) -> float:

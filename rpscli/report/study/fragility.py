@@ -21,6 +21,7 @@ from rpscli.case.schema.limits import described
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Seed
 from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
+from rpscli.records.pair_measure import measure_label
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import Layout, colour, left_out, marker, over, panel_figure, remarks
@@ -371,7 +372,7 @@ def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) 
                 curve.values, curve.limit.label, name, value, medians[0] / value, acmr[0], fit.beta,
                 curve.total, of_records, probable[0], *ends,
             ))  # fmt: skip
-    heads = {"limit": "-", "name": "-", found.intensity.measure: found.intensity.unit}
+    heads = {"limit": "-", "name": "-", found.intensity.name: found.intensity.unit}
     heads |= dict.fromkeys(("CMR", "ACMR", "beta", "beta_total", "probability_of_records"), "-")
     heads |= dict.fromkeys(("probability", "probability_low", "probability_high"), "-")
     return keyed(found.systems.keys, heads, rows)
@@ -380,7 +381,7 @@ def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) 
 def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     """Curves, and the data that they go through."""
     found = fragilities(study, options)
-    keys, measure, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
+    keys, measure, unit = found.systems.keys, found.intensity.name, found.intensity.unit
     curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
     counted = attrgetter("total", "exceeded", "counted", "overturned", "failed", "fit.note")
     fits = [(*of, measure, *fit_cells(curve.fit), *counted(curve)) for of, curve in curves]
@@ -525,9 +526,9 @@ def side_by_side(panels: int) -> int:
 def measure_name(intensity: Intensity) -> str:
     """The measure with its period."""
     if intensity.measure not in AT_PERIOD:
-        return intensity.measure
+        return intensity.name
     at = "T1" if intensity.period is None else f"{intensity.period:g} s"
-    return f"{intensity.measure}({at})"
+    return measure_label(intensity.measure, intensity.of, at)
 
 
 REPORT = Report(

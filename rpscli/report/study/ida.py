@@ -18,7 +18,7 @@ from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import HIGH, LOW, demand, fractiles
-from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
+from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
 
@@ -53,11 +53,11 @@ class Panel(NamedTuple):
 
 def ida(study: StudyResults, options: IdaOptions) -> Found:
     """Curves and fractiles of each system."""
-    table, measure = study.table, study.table.layout.plan.measure
+    table = study.table
     found = grouping(table, options.panels, (INTENSITY,))
     demands = demand(table, table.columns[options.demand])
     panels = [_panel(group, demands) for group in found.groups]
-    name = measure.measure if measure else INTENSITY
+    (name,) = shown_keys(table.layout, (INTENSITY,))
     quantity, level_unit = SCALARS["timehistory"][options.demand], unit_of(name)
     heads = {name: level_unit}
     heads |= {f"{options.demand}_{round(100 * share)}": quantity.unit for share in FRACTILES}

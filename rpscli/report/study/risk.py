@@ -143,7 +143,7 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     found = fragilities(study, options)
     risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
-    keys, measured, unit = found.systems.keys, found.intensity.measure, found.intensity.unit
+    keys, measured, unit = found.systems.keys, found.intensity.name, found.intensity.unit
     life = f"probability_in_{options.years:g}_years"
     ends, rate_unit = ("low", "high"), "1/year"
     heads = {"limit": "-", "annual_rate": rate_unit, "return_period": "year"}

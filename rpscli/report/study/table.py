@@ -66,19 +66,22 @@ class Shown(NamedTuple):
     shade: Callable[[Histories], float]
 
 
-def _share() -> Shown:
+def _share(table: Table) -> Shown:
     """How many overturned."""
 
     def numbers(cell: Histories) -> dict[str, float | int | str | None]:
         share = cell.overturned
         ends = {";low": share.low, ";high": share.high}
-        return {"": share.fraction, **ends, ";number": share.number, ";counted": share.of}
+        counts = {";number": share.number, ";counted": share.of, f";{share.by}": share.recordings}
+        return {"": share.fraction, **ends, **counts}
 
     def texts(cell: Histories) -> tuple[str, str]:
         share = cell.overturned
         return f"{share.fraction:.2f}", f"{share.number} of {share.of}, {share.interval}"
 
     words = "overturned: share, number, 95 % interval"
+    if behind := Histories(table, (), np.arange(len(table))).overturned.behind:
+        words += f", which counts{behind.removeprefix(' from')}"
     return Shown("overturned", "-", words, numbers, texts, lambda c: c.overturned.fraction or 0.0)
 
 
@@ -113,7 +116,7 @@ def _statistic(table: Table, options: TableOptions) -> Shown:
 def table_report(study: StudyResults, options: TableOptions) -> Found:
     """Each system, at each intensity unless the study says else."""
     table = study.table
-    shown = _share() if options.statistic == "overturned" else _statistic(table, options)
+    shown = _share(table) if options.statistic == "overturned" else _statistic(table, options)
     return _table(table, options, shown)
 
 

@@ -30,10 +30,12 @@ Row = tuple[str, str, str, str]
 
 
 def timehistory_tables(
-    result: TimeHistoryResult, verdicts: Sequence[Verdict], title: str
+    result: TimeHistoryResult, verdicts: Sequence[Verdict], title: str, scaled_to: str = ""
 ) -> Iterator[Part]:
     """What happened; the storeys, if there are any; the limits, if there are any."""
     yield Heading(f"{title}, {result.record.name}")
+    if scaled_to:
+        yield f"record scaled to {scaled_to}"
     yield f"outcome: {outcome_text(result)}"
     yield outcome_table(result)
     if result.structure.storeys:

@@ -18,8 +18,10 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
+from rpscli.records.clusters import pairs
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import Measure, factor_to, measured
+from rpscli.records.pair_measure import Of, of_directions, over_directions
 from rpscli.records.source import load_components
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest
 from rpscli.sweep.evaluation.results import Array
@@ -62,6 +64,7 @@ class RecordCache:
         )
         self._digests: Recent[RecordRequest, bytes] = Recent(float("inf"))
         self._intensities: Recent[tuple[object, ...], float] = Recent(1e6)
+        self._directions: Recent[tuple[object, ...], Array] = Recent(1e4)
 
     def motion(self, request: RecordRequest) -> MotionComponents:
         """The motion of a request."""
@@ -87,12 +90,24 @@ class RecordCache:
         measure: Measure,
         period: float | None = None,
         damping: float = 0.05,
+        of: Of = "component",
     ) -> float:
-        """A measure of the unscaled horizontal motion, SI units."""
-        key = (request, measure, period, damping)
-        return self._intensities.value(
-            key, lambda: measured(self.motion(request).horizontal, measure, period, damping)
+        """A measure of the unscaled horizontal motion or, if it has one, of its pair, SI units."""
+        if of == "component" or request.pair is None:
+            key = (request, measure, period, damping)
+            return self._intensities.value(
+                key, lambda: measured(self.motion(request).horizontal, measure, period, damping)
+            )
+        one, other = (
+            request._replace(source=source, vertical=None, pair=None) for source in request.pair
         )
+        over = self._directions.value(
+            (one, other, measure, period, damping),
+            lambda: over_directions(
+                self.motion(one).horizontal, self.motion(other).horizontal, measure, period, damping
+            ),
+        )
+        return float(of_directions(over, of))
 
 
 def _samples(found: MotionComponents | str) -> float:
@@ -104,7 +119,7 @@ def _samples(found: MotionComponents | str) -> float:
 
 def _load(request: RecordRequest) -> MotionComponents | str:
     """The motion, or why there is none."""
-    source, folder, above, dt, units = request
+    source, folder, above, dt, units, _ = request
     try:
         return load_components(source, above, folder=Path(folder), dt=dt, units=units)
     except (RecordError, OSError) as error:
@@ -146,12 +161,13 @@ def digest_of(document: Mapping[str, Any]) -> bytes:
     return hashlib.sha256(json.dumps(deciding, sort_keys=True).encode()).digest()
 
 
-def record_request(case: Case) -> RecordRequest | None:
-    """The case's own record."""
+def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
+    """The case's own record, to be measured as a scale asks for."""
     if (record := case.record) is None:
         return None
+    (pair,) = pairs([record.source], of)
     folder = str(case.folder)
-    return RecordRequest(record.source, folder, record.vertical, record.dt, record.units)
+    return RecordRequest(record.source, folder, record.vertical, record.dt, record.units, pair)
 
 
 def resolved(plan: Plan, values: Sequence[Any]) -> Case:
@@ -194,7 +210,7 @@ class StudyContext:
             return point.scale * point.scale_change
         assert point.record is not None, "points of histories have a record"
         unscaled = self.records.intensity(
-            point.record, measure.measure, point.period, measure.damping
+            point.record, measure.measure, point.period, measure.damping, self.plan.of
         )
         factor = factor_to(point.scale, unscaled, measure.measure, point.record.source)
         return factor * point.scale_change

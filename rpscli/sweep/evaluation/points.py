@@ -10,16 +10,22 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rpscli.case.study.schema import Analysis, MeasureScale
+from rpscli.records.clusters import Pair
+from rpscli.records.pair_measure import USUAL, Of
 
 
 class RecordRequest(NamedTuple):
-    """A ground motion to be loaded, and where its relative names start."""
+    """A ground motion to be loaded, and where its relative names start.
+
+    What is measured by a `pair` has both components of that.
+    """
 
     source: str
     folder: str
     vertical: str | None = None
     dt: float | None = None
     units: str | None = None
+    pair: Pair | None = None
 
 
 class Point(NamedTuple):
@@ -61,6 +67,11 @@ class Plan:
     """Whether histories are followed with all their samples."""
     solver: str
     """Version of the solver that all results must come from."""
+
+    @property
+    def of(self) -> Of:
+        """What measures of pairs are of."""
+        return (self.measure and self.measure.of) or USUAL
 
 
 SOLVING = (

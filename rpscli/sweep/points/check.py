@@ -17,7 +17,7 @@ from rpscli.case.study.axes import Values
 from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault, Path, Place
-from rpscli.errors import CaseError
+from rpscli.errors import CaseError, RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.measures import AT_PERIOD
@@ -112,7 +112,7 @@ def _properties(
     known: dict[RecordRequest, RecordRequest],
 ) -> SystemProperties:
     structure, building = case.structure, case.structure.superstructure
-    request = record_request(case)
+    request = None if study.sources else _request(study, case)
     if request is not None:
         request = known.setdefault(request, request)
     return SystemProperties(
@@ -132,6 +132,15 @@ def _properties(
         lacking=lacking(study, case),
         doubts=case.doubts,
     )
+
+
+def _request(study: Study, case: Case) -> RecordRequest | None:
+    """The record of a case, measured as the study asks for."""
+    scale = study.scale
+    try:
+        return record_request(case, scale.of if isinstance(scale, MeasureScale) else None)
+    except RecordError as error:
+        raise CaseError(str(error)) from None
 
 
 def _limits(study: Study, case: Case) -> tuple[Condition, ...]:
@@ -235,8 +244,9 @@ def _refuse_missing(study: Study, plan: Plan, case: Case) -> None:
 
 def _is_of_base(target: ScaleToSection, measure: MeasureScale | None) -> bool:
     """Whether a case scales its record as the study scales all of them."""
-    return measure is not None and (measure.measure, measure.values, measure.period) == (
-        target.measure,
-        (target.value,),
-        target.period,
-    )
+    return measure is not None and (
+        measure.measure,
+        measure.values,
+        measure.period,
+        measure.of,
+    ) == (target.measure, (target.value,), target.period, target.of)

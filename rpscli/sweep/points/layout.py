@@ -15,11 +15,13 @@ import numpy as np
 
 from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
+from rpscli.case.text.document import Fault
 from rpscli.case.text.yaml_text import read_value
-from rpscli.errors import RpsError
+from rpscli.errors import RecordError, RpsError
 from rpscli.frozen import frozen
-from rpscli.records.clusters import By, clusters
+from rpscli.records.clusters import By, clusters, pairs
 from rpscli.records.measures import AT_PERIOD
+from rpscli.records.pair_measure import Of, measure_label
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
 from rpscli.sweep.evaluation.results import Array, Indices
@@ -116,7 +118,7 @@ class StudyPoints:
             columns["member"] = 3, range(len(self.members))
             columns["restitution_change"] = 3, [change.restitution for change in self.members]
         if self.plan.measure is not None:
-            columns[self.plan.measure.measure] = 2, self.scales
+            columns[measure_label(self.plan.measure.measure, self.of)] = 2, self.scales
         if self.plan.analysis == "timehistory":
             own, records = self.records == (None,), self.records
             if own:
@@ -145,6 +147,14 @@ class StudyPoints:
     def independent(self) -> By:
         """What statistics draw and count as a whole."""
         return self.study.file.independent
+
+    @cached_property
+    def of(self) -> Of | None:
+        """What measures of pairs are of; None where no record is measured as a pair."""
+        records = self.records
+        if records == (None,):
+            records = tuple(properties.record for properties in self.properties)
+        return self.plan.of if any(r and r.pair for r in records) else None
 
     def period_of_measure(self, properties: SystemProperties) -> float | None:
         """Period at which the records of a system are scaled; None unless they are [s]."""
@@ -175,17 +185,30 @@ def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
         solver=solver_version(),
     )
     members = changes(file.perturb)
-    folder = str(study.folder)
     properties, examined = check_systems(study, plan, combinations, members, watched)
     return StudyPoints(
         study=study,
         plan=plan,
         combinations=combinations,
         properties=properties,
-        records=tuple(RecordRequest(source, folder) for source in study.sources) or (None,),
+        records=_records(study, measure) or (None,),
         scales=_scales(scale),
         members=members,
         examined=examined,
+    )
+
+
+def _records(study: Study, measure: MeasureScale | None) -> tuple[RecordRequest, ...]:
+    """The records of a study, and which of them are measured as pairs."""
+    try:
+        found = pairs(study.sources, measure.of if measure else None)
+    except RecordError as error:
+        study.document.refuse([Fault(("scale", "of"), f"scale.of: {error}")])
+        raise
+    folder = str(study.folder)
+    return tuple(
+        RecordRequest(source, folder, pair=pair)
+        for source, pair in zip(study.sources, found, strict=True)
     )
 
 

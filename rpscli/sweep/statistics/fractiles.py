@@ -14,6 +14,8 @@ from rpscli.records.clusters import By
 from rpscli.sweep.table import Array, Indices
 
 CONFIDENCE = 0.95
+LEAST_SHOWN = 5e-4
+"""Lower ends of intervals below this are shown as 0."""
 LOW, HIGH = 0.16, 0.84
 ROUNDING = 1e-9
 """Of shares times numbers of histories, which are meant as whole numbers."""
@@ -74,7 +76,8 @@ class Share(NamedTuple):
             return "-"
         if self.number in {0, self.of}:
             return f"above {self.low:#.2g}" if self.number else f"below {self.high:#.2g}"
-        return f"{self.low:#.2g} to {self.high:#.2g}"
+        low = f"{self.low:#.2g}" if self.low >= LEAST_SHOWN else "0"
+        return f"{low} to {self.high:#.2g}"
 
     def __str__(self) -> str:
         """Counts and interval.

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.records.pair_measure import measure_label
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
@@ -171,5 +172,5 @@ def pooling_notes(differing: Sequence[str]) -> tuple[str, ...]:
 def shown_keys(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
     """The keys as tables and figures call them: an intensity by its measure."""
     measure = layout.plan.measure
-    name = INTENSITY if measure is None else measure.measure
+    name = INTENSITY if measure is None else measure_label(measure.measure, layout.of)
     return tuple(name if key == INTENSITY else key for key in keys)

