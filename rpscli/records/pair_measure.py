@@ -45,8 +45,8 @@ DIRECTIONS = np.arange(180.0)
 def measure_label(measure: str, of: Of | None, at: str = "") -> str:
     """A measure, at a period perhaps, as columns and axes name it.
 
-    >>> measure_label("PGV", "rotd50"), measure_label("PGV", "component"), measure_label("Sa", "larger", "T1")
-    ('PGV(RotD50)', 'PGV', 'Sa(T1, larger)')
+    >>> measure_label("PGV", "component"), measure_label("Sa", "rotd50", "T1")
+    ('PGV', 'Sa(T1, RotD50)')
     """
     pair = "" if of in (None, "component") else SHOWN.get(of, of)
     inside = ", ".join(filter(None, (at, pair)))
