@@ -1,0 +1,65 @@
+"""Whether the maxima of a history depend on its steps: it is run again with shorter ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.results import TimeHistoryResult
+
+PROMISED = 1e-4
+"""Of the largest rotation and base shear: what the default step keeps where motions converge."""
+
+NO_ROTATION = 1e-9
+"""Of the critical one."""
+
+SHORTER = (2.0, 4.0, 8.0)
+
+MOST_STEPS = 300_000
+"""Of a history that is run again, some tenths of a second; longer ones are not looked at."""
+
+
+def steps_warning(result: TimeHistoryResult) -> str | None:
+    """What to know of a history whose maxima change with its steps; None if they do not.
+
+    The residual of the energy does not tell: a vibration that hardly decays may shift the time at
+    which friction holds or columns lift off, and the motion goes another way with every joule kept.
+    """
+    before: Demand = result
+    settings, first = result.settings, ""
+    for factor in SHORTER:
+        if before.outcome == "failed" or before.history["steps"] > MOST_STEPS:
+            break
+        shorter = replace(settings, accuracy=factor * settings.accuracy)
+        after = demands([Request(result.structure, result.motion, shorter)])[0]
+        changed = _changes(before, after)
+        first = first or changed
+        if not changed:
+            enough = 0.5 * factor * settings.accuracy
+            return f"{first}; use analysis.accuracy = {enough:g}" if first else None
+        before = after
+    if not first:
+        return None
+    return f"{first}, and it goes on with shorter ones: this is one of many; judge by many records"
+
+
+def _changes(before: Demand, after: Demand) -> str:
+    """What steps of half the length change, in words; empty if nothing."""
+    if before.outcome != after.outcome:
+        return f"steps of half the length change the outcome to {after.outcome.replace('_', ' ')}"
+    rotation = abs(after.max_rotation - before.max_rotation)
+    shear = abs(after.max_base_shear - before.max_base_shear)
+    if rotation < PROMISED * after.max_rotation + NO_ROTATION * after.critical_rotation:
+        rotation = 0.0
+    if shear < PROMISED * after.max_base_shear:
+        shear = 0.0
+    parts = [
+        f"the {name} by {change / of:.2g} of it"
+        for name, change, of in (
+            ("largest rotation", rotation, after.max_rotation),
+            ("base shear", shear, after.max_base_shear),
+        )
+        if change
+    ]
+    return f"steps of half the length change {' and '.join(parts)}" if parts else ""
