@@ -252,6 +252,13 @@ def test_outer_rows_balance_the_moment_of_the_building() -> None:
     assert result.axial.largest["top"] == pytest.approx(outer.max() / 2.0, rel=2e-3)
     ratio = np.max(np.abs(inertia) / (N * 6.0))
     assert result.overturning_ratio == pytest.approx(ratio, rel=1e-9)
+    # on a third of the width an outer row lifts off where the moment exceeds N L/2: in a warning
+    lifts = t.time[moving & (np.abs(moment + N * lean) > 2.0 * N)]
+    narrow = time_history(with_plan(3, (0.0, 4.0), None), motion(), SHORT)
+    assert narrow.axial is not None
+    assert narrow.axial.lift_off == pytest.approx(lifts[0], abs=1e-9)
+    assert f"would lift off at t = {lifts[0]:.4g} s" in " ".join(narrow.warnings)
+    assert "lift off" not in " ".join(result.warnings)
 
 
 def test_the_shock_of_impacts_is_that_of_a_chain_of_springs() -> None:

