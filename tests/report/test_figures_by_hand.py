@@ -201,7 +201,7 @@ def test_accelerations_over_the_height() -> None:
 
     samples = sample(0.5, 1.0, 0), sample(0, 10.0, 1)
     figure = kept_figure(
-        partial(demand_sample_figure, (RHO,), samples, "title", "2 failed points left out")
+        partial(demand_sample_figure((RHO,), samples, "2 failed points left out"), "title")
     )
     assert isinstance(figure, Figure)
     labelled(figure, "largest acceleration [m/s²]", "level (0 = ground)")

@@ -15,7 +15,7 @@ def test_the_figure_has_a_panel_for_the_lowest_floor_and_the_roof(figures: list[
     states = np.array([fallen, values])
     both = np.stack([states, states], axis=1)  # pseudo-accelerations and displacements
     floors = [Floors((scale,), np.moveaxis(both, 2, 0)) for scale in (1.0, 2.0)]
-    floor_spectra_figure(("scale",), floors, "title", "")
+    floor_spectra_figure(("scale",), floors, "")("title")
     (figure,) = figures
     drawn = [axes for axes in figure.axes if axes.axison]
     assert [axes.get_title() for axes in drawn] == [

@@ -155,14 +155,9 @@ def draw_floor_spectrum(
     """The spectrum of a floor, counted from 1, or its `displacement`; beside the fixed base."""
     place = floor - 1
     style.require("floors", floor, range(1, len(isolated.displacement) + 1))
-    axes.plot(
-        isolated.periods, getattr(isolated, name)[place], color=style.BLUE, label="on bearings"
-    )
+    axes.plot(isolated.periods, getattr(isolated, name)[place], **ISOLATED)
     if fixed is not None:
-        axes.plot(
-            fixed.periods, getattr(fixed, name)[place], color=style.BLACK, ls="--",
-            label="fixed base",
-        )  # fmt: skip
+        axes.plot(fixed.periods, getattr(fixed, name)[place], **FIXED)
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set(xlim=(isolated.periods[0], isolated.periods[-1]), xlabel="period [s]")

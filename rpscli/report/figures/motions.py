@@ -66,6 +66,10 @@ def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "accelera
 def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
     """Pseudo-acceleration against period."""
     axes.plot(spectrum.periods, spectrum.pseudo_acceleration, color=style.RED, lw=1.3)
+    _frame(axes, spectrum)
+
+
+def _frame(axes: Axes, spectrum: ResponseSpectrum) -> None:
     axes.set_xlabel("period [s]")
     axes.set_ylabel(f"pseudo-acceleration, {style.percent(spectrum.damping)} damping [m/s²]")
     axes.set_xlim(0.0, spectrum.periods[-1])
@@ -81,16 +85,13 @@ def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
     """Pseudo-acceleration against period: each record thin, the median thick."""
     if not spectra:
         raise UsageError("no spectra to be drawn; give `response_spectrum` of a record at least")
-    periods, damping = spectra[0].periods, spectra[0].damping
+    periods = spectra[0].periods
     values = np.array([spectrum.pseudo_acceleration for spectrum in spectra])
     for place, each in enumerate(values):
         label = f"{len(values)} records" if place == 0 else None
         axes.plot(periods, each, color=style.GREY, lw=0.6, alpha=0.7, label=label)
     axes.plot(periods, np.median(values, axis=0), color=style.RED, lw=1.6, label="median")
-    axes.set_xlabel("period [s]")
-    axes.set_ylabel(f"pseudo-acceleration, {style.percent(damping)} damping [m/s²]")
-    axes.set_xlim(0.0, periods[-1])
-    axes.set_ylim(bottom=0.0)
+    _frame(axes, spectra[0])
     style.legend_above(axes, 2)
 
 

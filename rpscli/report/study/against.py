@@ -19,12 +19,11 @@ from rpscli.errors import listed
 from rpscli.report.figures import style
 from rpscli.report.study.labels import Values, axis_label, keyed, label, labels, plain
 from rpscli.report.study.panels import (
-    by_values,
     colour,
+    in_panels,
     left_out,
     marker,
     over,
-    panel_figure,
     remarks,
 )
 from rpscli.report.study.report import DemandName, Found, Report
@@ -130,11 +129,10 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
 
     return Found(
         {"": _pair_columns(table, ratio, pairs, key, reference.values[0])},
-        lambda title: panel_figure(
-            by_values(found.keys, found.groups),
+        in_panels(
+            found.keys,
             found.groups,
             draw,
-            title=title,
             x_label=rf"$|\theta_{{max}}|/\alpha$ [-], {against}",
             y_label=r"$|\theta_{max}|/\alpha$ [-], the others",
             limits=lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),

@@ -7,7 +7,7 @@ are called event-type-location-direction, and a row of units follows the header.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -23,10 +23,9 @@ from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import (
     break_if_narrow,
-    by_values,
+    in_panels,
     left_out,
     over,
-    panel_figure,
     remarks,
 )
 from rpscli.report.study.report import Found, Report
@@ -126,11 +125,10 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
 
     return Found(
         {"": keyed(found.keys, {"storey": "-", **heads}, rows)},
-        lambda title: panel_figure(
-            by_values(found.keys, profiles),
+        in_panels(
+            found.keys,
             profiles,
             draw,
-            title=title,
             x_label=STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol)
             if in_kn
             else "$V_i/V_{st}$ [-]",
@@ -230,14 +228,14 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
     )
     return Found(
         {"": keyed(found.keys, {"floor": "-", "period": "s", **heads}, rows)},
-        (lambda title: floor_spectra_figure(found.keys, floors, title, note)) if floors else None,
+        floor_spectra_figure(found.keys, floors, note) if floors else None,
         found.notes,
     )
 
 
 def floor_spectra_figure(
-    keys: Sequence[str], floors: Sequence[Floors], title: str, note: str
-) -> bytes:
+    keys: Sequence[str], floors: Sequence[Floors], note: str
+) -> Callable[[str], bytes]:
     """Median and 84 % fractile of the pseudo-acceleration, on the lowest floor and the roof."""
     panels = [
         Floors((*one.values, number), one.fractiles[:, :, 0, number - 1])
@@ -261,11 +259,10 @@ def floor_spectra_figure(
         for each in axes.figure.axes:
             each.xaxis.set_major_formatter("{x:g}")
 
-    return panel_figure(
-        by_values((*keys, "floor"), panels),
+    return in_panels(
+        (*keys, "floor"),
         panels,
         draw,
-        title=title,
         x_label="period [s]",
         y_label="pseudo-acceleration [m/s²]",
         limits=limits,
@@ -321,7 +318,7 @@ def demand_sample(study: StudyResults, options: DemandSampleOptions) -> Found:
     )
     return Found(
         {"": [numbers, *keyed(found.keys, heads, rows)]},
-        (lambda title: demand_sample_figure(found.keys, samples, title, note)) if samples else None,
+        demand_sample_figure(found.keys, samples, note) if samples else None,
         list(_calibration_notes(samples)),
         findings=_how(stem) if samples else (),
         texts={
@@ -424,8 +421,8 @@ def _columns(sample: DemandSample) -> Iterator[tuple[str, str, Array]]:
 
 
 def demand_sample_figure(
-    keys: Sequence[str], samples: Sequence[DemandSample], title: str, note: str
-) -> bytes:
+    keys: Sequence[str], samples: Sequence[DemandSample], note: str
+) -> Callable[[str], bytes]:
     """Median and 84 % fractile of the accelerations from the ground to the roof."""
 
     def draw(axes: Axes, sample: DemandSample) -> None:
@@ -438,11 +435,10 @@ def demand_sample_figure(
                 ls=dashes, ms=3.0, color=style.BLUE, label=name,
             )  # fmt: skip
 
-    return panel_figure(
-        by_values(keys, samples),
+    return in_panels(
+        keys,
         samples,
         draw,
-        title=title,
         x_label="largest acceleration [m/s²]",
         y_label="level (0 = ground)",
         limits=lambda axes: axes.set_xlim(left=0.0),

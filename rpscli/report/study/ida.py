@@ -13,7 +13,7 @@ from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
 from rpscli.case.text.document import Document, Fault
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
-from rpscli.report.study.panels import by_values, left_out, over, panel_figure, remarks
+from rpscli.report.study.panels import in_panels, left_out, over, remarks
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
@@ -89,11 +89,10 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
 
     return Found(
         {"": keyed(found.keys, heads, rows)},
-        lambda title: panel_figure(
-            by_values(found.keys, panels),
+        in_panels(
+            found.keys,
             panels,
             draw,
-            title=title,
             x_label=quantity.axis_label,
             y_label=f"{name} [{level_unit}]",
             limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),

@@ -19,7 +19,7 @@ from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import hint, listed
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels, plain, symbol
-from rpscli.report.study.panels import by_values, colour, left_out, over, panel_figure, remarks
+from rpscli.report.study.panels import colour, in_panels, left_out, over, remarks
 from rpscli.report.study.report import Found, Report, Statistic
 from rpscli.report.study.statistics import reached
 from rpscli.sweep.evaluation.results import KNOWN, quantity
@@ -129,15 +129,15 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
     if statistic == MEAN and (fallen := _left_out_of_means(panels)):
         notes.append(fallen)
 
-    def figure(title: str) -> bytes:
-        y_label = ", ".join(filter(None, (options.y_label or _axis(names[0]), statistic)))
-        both = (options.x_label or _axis(x_name), y_label)
-        unbounded = any(math.inf in line.y for line in every)
-        return panel_figure(
-            by_values(found.keys, panels),
+    y_label = ", ".join(filter(None, (options.y_label or _axis(names[0]), statistic)))
+    both = (options.x_label or _axis(x_name), y_label)
+    unbounded = any(math.inf in line.y for line in every)
+    return Found(
+        {"": keyed((*found.keys, *series_keys), heads, rows)},
+        in_panels(
+            found.keys,
             panels,
             lambda axes, panel: _draw(axes, panel, every, options, series_keys, statistic),
-            title=title,
             x_label=both[options.upright],
             y_label=both[not options.upright],
             note=remarks(
@@ -145,9 +145,9 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
                 f"not drawn where the {statistic} overturned" if unbounded else "",
                 left_out(found.failed),
             ),
-        )
-
-    return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure, notes)
+        ),
+        notes,
+    )
 
 
 def _left_out_of_means(panels: Sequence[Panel]) -> str:

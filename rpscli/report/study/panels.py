@@ -108,6 +108,13 @@ def panel_figure(
     return style.picture(fill, height, width, None)
 
 
+def in_panels(
+    keys: Sequence[str], panels: Sequence[Any], draw: Callable[[Axes, Any], None], **words: Any
+) -> Callable[[str], bytes]:
+    """A figure that waits for its title, with a panel for each of those with `values` of keys."""
+    return lambda title: panel_figure(by_values(keys, panels), panels, draw, title=title, **words)
+
+
 def _label_outside(grid: Any, panels: int, x_label: str, y_label: str) -> None:
     """Label axes that have no panel below them or to their left; places without a panel go."""
     columns = grid.shape[1]

@@ -21,12 +21,11 @@ from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import (
     break_if_narrow,
-    by_values,
     colour,
+    in_panels,
     left_out,
     marker,
     over,
-    panel_figure,
     remarks,
 )
 from rpscli.report.study.report import DemandName, Found, Report
@@ -152,11 +151,10 @@ def _scatter(
         notes.append(f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}")
     return Found(
         tables,
-        lambda title: panel_figure(
-            by_values(found.keys, clouds),
+        in_panels(
+            found.keys,
             clouds,
             draw,
-            title=title,
             x_label=quantities[x_name].axis_label,
             y_label=quantities[y_name].axis_label,
             limits=limits,
@@ -257,19 +255,20 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
     frequency, amplitude = _pulses_of(study, options)
     found = grouping(table, options.panels, (*series, INTENSITY, "record"))
     series_keys = shown_keys(layout, series)
-    clouds = [(group, group.parts(series)) for group in found.groups]
-    several = max(len(parts) for _, parts in clouds) > 1
+    clouds = {group: group.parts(series) for group in found.groups}
+    several = max(map(len, clouds.values())) > 1
     rotation = table.columns["rotation_ratio"]
     shown = np.where(
         (table.outcomes == "survived") & (rotation < NEGLIGIBLE), "at_rest", table.outcomes
     )
 
-    def draw(axes: Axes, cloud: tuple[Histories, list[Histories]]) -> None:
-        for place, part in enumerate(cloud[1]):
+    def draw(axes: Axes, group: Histories) -> None:
+        parts = clouds[group]
+        for place, part in enumerate(parts):
             boundary = _boundary(part, frequency, amplitude)
             if several:
                 # What overturned and the least that did; survivors would hide the other series.
-                fell, shade = part.points[part.fallen], colour(place, len(cloud[1]))
+                fell, shade = part.points[part.fallen], colour(place, len(parts))
                 axes.plot(
                     frequency[fell], amplitude[fell], ls="", color=shade, marker=marker(place),
                     ms=2.6, mew=0.0, alpha=0.35,
@@ -297,17 +296,16 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
     }  # fmt: skip
     rows = [
         ((*group.values, *part.values), *(values[n] for values in heads.values()))
-        for group, parts in clouds
+        for group, parts in clouds.items()
         for part in parts
         for n in part.every.tolist()
     ]
     return Found(
         {"": keyed((*found.keys, *series_keys), dict.fromkeys(heads, "-"), rows)},
-        lambda title: panel_figure(
-            by_values(found.keys, found.groups),
-            clouds,
+        in_panels(
+            found.keys,
+            found.groups,
             draw,
-            title=title,
             x_label=r"$\omega/p$ [-]",
             y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
             limits=limits,
