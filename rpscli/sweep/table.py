@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -126,14 +126,6 @@ def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = No
             values = tuple(_value(known[_axis(known, key)], key, at, known) for key in keys)
             found.append(Group(values, numbers[chosen]))
     return found
-
-
-def computed_groups(table: Table, keys: Sequence[str]) -> Iterator[tuple[Group, Indices]]:
-    """Groups with points that did not fail, and these points."""
-    for group in groups(table.layout, keys):
-        points = group.points[~table.failed[group.points]]
-        if len(points):
-            yield group, points
 
 
 def _axis(known: Sequence[Dimension], key: str) -> int:

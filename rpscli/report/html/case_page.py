@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from rpscli.analyses.results import TimeHistoryResult
@@ -42,9 +43,6 @@ CAPTIONS = {
 }
 
 
-WITHOUT_MOTION = "The case names no ground motion: this page ends with what follows without one."
-
-
 class History(NamedTuple):
     """What came of a case under a motion, and the files of it by name."""
 
@@ -64,31 +62,25 @@ def case_sections(
     stored: Sequence[Block] = (),
 ) -> list[Section]:
     """Everything about a case, and its history if there is one; `stored` says what was before."""
-    results: list[Section] = []
-    ground = None
-    short: Iterable[Block] = [
-        "The case names no ground motion: this page ends with what follows without one."
-    ]
+    short, results, ground = _outcome(history), list[Section](), None
     if history is not None:
         result, ground = history.result, history.ground
-        short = _outcome(history)
+        tables = [outcome_table(result)]
+        tables += [storeys_table(result)] * bool(result.structure.storeys)
         drawn = [Picture(files, CAPTIONS[stem]) for stem, files in pictures(history.files)]
-        tables = [
-            outcome_table(result),
-            *([storeys_table(result)] * bool(result.structure.storeys)),
-        ]
         motions = [motion_pictures(each, look) for each in ground.named.values()]
         measured = record_table(result.record, intensity_measures(result.record))
-        results = [
-            Section("Ground motion", [measured, *motions]),
-            Section("Response", [*tables, *drawn]),
-        ]
+        results.append(Section("Ground motion", [measured, *motions]))
+        results.append(Section("Response", [*tables, *drawn]))
     inputs, repeat = _input(case, overrides, ground), [*repeated(*commands), *stored]
-    short = [*short, *notices(warnings)]
+    short = chain(short, notices(warnings))
     return page_sections(case, case.title, look, short, inputs, results, repeat)
 
 
-def _outcome(history: History) -> Iterator[Block]:
+def _outcome(history: History | None) -> Iterator[Block]:
+    if history is None:
+        yield "The case names no ground motion: this page ends with what follows without one."
+        return
     yield f"Outcome: {outcome_text(history.result)}."
     if history.result.failure:
         yield Notice(history.result.failure)
@@ -103,10 +95,11 @@ def _input(
     case: Case, overrides: Sequence[str], ground: MotionComponents | None
 ) -> Iterator[Block]:
     motions = {}
-    for component, each in ground.named.items() if ground else ():
-        name = f"{component} record".removeprefix("horizontal ")
-        motions[name] = f"{each.source}, scaled by {ground.scale:.9g}" if ground else ""
-        motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
+    if ground is not None:
+        for component, each in ground.named.items():
+            name = f"{component} record".removeprefix("horizontal ")
+            motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
+            motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
     yield listing(
         ("case", case.source),
         ("SHA-256 of its text", case.digest),
