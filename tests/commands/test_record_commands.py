@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from click.testing import Result
 
+import rpscli
 from rpscli.records.measures import intensity_measures
 from rpscli.records.source import expand_sources, load_record
 
@@ -114,8 +115,12 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     for seed in (1, 2, 3, 4):
         synthetic = f"synthetic:?pga=0.2g&seed={seed}&duration=6"
         rps("record", "synth", synthetic, "-o", f"pool/m{seed}.at2")
-    document = rps_json(*SELECT, "pool", "-o", "made/inside", "--periods", "0.2", "1.5")
+    few = ("--rules", "mean90", "--periods", "0.2", "1.5")
+    document = rps_json(*SELECT, "pool", "-o", "made/inside", *few)
     assert len(document["motions"]) == 2
+    assert (document["component"], document["clamped"]) == ("component", 0)
+    assert [rule["verdict"] for rule in document["requirements"]["rules"]] == ["met", "met"]
+    assert document["least_ratio"] >= 0.9
     assert document["candidates"] == 4
     assert document["target"]["pgd"] == pytest.approx(0.025 * 0.24 * 9.80665 * 0.5 * 2.0)
     assert {Path(file).name for file in document["files"]} >= {
@@ -126,10 +131,42 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     measures = intensity_measures(load_record(scaled))
     assert measures.pgv == pytest.approx(first["pgv"], rel=1e-9)
     assert measures.pgd == pytest.approx(first["pgd"], rel=1e-9)
-    said = " ".join(rps(*SELECT, "pool", "-o", "made/inside").stdout.split())
+    # EN 1998-1 asks for three.
+    made = rps(*SELECT, "pool", "-o", "made/inside")
+    said = " ".join(made.stdout.split())
     assert "Sa(T1) is the wrong objective for rocking" in said
-    by_pgv = rps_json(*SELECT, "pool", "-o", "made/inside", "--scale-by", "PGV", "--pgv", "0.2")
+    assert "number of motions >= 3 2 NOT MET" in said
+    assert made.exit_code == 10
+    assert "not met: number of motions, 2; required >= 3" in made.stderr
+    by_pgv = rps_json(
+        *SELECT, "pool", "-o", "made/inside", "--scale-by", "PGV", "--pgv", "0.2", "--rules", "none"
+    )
     assert by_pgv["mean_pgv"] == pytest.approx(0.2, rel=1e-5)
+    assert by_pgv["requirements"] is None
+
+
+def test_select_for_a_case(rps_json: InvokeJson, rps: Invoke) -> None:
+    """From 0.2 T1 to the secant period of M u/F at the limit; candidates by their duration."""
+    Path("pool").mkdir()
+    for seed, duration in enumerate((6, 6, 20)):
+        synthetic = f"synthetic:?pga=0.2g&seed={seed}&duration={duration}"
+        rps("record", "synth", synthetic, "-o", f"pool/m{seed}.at2")
+    case = Path("case.yaml")
+    rps("init", str(case))
+    longest = max(intensity_measures(load_record(s)).d5_95 for s in expand_sources(["pool"]))
+    shorter = f"d5_95=..{longest - 0.01} s"
+    document = rps_json(*SELECT, "pool", "--case", str(case), "--rules", "none", "--where", shorter)
+    assert document["left_out"] == {shorter: {"outside": 1, "not_known": 0}}
+    structure = rpscli.load_case(str(case)).structure
+    assert structure.superstructure is not None
+    curve = rpscli.pushover(structure, points=2001).curve
+    limit = 0.5 * structure.critical_rotation  # limits.rotation_ratio
+    force = np.interp(limit, curve.rotation, curve.force)
+    displacement = np.interp(limit, curve.rotation, curve.displacement)
+    mass = structure.weight / 9.80665
+    secant = 2.0 * np.pi * np.sqrt(mass * displacement / force)
+    first = 0.2 * structure.superstructure.periods[0]
+    assert document["periods"] == pytest.approx([first, min(secant, 4.0)], rel=1e-5)
 
 
 def test_select_refuses(rps: Invoke) -> None:

@@ -31,6 +31,20 @@ G = STANDARD_GRAVITY
         # xi 20 %: eta = sqrt(10/25) = 0.632456; xi 50 %: sqrt(10/55) = 0.426, so 0.55.
         ("en1998:?ag=1g&damping=20%", {0.0: 1.0, 0.3: 1.58113883}),
         ("en1998:?ag=1g&damping=0.5", {0.3: 1.375}),
+        # A national annex: 0.36 g, plateau 0.9 g between 0.1 and 0.4 s, 1/T^2 beyond 2.5 s.
+        (
+            "en1998:?ag=0.3g&soil=B&tb=0.1&tc=0.4&td=2.5",
+            {0.05: 0.63, 0.1: 0.9, 0.8: 0.45, 2.5: 0.144, 4.0: 0.05625},
+        ),
+        ("en1998:?ag=0.3g&soil=B&s=1.5", {0.0: 0.45}),
+        # 2024: PGA S_alpha/2.5; T_C = 0.4, T_B = 0.4/4 = 0.1; linear from 0.02 s to there.
+        (
+            "en1998-2024:?s_alpha=1g&s_beta=0.4g&td=2.5 s",
+            {0.0: 0.4, 0.02: 0.4, 0.06: 0.7, 0.1: 1.0, 0.4: 1.0, 1.0: 0.4, 2.5: 0.16, 5.0: 0.04},
+        ),
+        # T_C = 0.12 and 0.6: T_B is 0.05 and 0.1, its bounds.
+        ("en1998-2024:?s_alpha=1g&s_beta=0.12g&td=2", {0.05: 1.0, 0.035: 0.7}),
+        ("en1998-2024:?s_alpha=1g&s_beta=0.6g&td=2", {0.1: 1.0, 0.06: 0.7}),
         # ASCE 7: T_S = 0.6, T_0 = 0.12.
         (
             "asce7:?sds=1g&sd1=0.6g&tl=8",
@@ -57,6 +71,39 @@ def test_peaks_of_the_ground() -> None:
     damped = load_target("en1998:?ag=0.3g&soil=B&damping=0.2")
     assert (damped.pgv, damped.pgd) == (target.pgv, target.pgd)
     assert load_target("asce7:?sds=1g&sd1=0.6g&tl=8").pgd is None
+    # 0.06 (10 x 4)^0.55.
+    assert load_target("en1998-2024:?s_alpha=10&s_beta=4&td=2").pgv == pytest.approx(
+        0.45634, rel=1e-4
+    )
+
+
+def test_what_is_known_of_a_target() -> None:
+    """Edition and check are told, and what nobody could check is told as that."""
+    sources = {
+        "en1998:?ag=1g": ("EN 1998-1:2004", "not with the text"),
+        "en1998-2024:?s_alpha=1g&s_beta=0.4g&td=2": ("EN 1998-1-1:2024", "not with the text"),
+        "asce7:?sds=1g&sd1=0.6g&tl=8": ("7-16", "not with the text"),
+        "sp14:?acceleration=4": ("without its amendments", "NOT VERIFIED"),
+    }
+    for source, (edition, checked) in sources.items():
+        target = load_target(source)
+        assert edition in target.edition
+        assert checked in target.checked
+    assert load_target("asce7:?sds=1g&sd1=0.6g&tl=8&level=mcer").level == "MCE_R"
+    assert load_target("asce7:?sds=1g&sd1=0.6g&tl=8").of == "rotd100"
+
+
+def test_a_table_with_scatter(tmp_path: Path) -> None:
+    file = tmp_path / "target.csv"
+    rows = "0.1,0.4,0.5\n0.5,1.0,0\n2.0,0.25,0.3\n"
+    file.write_text(f"T [s],median [g],sigma_ln [-]\n{rows}", encoding="utf-8")
+    target = load_target(f"{file}?component=RotD50&level=MCE_R")
+    assert (target.pinned, target.of, target.level) == (0.5, "rotd50", "MCE_R")
+    assert target.deviation is not None
+    # 1 s is half way between 0.5 and 2 s in logarithms.
+    np.testing.assert_allclose(target.deviation(np.array([0.1, 1.0])), [0.5, 0.15], rtol=1e-12)
+    with pytest.raises(RecordError, match="component = 'rot50' is not known; did you mean rotd50"):
+        load_target(f"{file}?component=rot50")
 
 
 def test_a_table(tmp_path: Path) -> None:
@@ -92,6 +139,10 @@ def test_the_spectrum_of_a_record_is_a_table(tmp_path: Path) -> None:
         ("asce7:?sds=1g&sd1=0.6g&tl=0.5", "below tl"),
         ("asce7:?sds=1g&sd1=0.6g&tl=8&level=mce", "did you mean mcer"),
         ("sp14:?acceleration=4&soil=V", "soil = 'V' is not known"),
+        ("en1998:?ag=1g&tb=0.5&tc=0.4", "0 < tb < tc < td <= 4 s"),
+        ("en1998-2024:?s_alpha=1g&s_beta=0.4g", "td is missing"),
+        ("en1998-2024:?s_alpha=1g&s_beta=0.4g&td=0.3", "s_beta/s_alpha < td"),
+        ("sprk:?ag=1g", "could not be verified and are not those of sp14; give .* CSV"),
         ("sp14:?acceleration=0", "acceleration must be > 0"),
         ("en1989:?ag=0.3g", "'en1989' is not a known code; did you mean en1998"),
         ("nothing.csv", "there is no file nothing.csv; give a CSV file or a code"),

@@ -24,6 +24,7 @@ from rpscli.case.conditions import Condition
 from rpscli.case.design import Term
 from rpscli.case.study.observed import OVERTURNED
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.requirements import RULES
 from rpscli.records.selection import Candidate, Selection
 from rpscli.records.target import TargetSpectrum
 from rpscli.report.design import front_figure, region_figure, requirements_figure
@@ -296,22 +297,29 @@ def test_maxima_beside_observed_ones(compared: dict[str, Axes]) -> None:
 def test_a_selection_beside_its_target() -> None:
     periods, wanted = np.array([0.1, 0.5, 2.0]), np.array([3.0, 6.0, 1.5])
     target = TargetSpectrum("EN 1998", "", lambda _: wanted, 0.5, 0.2, span=(0.1, 2.0))
-    motion = cast("GroundMotion", None)
+    first, second = (GroundMotion(np.ones(2), 0.1, name) for name in ("first", "second"))
     chosen = (
-        Candidate(motion, "one", 0.2, 0.03, np.array([1.0, 2.0, 0.5]), 2.0, 0.0),
-        Candidate(motion, "two", 1.2, 0.5, np.array([8.0, 16.0, 4.0]), 0.5, 0.0),
+        Candidate((first,), "one", 1.0, 0.2, 0.03, np.array([1.0, 2.0, 0.5]), 2.0),
+        Candidate((second,), "two", 1.0, 1.2, 0.5, np.array([8.0, 16.0, 4.0]), 0.5, clamped=True),
     )
     scaled = [(2.0, 4.0, 1.0), (4.0, 8.0, 2.0)]
     mean = np.array([3.0, 6.0, 1.5]) * 1.01
-    selection = Selection(target, periods, wanted, chosen, mean, 0.01, 9, 1)
+    selection = Selection(
+        target, "component", periods, wanted, chosen, mean, 0.01, 9, 1, requirements=RULES["en1998"]
+    )
     figure = drawn(selection_figure, selection)
-    assert "2 of 9 motions, misfit of the mean 0.010" in figure.get_suptitle()
+    assert "2 of 9, single components; misfit of the mean 0.010" in figure.get_suptitle()
+    assert "factors at a bound: 1" in figure.get_suptitle()
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["first", "second"]
     left, right = figure.axes
     for line, values in zip(left.lines[:2], scaled, strict=True):
         same(line.get_data(), (periods, values))
     same(curve(left, "mean"), (periods, mean))
     same(curve(left, "EN 1998"), (periods, wanted))
-    assert legend(left) == ["motions", "mean", "EN 1998"]
+    same(curve(left, "90 % of it"), (periods, 0.9 * wanted))
+    looks = {(line.get_color(), line.get_linestyle()) for line in left.lines}
+    assert len(looks) == len(left.lines) == 5  # all told apart
+    assert legend(left) == ["mean", "EN 1998", "90 % of it"]
     assert left.get_xscale() == left.get_yscale() == "log"
     same(left.get_xlim(), (0.1, 2.0))
     assert left.get_xlabel() == "period [s]"

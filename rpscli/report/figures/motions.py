@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from rpscli.errors import UsageError
 from rpscli.records.measures import displacement, velocity
+from rpscli.records.requirements import component_text
 from rpscli.report.figures import style
 from rpscli.report.figures.history import extremes
 
@@ -20,6 +22,16 @@ if TYPE_CHECKING:
     from rpscli.records.selection import Selection
     from rpscli.records.spectrum import ResponseSpectrum
 
+
+LOOKS = [
+    (line, colour)
+    for line in ("-", "--", "-.", ":")
+    for colour in (style.GREEN, style.ORANGE, style.SKY, style.PINK, style.BLACK, style.GREY)
+]
+"""Of the spectra of motions; those of mean and target are their own."""
+
+NAMES_A_ROW = 6
+"""Of motions below their spectra."""
 
 Quantity = Literal["acceleration", "velocity", "displacement"]
 
@@ -97,32 +109,54 @@ def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
 
 def selection_figure(selection: Selection, title: str) -> bytes:
     """Spectra on the left, PGV against PGD of the scaled motions on the right."""
-    count = len(selection.chosen)
-    note = f"{count} of {selection.candidates} motions, misfit of the mean {selection.misfit:.3f}"
+    of = component_text(selection.of)
+    note = (
+        f"{len(selection.chosen)} of {selection.candidates}, {of}; misfit of the mean"
+        f" {selection.misfit:.3f}, factors at a bound: {selection.clamped}"
+    )
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title, note)
         left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
         _draw_spectra(left, selection)
         _draw_peaks(right, selection)
+        motions = left.lines[: len(selection.chosen)]
+        figure.legend(
+            handles=motions, loc="outside lower center", ncols=NAMES_A_ROW, fontsize=style.small()
+        )
 
-    return style.picture(draw, 3.6, 8.0)
+    rows = -(-len(selection.chosen) // NAMES_A_ROW)
+    return style.picture(draw, 3.6 + 0.17 * rows, 8.0)
 
 
 def _draw_spectra(axes: Axes, selection: Selection) -> None:
     from matplotlib.ticker import FuncFormatter
 
-    for place, one in enumerate(selection.chosen):
-        axes.plot(
-            selection.periods, one.factor * one.acceleration, color=style.GREY, lw=0.6, alpha=0.7,
-            label="" if place else "motions",
-        )  # fmt: skip
-    axes.plot(selection.periods, selection.mean, color=style.BLUE, lw=2.0, label="mean")
-    axes.plot(
-        selection.periods, selection.wanted, color=style.RED, lw=1.8, ls="--",
-        label=selection.target.name,
-    )  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlim=(selection.periods[0], selection.periods[-1]))
+    periods, wanted = selection.periods, selection.wanted
+    for one, (line, colour) in zip(selection.chosen, cycle(LOOKS), strict=False):
+        spectrum = one.factor * one.acceleration
+        axes.plot(periods, spectrum, color=colour, ls=line, lw=0.8, label=one.name)
+    drawn = [
+        *axes.plot(periods, selection.mean, color=style.BLUE, lw=2.4, label="mean"),
+        *axes.plot(periods, wanted, color=style.RED, lw=1.8, ls="--", label=selection.target.name),
+    ]
+    if selection.target.deviation is not None and selection.deviation is not None:
+        drawn[0].set_label("median, deviations")
+        scatters = selection.deviation, selection.target.deviation(periods)
+        for of, scatter, values in zip(drawn, scatters, (selection.mean, wanted), strict=True):
+            for sign in (-1.0, 1.0):
+                look: dict[str, Any] = {
+                    "color": of.get_color(),
+                    "ls": of.get_linestyle(),
+                    "lw": 0.9,
+                }
+                axes.plot(periods, values * np.exp(sign * scatter), **look)
+    if (asked := selection.requirements) is not None and asked.least < 1.0:
+        label = f"{style.percent(asked.least)} of it"
+        drawn += axes.plot(
+            periods, asked.least * wanted, color=style.RED, lw=1.2, ls=":", label=label
+        )
+    axes.set(xscale="log", yscale="log", xlim=(periods[0], periods[-1]))
     axes.set_xlabel("period [s]")
     axes.set_ylabel(
         f"pseudo-acceleration, {style.percent(selection.target.damping)} damping [m/s²]"
@@ -130,7 +164,7 @@ def _draw_spectra(axes: Axes, selection: Selection) -> None:
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(FuncFormatter(lambda value, _: _second_tick(value)))
-    axes.legend(loc="lower left")
+    axes.legend(handles=drawn, loc="lower left")
 
 
 def _second_tick(value: float) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
-from rpscli.records.selection import Candidate, Selection
+from rpscli.records.selection import Selection
 from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.table import Column, Table, picked, records, shown
 
@@ -77,16 +77,29 @@ def two_column_text(motion: GroundMotion) -> str:
 
 def selection_document(selection: Selection) -> dict[str, Any]:
     """What was chosen, beside the target; SI units."""
-    names = ("source", "factor", "event", "pgv", "pgd", "misfit")
+    names = ("source", "second", "factor", "clamped", "event", "pgv", "pgd", "misfit")
     columns = picked(selection_columns(selection), *names)
-    of_target = ("name", "source", "damping", "pgv", "pgd")
-    numbers = ("candidates", "refused", "misfit", "least_ratio", "mean_pgv", "mean_pgd")
+    target, asked, errors = selection.target, selection.requirements, selection.errors
+    of_target = (
+        "name", "source", "edition", "checked", "level", "damping", "pgv", "pgv_by", "pgd",
+    )  # fmt: skip
+    numbers = ("candidates", "refused", "clamped", "misfit", "least_ratio", "mean_pgv", "mean_pgd")
+    rules = [{**rule._asdict(), "verdict": rule.word} for rule in selection.rules]
     return {
-        "target": {name: getattr(selection.target, name) for name in of_target},
+        "target": {**{name: getattr(target, name) for name in of_target}, "component": target.of},
+        "component": selection.of,
         "periods": [float(selection.periods[0]), float(selection.periods[-1])],
+        "common_factor": selection.common,
         **{name: getattr(selection, name) for name in numbers},
+        "largest_errors": errors and dict(zip(("mean", "deviation"), errors, strict=True)),
+        "requirements": asked
+        and {"clause": asked.clause, "checked": asked.checked, "rules": rules},
         "motions": records(columns),
     }
+
+
+def _flag(flag: object) -> str:
+    return "yes" if flag else ""
 
 
 def selection_columns(selection: Selection) -> list[Column]:
@@ -95,10 +108,15 @@ def selection_columns(selection: Selection) -> list[Column]:
     three = partial(shown, digits=3)
     pgv, pgd = ([one.factor * getattr(one, name) for one in chosen] for name in ("pgv", "pgd"))
     return [
-        Column("source", "-", [one.motion.source for one in chosen]),
+        Column("name", "-", [one.name for one in chosen], "motion"),
+        Column("source", "-", [one.motions[0].source for one in chosen]),
+        Column(
+            "second", "-", [(*one.motions, None)[1] and one.motions[1].source for one in chosen]
+        ),
         Column("factor", "-", [one.factor for one in chosen], "factor", "{:.4g}".format),
+        Column("clamped", "-", [one.clamped for one in chosen], "at a bound", _flag),
         Column("event", "-", [one.event for one in chosen], "event"),
-        Column("pga", "m/s2", [one.factor * one.motion.pga for one in chosen]),
+        Column("pga", "m/s2", [one.factor * one.pga for one in chosen]),
         Column("pgv", "m/s", pgv, "PGV [m/s]", three),
         Column("pgd", "m", pgd, "PGD [m]", three),
         Column("misfit", "-", [one.misfit for one in chosen], "misfit", "{:.3f}".format),
@@ -111,24 +129,27 @@ def mean_columns(selection: Selection) -> list[Column]:
         Column("period", "s", selection.periods),
         Column("target", "m/s2", selection.wanted),
         Column("mean", "m/s2", selection.mean),
-        *(
-            Column(one.motion.name, "m/s2", one.factor * one.acceleration)
-            for one in selection.chosen
-        ),
+        *(Column(one.name, "m/s2", one.factor * one.acceleration) for one in selection.chosen),
     ]
 
 
 def selection_list(selection: Selection, folder: Path) -> str:
     """`selection.txt`: a source with its factor a line, files as seen from the folder."""
+    what = "motions" if selection.of == "component" else "pairs, both components under one factor"
     heads = (
-        f"# {len(selection.chosen)} motions for {selection.target.source}",
+        f"# {len(selection.chosen)} {what}, for {selection.target.source}",
         "# in a study: records: ['list:selection.txt'], with the path as seen from the study",
     )
-    return "\n".join((*heads, *(_line(one, folder) for one in selection.chosen))) + "\n"
+    lines = (
+        _line(motion.source, one.factor, folder)
+        for one in selection.chosen
+        for motion in one.motions
+    )
+    return "\n".join((*heads, *lines)) + "\n"
 
 
-def _line(one: Candidate, folder: Path) -> str:
-    place, mark, options = one.motion.source.partition("?")
+def _line(source: str, factor: float, folder: Path) -> str:
+    place, mark, options = source.partition("?")
     if Path(place).expanduser().is_file() and not Path(place).expanduser().is_absolute():
         place = Path(os.path.relpath(place, folder)).as_posix()
-    return f"{place}?{options}{'&' * bool(mark)}factor={one.factor:g}"
+    return f"{place}?{options}{'&' * bool(mark)}factor={factor:g}"

@@ -1,0 +1,75 @@
+"""What a recording must be like to be a candidate: `magnitude=6.5..7.5`, `pulse=no`."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.errors import UsageError, hint
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.measures import intensity_measures
+from rpscli.units import si_value
+
+UNITS = {
+    "magnitude": "",
+    "distance": "m",
+    "vs30": "m/s",
+    "usable_period": "s",
+    "d5_75": "s",
+    "d5_95": "s",
+}
+"""What has a range, with its SI unit: of the recording, and significant durations of the motion."""
+
+PULSE = {"yes": 1.0, "no": 0.0}
+
+
+class Filter(NamedTuple):
+    """A range that one quantity must lie in, ends included [SI]."""
+
+    text: str
+    name: str
+    low: float
+    high: float
+
+    def keeps(self, motion: GroundMotion) -> bool | None:
+        """Whether a motion may be a candidate; None if the quantity is not known of it."""
+        if self.name.startswith("d5"):
+            value = getattr(intensity_measures(motion), self.name)
+        else:
+            value = getattr(motion.recording, self.name)
+        return None if value is None else self.low <= value <= self.high
+
+
+def parse_filter(text: str) -> Filter:
+    """A range as ``--where`` gives it, in SI or with units; an end may be left out.
+
+    >>> parse_filter("distance=10 km..")
+    Filter(text='distance=10 km..', name='distance', low=10000.0, high=inf)
+    """
+    name, _, wanted = (part.strip() for part in text.partition("="))
+    if name == "pulse":
+        if wanted not in PULSE:
+            raise UsageError(f"--where {text}: write pulse=yes or pulse=no")
+        return Filter(text, name, PULSE[wanted], PULSE[wanted])
+    if name not in UNITS:
+        known_are = f"known are {', '.join(UNITS)}, pulse"
+        raise UsageError(f"--where {text}: {name!r} is not known; {hint(name, UNITS, known_are)}")
+    low, dots, high = wanted.partition("..")
+    if not dots:
+        raise UsageError(f"--where {text}: write {name}=LOW..HIGH; an end may be left out")
+    try:
+        ends = _value(low, UNITS[name], -math.inf), _value(high, UNITS[name], math.inf)
+    except ValueError as error:
+        raise UsageError(f"--where {text}: an end of the range {error}") from None
+    if not ends[0] <= ends[1]:
+        raise UsageError(f"--where {text}: must not fall; write the lower end first")
+    return Filter(text, name, *ends)
+
+
+def _value(text: str, unit: str, missing: float) -> float:
+    try:
+        return float(text) if text.strip() else missing
+    except ValueError:
+        if not unit:
+            raise ValueError("must be a number") from None
+        return si_value(text.strip(), unit)
