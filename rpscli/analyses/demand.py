@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
@@ -88,40 +88,34 @@ def demand(
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
-    structures = _Distinct[PodiumStructure]()
-    systems = _Distinct[tuple[PodiumStructure, TimeHistorySettings]]()
-    motions = _Distinct[MotionComponents]()
+    structures: _Numbered[PodiumStructure] = {}
+    systems: _Numbered[tuple[PodiumStructure, TimeHistorySettings]] = {}
+    motions: _Numbered[MotionComponents] = {}
     given, of_structure = [], []
     known: dict[int, int] = {}  # by the object, which most requests share
     for r in requests:
-        of_structure.append(structures.number(id(r.structure), r.structure))
-        system = systems.number((id(r.structure), r.settings), (r.structure, r.settings))
+        of_structure.append(_number(structures, id(r.structure), r.structure))
+        system = _number(systems, (id(r.structure), r.settings), (r.structure, r.settings))
         if (motion := known.get(id(r.motion))) is None:
-            motion = motions.number(tuple(map(id, r.motion.named.values())), r.motion)
+            motion = _number(motions, tuple(map(id, r.motion.named.values())), r.motion)
             known[id(r.motion)] = motion
         given.append(HistoryRequest(system, motion, r.scale))
-    stacked = stacked_systems(systems.items)
+    stacked = stacked_systems([system for _, system in systems.values()])
     rates = stacked["uplifted_rate"].tolist()
-    durations = [motion.duration for motion in motions.items]
+    shaken = [motion for _, motion in motions.values()]
+    durations = [motion.duration for motion in shaken]
     for r, history in zip(requests, given, strict=True):
         seconds = longest_time(r.settings, durations[history.motion])
         refuse_steps(seconds * rates[history.system], r.structure)
-    run = run_of(stacked, motions.items, given)
-    lanes = LANES if len(requests) >= worth_lanes else 1
-    follow(run, lanes)
-    return Histories(structures.items, of_structure, frozen(run.results))
+    run = run_of(stacked, shaken, given)
+    follow(run, LANES if len(requests) >= worth_lanes else 1)
+    return Histories([st for _, st in structures.values()], of_structure, frozen(run.results))
 
 
-class _Distinct(Generic[Item]):
-    """Distinct items in the order of their first use."""
+_Numbered: TypeAlias = dict[Hashable, tuple[int, Item]]
+"""Distinct items in the order of their first use, by what tells them apart."""
 
-    def __init__(self) -> None:
-        self.items: list[Item] = []
-        self._numbers: dict[Hashable, int] = {}
 
-    def number(self, key: Hashable, item: Item) -> int:
-        """Number of the item with this key, which is added if it is new."""
-        if key not in self._numbers:
-            self._numbers[key] = len(self.items)
-            self.items.append(item)
-        return self._numbers[key]
+def _number(items: _Numbered[Item], key: Hashable, item: Item) -> int:
+    """Number of the item with this key, which is added if it is new."""
+    return items.setdefault(key, (len(items), item))[0]

@@ -10,7 +10,7 @@ True
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Literal, TypeAlias, cast, get_args
 
 import numpy as np
@@ -204,7 +204,6 @@ class Trace(Shown):
 
 def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
     """Histories from what the kernel stored, at samples or between them as well."""
-    run = replace(run, motion=run.motion.finer(run.finer)) if run.finer > 1 else run
     samples = run.samples
     devices = DeviceTrace(*np.moveaxis(run.devices, 1, 0))
     return Trace(

@@ -315,6 +315,8 @@ class MotionComponents(Frozen):
 
     def finer(self, parts: int) -> MotionComponents:
         """The same motion with that many even parts in each sampling interval."""
+        if parts == 1:
+            return self
         named: dict[str, GroundMotion] = {}
         for name, motion in self.named.items():
             at = np.arange((motion.npts - 1) * parts + 1) / parts

@@ -112,7 +112,7 @@ class SampledHistory:
     history: Record
     """A `state.RESULT`: what is left behind at the end."""
     motion: MotionComponents
-    """Of the ground."""
+    """Of the ground, as dense as the samples."""
     samples: Record
     """(intervals + 1,)."""
     floors: NDArray[np.float64]
@@ -121,8 +121,6 @@ class SampledHistory:
     """(events,)."""
     devices: NDArray[np.float64]
     """(intervals + 1, 4, devices), see `physics.planar.run.Output`."""
-    finer: int = 1
-    """Samples are that many times as dense."""
 
 
 def longest_history(settings: TimeHistorySettings, motion: MotionComponents) -> int:
@@ -208,10 +206,9 @@ def sampled_history(
         array.resize((kept, *array.shape[1:]), refcheck=False)
     return SampledHistory(
         history,
-        motion,
+        motion.finer(finer),
         output.samples[:kept].copy(),
         output.floors,
         output.log[:seen],
         output.devices,
-        finer,
     )
