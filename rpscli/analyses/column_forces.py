@@ -21,37 +21,20 @@ VERTICAL_DAMPING = 0.05
 
 @dataclass(frozen=True)
 class AxialForces:
-    """Axial forces of single columns [N], compression positive, and what the rows share.
-
-    Parameters
-    ----------
-    largest, least
-        At the `top` and at the `bottom` of a column, of all rows and times.
-    overturning_ratio
-        Largest r: what the moment of the floors' inertia about the cap beam adds to an outer row,
-        over its mean force; None without rows.
-    lift_off
-        When an outer row would first lift off [s]; None if never.
-    """
+    """Axial forces of single columns, of all rows and times, and what the rows share."""
 
     largest: dict[str, float]
     least: dict[str, float]
+    """At the `top` and at the `bottom` of a column, compression positive [N]."""
     overturning_ratio: float | None
+    """Largest r: what the moment of the floors' inertia about the cap beam adds to an outer row,
+    over its mean force; None without rows."""
     lift_off: float | None
+    """When an outer row would first lift off [s]; None if never."""
 
 
 def axial_forces(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> AxialForces:
-    """Axial forces of single columns from the histories and the impacts.
-
-    Parameters
-    ----------
-    structure
-        With the rows of its columns, the vertical period of its building, or both.
-    trace
-        Dense in comparison with that period.
-    events
-        Of these the impacts.
-    """
+    """Axial forces of single columns from a trace that is dense beside the vertical period."""
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
     shocked = shock(structure, trace.time, events)
     uneven, ratio, lift_off = np.zeros_like(shocked), None, None

@@ -42,13 +42,7 @@ class FixedBaseResponse(Shown):
 def fixed_base_response(
     structure: PodiumStructure, record: GroundMotion, intervals: int
 ) -> FixedBaseResponse:
-    """Run the building of a structure on a fixed base for a number of sampling intervals.
-
-    Raises
-    ------
-    ValueError
-        If there is no building.
-    """
+    """Run the building of a structure on a fixed base for a number of sampling intervals."""
     building = structure.superstructure
     if building is None:
         raise ValueError("a structure without superstructure has no fixed-base response")
