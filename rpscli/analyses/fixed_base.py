@@ -86,7 +86,7 @@ def _follow(
         floors,
         largest,
     )
-    return largest
+    return float(largest)
 
 
 def _accelerations(building: Superstructure, floors: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -103,26 +103,25 @@ def largest_velocities(
     """Largest absolute velocities of floors (n,) [m/s], from those to the ground at the samples."""
     ground = velocity(record.acceleration, record.dt)[: len(relative)]
     ground = np.pad(ground, (0, len(relative) - len(ground)), mode="edge")
-    return largest_of_cubics(relative + ground[:, None], accelerations, record.dt)
+    floors = zip(relative.T, accelerations.T, strict=True)
+    return np.array([largest_of_cubics(floor + ground, rate, record.dt) for floor, rate in floors])
 
 
-def largest_of_cubics(
-    values: NDArray[np.float64], rates: NDArray[np.float64], dt: float
-) -> NDArray[np.float64]:
-    """Largest absolute values (n,) of cubics through values (samples, n) with these rates.
+def largest_of_cubics(values: NDArray[np.float64], rates: NDArray[np.float64], dt: float) -> float:
+    """Largest absolute value of cubics through values (samples,) with these rates.
 
-    >>> t = np.arange(0.3, 4.0, 0.5)[:, None]
-    >>> float(largest_of_cubics(np.sin(t), np.cos(t), 0.5)[0]) > 0.9999 > np.sin(t).max()
+    >>> t = np.arange(0.3, 4.0, 0.5)
+    >>> bool(largest_of_cubics(np.sin(t), np.cos(t), 0.5) > 0.9998 > np.sin(t).max())
     True
     """
     first, last = dt * rates[:-1], dt * rates[1:]
     change = values[1:] - values[:-1]
     square, cube = 3.0 * change - 2.0 * first - last, first + last - 2.0 * change
     root = np.sqrt(np.maximum(square * square - 3.0 * cube * first, 0.0))
-    largest = np.max(np.abs(values), axis=0)
+    largest = np.max(np.abs(values))
     for divisor in (-square - root, root - square):  # where the slope is zero, if within
-        within = np.abs(first) < np.abs(divisor)
-        t = np.where(within, first / np.where(within, divisor, 1.0), 0.0)
-        turned = values[:-1] + t * (first + t * (square + t * cube))
-        largest = np.maximum(largest, np.max(np.abs(np.where(t > 0.0, turned, 0.0)), axis=0))
-    return np.asarray(largest)
+        within = np.flatnonzero(np.abs(first) < np.abs(divisor))
+        t = first[within] / divisor[within]
+        turned = values[within] + t * (first[within] + t * (square[within] + t * cube[within]))
+        largest = np.max(np.abs(turned), where=t > 0.0, initial=largest)
+    return float(largest)

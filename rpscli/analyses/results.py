@@ -163,8 +163,8 @@ class TimeHistoryResult(Demand):
         """
         if self.structure.superstructure is None:
             return None
-        roof = self.trace.floor_displacements[:, -1:], self.trace.floor_velocities[:, -1:]
-        return float(largest_of_cubics(*roof, self.record.dt)[0])
+        roof = self.trace.floor_displacements[:, -1], self.trace.floor_velocities[:, -1]
+        return largest_of_cubics(*roof, self.record.dt)
 
     @property
     def fixed_base_ratio(self) -> float | None:
