@@ -86,7 +86,7 @@ def _follow(
         floors,
         largest,
     )
-    return float(largest)
+    return largest
 
 
 def _accelerations(building: Superstructure, floors: NDArray[np.float64]) -> NDArray[np.float64]:
