@@ -22,6 +22,7 @@ SINGLE_VALUES = [
     ("200 t", "1e300", "4:16", ["outside", "check the unit"]),
     ("200 t", ".nan", "4:16: superstructure.storey_mass = nan", ["finite"]),
     ("200 t", "{a: 1}", "4:16: superstructure.storey_mass = {a: 1}", ["a mass in kg"]),
+    ("  impact", "  plan: {rows: 200}\n  impact", "17:16", ["podium.plan.rows = 200", "[0, 4 m"]),
     ("period: 0.3", "period: .inf", "6:11", ["finite"]),
     ("period: 0.3", f"period: {'9' * 350}", "6:11", ["finite"]),
     ("period: 0.3", "period: true", "6:11: superstructure.period = true", ["a time in s"]),

@@ -10,7 +10,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
 
-from rpscli.case.schema.fields import DampingRatio, ModePair, Quantity, Section, Text, Whole
+from rpscli.case.schema.fields import (
+    DampingRatio,
+    ModePair,
+    Quantity,
+    Section,
+    Text,
+    Whole,
+    must_be,
+)
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
@@ -221,7 +229,13 @@ class PlanSection(Section):
 
     length: Length | None = None
     """between two rows of columns, the outer ones"""
-    rows: Annotated[tuple[float, ...], Quantity("m", symbol="of each row")] | None = None
+    rows: (
+        Annotated[
+            tuple[Annotated[float, Quantity("m", symbol="of each row")], ...],
+            must_be(list, "places of the rows, as in [0, 4 m, 8 m]"),
+        ]
+        | None
+    ) = None
     """places of all rows, with equally many columns each"""
 
 
