@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +13,15 @@ from typing import Annotated, NamedTuple, Self, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    PlainValidator,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.overrides import apply_overrides
@@ -22,7 +31,7 @@ from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
 from rpscli.case.study.axes import Axis, sources_of
 from rpscli.case.study.rules import fixed_faults, record_rules, twice, unknown_keys, varied_paths
-from rpscli.case.study.schema import Seed, Sources, StudyParts
+from rpscli.case.study.schema import Seed, Share, Sources, StudyParts
 from rpscli.case.study.study import Study, shared_out, study_of
 from rpscli.case.text.document import Document, Fault, is_case, is_design
 from rpscli.case.text.document import Path as KeyPath
@@ -42,7 +51,11 @@ OLD_WORDS = {"find": "variables", "ties": "linked", "least": "minimise", "confir
 Array = NDArray[np.float64]
 
 DIGITS = 6
-"""Of the values of a design: nobody builds more, and files stay readable."""
+"""Of what is linked to the values of a design: nobody builds more, and files stay readable."""
+STEPS = 3
+"""Decimals of a range, or of its least end, to which values are rounded, judged and printed."""
+TOLERANCE = 0.01
+"""Of what is built, as a share of each value."""
 
 
 class Term(Section):
@@ -103,6 +116,12 @@ class Unknown(NamedTuple):
     low: float
     high: float
 
+    @property
+    def digits(self) -> int:
+        """Decimals of its values, which tell the ends of the range and a thousandth of it."""
+        sizes = [size for size in (abs(self.low), abs(self.high), self.high - self.low) if size]
+        return STEPS - math.floor(math.log10(min(sizes)))
+
 
 def _is_number(value: object) -> TypeGuard[float]:
     """A number whose sums and products with others stay finite."""
@@ -161,6 +180,13 @@ class SearchSection(Section):
     """of the sample and the bootstrap"""
 
 
+Tolerance = Annotated[
+    Annotated[dict[str, Share], Tag("each")] | Annotated[Share, Tag("all")],
+    Discriminator(lambda value: "each" if isinstance(value, dict) else "all"),
+]
+"""One share of the values, or one of each key."""
+
+
 class ValidateSection(Section):
     """Motions that the search does not see."""
 
@@ -192,6 +218,8 @@ class DesignFile(StudyParts):
     validation: ValidateSection | None = Field(
         None, alias="validate", description="motions to validate the design with"
     )
+    tolerance: Tolerance = TOLERANCE
+    """by how much what is built may differ, as a share of the values, or {key: share}: 1 %"""
     search: SearchSection = SearchSection()
     """how many designs are looked at"""
 
@@ -219,13 +247,25 @@ class DesignTask:
         low = np.array([unknown.low for unknown in self.unknowns])
         high = np.array([unknown.high for unknown in self.unknowns])
         found = {
-            unknown.key: _rounded(unknown.key, column)
+            unknown.key: _rounded(unknown, column)
             for unknown, column in zip(self.unknowns, (low + (high - low) * places).T, strict=True)
         }
         for key, terms in self.file.linked.items():
             sums = (terms[name] * found[name] for name in terms if name != PLUS)
-            found[key] = _rounded(key, sum(sums, np.full(len(places), terms.get(PLUS, 0.0))))
+            total = sum(sums, np.full(len(places), terms.get(PLUS, 0.0)))
+            found[key] = np.array([float(f"{value:.{DIGITS}g}") for value in total.tolist()])
+            if is_whole(key):
+                found[key] = np.round(total)
         return np.column_stack(list(found.values()))
+
+    def tolerances(self, places: Array) -> Array:
+        """(designs, unknowns) tolerances of places in the unit cube."""
+        given, keys = self.file.tolerance, [unknown.key for unknown in self.unknowns]
+        each = given if isinstance(given, dict) else dict.fromkeys(keys, given)
+        of = [each.get(key, TOLERANCE) for key in keys]
+        low = np.array([unknown.low for unknown in self.unknowns])
+        wide = np.array([unknown.high for unknown in self.unknowns]) - low
+        return np.asarray(np.array(of) * np.abs(low + wide * places) / wide)
 
     def rows(self, values: Array) -> tuple[tuple[float | int, ...], ...]:
         """The values of each design as a case takes them."""
@@ -252,10 +292,9 @@ class DesignTask:
         return "linked" if key in self.file.linked else "variables", key
 
 
-def _rounded(key: str, values: Array) -> Array:
-    if is_whole(key):
-        return np.round(values)
-    return np.array([float(f"{value:.{DIGITS}g}") for value in values.tolist()])
+def _rounded(unknown: Unknown, values: Array) -> Array:
+    digits = 0 if is_whole(unknown.key) else unknown.digits
+    return np.array([round(value, digits) for value in values.tolist()])
 
 
 def read_design(source: str, overrides: Sequence[str] = ()) -> DesignTask:
@@ -383,6 +422,10 @@ def _fixed_properties(document: Document) -> Iterator[Fault]:
 def _name_faults(file: DesignFile) -> Iterator[Fault]:
     """Names that are not keys that change, or in what is minimised not results either."""
     known, keys = [*file.variables, PLUS], [*file.variables, *file.linked]
+    for name in file.tolerance if isinstance(file.tolerance, dict) else ():
+        if name not in file.variables:
+            text = f"tolerance.{name} is not under variables; use {listed([*file.variables])}"
+            yield Fault(("tolerance", name), text, at_key=True)
     for key, sums in file.linked.items():
         for name in (name for name in sums if name not in known):
             text = f"linked.{key} needs {name}, which is not under variables"

@@ -38,16 +38,18 @@ def command(
     """Find the values of DESIGN that meet its limits and minimise its objective.
 
     The file has a base case, `variables`, records and `limits` as a study, and `minimise`. An
-    even sample comes first, then designs where the verdict changes. The answer has the best design,
-    the region that passes, what binds, and how far the choice of records moves it.
+    even sample comes first, then designs where the verdict changes. What is recommended is the best
+    design of a region in which all that were examined hold, within their tolerances. The answer has
+    the least that passes as well, what binds, and how far the choice of records moves it.
 
     Every point is stored as it ends: after an interruption the same command goes on. The exit code
-    is 10 if no design passes.
+    is 10 if no design passes, or if the recommended one does not keep the limits in its validation.
     """
     from rpscli.case.design import read_design
     from rpscli.commands.design_rounds import (
         Rounds,
         answer_tables,
+        headline_of,
         keeps_limits,
         nothing_passes,
         unconfirmed,
@@ -86,11 +88,12 @@ def command(
         folder.add_all(figure_files(drawn, look).items())
         # Designs that exceed limits are what was looked for, not what went wrong.
         error = run.error(found, limits=False) or nothing_passes(answer)
-        error = error or unconfirmed(confirmations.values())
+        error = error or unconfirmed(confirmations)
         store.require()
         write(folder, terminal)
     notes = [*rounds.notes(answer, confirmations), *study.warnings, *found.notes]
     terminal.warn_first(notes, "with --json")
+    judged = headline_of(confirmations)
     document = {
         **heading(),
         "command": "design",
@@ -98,7 +101,7 @@ def command(
         "note": ONE_DIRECTION,
         "points": {"total": len(run.table), "failed": len(found.failures)},
         **answer_document(answer),
-        "confirmed": keeps_limits(confirmations["best"]) if confirmations else None,
+        "confirmed": keeps_limits(confirmations[judged]) if judged else None,
         "confirmation": {
             name: [verdict_document(each.keys_of_rows, verdict) for verdict in each.verdicts]
             for name, each in confirmations.items()

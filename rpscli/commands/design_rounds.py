@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rpscli.case.conditions import condition_text
+from rpscli.case.conditions import EVENTS, Condition, condition_text
 from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, compute
@@ -14,16 +15,19 @@ from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.design import requirement_label
 from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.study.labels import label, symbol
-from rpscli.report.study.statistics import VERDICT, verdict_texts
+from rpscli.report.study.statistics import VERDICT, verdict_lines, verdict_texts
 from rpscli.report.table import Heading, Part, Table, large, measured, shown
 from rpscli.studies import Study
 from rpscli.study_run import StudyRun, require_results
 from rpscli.sweep.design.answer import NONE, ROBUST, Answer
-from rpscli.sweep.design.search import Search
+from rpscli.sweep.design.search import Flags, Search
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.statistics.fractiles import CONFIDENCE, ROUNDING
 from rpscli.sweep.store import Store
+from rpscli.sweep.table import Array
+from rpscli.sweep.table import Table as Points
 
 
 def keeps_limits(run: StudyRun) -> bool:
@@ -53,20 +57,31 @@ class Rounds:
         return first
 
     def run(self, first: Study, store: Store) -> Answer:
-        """All rounds, one after the other."""
-        search, study, number = self.search, first, 1
+        """All rounds, one after the other; then what is recommended within its tolerances."""
+        search, number = self.search, 1
         while len(places := search.next_round()):
-            values = search.task.values(places)
-            valid = search.valid_cases(values)
-            table = None
-            if valid.any():
-                if number > 1:
-                    study = self._laid_out(search.task.study_of(values[valid]), first)
-                self.terminal.note(f"round {number}: {len(places)} designs")
-                table = self._computed(study, store).table
-            search.add(places, values, valid, table)
+            words = f"round {number}: {len(places)} designs"
+            search.add(places, *self._round(places, words, first, store))
             number += 1
+        while len(places := search.next_checks()):
+            around = search.around(places)
+            words = f"{len(places)} designs and {len(around) - len(places)} within their tolerances"
+            search.add_checks(places, *self._round(around, words, first, store))
         return search.answer()
+
+    def _round(
+        self, places: Array, words: str, first: Study, store: Store
+    ) -> tuple[Array, Flags, Points | None]:
+        """Values of designs, which of them are valid cases, and the points of these."""
+        values = self.search.task.values(places)
+        valid = self.search.valid_cases(values)
+        if not valid.any():
+            return values, valid, None
+        study = first
+        if len(self.search.places):
+            study = self._laid_out(self.search.task.study_of(values[valid]), first)
+        self.terminal.note(words)
+        return values, valid, self._computed(study, store).table
 
     def confirm(self, answer: Answer, store: Store) -> Iterator[tuple[str, StudyRun]]:
         """Judge the best and the robust design under other motions, if there are any."""
@@ -92,9 +107,17 @@ class Rounds:
         if answer.best != NONE and (ends := list(answer.at_bounds)):
             words = " and ".join(f"the {end} {key}" for key, end in ends)
             yield f"the best design has {words} of the range; a wider one may have a better design"
+        if (place := answer.robust) != NONE and not answer.sure and answer.resamples:
+            share = f"{100.0 * answer.tolerated.share[place]:.0f} %"
+            yield (
+                f"no design holds in {100.0 * ROBUST:g} % of the resamples of the records; what is"
+                f" recommended does so in {share} of them"
+            )
+        if len(self.search.checked) >= self.search.most:
+            yield "search.most ended the search before all of the recommended region was examined"
         for name, run in confirmations.items():
             if not keeps_limits(run):
-                yield f"the {name} design does not keep its limits under the other motions"
+                yield f"the {WORDS[name]} does not keep its limits under the other motions"
 
     def _laid_out(self, checked: CheckedStudy, earlier: Study | None = None) -> Study:
         """A study with its points; records are shared with an earlier one."""
@@ -111,59 +134,99 @@ class Rounds:
         return run
 
 
-def unconfirmed(runs: Iterable[StudyRun]) -> RpsError | None:
-    """Histories of the confirmation that failed."""
-    texts = (text for run in runs for text in run.table.messages.values())
-    lines = list(dict.fromkeys(f"confirmation: {text}" for text in texts))
-    return StudyIncomplete("\n".join(lines)) if lines else None
+def unconfirmed(runs: Mapping[str, StudyRun]) -> RpsError | None:
+    """Histories of the validation that failed, or limits that the design does not keep in it."""
+    texts = (text for run in runs.values() for text in run.table.messages.values())
+    lines = list(dict.fromkeys(f"validation: {text}" for text in texts))
+    if lines:
+        return StudyIncomplete("\n".join(lines))
+    name = headline_of(runs)
+    if name is None or keeps_limits(runs[name]):
+        return None
+    told = verdict_lines(runs[name].keys_of_rows, runs[name].verdicts)
+    return LimitExceeded("\n".join(f"validation of the {WORDS[name]}: {line}" for line in told))
+
+
+def headline_of(runs: Mapping[str, StudyRun]) -> str | None:
+    """Name of the design whose validation counts: what is recommended, else the best."""
+    return next((name for name in ("robust", "best") if name in runs), None)
+
+
+def validation_text(conditions: Iterable[Condition], n: int) -> Iterator[str]:
+    """What so many independent records can tell of limits that a share of them may exceed."""
+    from scipy.special import betainc, betaincinv
+
+    for condition in conditions:
+        if not condition.admissible:
+            continue
+        may = math.floor(condition.admissible * n + ROUNDING)
+        fails = 1.0 - float(betainc(n - may, may + 1, 1.0 - condition.admissible))
+        seen = float(betaincinv(may + 1, n - may, CONFIDENCE))
+        yield (
+            f"{condition.name}: {may} of {n} may be beyond; of designs with exactly"
+            f" {100.0 * condition.admissible:g} % beyond {100.0 * fails:.0f} % fail here, and"
+            f" {100.0 * (1.0 - CONFIDENCE):.0f} % of those with {100.0 * seen:.0f} % pass"
+        )
 
 
 DIGITS = 4
 RECORDS_SHOWN = 3
+WORDS = {"best": "least that passes", "robust": "recommended design"}
+"""What the designs of an answer are called."""
 
 
 def answer_tables(
     document: dict[str, Any], answer: Answer, confirmations: Mapping[str, StudyRun]
 ) -> Iterator[Part]:
-    """Best design, requirements, what the records do to it, and what confirms which design."""
+    """What is recommended, its requirements, what the records do to it, and how it is validated."""
     counts = document["designs"]
-    best = document["best"]
     yield Heading(document["study"]["title"])
     yield Table.listing([(name.replace("_", " "), str(count)) for name, count in counts.items()])
-    yield _values(document, best or document["closest"], "best" if best else "least violated")
+    yield _values(document)
     yield _requirements(document, answer)
-    if best is not None:
-        yield Table.listing(list(_records(document)))
+    if document["best"] is not None:
+        yield Table.listing([*_region(document, answer), *_records(document, answer)])
     if len(answer.front):
         yield f"Pareto front of both objectives: {len(answer.front)} designs, in front.csv"
     if confirmations:
-        yield Heading(f"confirmation with {len(answer.task.confirming)} records that were not used")
+        yield Heading(f"validation with {len(answer.task.confirming)} records that were not used")
         rows = [
-            (design, *verdict_texts(verdict))
+            (WORDS[design], *verdict_texts(verdict))
             for design, run in confirmations.items()
             for verdict in run.verdicts
         ]
         yield Table.of_texts(("design", *VERDICT), rows, words=5, keys=2)
+        conditions = dict.fromkeys(r.condition for r in answer.judged.requirements)
+        yield from validation_text(conditions, len(answer.task.confirming))
     yield ONE_DIRECTION
 
 
-def _values(document: dict[str, Any], design: dict[str, Any], title: str) -> Table:
+def _values(document: dict[str, Any]) -> Table:
+    """What is recommended beside the least that passes, or the least violated one."""
     intervals = document["records"]["intervals"]
     ends = {item["key"]: item["end"] for item in document["at_bounds"]}
+    best = document["best"] or document["closest"]
+    shown_designs = [best] if document["robust"] is None else [document["robust"], best]
     rows = []
-    for key, value in design["values"].items():
+    for key in best["values"]:
         unit = unit_of(key)
         name = symbol(key) if unit == "-" else f"{symbol(key)} [{unit}]"
-        least = "minimised" if symbol(key) in design["aims"] else ""
+        least = "minimised" if symbol(key) in best["aims"] else ""
         end = f"{ends[key]} of its range" if key in ends else least
-        rows.append((name, end, shown(value, DIGITS), _interval(intervals[key])))
-    for objective, value in _further_objectives(document, design):
+        # As it was judged: no digit less.
+        values = [f"{design['values'][key]:.10g}" for design in shown_designs]
+        rows.append((name, end, *values, _interval(intervals[key])))
+    for place, (objective, value) in enumerate(_further_objectives(document, best)):
         name = objective["aim"]
         interval = [large(end, objective["unit"])[0] or 0.0 for end in intervals.get(name, ())]
-        number, unit = large(value, objective["unit"])
+        _, unit = large(value, objective["unit"])
         head = f"{name} [{unit}]" if unit else name
-        rows.append((head, "minimised", shown(number, DIGITS), _interval(interval)))
-    return Table.of_texts(("", "", title, "95 % of resamples"), rows, words=2)
+        of_all = [[*_further_objectives(document, design)][place][1] for design in shown_designs]
+        numbers = [shown(large(each, objective["unit"])[0], DIGITS) for each in of_all]
+        rows.append((head, "minimised", *numbers, _interval(interval)))
+    title = "least that passes" if document["best"] else "least violated"
+    heads = ["recommended"] * (len(shown_designs) > 1) + [title, "95 % of resamples"]
+    return Table.of_texts(("", "", *heads), rows, words=2)
 
 
 def _further_objectives(
@@ -183,43 +246,60 @@ def _interval(interval: Iterable[float]) -> str:
 
 def _requirements(document: dict[str, Any], answer: Answer) -> Table:
     rows = []
-    for row, requirement in zip(document["requirements"], answer.judged.requirements, strict=True):
+    verdicts = answer.verdicts(answer.headline)
+    for row, verdict in zip(document["requirements"], verdicts, strict=True):
+        _, word, requirement, result = verdict_texts(verdict)
+        if verdict.condition.name not in EVENTS and verdict.fractile is None:
+            result = f"{shown(row['value'], DIGITS)}; {result}"
+        met_by = f"{row['designs_that_meet_it']} designs"
         if row["binds"]:
             unit = document["least"][0]["unit"]
-            remark = f"binds; without it {measured(row['aim_without_it'], unit)}"
-        else:
-            remark = "" if row["met"] else "NOT MET"
-        result, met_by = shown(row["value"], DIGITS), f"{row['designs_that_meet_it']} designs"
-        rows.append(
-            (row["requirement"], condition_text(requirement.condition), remark, result, met_by)
-        )
-    heads = ("limit", "requirement", "", "result", "met by")
-    return Table.of_texts(heads, rows, words=3)
+            met_by += f"; binds, without it {measured(row['aim_without_it'], unit)}"
+        rows.append((row["requirement"], word, requirement, result, met_by))
+    return Table.of_texts((*VERDICT, "met by"), rows, words=5)
 
 
-def _records(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """How sharp the answer is, and how it hangs on the choice of records."""
+def _name_of(design: dict[str, Any], document: dict[str, Any]) -> str:
+    """Values and further objectives of a design."""
+    found = [label(key, value) for key, value in design["values"].items()]
+    objectives = _further_objectives(document, design)
+    found += [f"{each['aim']} {measured(value, each['unit'])}" for each, value in objectives]
+    return ", ".join(found)
+
+
+def _region(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, str]]:
+    """What was examined around the recommended design, and what is better but apart."""
+    if (robust := document["robust"]) is None:
+        return
+    within = "within the tolerances" if robust["within_tolerances"] else "by itself"
+    share = f" in {100.0 * robust['passing_share']:.0f} % of the resamples"
+    yield "the recommended design passes", within + share * bool(answer.resamples)
+    region = answer.regions[0]
+    checked = set() if answer.within is None else set(answer.within[0].tolist())
+    tolerated = len(checked.intersection(region.tolist()))
+    least, most = answer.values[region].min(axis=0), answer.values[region].max(axis=0)
+    ends = zip(answer.task.keys, least.tolist(), most.tolist(), strict=True)
+    where = ", ".join(f"{symbol(key)} {low:.6g} to {high:.6g}" for key, low, high in ends)
+    yield "its region", f"{len(region)} designs, {tolerated} of them with tolerances: {where}"
+    if islands := document["islands"]:
+        names = "; ".join(_name_of(island, document) for island in islands[:RECORDS_SHOWN])
+        more = f" and {len(islands) - RECORDS_SHOWN} more" * (len(islands) > RECORDS_SHOWN)
+        yield "islands, between which and it others fail", names + more
+
+
+def _records(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, str]]:
+    """How sharp the least that passes is, and how it hangs on the choice of records."""
     records = document["records"]
     for end, word in zip(document["bracket"] or (), ("smaller", "larger"), strict=False):
         if end is not None:
-            (key,) = document["best"]["values"]
+            key = answer.task.unknowns[0].key
             unit = unit_of(key).removesuffix("-")
-            yield f"the next {word} value that fails", f"{shown(end, 6)} {unit}".rstrip()
+            found = f"{end:.10g} {unit}".rstrip()
+            yield f"the next {word} value looked at that fails", found
     if not records["resamples"]:
         return
     share = 100.0 * records["passing_share_of_best"]
-    yield "the best design passes in", f"{share:.0f} % of {records['resamples']} resamples"
-    if (robust := document["robust"]) is not None:
-        found = [
-            label(key, float(shown(value, DIGITS)) if isinstance(value, float) else value)
-            for key, value in robust["values"].items()
-        ]
-        objectives = _further_objectives(document, robust)
-        found += [
-            f"{objective['aim']} {measured(value, objective['unit'])}"
-            for objective, value in objectives
-        ]
-        yield f"the best in {100.0 * ROBUST:g} % of them", ", ".join(found)
+    yield "the least that passes does so in", f"{share:.0f} % of {records['resamples']} resamples"
     if records["without_answer"]:
         yield "nothing passes in", f"{records['without_answer']} of them"
     objective, unit = document["least"][0].values()

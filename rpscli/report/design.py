@@ -17,11 +17,10 @@ from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, in_force
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
-from rpscli.report.study.statistics import reached
+from rpscli.report.study.statistics import reached, share_document
 from rpscli.report.table import Column
-from rpscli.sweep.design.answer import NONE, ROBUST, Answer, Requirement
+from rpscli.sweep.design.answer import NONE, Answer, Requirement
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.table import Array, Indices
 
 if TYPE_CHECKING:
@@ -71,13 +70,17 @@ def answer_document(answer: Answer) -> dict[str, Any]:
             "looked_at": len(answer.places),
             "valid": int(answer.valid.sum()),
             "passing": int(answer.passes.sum()),
+            "within_tolerances": 0 if answer.within is None else len(answer.within[0]),
         },
+        "tolerance": answer.task.file.tolerance,
         "least": [
             {"aim": objective_label(objective), "unit": objective_unit(objective)}
             for objective in answer.task.file.minimise
         ],
         "best": None if found is None else _design(answer, found),
-        "robust": None if answer.robust == NONE else _design(answer, answer.robust),
+        # What is recommended, and what is better than it but apart.
+        "robust": None if answer.robust == NONE else _design(answer, answer.robust, built=True),
+        "islands": [_design(answer, place, built=True) for place in answer.islands],
         "closest": _design(answer, answer.closest),
         "requirements": requirement_rows(answer),
         "at_bounds": [{"key": key, "end": end} for key, end in answer.at_bounds],
@@ -114,23 +117,31 @@ def _left_out(task: DesignTask) -> list[str]:
     ]
 
 
-def _design(answer: Answer, place: int) -> dict[str, Any]:
+def _design(answer: Answer, place: int, *, built: bool = False) -> dict[str, Any]:
+    """A design by itself, or with what may be built in its place."""
+    judged, at = answer.judged_at(place) if built else (answer.judged, place)
     objectives = zip(
         map(objective_label, answer.task.file.minimise),
-        answer.judged.objectives[:, 0, place],
+        judged.objectives[:, 0, at],
         strict=True,
     )
+    more: dict[str, Any] = {}
+    if built:
+        more["passing_share"] = float(answer.tolerated.share[place])
+        more["within_tolerances"] = judged is not answer.judged
     return {
         "design": place + 1,
         "values": dict(zip(answer.task.keys, answer.values[place].tolist(), strict=True)),
         "aims": {name: float(value) for name, value in objectives},
+        **more,
     }
 
 
 def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
-    """Each requirement at the best design, or at the least violated one."""
-    judged, place = answer.judged, answer.closest
+    """Each requirement at the recommended design, or at the least violated one."""
+    judged, place = answer.judged_at(answer.headline)
     without, best = answer.without, answer.objectives[answer.best]
+    verdicts = answer.verdicts(answer.headline)
     return [
         {
             "requirement": requirement_label(requirement),
@@ -140,7 +151,10 @@ def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
             "bound": requirement.bound,
             "records_too_many": float(judged.excess[row, place]),
             "met": bool(judged.met[row, 0, place]),
-            "designs_that_meet_it": int(judged.met[row, 0].sum()),
+            "beyond": share_document(verdicts[row].beyond),
+            "shown": verdicts[row].shown,
+            "shown_by_recordings": verdicts[row].shown_by,
+            "designs_that_meet_it": int(answer.judged.met[row, 0].sum()),
             "binds": without[row] < best if without else None,
             "aim_without_it": without[row] if without else None,
         }
@@ -151,10 +165,15 @@ def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
 def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Column]:
     """One row a design: its keys, whether it passes, objectives, and the value of each requirement.
 
-    `passing_share` is the share of the resamples of the records in which it passes; a value that
-    overturned is ``inf``, and cells of designs that are not valid cases are empty.
+    `passing_share` is the share of the resamples of the records in which it passes; `region` tells
+    which designs hold, and is 1 for the recommended region; a value that overturned is ``inf``, and
+    cells of designs that are not valid cases are empty.
     """
     judged, passing = answer.judged, answer.passing_share
+    region: list[int | None] = [None] * len(answer.places)
+    for number, members in enumerate(answer.regions, 1):
+        for place in members.tolist():
+            region[place] = number
 
     def column(name: str, unit: str, values: Array) -> Column:
         return Column(name, unit, [reached(float(values[place])) for place in places])
@@ -164,6 +183,8 @@ def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Colu
     for name, flags in (("valid", answer.valid), ("passes", answer.passes)):
         columns.append(Column(name, "-", [str(bool(flags[place])).lower() for place in places]))
     columns.append(column("passing_share", "-", passing))
+    columns.append(column("passing_share_within_tolerances", "-", answer.tolerated.share))
+    columns.append(Column("region", "-", [region[place] for place in places]))
     for row, objective in enumerate(answer.task.file.minimise):
         name = objective_label(objective).replace(",", "")
         columns.append(
@@ -226,6 +247,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
                 if answer.resamples:
                     axes.axvspan(*answer.interval(0), color=style.ORANGE, alpha=0.12, lw=0.0,
                                  label="best in 95 % of the resamples")  # fmt: skip
+            _draw_regions(axes, answer, row)
             top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
             axes.set_ylim(0.0, 1.05 * float(min(top, max(10.0 * requirement.bound, 1.0))))
             name = requirement.condition.name
@@ -239,15 +261,23 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
     return style.picture(draw, 1.4 + 2.3 * len(requirements))
 
 
+def _draw_regions(axes: Axes, answer: Answer, row: int) -> None:
+    """One unknown: regions of designs that hold, and what is recommended."""
+    for number, region in enumerate(answer.regions):
+        ends = answer.values[region, 0].min(), answer.values[region, 0].max()
+        label = ("recommended region", "islands", None)[min(number, 2)]
+        axes.axvspan(*ends, color=style.GREEN, alpha=0.08 if number else 0.25, lw=0.0, label=label)
+    if answer.robust != NONE:
+        judged, at = answer.judged_at(answer.robust)
+        axes.plot(answer.values[answer.robust, 0], judged.values[row, 0, at],
+                  **BEST | {"marker": "D", "ms": 6.0, "label": "recommended"})  # fmt: skip
+
+
 def _band(answer: Answer, row: int, requirement: Requirement) -> tuple[Array, Array]:
     """(designs,) ends of the interval of a value: exact for shares, else of the resamples."""
     if requirement.condition.name in EVENTS:
-        counted = max(len(answer.task.study.sources), 1)
-        shares = [share(round(value * counted), counted) if math.isfinite(value) else None
-                  for value in answer.judged.values[row, 0].tolist()]  # fmt: skip
-        ends = [(s.low if s.number else 0.0, s.high if s.number < s.of else 1.0) if s
-                else (math.nan, math.nan) for s in shares]  # fmt: skip
-        low, high = np.array(ends).T
+        shares = map(answer.share_beyond, answer.judged.beyond[row])
+        low, high = np.array([(share.low, share.high) for share in shares]).T
         return low, high
     drawn = answer.judged.values[row, 1 : 1 + answer.resamples]
     if not len(drawn):
@@ -333,12 +363,14 @@ def front_figure(answer: Answer, title: str) -> bytes:
 
 
 def _mark(axes: Axes, answer: Answer, at: Array) -> None:
-    """The best design, and the best robust one, at their rows of (designs, 2)."""
+    """The best design, the recommended one and islands, at their rows of (designs, 2)."""
     if answer.best != NONE:
         axes.plot(*at[answer.best], **BEST)
+    small = BEST | {"marker": "D", "ms": 6.0}
     if answer.robust != NONE:
-        words = f"best in {100.0 * ROBUST:g} % of the resamples"
-        axes.plot(*at[answer.robust], **BEST | {"marker": "D", "ms": 6.0, "label": words})
+        axes.plot(*at[answer.robust], **small | {"label": "recommended"})
+    if answer.islands:
+        axes.plot(*at[answer.islands].T, **small | {"mfc": "none", "label": "islands"})
 
 
 def _counts(answer: Answer) -> str:

@@ -268,6 +268,8 @@ class StudyParts(Section):
         description="follow each history by itself, with all its samples: roof displacement, floor"
         " velocity, forces of a column, base shear over that of the fixed base; far slower",
     )
+    perturb: PerturbSection | None = None
+    """small perturbations around every point"""
     limits: LimitsSection | None = None
     """judge the study in place of those of its base; exceeded: exit code 10"""
 
@@ -281,8 +283,6 @@ class StudyFile(StudyParts):
     """axes of a product; the keys of one axis go together"""
     sample: SampleSection | None = None
     """uncertain parameters; one more axis"""
-    perturb: PerturbSection | None = None
-    """small perturbations around every point"""
     observed: Text | None = None
     """CSV file of what was observed under records; for the report comparison"""
     reports: Annotated[tuple[Any, ...], _A_LIST] = ()

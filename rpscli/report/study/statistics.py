@@ -115,7 +115,7 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         Column("overturned_among_them", "-", [verdict.overturned for verdict in verdicts]),
         Column("exceeded", "-", [str(verdict.exceeded).lower() for verdict in verdicts]),
         Column("shown", "-", [str(verdict.shown).lower() for verdict in verdicts]),
-        Column("shown_by_records", "-", [verdict.shown_by for verdict in verdicts]),
+        Column("shown_by_recordings", "-", [verdict.shown_by for verdict in verdicts]),
         Column("source", "-", [condition.source for condition in conditions]),
     ]
 
@@ -162,7 +162,7 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
         "value_at_fractile": verdict.fractile,
         "exceeded": verdict.exceeded,
         "shown": verdict.shown,
-        "shown_by_records": verdict.shown_by,
+        "shown_by_recordings": verdict.shown_by,
     }
 
 
@@ -178,7 +178,7 @@ def verdict_text(verdict: Verdict) -> str:
 
 def shown_by_text(verdict: Verdict) -> str:
     """What would show that a limit is kept."""
-    return f"{verdict.beyond.number} of {verdict.shown_by} would show it"
+    return f"{verdict.shown_by} {verdict.beyond.by} with no more beyond would show it"
 
 
 def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:

@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 
 from rpscli.case.conditions import EVENTS, Condition
 from rpscli.case.design import DesignTask, Objective
-from rpscli.sweep.statistics.fractiles import CONFIDENCE, fractiles
-from rpscli.sweep.statistics.verdicts import decisive, judge, worse
+from rpscli.sweep.design.regions import regions
+from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, clustered, fractiles
+from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, worse
 from rpscli.sweep.table import Array, Indices, Table
 
 Demands = Mapping[str, Array]
-"""(designs, records, intensities) of each limit by name, larger ones the worse: see `worse`.
+"""(designs, records, intensities, members) of each limit by name, larger the worse: see `worse`.
 
+Members are the histories by which a design is judged under a record: the perturbed ones, and those
+of the designs within its tolerances where these were computed. Each counts as a part of the record.
 NaN where a history failed or the design is not a valid case."""
 
 
@@ -58,9 +61,9 @@ def weights_of(clusters: Sequence[int], resamples: int, seed: int) -> Weights:
 
 
 def demands_of(table: Table, name: str) -> Array:
-    """(designs, records, intensities) demands of the designs of a study on a limit."""
+    """(designs, records, intensities, members) demands of the designs of a study on a limit."""
     layout = table.layout
-    shape = len(layout.properties), len(layout.records), len(layout.scales)
+    shape = len(layout.properties), len(layout.records), len(layout.scales), len(layout.members)
     return worse(table, name).reshape(shape)
 
 
@@ -71,12 +74,14 @@ class Judged:
     `values` and `met` are (requirements, weightings, designs): the share of an event, or the demand
     that no more than the admissible records exceed, and whether that is enough. `excess`
     (requirements, designs) are records beyond the limit less those that may be, over all of them;
+    `beyond` (requirements, designs, histories) tells which histories are, NaN where one failed.
     `objectives` are (objectives, weightings, designs).
     """
 
     requirements: tuple[Requirement, ...]
     values: Array
     excess: Array
+    beyond: Array
     met: np.typing.NDArray[np.bool_]
     objectives: Array
 
@@ -94,12 +99,15 @@ def judged_designs(
     weights: Array,
 ) -> Judged:
     """Judge designs with values (designs, keys) in weights (weightings, records) of the records."""
-    found, excess, met = [], [], []
+    found, excess, beyond, met = [], [], [], []
+    members = next(iter(demands.values())).shape[3]
+    weights = np.repeat(weights, members, axis=1) / members
     for requirement in requirements:
         condition = requirement.condition
-        at = demands[condition.name][:, :, requirement.intensity]
+        at = demands[condition.name][:, :, requirement.intensity].reshape(len(values), -1)
         counted = judge(at, weights, condition)
         excess.append(counted.excess[0])
+        beyond.append(np.where(np.isnan(at), np.nan, at > condition.sign * condition.limit))
         met.append(counted.met)
         if condition.name in EVENTS:
             with np.errstate(invalid="ignore", divide="ignore"):
@@ -108,7 +116,7 @@ def judged_designs(
             found.append(condition.sign * decisive(at, weights, condition))
     keys = dict(zip(task.keys, values.T, strict=True))
     objectives = [_objective(objective, keys, demands, weights) for objective in task.file.minimise]
-    return Judged(tuple(requirements), *map(np.array, (found, excess, met, objectives)))
+    return Judged(tuple(requirements), *map(np.array, (found, excess, beyond, met, objectives)))
 
 
 def _objective(
@@ -121,7 +129,10 @@ def _objective(
             total += term.times * keys[name]
             continue
         condition = Condition(name, 0.0, "", fractile=term.fractile)
-        of_each = [decisive(at, weights, condition) for at in np.moveaxis(demands[name], 2, 0)]
+        of_each = [
+            decisive(at.reshape(len(at), -1), weights, condition)
+            for at in np.moveaxis(demands[name], 2, 0)
+        ]
         total += term.times * np.max(of_each, axis=0)
     return total
 
@@ -130,10 +141,18 @@ LARGE = 1e300
 """Stands for an objective that is not known."""
 
 ROBUST = 0.9
-"""Share of the resamples in which a robust design passes."""
+"""Share of the resamples in which a recommended design holds, if any does in so many."""
 
 NONE = -1
 """Place of a design that does not exist."""
+
+
+class Tolerated(NamedTuple):
+    """(designs,) verdicts, shares of the resamples and objectives."""
+
+    passes: NDArray[np.bool_]
+    share: Array
+    objectives: Array
 
 
 Interval = tuple[float, float]
@@ -146,7 +165,8 @@ class Answer:
 
     `places` are (designs, unknowns) in the unit cube, `values` (designs, keys) in SI units, `valid`
     says which are valid cases. `resamples` is the number of bootstrap samples of the records: the
-    weightings after that of all as they are.
+    weightings after that of all as they are. `even` designs are of the first sample. `within` are
+    the designs that were judged together with others within their tolerances, and how.
     """
 
     task: DesignTask
@@ -155,6 +175,8 @@ class Answer:
     valid: NDArray[np.bool_]
     judged: Judged
     resamples: int
+    even: int = 0
+    within: tuple[Indices, Judged] | None = None
 
     @property
     def best(self) -> int:
@@ -196,10 +218,83 @@ class Answer:
         return np.where(passes.any(axis=1), objectives.argmin(axis=1), NONE)
 
     @cached_property
+    def tolerated(self) -> Tolerated:
+        """Whether each design passes, in which share of the resamples, and its objective.
+
+        Within the tolerances, where these were examined.
+        """
+        found = Tolerated(self.passes.copy(), self.passing_share.copy(), self.objectives.copy())
+        if self.within is not None:
+            of, judged = self.within
+            found.passes[of] = judged.passes[0]
+            found.objectives[of] = np.nan_to_num(judged.objectives[0, 0], nan=np.inf, posinf=np.inf)
+            if self.resamples:
+                found.share[of] = judged.passes[1 : 1 + self.resamples].mean(axis=0)
+        return found
+
+    @cached_property
+    def holds(self) -> NDArray[np.bool_]:
+        """(designs,) which pass, in nearly all resamples if any design does."""
+        passes, share, _ = self.tolerated
+        surely = passes & (share >= ROBUST)
+        return surely if surely.any() else passes
+
+    @property
+    def sure(self) -> bool:
+        """Whether the designs that hold do so in nearly all resamples."""
+        return bool((self.tolerated.share[self.holds] >= ROBUST).all())
+
+    @cached_property
+    def regions(self) -> list[Indices]:
+        """Designs that hold, apart where others lie between; the main region first."""
+        return regions(self.places, self.holds, self.even) if self.holds.any() else []
+
+    def least_of(self, designs: Indices) -> int:
+        """Place of the best of some designs."""
+        return int(designs[self.tolerated.objectives[designs].argmin()])
+
+    @cached_property
     def robust(self) -> int:
-        """The best design that passes in nearly all resamples; NONE without one."""
-        objectives = np.where(self.passes & (self.passing_share >= ROBUST), self.objectives, np.inf)
-        return int(objectives.argmin()) if np.isfinite(objectives).any() else NONE
+        """The best design of the main region, which is recommended; NONE where none holds."""
+        return self.least_of(self.regions[0]) if self.regions else NONE
+
+    @property
+    def headline(self) -> int:
+        """Place of the recommended design, or of the least violated one."""
+        return self.closest if self.robust == NONE else self.robust
+
+    @property
+    def islands(self) -> list[int]:
+        """The best design of each other region that is better than the recommended one."""
+        if self.robust == NONE:
+            return []
+        objectives = self.tolerated.objectives
+        found = [self.least_of(region) for region in self.regions[1:]]
+        better = [place for place in found if objectives[place] < objectives[self.robust]]
+        return sorted(better, key=lambda place: float(objectives[place]))
+
+    def judged_at(self, place: int) -> tuple[Judged, int]:
+        """Where a design is judged, within its tolerances if these were examined."""
+        if self.within is not None and place in (of := self.within[0].tolist()):
+            return self.within[1], of.index(place)
+        return self.judged, place
+
+    def verdicts(self, place: int) -> list[Verdict]:
+        """On each requirement."""
+        judged, at = self.judged_at(place)
+        found = []
+        for row, requirement in enumerate(judged.requirements):
+            condition, value = requirement.condition, float(judged.values[row, 0, at])
+            counted, met = self.share_beyond(judged.beyond[row, at]), bool(judged.met[row, 0, at])
+            fractile = None if condition.fractile is None else value
+            found.append(Verdict(condition, (), counted, 0, value, "", fractile, exceeded=not met))
+        return found
+
+    def share_beyond(self, beyond: Array) -> Share:
+        """Of the histories of a design, NaN where one failed."""
+        clusters = np.repeat(self.task.clusters, len(beyond) // len(self.task.clusters))
+        known = ~np.isnan(beyond)
+        return clustered(beyond[known] > 0.0, clusters[known], self.task.file.independent)
 
     @property
     def of_resamples(self) -> Indices:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,15 @@ from rpscli.case.design import DesignTask
 from rpscli.case.study.schema import SampleSection
 from rpscli.case.text.document import Fault
 from rpscli.errors import CaseError
-from rpscli.sweep.design.answer import Answer, Requirement, demands_of, judged_designs, weights_of
+from rpscli.sweep.design.answer import (
+    NONE,
+    Answer,
+    Requirement,
+    demands_of,
+    judged_designs,
+    weights_of,
+)
+from rpscli.sweep.design.regions import neighbours
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.combinations import unit_cube
 from rpscli.sweep.points.layout import StudyPoints
@@ -25,9 +35,6 @@ Flags = NDArray[np.bool_]
 MOST_CORNERS = 4
 """Unknowns up to which all corners of the cube are in the first sample."""
 
-MOST_NEAR = 64
-"""Other designs among which the neighbours of a design are looked for."""
-
 
 def first_places(unknowns: int, count: int, seed: int) -> Array:
     """(designs, unknowns): equal steps of one unknown, else corners and a Sobol sequence."""
@@ -36,35 +43,6 @@ def first_places(unknowns: int, count: int, seed: int) -> Array:
     corners = list(itertools.product((0.0, 1.0), repeat=unknowns)) * (unknowns <= MOST_CORNERS)
     section = SampleSection.model_construct(size=count, seed=seed, ranges={})
     return np.array([*corners, *unit_cube(section, unknowns).tolist()])
-
-
-def neighbours(places: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs of designs between which no other lies: the ball over their distance is empty.
-
-    This is the graph of Gabriel and Sokal; on a line it joins each design with the next.
-
-    >>> [pair.tolist() for pair in neighbours(np.array([[0.0], [1.0], [0.4]]))]
-    [[0, 1], [2, 2]]
-    """
-    from scipy.spatial.distance import cdist
-
-    squares = np.asarray(cdist(places, places, "sqeuclidean"))
-    pairs = {
-        (min(one, other), max(one, other))
-        for one in range(len(places))
-        for other in _around(squares, one).tolist()
-    }
-    first, second = np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2).T
-    return first, second
-
-
-def _around(squares: Array, one: int) -> NDArray[np.int64]:
-    """The neighbours of a design among the nearest others: whoever is between is nearer still."""
-    near = np.argsort(squares[one], kind="stable")
-    near = near[near != one][:MOST_NEAR]
-    length = squares[one, near]
-    between = length[:, None] + squares[np.ix_(near, near)] < length * (1.0 - 1e-12)
-    return np.asarray(near[~between.any(axis=0)])
 
 
 def next_places(
@@ -117,6 +95,15 @@ def _ordered(places: Array, worth: Array) -> list[Array]:
 ROUNDS = 4
 """So many rounds have as many designs as the first one."""
 
+AROUND = 8
+"""Designs within the tolerances of one of several unknowns, besides itself."""
+
+AT_ONCE = 4
+"""Designs that are judged within their tolerances in a round."""
+
+FAR = 0.05
+"""Distance in the unit cube within which a recommended design has neighbours that hold."""
+
 
 class Search:
     """Designs that are known, and where to look next."""
@@ -132,7 +119,10 @@ class Search:
         self.values: Array = np.empty((0, len(task.keys)))
         self.valid = np.empty(0, dtype=bool)
         self.faults: dict[str, None] = {}
+        self.checked: list[int] = []
+        self._members = 1
         self._demands: dict[str, Array] = {}
+        self._within: dict[str, Array] = {}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -149,15 +139,70 @@ class Search:
         count = min(max(4, self.first // ROUNDS), self.most - len(self.places))
         if count <= 0:
             return self.places[:0]
-        answer = self.answer()
-        return next_places(
-            self.places,
-            answer.judged.passes[: 1 + answer.resamples],
-            answer.objectives,
-            answer.closest,
-            search.resolution,
-            count,
+        answer, turn = (
+            self.answer(),
+            (len(self.places) - self.first) // max(4, self.first // ROUNDS),
         )
+        passes, aim = answer.judged.passes[: 1 + answer.resamples], answer.closest
+        if turn % 2 and answer.robust != NONE:  # every second round looks for what holds
+            passes, aim = np.concatenate([answer.holds[None], passes[1:]]), answer.robust
+        return next_places(self.places, passes, answer.objectives, aim, search.resolution, count)
+
+    def next_checks(self) -> Array:
+        """(designs, unknowns) that are to be judged within their tolerances; none at the end.
+
+        The best ones of the main region; with one unknown all of it, and what lies between. Then
+        what lies between the best of them and better designs that fail.
+        """
+        answer, one = self.answer(), self.places.shape[1] == 1
+        if answer.robust == NONE:
+            return self.places[:0]
+        region = answer.regions[0][answer.tolerated.objectives[answer.regions[0]].argsort()]
+        new = [place for place in region.tolist() if place not in self.checked]
+        asked = [*self.places[new if one or region[0] in new else new[:0]]]
+        if one:
+            asked += self._between(np.sort(self.places[region, 0]))
+        known = {tuple(row) for row in self.values[self.checked].tolist()}
+        asked = asked if one else asked[:AT_ONCE]
+        for places in (asked, self._refined(answer) if not asked else []):
+            found = np.array(places).reshape(-1, self.places.shape[1])
+            kept = [tuple(row) not in known for row in self.task.values(found).tolist()]
+            if any(kept):
+                return found[kept][: self.most - len(self.checked)]
+        return self.places[:0]
+
+    def _between(self, line: Array) -> list[Array]:
+        """Places between those of one unknown that are farther apart than tolerances reach."""
+        found = []
+        for low, high in itertools.pairwise(line.tolist()):
+            reach = 2.0 * float(self.task.tolerances(np.array([[low]]))[0, 0])
+            parts = math.ceil((high - low) / max(reach, self.task.file.search.resolution) - 1e-9)
+            found += [np.array([low + (high - low) * n / parts]) for n in range(1, parts)]
+        return found
+
+    def _refined(self, answer: Answer) -> list[Array]:
+        """Better designs that fail by themselves; then halfway to those, and to ones far away."""
+        best, (first, second) = answer.robust, neighbours(self.places)
+        others = np.concatenate([second[first == best], first[second == best]])
+        length = np.linalg.norm(self.places[others] - self.places[best], axis=1)
+        objectives = answer.tolerated.objectives
+        better = ~answer.holds[others] & (objectives[others] < objectives[best])
+        alone = better & (length <= FAR) & ~np.isin(others, self.checked)
+        if alone.any():
+            return [*self.places[others[alone]]]
+        far = answer.holds[others] & (length > FAR)
+        chosen = others[(better & (length > self.task.file.search.resolution)) | far]
+        return [*(0.5 * (self.places[chosen] + self.places[best]))]
+
+    def around(self, places: Array) -> Array:
+        """(designs times members, unknowns): each design, and what is within its tolerances."""
+        unknowns = places.shape[1]
+        section = SampleSection.model_construct(size=AROUND, seed=1, ranges={})
+        cube = np.linspace(0.0, 1.0, 5)[:, None] if unknowns == 1 else unit_cube(section, unknowns)
+        offsets = np.concatenate([np.zeros((1, unknowns)), 2.0 * cube - 1.0])
+        offsets = offsets[np.sort(np.unique(offsets, axis=0, return_index=True)[1])]
+        members = places[:, None] + offsets * self.task.tolerances(places)[:, None]
+        return np.clip(members, 0.0, 1.0).reshape(-1, unknowns)
 
     def valid_cases(self, values: Array) -> Flags:
         """(designs,) which values make valid cases; why others do not is kept in `faults`."""
@@ -177,6 +222,7 @@ class Search:
         """Take the requirements from the first designs that are laid out; refuse what cannot be."""
         document = self.task.study.document
         (measure,) = shown_keys(layout, (INTENSITY,))
+        self._members = len(layout.members)
         several = len(layout.scales) > 1
         self.requirements = tuple(
             Requirement(condition, place, measure, level if several else None)
@@ -195,16 +241,41 @@ class Search:
 
     def add(self, places: Array, values: Array, valid: Flags, table: Table | None) -> None:
         """Take in a round; `table` has the points of its valid designs."""
-        shape = len(valid), self.weights.rows.shape[1], self._intensities
-        for name in self.names:
-            found = np.full(shape, np.nan)
-            if table is not None:
-                found[valid] = demands_of(table, name)
+        for name, found in self._demands_of(valid, table, np.nan):
             known = self._demands.get(name, found[:0])
             self._demands[name] = np.concatenate([known, found])
         self.places = np.concatenate([self.places, places])
         self.values = np.concatenate([self.values, values])
         self.valid = np.concatenate([self.valid, valid])
+
+    def add_checks(self, places: Array, values: Array, valid: Flags, table: Table | None) -> None:
+        """Take in designs with what is `around` them; what is no valid case there fails."""
+        members = len(values) // len(places)
+        own, known = values[::members], {tuple(row) for row in self.values.tolist()}
+        new = np.array([tuple(row) not in known for row in own.tolist()])
+        for name, found in self._demands_of(valid, table, np.inf):
+            parts = np.moveaxis(found.reshape(len(places), members, *found.shape[1:]), 1, 3)
+            parts = parts.reshape(*parts.shape[:3], -1)
+            earlier = self._within.get(name, parts[:0])
+            self._within[name] = np.concatenate([earlier, parts])
+            alone = np.where(valid[::members, None, None, None], found[::members], np.nan)
+            self._demands[name] = np.concatenate([self._demands[name], alone[new]])
+        self.places = np.concatenate([self.places, places[new]])
+        self.values = np.concatenate([self.values, own[new]])
+        self.valid = np.concatenate([self.valid, valid[::members][new]])
+        of = {tuple(row): n for n, row in enumerate(self.values.tolist())}
+        self.checked += [of[tuple(row)] for row in own.tolist()]
+
+    def _demands_of(
+        self, valid: Flags, table: Table | None, invalid: float
+    ) -> Iterator[tuple[str, Array]]:
+        """Of every result that is needed; `invalid` ones of designs that are not valid cases."""
+        shape = len(valid), self.weights.rows.shape[1], self._intensities, self._members
+        for name in self.names:
+            found = np.full(shape, invalid)
+            if table is not None:
+                found[valid] = demands_of(table, name)
+            yield name, found
 
     @property
     def _intensities(self) -> int:
@@ -212,9 +283,20 @@ class Search:
 
     def answer(self) -> Answer:
         """What is known so far."""
-        judged = judged_designs(
-            self.task, self.requirements, self.values, self._demands, self.weights.rows
-        )
+        rows, checked = self.weights.rows, self.checked
+        judged = judged_designs(self.task, self.requirements, self.values, self._demands, rows)
+        within = None
+        if checked:
+            values, demands = self.values[checked], self._within
+            near = judged_designs(self.task, self.requirements, values, demands, rows)
+            within = np.array(checked), near
         return Answer(
-            self.task, self.places, self.values, self.valid, judged, self.weights.resamples
+            self.task,
+            self.places,
+            self.values,
+            self.valid,
+            judged,
+            self.weights.resamples,
+            self.first,
+            within,
         )

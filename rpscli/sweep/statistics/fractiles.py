@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from collections.abc import Sequence
 from functools import lru_cache
@@ -59,6 +60,8 @@ class Share(NamedTuple):
     high: float
     recordings: int
     by: By = "recordings"
+    effective: float = float("nan")
+    """So many independent histories tell as much, if these are not."""
 
     @property
     def fraction(self) -> float | None:
@@ -126,7 +129,7 @@ def clustered(happened: NDArray[np.bool_], cluster: Indices, by: By = "recording
     scatter = several / (several - 1.0) * float(np.sum((counts - p * sizes) ** 2)) / total**2
     effective = min(max(of * p * (1.0 - p) / total / scatter, alike), of)
     low, high = _interval(number * effective / of, effective)
-    return Share(number, of, low, high, len(names), by)
+    return Share(number, of, low, high, len(names), by, effective)
 
 
 def share_of(table: Outcomes, points: Indices, happened: NDArray[np.bool_]) -> Share:
@@ -150,17 +153,23 @@ def _interval(number: float, of: float) -> tuple[float, float]:
 
 
 @lru_cache(maxsize=4096)
-def shown_by(number: int, admissible: float) -> int:
-    """Of how many histories, so many of them beyond, the interval ends at an admissible share.
+def shown_by(found: Share, admissible: float) -> int:
+    """By how many recordings, or events, the interval would end at an admissible share.
 
-    >>> shown_by(0, 0.05), shown_by(0, 0.1), shown_by(1, 0.05)
-    (59, 29, 110)
+    No more of them would be beyond than are.
+
+    >>> [shown_by(share(number, 31), 0.05) for number in (0, 1)], shown_by(share(0, 5), 0.1)
+    ([59, 110], 29)
     """
-    most = number + 1
-    while share(number, most).high > admissible:
+    effective = found.of if math.isnan(found.effective) else found.effective
+    number = found.number if effective == found.of else found.number * effective / found.of
+    each = found.recordings / effective
+    most = math.ceil(number) + 1
+    while _interval(number, most)[1] > admissible:
         most *= 2
-    counts = range(number + 1, most)
-    return counts.start + bisect_left(counts, -admissible, key=lambda of: -share(number, of).high)
+    counts = range(math.ceil(number) + 1, most)
+    least = bisect_left(counts, -admissible, key=lambda of: -_interval(number, of)[1])
+    return math.ceil((counts.start + least) * each)
 
 
 class Spread(NamedTuple):

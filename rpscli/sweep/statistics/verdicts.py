@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.conditions import EVENTS, Condition
-from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, rank, share_of, shown_by
+from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, share_of, shown_by
 from rpscli.sweep.statistics.summary import Records, Summary
 from rpscli.sweep.table import Array, Indices, Table
 
@@ -51,10 +51,10 @@ class Verdict:
 
     @property
     def shown_by(self) -> int | None:
-        """How many records would show it if no more of them were beyond; None where it is."""
+        """How many recordings would show it if no more were beyond; None where it is shown."""
         if self.exceeded or self.shown:
             return None
-        return shown_by(self.beyond.number, self.condition.admissible)
+        return shown_by(self.beyond, self.condition.admissible)
 
 
 class Judgement(NamedTuple):
@@ -73,7 +73,7 @@ class Judgement(NamedTuple):
     def excess(self) -> Array:
         """(weightings, rows) histories too many over all; infinite without any."""
         with np.errstate(invalid="ignore", divide="ignore"):
-            excess = (self.beyond - self.admissible) / self.total
+            excess = (self.beyond - np.floor(self.admissible)) / self.total
         return np.where(self.total > 0.0, excess, np.inf)
 
 
@@ -93,18 +93,17 @@ def decisive(demands: Array, weights: Array, condition: Condition) -> Array:
             continue
         counted = np.cumsum(weights[:, order], axis=1)
         total = counted[:, -1]
-        needed = np.maximum(total - _admissible(condition, total), 1.0)
+        needed = total - _admissible(condition, total)
         first = (counted >= needed[:, None] - ROUNDING).argmax(axis=1)
         found[:, place] = np.where(total > 0.0, row[order][first], np.nan)
     return found
 
 
 def _admissible(condition: Condition, total: Array) -> Array:
-    """How many of so many histories may be beyond the limit."""
-    if condition.fractile is not None:
-        up_to = rank(condition.fractile, total)
-        return np.asarray(up_to - 1.0 if condition.from_below else total - up_to)
-    return np.asarray(np.floor(condition.share * total + ROUNDING))
+    """How many of so many histories, which may be parts of one, may be beyond the limit."""
+    # The fractile from below is itself one of those that keep the limit.
+    below = condition.fractile is not None and condition.from_below
+    return np.asarray(condition.admissible * total + (-2.0 * ROUNDING if below else ROUNDING))
 
 
 def worse(table: Outcomes, name: str) -> Array:
