@@ -79,8 +79,7 @@ def schema_of(*, study: bool, design: bool = False) -> dict[str, Any]:
         return case_json_schema()
     from rpscli.case.design import DesignFile
     from rpscli.case.json_schema import study_json_schema
-    from rpscli.case.study.schema import study_file
+    from rpscli.case.study.reports import format_with
     from rpscli.report.study.registry import REPORTS
 
-    options = {name: kind.options for name, kind in REPORTS.items()}
-    return study_json_schema(DesignFile if design else study_file(options))
+    return study_json_schema(DesignFile if design else format_with(REPORTS))

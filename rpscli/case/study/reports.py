@@ -8,7 +8,7 @@ from typing import Annotated, Any, Protocol, get_args
 
 from rpscli.case.schema.fields import Section, Text
 from rpscli.case.study.axes import Axis
-from rpscli.case.study.schema import Analysis, AnyKeys
+from rpscli.case.study.schema import Analysis, AnyKeys, StudyFile, study_file
 from rpscli.case.text.document import Document, Fault, Path
 
 _VARIED = "varied keys"
@@ -79,6 +79,11 @@ ReportKinds = Mapping[str, ReportKind]
 
 OF_THE_STUDY = ("points", "failed", "statistics", "verdicts")
 """Stems of files that every study leaves."""
+
+
+def format_with(kinds: ReportKinds) -> type[StudyFile]:
+    """The format of studies that may ask for reports of these kinds."""
+    return study_file(tuple((name, kind.options) for name, kind in kinds.items()))
 
 
 def written_out(document: Document, kinds: ReportKinds) -> Document:

@@ -6,7 +6,7 @@ that join several keys stand in `rules`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from functools import cache
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
@@ -289,10 +289,11 @@ class StudyFile(StudyParts):
     """names of reports, or `name: {option: value}`"""
 
 
-def study_file(kinds: Mapping[str, type[Section]]) -> type[StudyFile]:
-    """The format of studies that may ask for reports of these kinds."""
+@cache
+def study_file(kinds: tuple[tuple[str, type[Section]], ...]) -> type[StudyFile]:
+    """The format of studies that may ask for reports of these kinds, by their names."""
     if not kinds:
         return StudyFile
-    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", kinds)], ...], _A_LIST]
+    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", dict(kinds))], ...], _A_LIST]
     field = each, Field((), description=StudyFile.model_fields["reports"].description)
     return create_model("StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field)

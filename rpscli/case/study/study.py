@@ -15,7 +15,13 @@ from rpscli.case.schema.keys import fields_of
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Axis, axes_of, sources_of
 from rpscli.case.study.observed import Observed, observed_of
-from rpscli.case.study.reports import ReportKinds, ReportRequest, requests_of, written_out
+from rpscli.case.study.reports import (
+    ReportKinds,
+    ReportRequest,
+    format_with,
+    requests_of,
+    written_out,
+)
 from rpscli.case.study.rules import (
     analysis_rules,
     fixed_faults,
@@ -25,7 +31,7 @@ from rpscli.case.study.rules import (
     twice,
     unknown_keys,
 )
-from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts, study_file
+from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
 from rpscli.case.text.document import Document, is_case, is_design, is_study, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
@@ -114,8 +120,7 @@ def study_of(
 ) -> Study:
     """A study from its document, as `parse_study` says."""
     whole = written_out(document, kinds)
-    options = {name: kind.options for name, kind in kinds.items()}
-    check = schema_check(study_file(options), whole)
+    check = schema_check(format_with(kinds), whole)
     axes, axis_faults = axes_of(document)
     sources, source_faults = sources_of(document, folder)
     reports = requests_of(whole, kinds)
