@@ -119,7 +119,7 @@ def _one(
         with counted("drawing the animation", terminal) as progress:
             draw = partial(history_film, result, title, film, progress)
             request.folder.add_at(film.file, drawn_with(look, film.ending, draw))
-    add_summary(request, done)
+    add_summary(done)
     write(request.folder, terminal)
     terminal.warn(done.document["warnings"])
     scaled_to = request.ground.scaled_to

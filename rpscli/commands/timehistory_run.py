@@ -48,10 +48,16 @@ class HistoryRequest:
     folder: OutputFolder
     floor_spectra: bool = False
 
+    @property
+    def name(self) -> str:
+        """Of the case and the record."""
+        return f"{self.case_label}, {self.label}"
+
 
 class HistoryResult(NamedTuple):
     """What is known of a history that is over; its demands by name, NaN for what it has not."""
 
+    request: HistoryRequest
     document: dict[str, Any]
     demands: dict[str, float]
     verdicts: list[Verdict]
@@ -140,7 +146,7 @@ def compute(
         verdicts = judged_records(records, [request.label], limits)
         error = _exceeded(verdicts)
     document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]
-    return HistoryResult(concluded(document, error), demands, verdicts, error), result
+    return HistoryResult(request, concluded(document, error), demands, verdicts, error), result
 
 
 def _exceeded(verdicts: Iterable[Verdict]) -> LimitExceeded | None:
@@ -160,9 +166,9 @@ def _found(verdict: Verdict) -> str:
     return f"{condition.name} = {value} ({condition.source})"
 
 
-def add_summary(request: HistoryRequest, done: HistoryResult) -> None:
+def add_summary(done: HistoryResult) -> None:
     """`summary.json`, which names all files that were collected before it."""
-    folder = request.folder
+    folder = done.request.folder
     done.document["files"] = [str(folder.folder / "summary.json"), *folder.files]
     folder.add("summary.json", json_text(done.document))
 

@@ -14,7 +14,7 @@ from rpscli.case.conditions import (
     case_conditions,
     with_friction,
 )
-from rpscli.commands.inputs import RESULTS, CaseInput, case_folder, write
+from rpscli.commands.inputs import RESULTS, case_folder, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal
@@ -59,26 +59,20 @@ CODES = (
 class Computed(NamedTuple):
     """The histories of one case, what they say together, and the folder for it."""
 
-    requests: list[HistoryRequest]
     histories: list[HistoryResult]
     together: Summary
     verdicts: list[Verdict]
     folder: OutputFolder | None
 
     @property
-    def given(self) -> CaseInput:
-        """The case."""
-        return self.requests[0].given
-
-    @property
-    def label(self) -> str:
-        """Name of the case."""
-        return self.requests[0].case_label
+    def first(self) -> HistoryRequest:
+        """The first of them, whose case is that of all."""
+        return self.histories[0].request
 
     @property
     def labels(self) -> list[str]:
         """Names of the records."""
-        return [request.label for request in self.requests]
+        return [history.request.label for history in self.histories]
 
 
 def run_all(
@@ -96,7 +90,7 @@ def run_all(
         histories = []
         for request in group:
             done, _ = compute(request, conditions, look, terminal)
-            add_summary(request, done)
+            add_summary(done)
             request.folder.write()
             histories.append(done)
         outcomes = [history.document["outcome"] for history in histories]
@@ -105,18 +99,18 @@ def run_all(
         judged = group[0].given.case
         limits = with_friction(case_conditions(judged.limits), judged.structure)
         found = judged_records(records, [each.label for each in group], [*limits, *conditions])
-        computed.append(Computed(group, histories, summary_of_records(records), found, folder))
-    error = _error(computed)
-    document = _document(computed, error)
+        computed.append(Computed(histories, summary_of_records(records), found, folder))
     for case in computed:
         if case.folder is None:
-            terminal.note(f"written to {case.requests[0].folder.folder}")
+            terminal.note(f"written to {case.first.folder.folder}")
             continue
         scalars = [history.document for history in case.histories]
         case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
         case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
         case.folder.add("summary.json", json_text({**heading(), **_set_document(case)}))
         write(case.folder, terminal)
+    error = _error(computed)
+    document = _document(computed, error)
     terminal.warn_first(document["warnings"], "in the documents")
     terminal.result(document, _tables(computed))
     leave(error)
@@ -137,24 +131,18 @@ def _set_folder(
     return case_folder(first.given, OutputRequest(place, output.force), COMMAND, record_source=name)
 
 
-def _named(computed: Sequence[Computed]) -> Iterator[tuple[str, HistoryResult]]:
-    """All histories by case and record."""
-    for case in computed:
-        for label, history in zip(case.labels, case.histories, strict=True):
-            yield f"{case.label}, {label}", history
-
-
 def _error(computed: Sequence[Computed]) -> RpsError | None:
     """What ends the command: failed histories, else limits that are exceeded."""
     lines = [
-        f"{name}: {history.error}"
-        for name, history in _named(computed)
+        f"{history.request.name}: {history.error}"
+        for case in computed
+        for history in case.histories
         if isinstance(history.error, AnalysisError)
     ]
     if lines:
         return AnalysisError("\n".join(lines))
     lines = [
-        f"limit exceeded: {case.label}: {line}"
+        f"limit exceeded: {case.first.case_label}: {line}"
         for case in computed
         for line in verdict_lines((), case.verdicts)
     ]
@@ -162,24 +150,19 @@ def _error(computed: Sequence[Computed]) -> RpsError | None:
 
 
 def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str, Any]:
-    histories = [history.document for case in computed for history in case.histories]
-    files = [file for history in histories for file in history["files"]]
-    files += [
-        str(case.folder.folder / name)
-        for case in computed
-        if case.folder is not None
-        for name in ("records.csv", "statistics.csv", "summary.json", "run.json")
-    ]
+    histories = [history for case in computed for history in case.histories]
+    files = [file for history in histories for file in history.document["files"]]
+    files += [file for case in computed if case.folder is not None for file in case.folder.files]
     warnings = [
-        f"{name}: {text}"
-        for name, history in _named(computed)
+        f"{history.request.name}: {text}"
+        for history in histories
         for text in history.document["warnings"]
     ]
     document = {
         **heading(),
         "command": COMMAND,
         "note": ONE_DIRECTION,
-        "histories": histories,
+        "histories": [history.document for history in histories],
         "sets": [_set_document(case) for case in computed],
         "warnings": warnings,
         "files": files,
@@ -198,15 +181,17 @@ def _set_document(case: Computed) -> dict[str, Any]:
 
 def _tables(computed: Sequence[Computed]) -> Iterator[Part]:
     for case in computed:
-        yield Heading(case.given.case.title)
-        if aims := dict.fromkeys(filter(None, (each.ground.scaled_to for each in case.requests))):
+        yield Heading(case.first.given.case.title)
+        if aims := dict.fromkeys(
+            filter(None, (each.request.ground.scaled_to for each in case.histories))
+        ):
             yield f"records scaled to {' or '.join(aims)}"
         (row,) = case.together.rows
         found = zip(case.together.quantities, row.spreads, strict=True)
         main = [(quantity, spread) for quantity, spread in found if quantity.demand]
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, dict(main[first : first + A_TABLE]))
-        if len(case.requests) > 1:
+        if len(case.histories) > 1:
             yield f"overturned: {row.overturned}; {CODES}"
     if any(case.verdicts for case in computed):
         yield _verdict_table(computed)
@@ -220,7 +205,7 @@ def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> 
         word = "overturned" if outcome.startswith("overturned") else outcome.replace("_", " ")
         values = [large(found[q.name], q.unit)[0] for q in quantities]
         rows.append([label, word, *(shown(value, DIGITS) for value in values)])
-    if len(case.requests) > 1:
+    if len(case.histories) > 1:
         words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
         for name, label in words.items():
             values = [large(getattr(each, name), q.unit)[0] for q, each in quantities.items()]
@@ -240,5 +225,5 @@ def _verdict_table(computed: Sequence[Computed]) -> Table:
             worst = "" if event else f", {which} {value} ({verdict.record})"
             result = f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}"
             result += f"; {shown_by_text(verdict)}" if verdict.shown_by else ""
-            rows.append([case.label, *texts, result])
+            rows.append([case.first.case_label, *texts, result])
     return Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)
