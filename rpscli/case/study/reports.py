@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Annotated, Any, Protocol, get_args
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Generic, TypeVar, get_args
 
 from rpscli.case.schema.fields import Section, Text
 from rpscli.case.study.axes import Axis
@@ -20,11 +20,13 @@ VariedKey = Annotated[Text, _VARIED]
 
 def varied_keys(options: Section, path: Path = ()) -> Iterator[tuple[Path, str]]:
     """Varied keys that options name, whatever the options are called, and where they stand."""
-    for name, field in type(options).model_fields.items():
+    for name, key_field in type(options).model_fields.items():
         value = getattr(options, name)
         if isinstance(value, Section):
             yield from varied_keys(value, (*path, name))
-        elif value is not None and (_VARIED in field.metadata or _is_varied(field.annotation)):
+        elif value is not None and (
+            _VARIED in key_field.metadata or _is_varied(key_field.annotation)
+        ):
             for key in (value,) if isinstance(value, str) else value:
                 yield (*path, name), key
 
@@ -57,23 +59,23 @@ Check = Callable[[Document, Sequence[Axis], ReportRequest], Iterable[Fault]]
 """Faults of a request in a study with these axes."""
 
 
-class ReportKind(Protocol):
-    """What the study file must know of a kind of report."""
-
-    @property
-    def options(self) -> type[ReportOptions]:
-        """What may be said about it."""
-
-    @property
-    def analyses(self) -> Collection[Analysis]:
-        """Analyses whose results it shows."""
-
-    @property
-    def check(self) -> Check:
-        """Rules that join its options with the rest of the study."""
+Options = TypeVar("Options", bound=ReportOptions)
 
 
-ReportKinds = Mapping[str, ReportKind]
+@dataclass(frozen=True)
+class ReportKind(Generic[Options]):
+    """What the study file must know of a kind of report.
+
+    `check` holds rules that join the options with the rest of the study; `analyses` are those
+    whose results it shows.
+    """
+
+    options: type[Options]
+    check: Check = field(default=lambda *_: (), kw_only=True)
+    analyses: tuple[Analysis, ...] = field(default=("timehistory",), kw_only=True)
+
+
+ReportKinds = Mapping[str, ReportKind[Any]]
 """The kinds by name."""
 
 

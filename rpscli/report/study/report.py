@@ -6,12 +6,11 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.schema.fields import Quantity
-from rpscli.case.study.reports import Check, ReportOptions
-from rpscli.case.study.schema import Analysis
+from rpscli.case.study.reports import Options, ReportKind
 from rpscli.report.figures.look import USUAL, Look, figure_files
 from rpscli.report.figures.style import Target, kept_figure
 from rpscli.report.study.labels import plain, symbol
@@ -37,7 +36,6 @@ StatisticOrShare = Annotated[
 ENDS = ("_low", "_high")
 """Of names of columns that hold the ends of a band."""
 
-Options = TypeVar("Options", bound=ReportOptions)
 Tables = Mapping[str, list[Column]]
 """Columns of each CSV file, by what follows the report's name in the file's."""
 
@@ -124,20 +122,16 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
 
 
 @dataclass(frozen=True)
-class Report(Generic[Options]):
+class Report(ReportKind[Options]):
     """One kind of report: what a study may say about it, and how it is made.
 
-    `check` holds rules that join the options with the rest of the study, `results` names results
-    that every system must have, and `requires` tells what is wrong with the points of a study that
-    it cannot show; all are seen before anything is computed.
+    `results` names results that every system must have, and `requires` tells what is wrong with the
+    points of a study that it cannot show; both are seen before anything is computed.
     """
 
-    options: type[Options]
     make: Callable[[StudyResults, Options], Found]
-    check: Check = lambda *_: ()
     results: Callable[[Options], Iterable[str]] = lambda _: ()
     requires: Callable[[StudyPoints, Options], Iterable[str]] = lambda *_: ()
-    analyses: tuple[Analysis, ...] = ("timehistory",)
 
 
 def preset(of: Report[Any], options: type[Options], **fixed: object) -> Report[Options]:
