@@ -51,7 +51,13 @@ from rpscli.physics.planar.state import (
     SURVIVED,
     UPLIFT,
 )
-from rpscli.physics.planar.steps import accept_steps, check_steps, plan_steps, take_steps
+from rpscli.physics.planar.steps import (
+    accept_steps,
+    check_steps,
+    plan_next_step,
+    plan_steps,
+    take_steps,
+)
 from rpscli.physics.planar.transitions import enter_phase
 
 HEARS = 0.1
@@ -108,7 +114,7 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
             elif s.accepted[l] == 0.0:
                 next_action = NOT_ACCEPTED
             elif s.steps_left[l] > 0.0:
-                plan_steps(s, l)
+                plan_next_step(s, l)
                 if s.steps[l] <= systems[s.system[l]].most_steps:
                     next_action = GOES_ON
                 else:

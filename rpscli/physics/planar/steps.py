@@ -68,6 +68,20 @@ def shorten_step(s: Record, l: int) -> None:
         s.step[l], s.steps_left[l] = most / change, 2.0
 
 
+LONGER = 1.3
+"""A step over the one before it, where a damper has a kink. About its zero the force is so steep
+that steps are thousands of times shorter than elsewhere: tried anew they are halved ten times."""
+
+
+@compiled
+def plan_next_step(s: Record, l: int) -> None:
+    """Plan on behind an accepted step of a lane with such a damper."""
+    longest = LONGER * s.step[l]
+    plan_steps(s, l)
+    if s.step[l] > longest:
+        s.step[l], s.steps_left[l] = longest, 2.0
+
+
 ONE_BEFORE = 0.06
 """Of the term before the last: that of a step at its limit, in series of sines and exponentials.
 The last term alone may pass through zero and hide what follows it."""
