@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
+from click.shell_completion import CompletionItem
 
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.failure import concluded, leave
@@ -57,12 +59,8 @@ CODES = ("en1998:", "en1998-2024:", "asce7:", "sp14:")
 def _targets(ctx: click.Context, option: click.Parameter, incomplete: str) -> list[Any]:
     """Codes after --target, or files."""
     del ctx, option
-    codes = [
-        click.shell_completion.CompletionItem(f"{code}?")
-        for code in CODES
-        if code.startswith(incomplete)
-    ]
-    return codes or [click.shell_completion.CompletionItem(incomplete, type="file")]
+    codes = [CompletionItem(f"{code}?") for code in CODES if code.startswith(incomplete)]
+    return codes or [CompletionItem(incomplete, type="file")]
 
 
 @click.command("select")
@@ -183,8 +181,9 @@ def command(
     wanted_pgv = _pgv(scale_by, pgv, spectrum)
     structure, told = (None, "") if case_source is None else _structure(case_source, terminal)
     asked = KNOWN.get(rules or spectrum.rules)
-    isolated = asked is not None and asked.isolated
-    span, why = _range(periods, structure, told, spectrum, isolated=isolated)
+    span, why = _range(structure, told, spectrum, isolated=asked is not None and asked.isolated)
+    if periods is not None:
+        span, why = periods, "as asked for"
     of = component or (asked.of if asked and rules else None) or spectrum.of or "component"
     request = SelectionRequest(
         count, span, factors, per_event, wanted_pgv, of, rules or spectrum.rules, structure
@@ -203,11 +202,8 @@ def command(
             {
                 "sources": list(sources),
                 "target": target,
-                "scale_by": scale_by,
-                "pgv": wanted_pgv,
-                "component": of,
-                "rules": request.rules,
-                "where": list(where),
+                "request": asdict(request),
+                "where": where,
             },
         ),
         force=output.force,
@@ -244,9 +240,8 @@ def _structure(source: str, terminal: Terminal) -> tuple[Periods, str]:
         (scales[limit.name] * limit.limit, f"the limit {limit.name} {limit.limit:g}")
         for limit in conditions_of(case.limits, "")
         if limit.name in scales
-    ]
-    usual = USUAL_ROTATION * critical, f"{USUAL_ROTATION:g} theta_cr, since the case has no limit"
-    rotation, told = min(limits or [usual])
+    ] or [(USUAL_ROTATION * critical, f"{USUAL_ROTATION:g} theta_cr, as the case has no limit")]
+    rotation, told = min(limits)
     if rotation >= critical:
         raise UsageError(f"--case {source}: {told} is no secant; it must be below theta_cr")
     building = structure.superstructure
@@ -255,31 +250,22 @@ def _structure(source: str, terminal: Terminal) -> tuple[Periods, str]:
 
 
 def _range(
-    given: tuple[float, float] | None,
-    structure: Periods | None,
-    told: str,
-    target: TargetSpectrum,
-    *,
-    isolated: bool,
+    structure: Periods | None, told: str, target: TargetSpectrum, *, isolated: bool
 ) -> tuple[tuple[float, float], str]:
     """Range of periods, and why it is that."""
-    if given is not None:
-        return given, "as asked for"
-    low, high = target.span
     if structure is None:
         found, why = USUAL_PERIODS, "usual; --case takes it from a structure"
     else:
         fixed, secant = structure
-        on_bearings = f"secant period {secant:.3g} s on bearings at {told}"
+        why = f"the secant period {secant:.3g} s on bearings at {told}"
         if isolated:
-            found, why = (0.75 * secant, 1.25 * secant), f"0.75 and 1.25 T_M, the {on_bearings}"
+            found, why = (0.75 * secant, 1.25 * secant), f"0.75 and 1.25 T_M, {why}"
         elif fixed is None:
-            found, why = (0.2 * secant, secant), f"0.2 of it to the {on_bearings}"
+            found, why = (0.2 * secant, secant), f"0.2 of it to {why}"
         else:
             found = 0.2 * fixed, max(2.0 * fixed, secant)
-            end = on_bearings if secant >= 2.0 * fixed else f"2 T1, beyond the {on_bearings}"
-            why = f"0.2 T1, T1 = {fixed:.3g} s on a fixed base, to the {end}"
-    cut = max(found[0], low), min(found[1], high)
+            why = f"0.2 T1, T1 = {fixed:.3g} s on a fixed base, to the longer of 2 T1 and {why}"
+    cut = max(found[0], target.span[0]), min(found[1], target.span[1])
     return cut, why if cut == found else f"{why}; cut where the target ends"
 
 
@@ -305,22 +291,16 @@ def _doubts(selection: Selection) -> Iterator[str]:
         if usable is not None and usable < longest * (1.0 - 1e-9):
             yield f"{one.name} is filtered beyond {usable:.3g} s; the range ends at {longest:.3g} s"
     if selection.clamped:
-        yield (
-            f"{selection.clamped} of {len(selection.chosen)} factors are held at a bound: widen"
-            " --factors, or give motions of another size"
-        )
-    for name, mean, wanted in (
-        ("PGV", selection.mean_pgv, selection.target.pgv),
-        ("PGD", selection.mean_pgd, selection.target.pgd),
-    ):
+        of = f"{selection.clamped} of {len(selection.chosen)} factors"
+        yield f"{of} are held at a bound: widen --factors, or give motions of another size"
+    means = {"pgv": selection.mean_pgv, "pgd": selection.mean_pgd}
+    for name, mean in means.items():
+        wanted = getattr(selection.target, name)
         if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
-            yield f"the mean {name} is {mean / wanted:.2g} times that of the target"
-    checks = {"the target": selection.target.checked}
-    if selection.requirements is not None:
-        checks["what is asked of the set"] = selection.requirements.checked
-    for what, checked in checks.items():
-        if "NOT VERIFIED" in checked:
-            yield f"{what}: {checked}"
+            yield f"the mean {name.upper()} is {mean / wanted:.2g} times that of the target"
+    asked = selection.requirements
+    checks = selection.target.checked, "" if asked is None else f"{asked.clause}: {asked.checked}"
+    yield from (checked for checked in checks if "NOT VERIFIED" in checked)
 
 
 def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | None:
@@ -340,43 +320,34 @@ def _tables(
     from rpscli.records.requirements import component_text
     from rpscli.report.tables.motions import selection_columns
 
-    columns = selection_columns(selection)
-    yield Table(
-        picked(columns, "name", "event", "factor", "pgv", "pgd", "misfit", "clamped"), words=2
-    )
-    target, chosen, errors = selection.target, selection.chosen, selection.errors
-    rows = [
-        ("target", target.name),
-        ("edition", target.edition),
-        ("checked", target.checked),
-        (
-            "spectra of",
-            component_text(selection.of) + ("" if target.of else "; the target does not say"),
-        ),
-        ("periods", f"{selection.periods[0]:.3g} to {selection.periods[-1]:.3g} s: {why}"),
-        ("common factor, after their own", f"{selection.common:.4f}"),
-        ("misfit of the mean, rms of ln(mean/target)", f"{selection.misfit:.4f}"),
-        ("least mean/target", f"{selection.least_ratio:.3f}"),
-        (
-            "mean PGV, target's",
-            f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s"
-            + (f" ({target.pgv_by})" if target.pgv else ""),
-        ),
-        ("mean PGD, target's", f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m"),
-        ("factors at a bound", f"{selection.clamped} of {len(chosen)}"),
-        ("chosen among", f"{selection.candidates}; {selection.refused} beyond the factors"),
-    ]
+    names = ("name", "event", "factor", "pgv", "pgd", "misfit", "clamped")
+    yield Table(picked(selection_columns(selection), *names), words=2)
+    target, errors, asked = selection.target, selection.errors, selection.requirements
+    low, high = selection.periods[[0, -1]]
+    of = component_text(selection.of) + ("" if target.of else "; the target does not say")
+    by = f" ({target.pgv_by})" if target.pgv else ""
+    rows = {
+        "target": target.name,
+        "edition": target.edition,
+        "checked": target.checked,
+        "spectra of": of,
+        "periods": f"{low:.3g} to {high:.3g} s: {why}",
+        "common factor, after their own": f"{selection.common:.4f}",
+        "misfit of the mean, rms of ln(mean/target)": f"{selection.misfit:.4f}",
+        "least mean/target": f"{selection.least_ratio:.3f}",
+        "mean PGV, target's": f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s{by}",
+        "mean PGD, target's": f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m",
+        "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
+        "chosen among": f"{selection.candidates}; {selection.refused} beyond the factors",
+    }
     if errors is not None:
-        rows.insert(
-            8, ("largest error of mean, deviation of ln Sa", f"{errors[0]:.3f}, {errors[1]:.3f}")
-        )
-    rows += [
-        (f"left out by {text}", f"{counts['outside']} outside, {counts['not_known']} not known")
-        for text, counts in left_out.items()
-    ]
-    yield Table.listing(rows)
-    if selection.requirements is not None:
-        yield f"{selection.requirements.clause}; {selection.requirements.checked}:"
-        rules = [(rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules]
-        yield Table.of_texts(["requirement", "required", "result", ""], rows=rules, words=4)
+        text = "largest errors of mean and deviation of ln Sa"
+        rows[text] = f"{errors[0]:.3f}, {errors[1]:.3f}"
+    for text, counts in left_out.items():
+        rows[f"left out by {text}"] = f"{counts['outside']}; {counts['not_known']} not known"
+    yield Table.listing(rows.items())
+    if asked is not None:
+        yield f"{asked.clause}; {asked.checked}:"
+        judged = [(rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules]
+        yield Table.of_texts(["requirement", "required", "result", ""], judged, words=4)
     yield WHY_PGV

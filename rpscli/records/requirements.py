@@ -32,22 +32,82 @@ def component_text(of: Component) -> str:
     return f"{SHOWN.get(of, of)} of pairs{among}"
 
 
+class Periods(NamedTuple):
+    """Periods of a structure [s]: the first one on a fixed base, and the secant one on bearings."""
+
+    fixed: float | None
+    secant: float
+
+
+class Rule(NamedTuple):
+    """One requirement beside what a set has; met is None where it cannot be told."""
+
+    rule: str
+    required: str
+    found: str
+    met: bool | None
+
+    @property
+    def word(self) -> str:
+        """As tables say it."""
+        return "not checked" if self.met is None else ("met" if self.met else "NOT MET")
+
+
 @dataclass(frozen=True)
 class Requirements:
-    """What a code asks of a set; `span` are multiples of T1, or of T_M where it is `isolated`."""
+    """What a code asks of a set: at least `count` motions or pairs, `least` of the target.
+
+    `span` are multiples of T1, or of T_M where it is `isolated`, between which that is.
+    """
 
     clause: str
     checked: str
     count: int = 1
-    """Motions or pairs at least."""
     least: float = 0.9
-    """Mean spectrum over target at least."""
     mean_pga: bool = False
-    """Whether the mean PGA must reach that of the target."""
     of: Component | None = None
     level: str = ""
     span: tuple[float, float] | None = None
     isolated: bool = False
+
+    def judged(
+        self,
+        number: int,
+        of: Component,
+        level: str,
+        pga_ratio: float,
+        least_ratio: float,
+        looked_at: tuple[float, float],
+        structure: Periods | None,
+    ) -> tuple[Rule, ...]:
+        """Every requirement; ratios are the mean over the target, within the periods looked at."""
+        noun, (low, high) = "motions" if of == "component" else "pairs", looked_at
+        span = f"{low:.3g} to {high:.3g} s"
+        # 1e-6 of the ratios are for factors of six digits.
+        found = [Rule(f"number of {noun}", f">= {self.count}", f"{number}", number >= self.count)]
+        if self.of is not None:
+            texts = component_text(self.of), component_text(of)
+            found.append(Rule("component", *texts, of == self.of))
+        if self.level:
+            same = level.lower() == self.level.lower() if level else None
+            found.append(Rule("level", self.level, level or "not said by the target", same))
+        if self.mean_pga:
+            met = pga_ratio >= 1.0 - 1e-6
+            found.append(Rule("mean PGA over the target's", ">= 1", f"{pga_ratio:.3f}", met))
+        met = least_ratio >= self.least - 1e-6
+        found.append(Rule(f"mean/target, {span}", f">= {self.least:g}", f"{least_ratio:.3f}", met))
+        if self.span is not None:
+            name = "T_M" if self.isolated else "T1"
+            text = " to ".join(f"{factor:g} {name}" for factor in self.span)
+            period = structure and (structure.secant if self.isolated else structure.fixed)
+            if period is None:
+                unknown = f"{span}; {name} is not known: give --case"
+                return (*found, Rule("range of periods", text, unknown, None))
+            ends = self.span[0] * period, self.span[1] * period
+            covers = low <= ends[0] * (1.0 + 1e-6) and ends[1] * (1.0 - 1e-6) <= high
+            text = f"{text} = {ends[0]:.3g} to {ends[1]:.3g} s"
+            found.append(Rule("range of periods", text, span, covers))
+        return tuple(found)
 
 
 RULES = {
@@ -83,73 +143,3 @@ RULES = {
     ),
 }
 """By the names of `--rules`."""
-
-
-class Rule(NamedTuple):
-    """One requirement beside what a set has; met is None where it cannot be told."""
-
-    rule: str
-    required: str
-    found: str
-    met: bool | None
-
-    @property
-    def word(self) -> str:
-        """As tables say it."""
-        return "not checked" if self.met is None else ("met" if self.met else "NOT MET")
-
-
-class Periods(NamedTuple):
-    """Periods of a structure [s]: the first one on a fixed base, and the secant one on bearings."""
-
-    fixed: float | None
-    secant: float
-
-
-class Have(NamedTuple):
-    """What a set has: its mean over the target within a range, and its mean PGA over that."""
-
-    number: int
-    of: Component
-    level: str
-    span: tuple[float, float]
-    least: float
-    pga_ratio: float
-
-
-def rules_of(asked: Requirements, have: Have, periods: Periods | None) -> list[Rule]:
-    """Every requirement of a code, judged; 1e-6 are for factors of six digits."""
-    noun = "motions" if have.of == "component" else "pairs"
-    enough = have.number >= asked.count
-    found = [Rule(f"number of {noun}", f">= {asked.count}", str(have.number), enough)]
-    if asked.of is not None:
-        texts = component_text(asked.of), component_text(have.of)
-        found.append(Rule("component", *texts, have.of == asked.of))
-    if asked.level:
-        told = have.level or "not said by the target"
-        same = have.level.lower() == asked.level.lower() if have.level else None
-        found.append(Rule("level", asked.level, told, same))
-    if asked.mean_pga:
-        reached = have.pga_ratio >= 1.0 - 1e-6
-        found.append(Rule("mean PGA over the target's", ">= 1", f"{have.pga_ratio:.3f}", reached))
-    reached = have.least >= asked.least - 1e-6
-    low, high = have.span
-    place = f"mean/target, {low:.3g} to {high:.3g} s"
-    found.append(Rule(place, f">= {asked.least:g}", f"{have.least:.3f}", reached))
-    if asked.span is not None:
-        found.append(_covered(asked, have, periods))
-    return found
-
-
-def _covered(asked: Requirements, have: Have, periods: Periods | None) -> Rule:
-    """Whether the range is that of the code."""
-    assert asked.span is not None, "a code without a range covers it"
-    name = "T_M" if asked.isolated else "T1"
-    text = " to ".join(f"{factor:g} {name}" for factor in asked.span)
-    span = f"{have.span[0]:.3g} to {have.span[1]:.3g} s"
-    period = periods and (periods.secant if asked.isolated else periods.fixed)
-    if period is None:
-        return Rule("range of periods", text, f"{span}; {name} is not known: give --case", None)
-    low, high = (factor * period for factor in asked.span)
-    covers = have.span[0] <= low * (1.0 + 1e-6) and high * (1.0 - 1e-6) <= have.span[1]
-    return Rule("range of periods", f"{text} = {low:.3g} to {high:.3g} s", span, covers)

@@ -86,6 +86,12 @@ class Goal:
         cost = np.sqrt(shape.var(axis=-1) + (offset + common) ** 2) + SHORT * missing
         return cost, common
 
+    def common_factor(self, spectra: Array, factors: Array) -> float:
+        """That of one set, with spectra (size, 1 + n) under factors (size,)."""
+        total = self.features(spectra).sum(axis=0)
+        _, common = self.judged(total, len(factors), factors.min(), factors.max())
+        return math.exp(float(common))
+
 
 def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> list[int]:
     """Places of the best set that is found, in order.

@@ -14,15 +14,7 @@ from rpscli.records.clusters import clusters, event_of, pairs
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import intensity_measures
 from rpscli.records.pair_measure import of_directions, over_directions, spectra_over_directions
-from rpscli.records.requirements import (
-    RULES,
-    Component,
-    Have,
-    Periods,
-    Requirements,
-    Rule,
-    rules_of,
-)
+from rpscli.records.requirements import RULES, Component, Periods, Requirements, Rule
 from rpscli.records.search import Goal, Pool, best_choice
 from rpscli.records.source import load_record
 from rpscli.records.spectrum import response_spectrum
@@ -183,58 +175,63 @@ def select(
     Of one recording one component, or the pair, is chosen at most.
     """
     asked = None if target.deviation else RULES.get(request.rules or target.rules)
-    periods, wanted = _compared(target, request, PERIODS)
-    every = _candidates([*motions], target.damping, periods, request.of)
-    fits = [_scaled(one, target, periods, wanted[1:], request) for one in every]
+    periods, goal = _goal(target, request, asked, PERIODS)
+    sources = _sources([*motions], request.of)
+    every = [_measured(both, target.damping, periods, request.of) for both in sources]
+    fits = [_scaled(one, target, periods, goal.wanted[1:], request) for one in every]
     fitting = [one for scaled in fits for one in scaled]
     pool = Pool(
-        np.array([one.scaled for one in fitting]).reshape(-1, len(wanted)),
+        np.array([one.scaled for one in fitting]).reshape(-1, len(goal.wanted)),
         np.array([one.factor for one in fitting]),
         np.repeat(_recordings(every), [len(scaled) for scaled in fits]),
         np.unique([one.event for one in fitting], return_inverse=True)[1],
     )
     _require_enough(pool, len(every), request)
-    goal = _goal(target, request, asked, periods, wanted)
     places = best_choice(pool, goal, request.count, request.per_event)
     # Codes ask for all periods: the common factor and the verdicts are from a finer grid.
-    periods, wanted = _compared(target, request, FINER * PERIODS)
-    finer = [_finer(fitting[place], target.damping, periods, request.of) for place in places]
-    spectra, factors = np.array([one.scaled for one in finer]), [one.factor for one in finer]
-    goal = _goal(target, request, asked, periods, wanted)
-    total = goal.features(spectra).sum(axis=0)
-    _, shift = goal.judged(total, len(finer), np.array(min(factors)), np.array(max(factors)))
-    common = float(np.exp(shift))
-    chosen = tuple(_under(common, one, wanted[1:], request) for one in finer)
+    periods, goal = _goal(target, request, asked, FINER * PERIODS)
+    finer = [
+        replace(
+            _measured(fitting[place].motions, target.damping, periods, request.of),
+            factor=fitting[place].factor,
+            clamped=fitting[place].clamped,
+        )
+        for place in places
+    ]
+    common = goal.common_factor(
+        np.array([one.scaled for one in finer]), np.array([one.factor for one in finer])
+    )
+    chosen = tuple(_under(common, one, goal.wanted[1:], request) for one in finer)
     scaled = np.array([one.scaled for one in chosen])
     mean = scaled.mean(axis=0) if goal.deviation is None else np.exp(np.log(scaled).mean(axis=0))
-    selection = Selection(
+    ratio = mean / goal.wanted
+    return Selection(
         target=target,
         of=request.of,
         periods=periods,
-        wanted=wanted[1:],
+        wanted=goal.wanted[1:],
         chosen=chosen,
         mean=mean[1:],
-        misfit=float(misfit(mean[1:], wanted[1:])),
+        misfit=float(misfit(mean[1:], goal.wanted[1:])),
         candidates=len(every),
         refused=sum(not scaled for scaled in fits),
         common=common,
         deviation=None if goal.deviation is None else np.log(scaled[:, 1:]).std(axis=0, ddof=1),
         requirements=asked,
-    )
-    if asked is None:
-        return selection
-    have = Have(
-        len(chosen), request.of, target.level, request.periods, selection.least_ratio,
-        float(mean[0] / wanted[0]),
+        rules=() if asked is None else asked.judged(
+            len(chosen), request.of, target.level, float(ratio[0]), float(ratio[1:].min()),
+            request.periods, request.structure,
+        ),
     )  # fmt: skip
-    return replace(selection, rules=tuple(rules_of(asked, have, request.structure)))
 
 
-def _compared(target: TargetSpectrum, request: SelectionRequest, count: int) -> tuple[Array, Array]:
-    """Periods (n,) [s], and the target (1 + n,) there, after its PGA, NaN if it has none [m/s2]."""
-    periods = np.geomspace(*request.periods, count)
+def _goal(
+    target: TargetSpectrum, request: SelectionRequest, asked: Requirements | None, count: int
+) -> tuple[Array, Goal]:
+    """Periods (n,) [s], and what the set is to have there and of its PGA."""
+    low, high = request.periods
+    periods = np.geomspace(low, high, count)
     if target.pinned is not None:
-        low, high = request.periods
         if not low <= target.pinned <= high:
             raise RecordError(
                 f"{target.source}: does not scatter at {target.pinned:g} s, which must be within"
@@ -242,22 +239,11 @@ def _compared(target: TargetSpectrum, request: SelectionRequest, count: int) -> 
             )
         periods = np.union1d(periods, target.pinned)
     pga = float(target.acceleration(np.zeros(1))[0]) if target.span[0] == 0.0 else np.nan
-    return periods, np.array([pga, *target.acceleration(periods)])
-
-
-def _goal(
-    target: TargetSpectrum,
-    request: SelectionRequest,
-    asked: Requirements | None,
-    periods: Array,
-    wanted: Array,
-) -> Goal:
-    """What the set is to have at some periods."""
-    return Goal(
-        wanted,
+    return periods, Goal(
+        np.array([pga, *target.acceleration(periods)]),
         None if target.deviation is None else target.deviation(periods),
         0.0 if asked is None else asked.least,
-        asked is not None and asked.mean_pga and not np.isnan(wanted[0]),
+        asked is not None and asked.mean_pga and not np.isnan(pga),
         request.factors,
         fixed=request.pgv is not None,
     )
@@ -272,49 +258,35 @@ def misfit(spectra: Array, wanted: Array) -> Array:
     return np.asarray(np.sqrt(np.mean(np.log(spectra / wanted) ** 2, axis=-1)))
 
 
-def _candidates(
-    motions: list[GroundMotion], damping: float, periods: Array, of: Component
-) -> list[Candidate]:
-    """Motions, or the pairs that they belong to, with their spectra and peaks."""
+def _sources(motions: list[GroundMotion], of: Component) -> list[tuple[GroundMotion, ...]]:
+    """Motions by themselves, or the pairs that they belong to."""
     if of == "component":
-        found = [_single(motion, damping, periods) for motion in motions]
-    else:
-        measured = pairs([motion.source for motion in motions], "rotd50" if of == "srss" else of)
-        both = dict.fromkeys(pair for pair in measured if pair is not None)
-        found = [_pair((load_record(a), load_record(b)), damping, periods, of) for a, b in both]
-    for one in found:
-        if not (one.acceleration > 0.0).all() or one.pgv <= 0.0:
-            raise RecordError(f"{one.source}: does not move the ground; leave it out")
-    return found
+        return [(motion,) for motion in motions]
+    found = pairs([motion.source for motion in motions], "rotd50" if of == "srss" else of)
+    both = dict.fromkeys(pair for pair in found if pair is not None)
+    return [(load_record(first), load_record(second)) for first, second in both]
 
 
-def _single(motion: GroundMotion, damping: float, periods: Array) -> Candidate:
-    acceleration = response_spectrum(motion, periods, damping).pseudo_acceleration
-    peaks = intensity_measures(motion)
-    event = event_of(motion) or motion.name
-    return Candidate((motion,), event, motion.pga, peaks.pgv, peaks.pgd, acceleration)
-
-
-def _finer(one: Candidate, damping: float, periods: Array, of: Component) -> Candidate:
-    """A candidate under its factor at other periods."""
-    both = one.motions
-    again = (
-        _single(both[0], damping, periods) if len(both) == 1 else _pair(both, damping, periods, of)
-    )
-    return replace(again, factor=one.factor, clamped=one.clamped)
-
-
-def _pair(
+def _measured(
     motions: tuple[GroundMotion, ...], damping: float, periods: Array, of: Component
 ) -> Candidate:
+    """A motion or a pair with its spectrum and its peaks."""
+
     def one_of(values: Array) -> Array:
         return np.hypot(values[0], values[90]) if of == "srss" else of_directions(values, of)
 
-    first, second = motions
-    spectra = one_of(spectra_over_directions(first, second, [0.0, *periods], damping))
-    pgv, pgd = (float(one_of(over_directions(first, second, m))) for m in ("PGV", "PGD"))
+    first, at = motions[0], [0.0, *periods]
+    if len(motions) == 1:
+        spectrum = response_spectrum(first, at, damping).pseudo_acceleration
+        peaks = intensity_measures(first)
+        pgv, pgd = peaks.pgv, peaks.pgd
+    else:
+        spectrum = one_of(spectra_over_directions(first, motions[1], at, damping))
+        pgv, pgd = (float(one_of(over_directions(first, motions[1], m))) for m in ("PGV", "PGD"))
+    if not spectrum.all() or pgv <= 0.0:
+        raise RecordError(f"{first.source}: does not move the ground; leave it out")
     event = event_of(first) or first.name
-    return Candidate(motions, event, float(spectra[0]), pgv, pgd, spectra[1:])
+    return Candidate(motions, event, float(spectrum[0]), pgv, pgd, spectrum[1:])
 
 
 def _recordings(candidates: Sequence[Candidate]) -> list[int]:
@@ -338,10 +310,9 @@ def _scaled(
         factors = np.exp((offset + LEVELS[:, None] * target.deviation(periods)).mean(axis=1))
     else:
         best = float(np.exp(offset.mean()))
-        kept = replace(one, clamped=not low <= best <= high)
-        return [_under(min(max(best, low), high), replace(kept, factor=1.0), wanted, request)]
-    inside = [float(factor) for factor in factors if low <= factor <= high]
-    return [_under(factor, replace(one, factor=1.0), wanted, request) for factor in inside]
+        held = replace(one, clamped=not low <= best <= high)
+        return [_under(min(max(best, low), high), held, wanted, request)]
+    return [_under(float(f), one, wanted, request) for f in factors if low <= f <= high]
 
 
 def _under(factor: float, one: Candidate, wanted: Array, request: SelectionRequest) -> Candidate:
