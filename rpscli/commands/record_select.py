@@ -180,6 +180,8 @@ def command(
     spectrum = load_target(target)
     wanted_pgv = _pgv(scale_by, pgv, spectrum)
     structure, told = (None, "") if case_source is None else _structure(case_source, terminal)
+    if spectrum.deviation is not None and rules not in {None, "none"}:
+        raise UsageError(f"--rules {rules}: is about means, {target} has a sigma_ln to be met")
     asked = KNOWN.get(rules or spectrum.rules)
     span, why = _range(structure, told, spectrum, isolated=asked is not None and asked.isolated)
     if periods is not None:

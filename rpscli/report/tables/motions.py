@@ -125,10 +125,15 @@ def selection_columns(selection: Selection) -> list[Column]:
 
 def mean_columns(selection: Selection) -> list[Column]:
     """`spectra.csv`: one row a period; target, mean, and every scaled motion."""
+    scatter = []
+    if (wanted := selection.target.deviation) and selection.deviation is not None:
+        scatter.append(Column("target_deviation", "-", wanted(selection.periods)))
+        scatter.append(Column("deviation", "-", selection.deviation))
     return [
         Column("period", "s", selection.periods),
         Column("target", "m/s2", selection.wanted),
         Column("mean", "m/s2", selection.mean),
+        *scatter,
         *(Column(one.name, "m/s2", one.factor * one.acceleration) for one in selection.chosen),
     ]
 
