@@ -197,7 +197,7 @@ SAMPLED = (
         "min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True,
         needs="columns",
     ),
-    ResultQuantity("overturning_ratio", "-", "overturning moment over that of the weight"),
+    ResultQuantity("overturning_ratio", "-", "overturning ratio of an outer row"),
     ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction"),
 )  # fmt: skip
 """Scalars of a history that is followed with all its samples: a single one, or those of a study
