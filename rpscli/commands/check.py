@@ -127,7 +127,7 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
             ("peak acceleration", f"{shown(record['pga'])} m/s2"),
             ("scale", f"{record['scale']:g}"),
         ]
-        yield Table.listing(row for row in lines if row[1])
+        yield Table.listing(lines)
     if limits:
         yield Table.of_texts(("limit", ""), [(c.name, condition_text(c)) for c in limits], words=2)
 

@@ -157,7 +157,7 @@ def _tables(
             "is": quantity.meaning,
             "limits": "are at_least, since small values are bad" if quantity.from_below else "",
         }
-        yield Table.listing((name, str(text)) for name, text in rows.items() if text)
+        yield Table.listing(rows.items())
     named = [(f"{name}, a report of studies", meaning) for name, meaning in reports]
     for name, meaning in (*words, *named):
         yield Heading(name)
@@ -184,4 +184,4 @@ def _lines(key: KeyReference) -> Table:
         "left out": needed if key.default is None else str(key.default),
         "enters": f"THEORY.md, section {key.sections}" if key.sections else "",
     }
-    return Table.listing((name, text) for name, text in rows.items() if text or name == "means")
+    return Table.listing(rows.items())

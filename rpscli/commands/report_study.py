@@ -18,7 +18,6 @@ from rpscli.report.figures.look import Look
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.html.sections import (
     input_table,
-    listing,
     motions_section,
     notices,
     page_sections,
@@ -165,13 +164,15 @@ def _caption(study: Study, stem: str) -> str:
 
 def _input(study: Study, first: Case) -> Iterator[Block]:
     checked, plan = study.layout.study, study.layout.plan
-    yield listing(
-        ("study", checked.source),
-        ("SHA-256 of its text", checked.digest),
-        ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
-        ("overridden values", ", ".join(study.overrides)),
-        ("solver", plan.solver),
-        ("made by", programs()),
+    yield Table.listing(
+        [
+            ("study", checked.source),
+            ("SHA-256 of its text", checked.digest),
+            ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
+            ("overridden values", ", ".join(study.overrides)),
+            ("solver", plan.solver),
+            ("made by", programs()),
+        ]
     )
     yield "The study as it is written:"
     yield input_table(checked.document.content)

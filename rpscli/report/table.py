@@ -131,9 +131,9 @@ class Table:
         return cls(columns, words, keys)
 
     @classmethod
-    def listing(cls, rows: Iterable[tuple[str, str]]) -> Table:
-        """Names and what they stand for, without heads."""
-        return cls.of_texts(("", ""), rows, words=2)
+    def listing(cls, rows: Iterable[tuple[str, str | None]]) -> Table:
+        """Names and what they stand for, without heads; not of what stands for nothing."""
+        return cls.of_texts(("", ""), [(name, text) for name, text in rows if text], words=2)
 
     @property
     def heads(self) -> list[str]:

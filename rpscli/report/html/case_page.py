@@ -14,7 +14,6 @@ from rpscli.report.figures.look import Look
 from rpscli.report.html.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.html.sections import (
     input_table,
-    listing,
     motion_pictures,
     notices,
     page_sections,
@@ -22,6 +21,7 @@ from rpscli.report.html.sections import (
     repeated,
 )
 from rpscli.report.study.statistics import verdicts_in_short
+from rpscli.report.table import Table
 from rpscli.report.tables.motions import record_table
 from rpscli.report.tables.timehistory import (
     limits_table,
@@ -100,12 +100,14 @@ def _input(
             name = f"{component} record".removeprefix("horizontal ")
             motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
             motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
-    yield listing(
-        ("case", case.source),
-        ("SHA-256 of its text", case.digest),
-        ("overridden values", ", ".join(overrides)),
-        *motions.items(),
-        ("made by", programs()),
+    yield Table.listing(
+        [
+            ("case", case.source),
+            ("SHA-256 of its text", case.digest),
+            ("overridden values", ", ".join(overrides)),
+            *motions.items(),
+            ("made by", programs()),
+        ]
     )
     yield "The case in SI units, with all defaults:"
     yield input_table(case.document)

@@ -212,11 +212,6 @@ def hidden_table() -> Table:
     return Table.of_texts(head, bare, words=2)
 
 
-def listing(*rows: tuple[str, str | None]) -> Table:
-    """Names and what they stand for; without those that stand for nothing."""
-    return Table.listing((name, text) for name, text in rows if text)
-
-
 def _leaves(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Dotted keys and values; lists of sections are numbered from 0, as --set has them."""
     for name, value in content.items():

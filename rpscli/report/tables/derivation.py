@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY, Derived
+from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 if TYPE_CHECKING:
     from rpscli.model.bearing import Bearing
@@ -54,34 +54,27 @@ def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterat
     """All derived quantities that are numbers, in the order in which they follow."""
     letters = _letters(structure)
     formulas = _formulas(structure, podium)
-    for row in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD):
-        yield from _before(row, structure, letters)
-        value = row.value(structure)
-        if isinstance(value, float | int):
-            yield _derivation(row, float(value), formulas.get(row.name, ""), letters)
+    rows = [(*row[:4], row.value(structure)) for row in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD)]
+    for row in rows:
+        for name, label, symbol, unit, value in (*_before(row[0], structure, letters), row):
+            if isinstance(value, float | int):
+                formula = formulas.get(name, "")
+                texts = symbolic(formula), numeric(formula, letters)
+                yield Derivation(name, label, greek(symbol), float(value), unit, *texts)
 
 
-def _derivation(
-    row: Derived, value: float, expression: str, letters: Mapping[str, float]
-) -> Derivation:
-    formula, numbers = symbolic(expression), numeric(expression, letters)
-    return Derivation(row.name, row.label, greek(row.symbol), value, row.unit, formula, numbers)
+Row = tuple[str, str, str, str, Any]
 
 
-def _before(
-    row: Derived, structure: PodiumStructure, letters: Mapping[str, float]
-) -> Iterator[Derivation]:
+def _before(name: str, structure: PodiumStructure, letters: Mapping[str, float]) -> Iterator[Row]:
     """What is no result of its own, but stands in the next formula."""
-    law = structure.impact_law
-    if row.name == "restitution":
-        inertia = Derived("inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", lambda _: None)
-        yield _derivation(inertia, structure.bearing.inertia_ratio, "", letters)
-    if row.name == "restitution" and law.kind != "value":
-        edge = Derived("e_edge", "restitution, impulse at the edges", "e_edge", "-", lambda _: None)
-        yield _derivation(edge, letters["e_edge"], EDGES[law.kind], letters)
-    if row.name == "uplift_force":
-        weight = Derived("weight", "weight that is lifted", "W", "N", lambda _: None)
-        yield _derivation(weight, structure.weight, "(m_c / 2 + m_b + M) * g", letters)
+    if name == "restitution":
+        inertia = structure.bearing.inertia_ratio
+        yield "inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", inertia
+        edge = letters.get("e_edge")
+        yield "e_edge", "restitution, impulse at the edges", "e_edge", "-", edge
+    if name == "uplift_force":
+        yield "weight", "weight that is lifted", "W", "N", structure.weight
 
 
 EDGES = {
@@ -108,6 +101,8 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         else "-W * (1 - 2 * rho * cos(alpha)^2) / (2 * R * cos(alpha)^3)",
         "p_hat": "sqrt(g / R * (1 + 2 * gamma_t) / (I + 4 * gamma_t))",
         "T1": "2 * pi * sqrt(sum_m / sum_k)",
+        "e_edge": EDGES.get(structure.impact_law.kind, ""),
+        "weight": "(m_c / 2 + m_b + M) * g",
     }
 
 
