@@ -48,18 +48,11 @@ def _changes(before: Demand, after: Demand) -> str:
     """What steps of half the length change, in words; empty if nothing."""
     if before.outcome != after.outcome:
         return f"steps of half the length change the outcome to {after.outcome.replace('_', ' ')}"
-    rotation = abs(after.max_rotation - before.max_rotation)
-    shear = abs(after.max_base_shear - before.max_base_shear)
-    if rotation < PROMISED * after.max_rotation + NO_ROTATION * after.critical_rotation:
-        rotation = 0.0
-    if shear < PROMISED * after.max_base_shear:
-        shear = 0.0
-    parts = [
-        f"the {name} by {change / of:.2g} of it"
-        for name, change, of in (
-            ("largest rotation", rotation, after.max_rotation),
-            ("base shear", shear, after.max_base_shear),
-        )
-        if change
-    ]
+    least, parts = NO_ROTATION * after.critical_rotation, []
+    for name, old, new in (
+        ("largest rotation", before.max_rotation, after.max_rotation),
+        ("base shear", before.max_base_shear, after.max_base_shear),
+    ):
+        if abs(new - old) > max(PROMISED * new, least):
+            parts.append(f"the {name} by {abs(new - old) / max(old, new):.2g} of it")
     return f"steps of half the length change {' and '.join(parts)}" if parts else ""

@@ -13,7 +13,7 @@ from rpscli.analyses.result_quantities import FIXED_BASE_MODES, LINEAR, UPLIFTED
 from rpscli.frozen import frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.model.uplifted_state import UpliftedState, beginning, to_first_order
+from rpscli.model.uplifted_state import UpliftedState, uplifted_state
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
@@ -120,7 +120,7 @@ class ModalResult(Shown):
     @property
     def left_out(self) -> tuple[str, ...]:
         """What of the devices is not linear, and therefore not in the modes."""
-        state = beginning(self.structure.bearing, rolling=False)
+        state = uplifted_state(self.structure.bearing, rolling=False)
         laws = (device.linear(self.structure, state) for device in self.structure.devices)
         return tuple(dict.fromkeys(law.left_out for law in laws if law.left_out))
 
@@ -174,9 +174,11 @@ def modal(structure: PodiumStructure) -> ModalResult:
 
 
 def _both_orders(structure: PodiumStructure, *, rolling: bool) -> UpliftedModes:
-    bearing = structure.bearing
-    paper = _uplifted(structure, to_first_order(bearing, rolling=rolling))
-    return replace(_uplifted(structure, beginning(bearing, rolling=rolling)), first_order=paper)
+    exact, paper = (
+        _uplifted(structure, uplifted_state(structure.bearing, rolling=rolling, exact=order))
+        for order in (True, False)
+    )
+    return replace(exact, first_order=paper)
 
 
 def _fixed_base(building: Superstructure) -> FixedBaseModes:

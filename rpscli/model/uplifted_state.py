@@ -27,23 +27,31 @@ class UpliftedState(NamedTuple):
     """e, e' and e'' of a tendon in the axis [m]."""
 
 
-def beginning(bearing: Bearing, *, rolling: bool) -> UpliftedState:
-    """Exact, at the tilt where the state begins: 0 rolling, beta rocking."""
+def uplifted_state(bearing: Bearing, *, rolling: bool, exact: bool = True) -> UpliftedState:
+    """The state where it begins, or the paper's.
+
+    Parameters
+    ----------
+    bearing
+        Shape of every column.
+    rolling
+        On the arcs; else rocking on their ends.
+    exact
+        At the tilt where the state begins: 0 rolling, beta rocking. Else to first order in alpha,
+        and rocking continued to theta = 0.
+    """
+    if not exact:
+        diameter = 2.0 * bearing.semi_diagonal
+        a = bearing.alpha if rolling else bearing.alpha_wedge
+        kappa = 2.0 * bearing.curvature_ratio - 1.0 if rolling else -1.0
+        # e = 2 R (a x + (kappa + 1) x^2/2)
+        return UpliftedState(0.0, a, 1.0, kappa, 1.0, (0.0, diameter * a, diameter * (kappa + 1.0)))
     phase, x = (bearing.rolling, 0.0) if rolling else (bearing.rocking, bearing.beta)
     cosine, sine = math.cos(x), math.sin(x)
     B = geometry.contact_arm(phase, cosine, sine)
     C = geometry.contact_height(phase, cosine, sine)
     kappa = phase.q * cosine - phase.p * sine
     return UpliftedState(x, B, C, kappa, B * B + C * C, _elongation(bearing, x))
-
-
-def to_first_order(bearing: Bearing, *, rolling: bool) -> UpliftedState:
-    """The paper's: to first order in alpha, and rocking continued to theta = 0."""
-    diameter = 2.0 * bearing.semi_diagonal
-    a = bearing.alpha if rolling else bearing.alpha_wedge
-    kappa = 2.0 * bearing.curvature_ratio - 1.0 if rolling else -1.0
-    # e = 2 R (a x + (kappa + 1) x^2/2)
-    return UpliftedState(0.0, a, 1.0, kappa, 1.0, (0.0, diameter * a, diameter * (kappa + 1.0)))
 
 
 def _elongation(bearing: Bearing, x: float) -> tuple[float, float, float]:

@@ -22,7 +22,7 @@ from rpscli.model.devices import (
 )
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, uplift_force
-from rpscli.model.uplifted_state import to_first_order
+from rpscli.model.uplifted_state import uplifted_state
 
 DEVICES: tuple[Device, ...] = (
     FrictionDamper(1.2e5),
@@ -134,7 +134,7 @@ def test_consequences_by_hand() -> None:
 def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None:
     structure = equipped(0.7, Tendon(3e4, 5e5), tan_alpha=1e-3)
     structure = replace(structure, bearing=replace(structure.bearing, wedge_slenderness=2e-3))
-    state = to_first_order(structure.bearing, rolling=rolling)
+    state = uplifted_state(structure.bearing, rolling=rolling, exact=False)
     bare = replace(structure, devices=())
     added = linearised_matrices(structure, state)[2][0, 0]
     added -= linearised_matrices(bare, state)[2][0, 0]

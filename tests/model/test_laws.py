@@ -21,7 +21,7 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.podium import AtRest, Device, Linear
-from rpscli.model.uplifted_state import beginning
+from rpscli.model.uplifted_state import uplifted_state
 from rpscli.report.figures.devices import DRAWN
 
 EXAMPLES: tuple[Device, ...] = (
@@ -61,7 +61,7 @@ def test_every_question_is_answered(device: Device) -> None:
         "constants": device.constants(structure),
         "at_rest": device.at_rest(structure, x, 0.1),
         "stiffness_after_uplift": device.stiffness_after_uplift(structure),
-        "linear": device.linear(structure, beginning(structure.bearing, rolling=True)),
+        "linear": device.linear(structure, uplifted_state(structure.bearing, rolling=True)),
         "bounds": device.bounds(structure),
         "consequences": list(device.consequences(structure)),
         "stroke": device.stroke(structure, x),
@@ -83,7 +83,7 @@ def test_every_question_is_answered(device: Device) -> None:
 def test_what_is_not_linear_is_said(device: Device) -> None:
     """Friction, gaps and powers either stand in the modes, or are named as left out."""
     structure = replace(podium(2, 0.15, 0.5), devices=(device,), columns=6)
-    found = device.linear(structure, beginning(structure.bearing, rolling=True))
+    found = device.linear(structure, uplifted_state(structure.bearing, rolling=True))
     assert found.left_out or found.stiffness or found.damping
 
 
