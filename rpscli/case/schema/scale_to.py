@@ -18,7 +18,7 @@ from rpscli.errors import hint
 from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
 from rpscli.records.pair_measure import OF, Of
 
-_TARGET = re.compile(r"\s*([A-Za-z]+)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
+_TARGET = re.compile(r"\s*([A-Za-z]+\d?)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 
 
 def measured_value(value: object, info: ValidationInfo) -> float:

@@ -223,7 +223,7 @@ class Fragilities:
 
 def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
     """Fit every limit state of every group of systems; samples and records are pooled."""
-    measured, limits = study.intensity(options), tuple(limit_states(options))
+    measured, limits = study.intensity(options), tuple(limit_states(options.limits))
     systems = grouping(study.table, options.series, (INTENSITY,))
     curves = tuple(
         _fragility(measured, options, (place, group), limit)
@@ -233,9 +233,8 @@ def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
     return Fragilities(measured, options.confidence, systems, limits, curves)
 
 
-def limit_states(options: FragilityOptions) -> Iterator[LimitState]:
+def limit_states(limits: LimitStates) -> Iterator[LimitState]:
     """The limit states that a study asks for."""
-    limits = options.limits
     for quantity in LIMITED:
         for threshold in getattr(limits, quantity.name) or ():
             yield LimitState(quantity.name, threshold)
@@ -535,5 +534,5 @@ REPORT = Report(
     FragilityOptions,
     fragility,
     requires=fragility_faults,
-    results=lambda options: [limit.result for limit in limit_states(options)],
+    results=lambda options: [limit.result for limit in limit_states(options.limits)],
 )

@@ -107,13 +107,14 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
 
 
 def _panel(group: Histories, demands: Array) -> Panel:
-    levels = sorted(group.parts([INTENSITY]), key=_height)
+    levels = sorted(group.parts([INTENSITY]), key=height)
     curves = np.column_stack([demands[level.every] for level in levels])
     spread = np.column_stack([fractiles(column, FRACTILES) for column in curves.T])
-    return Panel(group.values, levels, np.array(list(map(_height, levels))), curves, spread)
+    return Panel(group.values, levels, np.array(list(map(height, levels))), curves, spread)
 
 
-def _height(level: Histories) -> float:
+def height(level: Histories) -> float:
+    """The factor or the intensity of a level."""
     return float(str(level.values[0]))
 
 
@@ -138,8 +139,8 @@ def single_intensity(
 ) -> Iterator[Fault]:
     """A study without several intensities has no curves."""
     if not isinstance(document.content.get("scale"), dict | list):
-        text = "the report ida needs several intensities: scale: {measure: PGV, values: [...]}"
-        yield Fault(request.path, text)
+        wanted = "several intensities: scale: {measure: PGV, values: [...]}"
+        yield Fault(request.path, f"the report {request.kind} needs {wanted}")
 
 
 REPORT = Report(IdaOptions, ida, check=single_intensity, results=lambda options: [options.demand])

@@ -106,7 +106,7 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
         name, unit, values = column.name, column.unit, known[column.name]
         if name.endswith(ENDS) or (labels and name not in labels):
             continue
-        own = labels.get(name) or symbol(name)
+        own = labels.get(name) or symbol(name).replace("_", " ")
         heads.append(headed(own, "-" if own.endswith(unit) else unit))
         if any(isinstance(value, str | list) for value in values) or "." in name:
             words = len(heads)

@@ -367,5 +367,5 @@ REPORT = Report(
     RiskOptions,
     risk,
     requires=risk_faults,
-    results=lambda options: [limit.result for limit in limit_states(options)],
+    results=lambda options: [limit.result for limit in limit_states(options.limits)],
 )
