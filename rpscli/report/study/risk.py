@@ -66,7 +66,8 @@ class HazardSection(Section):
         " `0.16 [1/year]`; seen from the study's folder"
     )
     measure: Measure = Field(description="of its first column")
-    component: Of | None = Field(None, description="of the two horizontal ones: what it is of")
+    component: Of | None = None
+    """what of a pair of components it is of, as `of` in `scale`; said if it is not the same"""
 
 
 class RiskOptions(FragilityOptions):
@@ -289,11 +290,12 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
             share = f"{'up to ' * (len(far) > 1)}{100.0 * getattr(worst, name):.0f} %"
             which = f"({found.named(worst.fragility)}; above 5 % in {len(far)} of {len(risks)})"
             yield f"{share} of the annual rate {which} come from beyond {place}"
-    if of != "component":
-        known = f"is of {SHOWN.get(of, of)}" if of else "does not say of which component it is"
+    own = found.intensity.of or "component"
+    if of != own:
+        known = f"is of {SHOWN.get(of, of)}" if of else "does not say what of a pair it is of"
         yield (
-            f"the hazard curve {known} (hazard: component), while the study's intensities are those"
-            " of single components, which lie on either side of the measures of a pair"
+            f"the hazard curve {known} (hazard: component), while intensities of the study are of"
+            f" {SHOWN.get(own, own)}: both must be of one definition (scale: of)"
         )
     yield from told(found, ((each.fragility, "; ".join(each.notes)) for each in risks))
 
