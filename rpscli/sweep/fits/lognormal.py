@@ -167,7 +167,8 @@ def _resampled(
     generator = np.random.default_rng(bootstrap.seed)
     names, place = np.unique(cluster, return_inverse=True)
     even = np.full(len(names), 1.0 / len(names))
-    drawn = generator.multinomial(len(names), even, size=count).astype(float)
+    # One fewer than there are: with all, variances are too small by that part of them.
+    drawn = generator.multinomial(max(len(names) - 1, 1), even, size=count).astype(float)
     rows = max(1, LARGEST_ARRAY // len(x))
     parts = [Probit(np.empty(0), np.empty(0), np.empty(0, dtype=bool))]
     for first in range(0, count, rows):
