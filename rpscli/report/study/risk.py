@@ -207,7 +207,8 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         (lambda title: risk_figure(found, known, options.years, title)) if known else None,
         [*_report_notes(found, known, options.hazard.component), *found.notes],
         shown={"": main} | ({"_at": {}} if options.at else {}),
-        remark=f"{what_bands_hold(options)}; rate of shares: of the observed ones, no lognormal",
+        remark=f"{what_bands_hold(study.table.layout, options)}; rate of shares: of the observed"
+        " ones, no lognormal",
     )
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.records.clusters import By, clusters
 from rpscli.records.ground_motion import LEAST, MOST
+from rpscli.records.pair_measure import measure_label
 from rpscli.records.pulses import SCHEME
 from rpscli.sweep.evaluation.results import FAILED
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
@@ -131,8 +132,15 @@ def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
 
 
 def scale_notes(table: Table) -> Iterator[str]:
-    """How many points have an unusual factor, and the one that is farthest from 1."""
+    """What pairs and single records are scaled to; factors that are unusual."""
     layout = table.layout
+    alone = [record.source for record in layout.records if record and record.pair is None]
+    if layout.plan.measure is not None and layout.of is not None and alone:
+        name = measure_label(layout.plan.measure.measure, layout.of)
+        yield (
+            f"{name} is that of pairs; {len(alone)} of {len(layout.records)} records stand alone,"
+            f" {alone[0]} for one, and are scaled to it by themselves"
+        )
     of, sources = layout.identifying["record"]
     pulses = np.array([source.startswith(SCHEME) for source in sources])[layout.places[of]]
     scale = np.abs(layout.factors if layout.plan.measure is None else table.scale)
