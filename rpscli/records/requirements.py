@@ -6,6 +6,7 @@ a clause reads it there.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -92,8 +93,10 @@ class Requirements:
             same = level.lower() == self.level.lower() if level else None
             found.append(Rule("level", self.level, level or "not said by the target", same))
         if self.mean_pga:
-            met = pga_ratio >= 1.0 - 1e-6
-            found.append(Rule("mean PGA over the target's", ">= 1", f"{pga_ratio:.3f}", met))
+            known = not math.isnan(pga_ratio)
+            text = f"{pga_ratio:.3f}" if known else "the target has no value at T = 0"
+            met = pga_ratio >= 1.0 - 1e-6 if known else None
+            found.append(Rule("mean PGA over the target's", ">= 1", text, met))
         met = least_ratio >= self.least - 1e-6
         found.append(Rule(f"mean/target, {span}", f">= {self.least:g}", f"{least_ratio:.3f}", met))
         if self.span is not None:

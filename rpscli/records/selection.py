@@ -34,7 +34,7 @@ LEVELS = np.linspace(-1.5, 1.5, 7)
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """One motion that may be chosen, or a pair of them under one factor.
+    """One motion that may be chosen, or a pair under one factor, with its event if that is known.
 
     `acceleration` (n,) [m/s2] is its unscaled spectrum, `pga`, `pgv` and `pgd` its unscaled peaks,
     `factor` what brings it nearest to the target, `misfit` how far it is from it then. A `clamped`
@@ -180,13 +180,16 @@ def select(
     every = [_measured(both, target.damping, periods, request.of) for both in sources]
     fits = [_scaled(one, target, periods, goal.wanted[1:], request) for one in every]
     fitting = [one for scaled in fits for one in scaled]
+    recordings = np.repeat(_recordings(every), [len(scaled) for scaled in fits])
+    # A recording that does not name its earthquake is of one of its own.
+    events = [one.event or f"{at}" for one, at in zip(fitting, recordings, strict=True)]
     pool = Pool(
         np.array([one.scaled for one in fitting]).reshape(-1, len(goal.wanted)),
         np.array([one.factor for one in fitting]),
-        np.repeat(_recordings(every), [len(scaled) for scaled in fits]),
-        np.unique([one.event for one in fitting], return_inverse=True)[1],
+        recordings,
+        np.unique(events, return_inverse=True)[1],
     )
-    _require_enough(pool, len(every), request)
+    _require_enough(pool, len(every), target, request)
     places = best_choice(pool, goal, request.count, request.per_event)
     # Codes ask for all periods: the common factor and the verdicts are from a finer grid.
     periods, goal = _goal(target, request, asked, FINER * PERIODS)
@@ -238,12 +241,12 @@ def _goal(
                 f" --periods {low:g} {high:g}"
             )
         periods = np.union1d(periods, target.pinned)
-    pga = float(target.acceleration(np.zeros(1))[0]) if target.span[0] == 0.0 else np.nan
+    pga = target.ground_acceleration
     return periods, Goal(
-        np.array([pga, *target.acceleration(periods)]),
+        np.array([pga or np.nan, *target.acceleration(periods)]),
         None if target.deviation is None else target.deviation(periods),
         0.0 if asked is None else asked.least,
-        asked is not None and asked.mean_pga and not np.isnan(pga),
+        asked is not None and asked.mean_pga and pga is not None,
         request.factors,
         fixed=request.pgv is not None,
     )
@@ -285,8 +288,7 @@ def _measured(
         pgv, pgd = (float(one_of(over_directions(first, motions[1], m))) for m in ("PGV", "PGD"))
     if not spectrum.all() or pgv <= 0.0:
         raise RecordError(f"{first.source}: does not move the ground; leave it out")
-    event = event_of(first) or first.name
-    return Candidate(motions, event, float(spectrum[0]), pgv, pgd, spectrum[1:])
+    return Candidate(motions, event_of(first) or "", float(spectrum[0]), pgv, pgd, spectrum[1:])
 
 
 def _recordings(candidates: Sequence[Candidate]) -> list[int]:
@@ -324,10 +326,14 @@ def _under(factor: float, one: Candidate, wanted: Array, request: SelectionReque
     return replace(one, factor=factor, misfit=found, clamped=clamped)
 
 
-def _require_enough(pool: Pool, every: int, request: SelectionRequest) -> None:
+def _require_enough(
+    pool: Pool, every: int, target: TargetSpectrum, request: SelectionRequest
+) -> None:
     known = set(zip(pool.recordings.tolist(), pool.events.tolist(), strict=True))
     counts = Counter(event for _, event in known)
     room = sum(min(count, request.per_event) for count in counts.values())
+    if request.count < 2 and target.deviation is not None:
+        raise RecordError(f"{target.source}: has a sigma_ln, which takes two motions at least")
     if room < request.count:
         noun = "motions" if request.of == "component" else "pairs"
         raise RecordError(

@@ -62,6 +62,14 @@ class TargetSpectrum:
     pinned: float | None = None
     """Period at which that is zero, the conditioning one; None without it [s]."""
 
+    pga: float | None = None
+    """Of the ground, where the spectrum does not begin with it [m/s2]."""
+
+    @property
+    def ground_acceleration(self) -> float | None:
+        """PGA that goes with it; None if it has no value at T = 0 [m/s2]."""
+        return float(self.shape(np.zeros(1))[0]) if self.span[0] == 0.0 else self.pga
+
     def acceleration(self, periods: Array) -> Array:
         """Pseudo-acceleration at periods (n,) [s], (n,) [m/s2]."""
         low, high = self.span
@@ -107,7 +115,7 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
     width = 3 if scatters else 2
     cells = np.array([_cells(row, width, f"{path}:{number}") for number, row in rows])
     cells = cells.reshape(-1, width)
-    cells = cells[cells[:, 0] > 0.0]  # the rigid oscillator has no logarithm
+    rigid, cells = cells[cells[:, 0] == 0.0], cells[cells[:, 0] > 0.0]  # 0 has no logarithm
     if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
         raise RecordError(f"{path}: needs two rows at least, with periods that grow")
     known = np.log(cells[:, :2])
@@ -135,6 +143,7 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
         of=cast("Of", of) if of else None,
         level=query.values.get("level", ""),
         deviation=deviation if scatters else None,
+        pga=factor * float(rigid[0, 1]) if len(rigid) else None,
         pinned=float(cells[np.argmin(cells[:, 2]), 0])
         if scatters and not cells[:, 2].all()
         else None,

@@ -44,6 +44,7 @@ def words(rules: str, have: Have, periods: Periods | None) -> list[str]:
         (HAVE._replace(span=(0.11, 1.0)), STRUCTURE, ["met", "met", "met", "NOT MET"]),
         (HAVE._replace(span=(0.1, 0.99)), STRUCTURE, ["met", "met", "met", "NOT MET"]),
         (HAVE, None, ["met", "met", "met", "not checked"]),
+        (HAVE._replace(pga_ratio=float("nan")), STRUCTURE, ["met", "not checked", "met", "met"]),
     ],
 )
 def test_en1998(have: Have, periods: Periods | None, wanted: list[str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -203,6 +204,18 @@ def test_one_component_of_a_recording() -> None:
     assert len(places) == 2
     with pytest.raises(RecordError, match="only 2 of 4 motions"):
         select(motions, load_target(TARGET), SelectionRequest(3, (0.3, 1.0), per_event=4))
+
+
+def test_recordings_that_do_not_name_their_earthquake() -> None:
+    """Both components of one are still one recording."""
+    named = ("RSN9_X000.AT2", "RSN9_X090.AT2", "RSN10_Y000.AT2", "array", "array")
+    motions = [replace(m, source=s) for m, s in zip(synthetic(5), named, strict=True)]
+    wide = ((0.3, 1.0), (0.05, 20.0), 1)
+    selection = select(motions, load_target(TARGET), SelectionRequest(4, *wide))
+    assert len(selection.chosen) == 4
+    assert {m.source for one in selection.chosen for m in one.motions} > {"RSN10_Y000.AT2", "array"}
+    with pytest.raises(RecordError, match="only 4 of 5 motions"):
+        select(motions, load_target(TARGET), SelectionRequest(5, *wide))
 
 
 def test_one_earthquake_has_one_name_in_all_sets() -> None:

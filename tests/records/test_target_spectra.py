@@ -114,6 +114,8 @@ def test_a_table(tmp_path: Path) -> None:
     found = target.acceleration(np.array([0.5, 1.0, 2.0])) / G
     np.testing.assert_allclose(found, [1.0, 0.5, 0.25], rtol=1e-12)
     assert target.pgv == pytest.approx(0.5 * G / (2.0 * np.pi) / 1.65)
+    assert target.ground_acceleration == pytest.approx(0.4 * G)
+    assert load_target("en1998:?ag=0.3g&soil=B").ground_acceleration == pytest.approx(0.36 * G)
     assert load_target(f"{file}?damping=2%").pgv is None
     with pytest.raises(RecordError, match=r"no value at 0.1 s; it is defined from 0.5 to 2 s"):
         target.acceleration(np.array([0.1]))

@@ -115,7 +115,7 @@ def selection_columns(selection: Selection) -> list[Column]:
         ),
         Column("factor", "-", [one.factor for one in chosen], "factor", "{:.4g}".format),
         Column("clamped", "-", [one.clamped for one in chosen], "at a bound", _flag),
-        Column("event", "-", [one.event for one in chosen], "event"),
+        Column("event", "-", [one.event or one.name for one in chosen], "event"),
         Column("pga", "m/s2", [one.factor * one.pga for one in chosen]),
         Column("pgv", "m/s", pgv, "PGV [m/s]", three),
         Column("pgd", "m", pgd, "PGD [m]", three),
