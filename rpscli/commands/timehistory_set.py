@@ -51,8 +51,8 @@ DIGITS = 4
 A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
 CODES = (
-    "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 (ASCE/SEI 7) and more, the"
-    " largest of fewer"
+    "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 pairs (ASCE/SEI 7-16, chapter"
+    " 16) and more; the largest of 3 to 6 is for EN 1998-1 alone"
 )
 
 
