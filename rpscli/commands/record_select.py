@@ -48,6 +48,9 @@ USUAL_PERIODS = (0.2, 3.0)
 USUAL_ROTATION = 0.5
 """Of the critical rotation, where a case sets no limit."""
 
+USUAL_DAMPING = 0.05
+"""Of the spectra that codes' rules are about."""
+
 FAR = 2.0
 """Times the target's peaks, or as many parts of them, beyond which it is told."""
 
@@ -286,12 +289,15 @@ def _kept(
 
 def _doubts(selection: Selection) -> Iterator[str]:
     """What a human should look at."""
+    asked = selection.requirements
     yield from (text for one in selection.chosen for m in one.motions for text in m.warnings)
-    longest = selection.periods[-1]
-    for one in selection.chosen:
-        usable = one.motions[0].recording.usable_period
-        if usable is not None and usable < longest * (1.0 - 1e-9):
-            yield f"{one.name} is filtered beyond {usable:.3g} s; the range ends at {longest:.3g} s"
+    end = selection.periods[-1]
+    usable = {one.name: one.motions[0].recording.usable_period for one in selection.chosen}
+    short = [f"{name} ({until:.3g} s)" for name, until in usable.items() if until and until < end]
+    if short:
+        yield f"filtered before the end of the range, {end:.4g} s: {', '.join(short)}"
+    if asked is not None and selection.target.damping != USUAL_DAMPING:
+        yield f"{asked.clause} is about spectra of 5 % damping"
     if selection.clamped:
         of = f"{selection.clamped} of {len(selection.chosen)} factors"
         yield f"{of} are held at a bound: widen --factors, or give motions of another size"
@@ -300,7 +306,6 @@ def _doubts(selection: Selection) -> Iterator[str]:
         wanted = getattr(selection.target, name)
         if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
             yield f"the mean {name.upper()} is {mean / wanted:.2g} times that of the target"
-    asked = selection.requirements
     checks = selection.target.checked, "" if asked is None else f"{asked.clause}: {asked.checked}"
     yield from (checked for checked in checks if "NOT VERIFIED" in checked)
 

@@ -88,7 +88,7 @@ def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
         pgd,
         damping,
         (0.0, EN1998_LONGEST),
-        edition="EN 1998-1:2004, 3.2.2.2, "
+        edition="EN 1998-1:2004, 3.2.2.2, whatever A1:2013 changes, "
         + (f"the user's {', '.join(own)}" if own else "recommended values, no national annex"),
         checked="tables and expressions compared with public implementations and with manuals of"
         " programs, not with the text",
