@@ -172,9 +172,21 @@ def podium_masses(section: PodiumMasses, building_mass: float) -> tuple[float, f
     return columns, beam
 
 
-def time_history_settings(section: AnalysisSection) -> TimeHistorySettings:
+def overturning_limit(section: AnalysisSection, bearing: Bearing) -> float:
+    """What counts as overturned, over theta_cr: the least of what the case names."""
+    found, critical = [section.overturning_limit], bearing.critical_rotation
+    if section.overturning_rotation is not None:
+        found.append(section.overturning_rotation / critical)
+    if section.overturning_displacement is not None:
+        found.append(bearing.rotation_at(section.overturning_displacement) / critical)
+    return min(found)
+
+
+def time_history_settings(section: AnalysisSection, bearing: Bearing) -> TimeHistorySettings:
     """Settings of the time history; gravity belongs to the structure."""
-    given = section.model_dump(exclude={"gravity"})
+    others = {"gravity", "overturning_rotation", "overturning_displacement"}
+    given = section.model_dump(exclude=others)
+    given["overturning_limit"] = overturning_limit(section, bearing)
     if given["free_vibration"] == "auto":
         given["free_vibration"] = None
     return TimeHistorySettings(**given)

@@ -110,7 +110,7 @@ class Case(Shown):
     @cached_property
     def analysis(self) -> TimeHistorySettings:
         """Settings of the time history."""
-        return time_history_settings(self.file.analysis)
+        return time_history_settings(self.file.analysis, self.podium.bearing)
 
     @cached_property
     def structure(self) -> PodiumStructure:

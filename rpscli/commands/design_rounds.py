@@ -10,7 +10,7 @@ from typing import Any
 from rpscli.case.conditions import EVENTS, Condition, condition_text
 from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.study import SweepChoices, compute
+from rpscli.commands.study import SweepChoices, compute, of_first_system
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.design import requirement_label
 from rpscli.report.documents import ONE_DIRECTION
@@ -186,6 +186,8 @@ def answer_tables(
     yield _requirements(document, answer)
     if document["best"] is not None:
         yield Table.listing([*_region(document, answer), *_records(document, answer)])
+    design = answer.task.study_of(answer.values[[answer.headline]])
+    yield of_first_system(lay_out(design))
     if len(answer.front):
         yield f"Pareto front of both objectives: {len(answer.front)} designs, in front.csv"
     if confirmations:

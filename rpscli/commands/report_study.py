@@ -11,7 +11,15 @@ from rpscli.commands.report_case import Earlier, PageDone, subject_words
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.study import begin, compute, read, study_heading, summary_tables, verdict_table
+from rpscli.commands.study import (
+    begin,
+    compute,
+    of_first_system,
+    read,
+    study_heading,
+    summary_tables,
+    verdict_table,
+)
 from rpscli.errors import RecordError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
@@ -107,7 +115,9 @@ def _sections(
     drawn = [Picture(each, _caption(study, stem)) for stem, each in pictures(found.files.items())]
     results = [Section("Figures", drawn)]
     if run.summary:
-        statistics = Section("Statistics", [*summary_tables(run.summary), *found.parts])
+        statistics = Section(
+            "Statistics", [*summary_tables(run.summary), of_first_system(run.layout), *found.parts]
+        )
         results = [motions_section(*_motions(study), study.title, look), statistics, *results]
     which = []
     if (systems := len(layout.combinations)) > 1:

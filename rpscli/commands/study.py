@@ -224,6 +224,15 @@ def summary_tables(summary: Summary) -> Iterator[Part]:
         yield f"the first {len(rows)} of {len(summary.rows)} rows; all are in statistics.csv"
 
 
+def of_first_system(layout: StudyPoints) -> str:
+    """What counts as overturned: of the first system, whose sizes others need not have."""
+    from rpscli.report.tables.timehistory import overturned_text
+
+    first = layout.system(0)
+    text = overturned_text(first.structure, first.settings)
+    return text + " (the first system)" * (len(layout.combinations) > 1)
+
+
 def _of_systems(
     summary: Summary,
     systems: Iterable[tuple[object, ...]],

@@ -25,6 +25,7 @@ from rpscli.commands.study import (
     SweepChoices,
     begin,
     compute,
+    of_first_system,
     read,
     show_dry_run,
     study_heading,
@@ -125,6 +126,7 @@ def _tables(run: StudyRun, found: Collected) -> Iterator[Part]:
     yield Table.listing([(name, str(count)) for name, count in counts.items()])
     if run.summary is not None:
         yield from summary_tables(run.summary)
+        yield of_first_system(run.layout)
         if run.verdicts:
             yield verdict_table(run.summary, run.verdicts)
     for stem, lines in found.findings.items():

@@ -149,6 +149,27 @@ class Bearing:
         """
         return geometry.critical_rotation(self.rolling, self.rocking, self.beta)
 
+    def rotation_at(self, displacement: float) -> float:
+        """Rotation at which the cap beam has moved so far [m]; infinite if it never has.
+
+        >>> bearing = Bearing(1.5, 0.15, 0.30, 0.5)
+        >>> round(bearing.rotation_at(0.5), 6), bearing.rotation_at(5.0)
+        (0.166459, inf)
+        """
+        low, high = 0.0, self.largest_rotation
+
+        def short(rotation: float) -> bool:
+            at = np.array([rotation])
+            path = geometry.path_along(self.rolling, self.rocking, self.beta, at)
+            return bool(2.0 * self.semi_diagonal * path[2][0] < displacement)
+
+        if short(high):
+            return math.inf
+        for _ in range(60):  # halving, to the last digits: it grows up to where the model ends
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if short(middle) else (low, middle)
+        return high
+
     @cached_property
     def largest_rotation(self) -> float:
         """Where the model ends [rad]: the cap beam is farthest from its place, C = 0.

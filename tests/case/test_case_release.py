@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
+from rpscli.analyses.demand import demand
 from rpscli.case.case import load_case
 from rpscli.errors import CaseError
+from rpscli.model.bearing import Bearing
+from rpscli.records.source import load_record
 
 FRAME = "cases/rigid_frame.yaml"
 
@@ -44,3 +49,37 @@ def test_a_limit_that_is_not_written_is_refused_too() -> None:
     law = "podium.impact={law: value, restitution: 0.5}"
     with pytest.raises(CaseError, match=r"overturning_limit = 2 .* use at most 1\."):
         load_case(FRAME, [*stout, law])
+
+
+def test_what_counts_as_overturned_is_the_least_of_what_the_case_names() -> None:
+    critical = load_case(FRAME).structure.critical_rotation
+    named: list[tuple[dict[str, str], float]] = [
+        ({}, 2.0),
+        ({"rotation": "0.1"}, 0.1 / critical),
+        ({"rotation": "0.1", "limit": "1.5"}, 0.1 / critical),
+        ({"rotation": "1.0", "limit": "1.5"}, 1.5),
+        ({"displacement": "100 m"}, 2.0),
+    ]
+    for values, limit in named:
+        case = load_case(FRAME, [f"analysis.overturning_{name}={v}" for name, v in values.items()])
+        assert case.analysis.overturning_limit == pytest.approx(limit, rel=1e-12)
+    with pytest.raises(CaseError, match=r"must stay below the overturning limit, 0\.1 rad"):
+        load_case(FRAME, ["analysis.overturning_rotation=0.1", "analysis.initial_rotation=0.11"])
+
+
+@pytest.mark.parametrize("displacement", [1e-6, 0.05, 0.4])
+def test_a_flat_column_moves_its_top_as_its_diagonal_turns(displacement: float) -> None:
+    """The far corner is 2R away under alpha: u_b = 2R (sin(alpha) - sin(alpha - theta))."""
+    bearing = Bearing(1.5, 0.15, 0.15, 0.0)
+    alpha = math.atan(0.15)
+    exact = alpha - math.asin(math.sin(alpha) - displacement / 3.0)
+    assert bearing.rotation_at(displacement) == pytest.approx(exact, rel=1e-9)
+
+
+@pytest.mark.parametrize(("share", "overturns"), [(0.99, True), (1.01, False)])
+def test_a_moat_counts_as_overturning(share: float, overturns: bool) -> None:
+    record = load_record("pulse:sine?amplitude=0.3g&period=0.8")
+    free = load_case(FRAME)
+    reached = demand(free.structure, record, free.analysis).max_cap_beam_displacement
+    moat = load_case(FRAME, [f"analysis.overturning_displacement={share * reached!r}"])
+    assert demand(moat.structure, record, moat.analysis).overturned == overturns

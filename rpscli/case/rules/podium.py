@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import get_args
 
-from rpscli.case.build import Podium, Shape
+from rpscli.case.build import Podium, Shape, overturning_limit
 from rpscli.case.rules.partial_case import BEARING, DEVICES, IMPACT, PODIUM, PartialCase
 from rpscli.case.schema.case_file import (
     DEVICE_KEYS,
@@ -162,13 +162,14 @@ def overturning_rule(bearing: Bearing, analysis: AnalysisSection) -> Iterator[Fa
 
 def release_rule(bearing: Bearing, analysis: AnalysisSection) -> Iterator[Fault]:
     """A structure that is let go from a rotation must not have overturned already."""
-    limit = analysis.overturning_limit * bearing.critical_rotation
+    limit = overturning_limit(analysis, bearing) * bearing.critical_rotation
     if abs(analysis.initial_rotation) >= limit:
         yield Fault(
             ("analysis", "initial_rotation"),
             f"analysis.initial_rotation = {analysis.initial_rotation:g} rad must stay below the"
             " overturning limit,"
-            f" overturning_limit * theta_cr = {limit:.6g} rad; use less than {below(limit)}",
+            f" {limit:.6g} rad (overturning_limit * theta_cr, or less); use less than"
+            f" {below(limit)}",
         )
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import EVENTS
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from rpscli.analyses.results import TimeHistoryResult
+    from rpscli.analyses.settings import TimeHistorySettings
+    from rpscli.model.podium import PodiumStructure
     from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
@@ -49,6 +53,8 @@ def timehistory_tables(
 def outcome_text(result: TimeHistoryResult) -> str:
     """How the history ended, how near to overturning, and whether the columns slide."""
     parts, passed = [OUTCOMES[result.outcome]], result.critical_passage_time
+    if result.outcome.startswith("overturned"):
+        parts.append(overturned_text(result.structure, result.settings))
     if result.is_near_critical and passed is not None:
         parts.append(f"passed the critical rotation at t = {shown(passed)} s")
     elif result.is_near_critical:
@@ -59,6 +65,16 @@ def outcome_text(result: TimeHistoryResult) -> str:
     elif result.friction_ratio:
         parts.append(f"does not slide (margin {shown(1.0 / result.friction_ratio)})")
     return "; ".join(parts)
+
+
+def overturned_text(structure: PodiumStructure, settings: TimeHistorySettings) -> str:
+    """What counts as overturned."""
+    limit = settings.overturning_limit * structure.critical_rotation
+    path = structure.path(np.array([limit]))
+    return (
+        f"overturned: beyond {shown(settings.overturning_limit, 3)} theta_cr ="
+        f" {shown(limit)} rad, {measured(float(path[1][0]), 'm')} of the cap beam"
+    )
 
 
 def outcome_table(result: TimeHistoryResult) -> Table:
