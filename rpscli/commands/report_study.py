@@ -139,6 +139,8 @@ def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator
 
     counts = {"points": len(run.table), **run.outcomes}
     yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
+    if aim := run.layout.scaled_to:
+        yield f"Records are scaled to {aim}."
     if run.summary is not None and run.verdicts:
         what = f"{len(run.verdicts)} limits of a system at an intensity"
         yield verdicts_in_short(run.verdicts, what)

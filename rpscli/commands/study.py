@@ -122,7 +122,8 @@ def compute(command: str, run: StudyRun, terminal: Terminal) -> Finish:
 def study_heading(layout: StudyPoints) -> dict[str, str]:
     """The study in a JSON document."""
     study = layout.study
-    return {"name": study.name, "title": study.title, "source": study.source}
+    own = {"name": study.name, "title": study.title, "source": study.source}
+    return {**own, "scaled_to": layout.scaled_to}
 
 
 def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> None:

@@ -123,7 +123,10 @@ def command(
 def _tables(run: StudyRun, found: Collected) -> Iterator[Part]:
     yield Heading(run.layout.study.title)
     counts = {"points": len(run.table), **run.outcomes}
-    yield Table.listing([(name, str(count)) for name, count in counts.items()])
+    listing = [(name, str(count)) for name, count in counts.items()]
+    if aim := run.layout.scaled_to:
+        listing.append(("records scaled to", aim))
+    yield Table.listing(listing)
     if run.summary is not None:
         yield from summary_tables(run.summary)
         yield of_first_system(run.layout)

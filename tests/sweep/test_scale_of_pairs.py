@@ -64,6 +64,7 @@ def test_all_directions_have_one_factor(study_of: Make, of: str) -> None:
     name = {"": "RotD50", "rotd50": "RotD50", "rotd100": "RotD100"}.get(of, of)
     assert shown_keys(layout, (INTENSITY,)) == (f"PGV({name})",)
     assert (f"PGV({name})", "m/s") in units_of_columns(layout)
+    assert layout.scaled_to == f"2 values of PGV({name})"
 
 
 def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -> None:

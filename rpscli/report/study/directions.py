@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -107,12 +108,14 @@ def directions(study: StudyResults, options: DirectionsOptions) -> Found:
         ("pair", "directions", "overturned", "failed", "result", "unit"), "-"
     ) | {"worst": "SI", "worst_angle": "deg", "rotd50": "SI"}
     drawable = any(panel.curves for panel in panels)
+    layout = table.layout
+    aim = f"scaled to {layout.scaled_to}" if layout.scaled_to and len(layout.scales) == 1 else ""
     return Found(
         {
             "": keyed(found.keys, spread_heads, spreads),
             "_pairs": keyed(found.keys, pair_heads, pairs),
         },
-        (lambda title: directions_figure(found.keys, drawn, panels, title)) if drawable else None,
+        partial(directions_figure, found.keys, drawn, panels, scaled=aim) if drawable else None,
         (NO_BOUND, *_uneven(table.layout)),
     )
 
@@ -157,7 +160,11 @@ def _curve(
 
 
 def directions_figure(
-    keys: Sequence[str], quantity: ResultQuantity, panels: Sequence[Panel], title: str
+    keys: Sequence[str],
+    quantity: ResultQuantity,
+    panels: Sequence[Panel],
+    title: str,
+    scaled: str = "",
 ) -> bytes:
     """The result of each pair over the angle; what overturned stands on the frame, open."""
     drawn = [curve.drawn for panel in panels for curve in panel.curves]
@@ -199,7 +206,9 @@ def directions_figure(
         x_label="angle from the first component [deg]",
         y_label=quantity.axis_label,
         limits=lambda axes: axes.set(xlim=(-4.0, 184.0), ylim=(0.0, top)),
-        note=remarks(beyond, left_out(sum(c.failed for panel in panels for c in panel.curves))),
+        note=remarks(
+            scaled, beyond, left_out(sum(c.failed for panel in panels for c in panel.curves))
+        ),
     )
 
 

@@ -20,7 +20,7 @@ from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RecordError, RpsError
 from rpscli.frozen import frozen
 from rpscli.records.clusters import By, clusters, pairs
-from rpscli.records.measures import AT_PERIOD
+from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS
 from rpscli.records.pair_measure import Of, measure_label
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
@@ -155,6 +155,15 @@ class StudyPoints:
         if records == (None,):
             records = tuple(properties.record for properties in self.properties)
         return self.plan.of if any(r and r.pair for r in records) else None
+
+    @property
+    def scaled_to(self) -> str:
+        """What the records are scaled to, in words; empty if to nothing."""
+        if (measure := self.plan.measure) is None:
+            return ""
+        one, *others = measure.values
+        name, unit = measure_label(measure.measure, self.of), MEASURE_UNITS[measure.measure]
+        return f"{len(measure.values)} values of {name}" if others else f"{name} = {one:g} {unit}"
 
     def period_of_measure(self, properties: SystemProperties) -> float | None:
         """Period at which the records of a system are scaled; None unless they are [s]."""
