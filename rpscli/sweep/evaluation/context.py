@@ -21,7 +21,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.records.clusters import pairs
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import Measure, factor_to, measured
-from rpscli.records.pair_measure import Of, of_directions, over_directions
+from rpscli.records.pair_measure import Of, pair_measure
 from rpscli.records.source import load_components
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest
 from rpscli.sweep.evaluation.results import Array
@@ -64,7 +64,6 @@ class RecordCache:
         )
         self._digests: Recent[RecordRequest, bytes] = Recent(float("inf"))
         self._intensities: Recent[tuple[object, ...], float] = Recent(1e6)
-        self._directions: Recent[tuple[object, ...], Array] = Recent(1e4)
 
     def motion(self, request: RecordRequest) -> MotionComponents:
         """The motion of a request."""
@@ -93,21 +92,18 @@ class RecordCache:
         of: Of = "component",
     ) -> float:
         """A measure of the unscaled horizontal motion or, if it has one, of its pair, SI units."""
-        if of == "component" or request.pair is None:
-            key = (request, measure, period, damping)
-            return self._intensities.value(
-                key, lambda: measured(self.motion(request).horizontal, measure, period, damping)
-            )
-        one, other = (
-            request._replace(source=source, vertical=None, pair=None) for source in request.pair
-        )
-        over = self._directions.value(
-            (one, other, measure, period, damping),
-            lambda: over_directions(
-                self.motion(one).horizontal, self.motion(other).horizontal, measure, period, damping
-            ),
-        )
-        return float(of_directions(over, of))
+        both = None if of == "component" else request.pair
+
+        def make() -> float:
+            if both is None:
+                return measured(self.motion(request).horizontal, measure, period, damping)
+            parts = (request._replace(source=s, vertical=None, pair=None) for s in both)
+            one, other = (self.motion(part).horizontal for part in parts)
+            return pair_measure(one, other, measure, of, period, damping)
+
+        # All directions of a pair share its measure.
+        whose = request if both is None else (request._replace(source="", vertical=None), of)
+        return self._intensities.value((whose, measure, period, damping), make)
 
 
 def _samples(found: MotionComponents | str) -> float:
