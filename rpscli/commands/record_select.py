@@ -195,6 +195,9 @@ def command(
     )
     every = [load_record(source) for source in expand_sources(sources)]
     motions, left_out = _kept(every, [parse_filter(text) for text in where])
+    if not motions:
+        counts = ", ".join(f"{text} {sum(out.values())}" for text, out in left_out.items())
+        raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
     selection = select(motions, spectrum, request)
     place = output.place or RESULTS / "selection" / "record_select"
     folder = OutputFolder(

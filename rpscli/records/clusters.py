@@ -231,7 +231,7 @@ def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ..
         if of is not None and known is None:
             raise RecordError(
                 f"{source}: has no second component, of: {of} is for pairs; name it by"
-                " second=FILE&angle=0, or leave `of` out"
+                " second=FILE&angle=0, or take single components"
             )
         several = of is not None or p.turned or len(members[number]) > 1
         found.append(known if several else None)

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from rpscli.records.pair_measure import SHOWN, Of
+from rpscli.records.pair_measure import Of
 
 Component = Of | Literal["srss"]
 """What a spectrum is of: a measure of pairs, or the root of the sum of both squared spectra."""
@@ -19,18 +19,24 @@ NOT_VERIFIED = "NOT VERIFIED"
 """How statements begin that nothing was found to check."""
 
 
+_COMPONENTS: dict[Component, str] = {
+    "component": "single components",
+    "rotd50": "RotD50 of pairs",
+    "rotd100": "RotD100 of pairs, the maximum direction",
+    "geomean": "geometric means of pairs",
+    "larger": "larger components of pairs",
+    "x": "first components of pairs",
+    "srss": "SRSS of both components of pairs",
+}
+
+
 def component_text(of: Component) -> str:
     """A definition of the component as readers see it.
 
     >>> component_text("rotd100"), component_text("component")
     ('RotD100 of pairs, the maximum direction', 'single components')
     """
-    if of == "component":
-        return "single components"
-    if of == "srss":
-        return "SRSS of both components of pairs"
-    among = ", the maximum direction" if of == "rotd100" else ""
-    return f"{SHOWN.get(of, of)} of pairs{among}"
+    return _COMPONENTS[of]
 
 
 class Periods(NamedTuple):

@@ -21,7 +21,7 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.model.statics import device_consequences, returns, uplift_force
+from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
 from rpscli.model.uplifted_state import uplifted_state
 
 DEVICES: tuple[Device, ...] = (
@@ -182,3 +182,18 @@ def test_a_damper_leaves_each_building_mode_a_pair(c: float) -> None:
         assert growing.real > 0.0 > partner.real
         assert growing.imag == partner.imag == 0.0
         assert np.all(modes.damping > 0.0)
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.5, 0.8])
+def test_the_secant_period_of_flat_ends(ratio: float) -> None:
+    """Of angles that are small u = 2 R theta and F = W (alpha - theta), whatever the masses are."""
+    structure = equipped(FLAT, tan_alpha=0.02)
+    rotation = ratio * structure.critical_rotation
+    R, g = structure.bearing.semi_diagonal, structure.gravity
+    wanted = 2.0 * math.pi * math.sqrt(2.0 * R / g * ratio / (1.0 - ratio))
+    # cos(alpha) and the like: 0.02^2.
+    assert secant_period(structure, rotation) == pytest.approx(wanted, rel=1e-3)
+    # A spring of the secant stiffness beside it halves the square.
+    stiffness = structure.restoring_mass * (2.0 * math.pi / wanted) ** 2
+    held = replace(structure, devices=(Stop(0.0, stiffness),))
+    assert secant_period(held, rotation) == pytest.approx(wanted / math.sqrt(2.0), rel=1e-3)
