@@ -40,6 +40,10 @@ if TYPE_CHECKING:
     from rpscli.study_run import Collected, StudyRun
 
 
+OF_A_REPORT = 12
+"""Warnings that are shown at most."""
+
+
 @click.command("sweep")
 @click.argument("study", metavar="STUDY", type=FILE)
 @overrides_option(
@@ -91,7 +95,7 @@ def command(
     notes = [*given.warnings, *found.notes]
     # Of each report: what one has to say takes no room from the next.
     for _, of_one in groupby(notes, lambda note: note.partition(": ")[0]):
-        terminal.warn_first(list(of_one), "with --json")
+        terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)
     document = {
         **heading(),
         "command": "sweep",

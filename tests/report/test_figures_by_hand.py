@@ -180,7 +180,7 @@ def test_what_a_rate_comes_from() -> None:
             same(values, shares[label])
             same(at, edges[:-1])
         for line, half in zip(axes.lines, halves, strict=True):
-            same(line.get_data(), ((half, half), (0.0, 0.82)))
+            same(line.get_data(), ((half, half), (0.0, 0.97)))
         assert axes.get_xscale() == "log"
         same(axes.get_xlim(), (0.9, 1.1 * 1.4 * 8.0))
         assert axes.get_ylim()[0] == 0.0

@@ -206,7 +206,7 @@ def test_margins_and_dispersions_are_those_of_fema_p695(
         own = annual_rate(hazard, row["median"], row["beta"])
         assert row["annual_rate_of_records"] == pytest.approx(own)
         # Three times the mean curve throughout.
-        assert row["annual_rate_of_hazard_0.84"] == pytest.approx(3.0 * row["annual_rate"])
+        assert row["annual_rate_of_hazard_84"] == pytest.approx(3.0 * row["annual_rate"])
         tail = float(rates_above(hazard, row["median"], total, np.array([2.7]))[0])
         assert row["share_beyond_computed"] == pytest.approx(tail / row["annual_rate"])
         tail = float(rates_above(hazard, row["median"], total, np.array([1.0]))[0])
@@ -222,7 +222,7 @@ def test_margins_and_dispersions_are_those_of_fema_p695(
     assert "modelling 0.4" in found["remark"]
     monkeypatch.setenv("COLUMNS", "400")
     shown = sweep("study.yaml", "-o", "out").stdout
-    for words in ("beta total", "rate of hazard 0.84", "ACMR", "MCE", "95 % bands of the choice"):
+    for words in ("beta total", "rate of hazard 84 %", "ACMR", "MCE", "95 % bands of the choice"):
         assert words in " ".join(shown.split())
     with_risk(workplace, options.replace("60 cm/s", "60 cm"), HEADER + "1,1\n10,0.1\n")
     assert "at: is a length, but must be a velocity" in sweep("study.yaml", "-o", "out").stderr

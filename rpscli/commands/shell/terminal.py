@@ -49,11 +49,11 @@ class Terminal:
                 self.told.add(text)
                 self.note(f"warning: {text}")
 
-    def warn_first(self, texts: Sequence[str], where: str) -> None:
+    def warn_first(self, texts: Sequence[str], where: str, most: int = WARNINGS_SHOWN) -> None:
         """The first warnings, and how many there are besides."""
-        self.warn(texts[:WARNINGS_SHOWN])
-        if len(texts) > WARNINGS_SHOWN:
-            self.note(f"... and {len(texts) - WARNINGS_SHOWN} more {where}")
+        self.warn(texts[:most])
+        if len(texts) > most:
+            self.note(f"... and {len(texts) - most} more {where}")
 
     def result(self, document: Mapping[str, Any], tables: Iterable[Part] = ()) -> None:
         """The result, as a document or as tables."""

@@ -98,6 +98,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
             limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
             note=remarks(
                 "level to the right: overturned at the next intensity" if found.overturned else "",
+                "back to the left: stronger motions turn the columns less",
                 over(found.pooled),
                 left_out(found.failed),
             ),

@@ -79,7 +79,8 @@ def panel_figure(
     """A figure with one panel for each group."""
     width = style.room(style.WIDTH)
     shown = panels[:MOST_PANELS]
-    columns = layout.columns if width >= style.WIDTH else min(2, layout.columns)
+    narrow = 1 if len(shown) == 3 else 2  # three leave a hole
+    columns = layout.columns if width >= style.WIDTH else min(narrow, layout.columns)
     names = _wrapped(layout.names, columns)
     rows = max(1, math.ceil(len(shown) / columns))
     if len(panels) > len(shown):

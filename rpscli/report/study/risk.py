@@ -34,7 +34,15 @@ from rpscli.report.study.fragility import (
     wrong_intensities,
 )
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import Layout, colour, log_ticks, over, panel_figure, remarks
+from rpscli.report.study.panels import (
+    Layout,
+    break_if_narrow,
+    colour,
+    log_ticks,
+    over,
+    panel_figure,
+    remarks,
+)
 from rpscli.report.study.report import Found, Report, with_band
 from rpscli.sweep.fits.hazard import (
     Hazard,
@@ -146,15 +154,35 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     known = [each for each in risks if each.fragility.fit.fitted]
     keys, measured, unit = found.systems.keys, found.intensity.name, found.intensity.unit
     life = f"probability_in_{options.years:g}_years"
-    ends, rate_unit = ("low", "high"), "1/year"
-    heads = {"limit": "-", "annual_rate": rate_unit, "return_period": "year"}
-    heads |= {f"annual_rate_{end}": rate_unit for end in ends}
-    heads |= {life: "-"} | {f"{life}_{end}": "-" for end in ends}
-    heads |= {"median": unit, "beta": "-", "beta_total": "-", "confidence": "-"}
-    heads |= {"annual_rate_of_records": rate_unit, "annual_rate_of_shares": rate_unit}
-    heads |= {f"annual_rate_of_hazard_{share:g}": rate_unit for share in hazard.fractiles}
-    heads |= {f"half_from_{measured}_below": unit}
-    heads |= {"share_beyond_computed": "-", "share_beyond_hazard": "-", "note": "-"}
+    # Unit of each column, and what readers see above it, if they see it.
+    columns = {
+        "limit": ("-", "limit"),
+        "annual_rate": ("1/year", "annual rate"),
+        "return_period": ("year", "return period"),
+        "annual_rate_low": ("1/year", None),
+        "annual_rate_high": ("1/year", None),
+        life: ("-", f"P in {options.years:g} years"),
+        f"{life}_low": ("-", None),
+        f"{life}_high": ("-", None),
+        "median": (unit, "median"),
+        "beta": ("-", "beta"),
+        "beta_total": ("-", "beta total" if options.dispersion.given else None),
+        "confidence": ("-", None),
+        "annual_rate_of_records": (
+            "1/year", "rate of records alone" if options.dispersion.given else None
+        ),
+        "annual_rate_of_shares": ("1/year", "rate of shares"),
+        **{
+            f"annual_rate_of_hazard_{100 * s:g}": ("1/year", f"rate of hazard {100 * s:g} %")
+            for s in hazard.fractiles
+        },
+        f"half_from_{measured}_below": (unit, "half from below"),
+        "share_beyond_computed": ("-", "from beyond computed"),
+        "share_beyond_hazard": ("-", "from beyond hazard"),
+        "note": ("-", None),
+    }  # fmt: skip
+    heads = {name: of_unit for name, (of_unit, _) in columns.items()}
+    readers = {name: label for name, (_, label) in columns.items() if label}
     rows = [
         (
             each.fragility.values,
@@ -188,25 +216,13 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         for low, high, rate in zip(each.edges, each.edges[1:], each.rates, strict=False)
     ]
     tables = {"": keyed(keys, heads, rows), "_contributions": keyed(keys, part_heads, parts)}
-    main = dict.fromkeys((*keys, "limit"), "") | {
-        "annual_rate": "annual rate", "return_period": "return period",
-        life: f"P in {options.years:g} years", "median": "median", "beta": "beta",
-        "beta_total": "beta total", "annual_rate_of_records": "rate of records alone",
-        "annual_rate_of_shares": "rate of shares",
-        **{f"annual_rate_of_hazard_{s:g}": f"rate of hazard {s:g}" for s in hazard.fractiles},
-        f"half_from_{measured}_below": "half from below",
-        "share_beyond_computed": "from beyond computed",
-        "share_beyond_hazard": "from beyond hazard",
-    }  # fmt: skip
-    if not options.dispersion.given:
-        del main["beta_total"], main["annual_rate_of_records"]
     if options.at:
         tables["_at"] = margins(study, options, found)
     return Found(
         tables,
         (lambda title: risk_figure(found, known, options.years, title)) if known else None,
         [*_report_notes(found, known, options.hazard.component), *found.notes],
-        shown={"": main} | ({"_at": {}} if options.at else {}),
+        shown={"": dict.fromkeys(keys, "") | readers} | ({"_at": {}} if options.at else {}),
         remark=f"{what_bands_hold(study.table.layout, options)}; rate of shares: of the observed"
         " ones, no lognormal",
     )
@@ -306,6 +322,9 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
     limits = [limit for limit in found.limits if found.fitted(limit)]
     groups, (low, high) = len(found.systems.groups), _shown(risks)
     last = float(risks[0].edges[-2])
+    # Numbers stand above the steps: one line each, two where panels are narrow.
+    line = 0.075 if len(limits) == 3 else 0.075 * (1 + break_if_narrow().count("\n"))
+    room = 0.03 + line * min(groups, MOST_BANDS)
 
     def draw(axes: Axes, limit: LimitState) -> None:
         of_limit = [each for each in risks if each.fragility.limit == limit]
@@ -316,11 +335,13 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
             axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
             if high > last:
                 axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
-            axes.axvline(each.half, ymax=0.82, color=shade, lw=0.8, ls="--")
+            axes.axvline(each.half, ymax=1.0 - room, color=shade, lw=0.8, ls="--")
             if len(of_limit) <= MOST_BANDS:
                 words = _chance(each, years)
+                if line > 0.1:
+                    words = words.replace(" (", "\n(")
                 axes.text(
-                    0.02, 0.97 - 0.075 * row, words, color=shade, transform=axes.transAxes,
+                    0.02, 0.98 - line * row, words, color=shade, transform=axes.transAxes,
                     va="top", fontsize=0.85 * style.small(),
                 )  # fmt: skip
         beyond_computed(axes, max(each.fragility.largest for each in of_limit), high)
@@ -329,7 +350,7 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
         log_ticks(axes.xaxis)
         axes.set_xlim(low, high)
-        axes.set_ylim(0.0, 1.25 * axes.get_ylim()[1])  # room for the numbers
+        axes.set_ylim(0.0, axes.get_ylim()[1] / (1.0 - room))
 
     return panel_figure(
         Layout([limit_name(limit) for limit in limits], side_by_side(len(limits))),
