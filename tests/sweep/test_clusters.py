@@ -83,6 +83,18 @@ def test_a_study_counts_recordings_or_events(study_of: Make) -> None:
     assert str(group.overturned) == "0 of 14 from 5 events (95 %: below 0.49)"
 
 
+def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(study_of: Make) -> None:
+    """Six systems at two scales under three motions, and under one of them."""
+    for seeds, share_text, note in (
+        ("[1, 2, 3]", "0 of 36 from 3 recordings (95 %: below 0.63)", "intervals count recordings"),
+        ("[1]", "0 of 12 (95 %: below 0.22)", "say nothing of other records"),
+    ):
+        layout = lay_out(study_of(STUDY, ("seed: [1, 2, 3]", f"seed: {seeds}")))
+        found = grouping(tabulate(layout, [stored()] * len(layout)), ())
+        assert str(found.groups[0].overturned) == share_text
+        assert note in found.notes[0]
+
+
 def test_several_records_of_a_case_count_recordings() -> None:
     sources = ["d/RSN1_A.at2", "d/RSN1_B.at2", "d/RSN2_A.at2", "d/RSN2_B.at2"]
     demands = [{"rotation_ratio": 0.1, "uplifts": 1.0}] * 4

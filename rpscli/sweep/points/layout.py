@@ -132,8 +132,12 @@ class StudyPoints:
 
         Under a single record points tell of that record alone, each for itself.
         """
-        _, sources = self.identifying.get("record", (0, ()))
-        return self.recordings if len(set(sources)) > 1 else frozen(np.arange(len(self)))
+        return frozen(np.arange(len(self))) if self.alone else self.recordings
+
+    @cached_property
+    def alone(self) -> bool:
+        """Whether all points are under a single record, or none."""
+        return len(set(self.identifying.get("record", (0, ()))[1])) < 2
 
     @cached_property
     def recordings(self) -> Indices:

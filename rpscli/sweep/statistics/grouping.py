@@ -125,7 +125,8 @@ def grouping(
     keys = own_keys(layout, besides) if keys is None else tuple(keys)
     found = (Histories(table, *group) for group in groups(layout, keys, within))
     differing = pooled(layout, (*keys, *besides))
-    return Grouping(shown_keys(layout, keys), tuple(found), differing, pooling_notes(differing))
+    notes = pooling_notes(layout, differing)
+    return Grouping(shown_keys(layout, keys), tuple(found), differing, notes)
 
 
 def own_keys(layout: StudyPoints, besides: Sequence[str] = ()) -> tuple[str, ...]:
@@ -161,12 +162,14 @@ def _pooled(layout: StudyPoints, keys: set[str]) -> Iterator[str]:
         yield f"{len(layout.members)} members"
 
 
-def pooling_notes(differing: Sequence[str]) -> tuple[str, ...]:
+def pooling_notes(layout: StudyPoints, differing: Sequence[str]) -> tuple[str, ...]:
     """The warning that belongs to what is pooled; empty if nothing is."""
     if not differing:
         return ()
-    text = f"pools {' and '.join(differing)}, which differ"
-    return (f"{text}: these do not tell as much as other records would, which intervals count",)
+    of = f"intervals count {layout.independent}"
+    if layout.alone:
+        of = "intervals are of these histories, and say nothing of other records"
+    return (f"pools {' and '.join(differing)}, which differ: {of}",)
 
 
 def shown_keys(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
