@@ -20,6 +20,9 @@ EVENTS = {"overturning": "overturn", "uplift": "uplift"}
 FRICTION = "podium.friction"
 """Source of the condition that the columns do not slide."""
 
+RATE = "annual_rate"
+"""Condition on how often a year the structure overturns [1/year]: of designs alone."""
+
 LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Results that conditions may limit, in SI units."""
 
@@ -135,6 +138,8 @@ def condition_text(condition: Condition) -> str:
     >>> condition_text(Condition("min_column_force", 1e5, "", fractile=0.1))
     'at least 100000 at the 10 % fractile'
     """
+    if condition.name == RATE:
+        return f"at most {condition.limit:.3g} a year"
     if condition.fractile is not None:
         return f"{condition.bound} at the {100.0 * condition.fractile:g} % fractile"
     percent = f"{100.0 * condition.share:g} %"

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rpscli.case.conditions import EVENTS, Condition, condition_text
+from rpscli.case.conditions import LIMITS, RATE, Condition, condition_text
 from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, compute, of_first_system
@@ -90,7 +90,9 @@ class Rounds:
             if task.confirming and place != NONE:
                 study = self._laid_out(task.study_of(answer.values[[place]], task.confirming))
                 self.terminal.note(f"confirmation of the {name} design")
-                yield name, self._computed(study, store)
+                run = self._computed(study, store)
+                run.verdicts.extend(self.search.rate_verdicts(run.table, run.summary))
+                yield name, run
 
     def everything(self, answer: Answer, first: Study, store: Store) -> tuple[Study, StudyRun]:
         """All valid designs as one study, whose points are in the store."""
@@ -115,6 +117,11 @@ class Rounds:
             )
         if len(self.search.checked) >= self.search.most:
             yield "search.most ended the search before all of the recommended region was examined"
+        if self.search.beyond:
+            yield (
+                f"{RATE}: motions beyond the largest intensity come {self.search.beyond:.2g} times"
+                " a year; they are taken to overturn the share that the largest does"
+            )
         for name, run in confirmations.items():
             if not keeps_limits(run):
                 yield f"the {WORDS[name]} does not keep its limits under the other motions"
@@ -251,7 +258,7 @@ def _requirements(document: dict[str, Any], answer: Answer) -> Table:
     verdicts = answer.verdicts(answer.headline)
     for row, verdict in zip(document["requirements"], verdicts, strict=True):
         _, word, requirement, result = verdict_texts(verdict)
-        if verdict.condition.name not in EVENTS and verdict.fractile is None:
+        if verdict.condition.name in LIMITS and verdict.fractile is None:
             result = f"{shown(row['value'], DIGITS)}; {result}"
         met_by = f"{row['designs_that_meet_it']} designs"
         if row["binds"]:

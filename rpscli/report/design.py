@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rpscli.case.conditions import EVENTS, LIMITS
+from rpscli.case.conditions import EVENTS, LIMITS, RATE
 from rpscli.case.design import DesignTask, Objective
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, in_force
@@ -152,6 +152,7 @@ def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
             "records_too_many": float(judged.excess[row, place]),
             "met": bool(judged.met[row, 0, place]),
             "beyond": share_document(verdicts[row].beyond),
+            "interval": getattr(verdicts[row], "interval", None),
             "shown": verdicts[row].shown,
             "shown_by_recordings": verdicts[row].shown_by,
             "designs_that_meet_it": int(answer.judged.met[row, 0].sum()),
@@ -192,7 +193,7 @@ def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Colu
         )
     for row, requirement in enumerate(judged.requirements):
         name, of = requirement_label(requirement), requirement.condition.name
-        unit = "-" if of in EVENTS else LIMITS[of].unit
+        unit = LIMITS[of].unit if of in LIMITS else "1/year" if of == RATE else "-"
         columns.append(column(name, unit, judged.values[row, 0]))
         columns.append(column(f"{name}: records too many", "-", judged.excess[row]))
     return columns
@@ -249,11 +250,13 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
                                  label="best in 95 % of the resamples")  # fmt: skip
             _draw_regions(axes, answer, row)
             top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
-            axes.set_ylim(0.0, 1.05 * float(min(top, max(10.0 * requirement.bound, 1.0))))
             name = requirement.condition.name
+            most = max(10.0 * requirement.bound, 0.0 if name == RATE else 1.0)
+            axes.set_ylim(0.0, 1.05 * float(min(top, most)))
             words = LIMITS[name].label if name in LIMITS else name
-            unit = "share of records" if name in EVENTS else LIMITS[name].axis_label
-            axes.set_ylabel(unit)
+            others = {RATE: "overturned [1/year]"}
+            known = LIMITS[name].axis_label if name in LIMITS else "share of records"
+            axes.set_ylabel(others.get(name, known))
             axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
         grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
         style.legend_above(grid[0], 5) if len(requirements) == 1 else grid[0].legend()

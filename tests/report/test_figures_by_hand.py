@@ -366,7 +366,7 @@ def answer_of(
         requirements=tuple(requirements),
         values=np.array(demands, dtype=float),
         excess=np.zeros((1, len(at))),
-        beyond=np.array([np.arange(4) < 4.0 * np.array(d[0])[:, None] for d in demands]),
+        beyond=[(np.arange(4) < 4.0 * np.array(d[0])[:, None]).astype(float) for d in demands],
         met=met[None],
         objectives=np.repeat(np.array(aims, dtype=float)[:, None], len(met), axis=1),
     )

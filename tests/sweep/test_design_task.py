@@ -219,6 +219,84 @@ def test_verdicts_are_those_of_a_study(design_json: DesignJson, workplace: Path)
     assert {int(row["design [-]"]) for row in front} == undominated
 
 
+HAZARD = "PGV [m/s],rate [1/year]\n0.1,1e-2\n0.3,2e-3\n0.8,3e-4\n2,2e-5\n"
+RATE = (
+    BUILDING.replace("scale: [1.0, 1.5]", "scale: {measure: PGV, values: [0.9, 0.3, 0.6]}")
+    .replace(BUILDING[BUILDING.index("limits:") : BUILDING.index("minimise:")], "limits: {}\n")
+    .replace("limits: {}", "limits: {annual_rate: 1e-4}\nhazard: {file: hazard.csv, measure: PGV}")
+)
+
+
+@needs_compiled_kernels
+def test_a_limit_on_the_annual_rate(design_json: DesignJson, workplace: Path) -> None:
+    """The rate is the integral of the shares, linear in ln PGV, over the hazard, in small steps."""
+    (workplace / "hazard.csv").write_text(HAZARD)
+    unseen = "validate: {records: ['synthetic:?pga=0.8g&duration=4&dt=0.02&seed=9']}\n"
+    found = design_json(RATE + unseen, "-o", "out")
+    points = rows_of(workplace / "out/points.csv")
+    levels = np.array([0.3, 0.6, 0.9])
+    fine = np.geomspace(0.1, 20.0, 200_001)
+    curve = np.array([[float(x) for x in line.split(",")] for line in HAZARD.splitlines()[1:]])
+    x, height = np.log(curve.T)
+    beyond = height[-1] + np.diff(height)[-1] / np.diff(x)[-1] * (np.log(fine) - x[-1])
+    rates = np.exp(np.where(fine > 2.0, beyond, np.interp(np.log(fine), x, height)))
+    middle = np.log(np.sqrt(fine[1:] * fine[:-1]))
+    checked = set()
+    for place, row in enumerate(rows_of(workplace / "out/designs.csv")):
+        own = points[15 * place : 15 * place + 15]
+        fallen = [
+            np.mean(
+                [p["outcome [-]"].startswith("over") for p in own if p["PGV [m/s]"] == f"{v:g}"]
+            )
+            for v in levels
+        ]
+        exact = float(np.interp(middle, np.log(levels), fallen) @ -np.diff(rates))
+        exact += fallen[-1] * rates[-1]
+        assert float(row["annual_rate [1/year]"]) == pytest.approx(exact, rel=1e-6)
+        assert (row["passes [-]"] == "true") == (exact <= 1e-4)
+        checked.add(row["passes [-]"])
+    assert checked == {"true", "false"}
+    (requirement,) = found["requirements"]
+    assert requirement["met"]
+    assert not requirement["shown"]  # five records cannot
+    low, high = requirement["interval"]
+    assert low <= requirement["value"] < 1e-4 < high
+    (verdict,) = found["confirmation"]["robust"]
+    assert verdict["exceeded"] == (verdict["value"] > 1e-4) == (found["confirmed"] is False)
+    life = RATE.replace("annual_rate: 1e-4", f"probability_in_50_years: {-np.expm1(-50.0 * 1e-4)}")
+    assert design_json(life)["requirements"][0]["limit"] == pytest.approx(1e-4, rel=1e-12)
+
+
+@needs_compiled_kernels
+def test_perturbed_histories_are_parts_of_their_records(
+    design_json: DesignJson, workplace: Path
+) -> None:
+    found = design_json(f"{BUILDING}perturb: {{members: 2}}\ntolerance: 0\n", "-o", "out")
+    points = rows_of(workplace / "out/points.csv")
+    designs = rows_of(workplace / "out/designs.csv")
+    assert len(points) == len(designs) * 5 * 2 * 2
+    for place, row in enumerate(designs):
+        own = points[20 * place : 20 * place + 20]
+        for scale in ("1", "1.5"):
+            fallen = [p["outcome [-]"].startswith("over") for p in own][2 * (scale != "1") :]
+            share = np.mean([each for n, each in enumerate(fallen) if n % 4 < 2])
+            assert float(row[f"overturning at scale = {scale} [-]"]) == pytest.approx(share)
+    assert found["robust"]["within_tolerances"]
+
+
+def test_values_are_printed_as_they_were_judged(design: StudyPoints, workplace: Path) -> None:
+    """One unknown and a linked key: all of it is in the table of the terminal."""
+    result = design(FRAME, "-o", "out")
+    assert result.exit_code == 0, result.stderr
+    text = " ".join(result.stdout.split())
+    found = json.loads(design(FRAME, "-o", "out", "--json", "--force").stdout)
+    for key in (SLENDERNESS, WEDGE):
+        recommended, best = (f"{found[of]['values'][key]:.10g}" for of in ("robust", "best"))
+        assert f" {recommended} {best} " in text
+        assert len(recommended) <= 8
+    assert "the next smaller value looked at that fails" in text
+
+
 @needs_compiled_kernels
 def test_one_thread_or_two_give_the_same_bytes(design: StudyPoints, workplace: Path) -> None:
     for jobs in ("1", "2"):
@@ -323,6 +401,9 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         ),
         ("limits: {uplift: 0.3}\n", "", "", "limits is missing"),
         (MINIMISED, "", "", "minimise is missing"),
+        ("limits: {", "limits: {annual_rate: 1e-4, ", "18:", "and hazard need each other"),
+        ("search:", "tolerance: {a: 0.1}\nsearch:", "20:", "tolerance.a is not under variables"),
+        ("search:", "tolerance: 5\nsearch:", "20:", "1 % is 0.01"),
         ("search: {first: 8", "search: {first: 2", "20:", "must be a whole number from 4 to"),
         ("search:", "validate: {}\nsearch:", "20:", "must have records or a share"),
         ("search:", "validate: {share: 0.01}\nsearch:", "20:", "leaves none"),

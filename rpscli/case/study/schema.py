@@ -213,6 +213,18 @@ class PerturbSection(Section):
     """of the perturbations, which are the same at every point"""
 
 
+class HazardSection(Section):
+    """A hazard curve: how often a year each intensity is exceeded at the site."""
+
+    file: Text = Field(
+        description="CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it,"
+        " `0.16 [1/year]`; seen from the study's folder"
+    )
+    measure: Measure = Field(description="of its first column")
+    component: Of | None = None
+    """what of a pair of components it is of, as `of` in `scale`; said if it is not the same"""
+
+
 class RecordPattern(Section):
     """One source with options that take several values: the product of all of them."""
 

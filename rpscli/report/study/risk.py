@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from pydantic import Field
 
-from rpscli.case.schema.fields import Quantity, Section, Text
+from rpscli.case.schema.fields import Quantity
+from rpscli.case.study.schema import HazardSection
 from rpscli.errors import CaseError
-from rpscli.records.measures import AT_PERIOD, Measure
+from rpscli.records.measures import AT_PERIOD
 from rpscli.records.pair_measure import SHOWN, Of
 from rpscli.report.figures import style
 from rpscli.report.study.fragility import (
@@ -64,18 +65,6 @@ BINS = 24
 """Of intensities, for what contributes."""
 CLEARLY = 0.05
 """Share of the rate beyond which the ends of the hazard curve are worth a note."""
-
-
-class HazardSection(Section):
-    """A hazard curve: how often a year each intensity is exceeded at the site."""
-
-    file: Text = Field(
-        description="CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it,"
-        " `0.16 [1/year]`; seen from the study's folder"
-    )
-    measure: Measure = Field(description="of its first column")
-    component: Of | None = None
-    """what of a pair of components it is of, as `of` in `scale`; said if it is not the same"""
 
 
 class RiskOptions(FragilityOptions):

@@ -13,7 +13,7 @@ from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.table import Column, shown
 from rpscli.sweep.statistics.fractiles import Share
 from rpscli.sweep.statistics.summary import Summary
-from rpscli.sweep.statistics.verdicts import Verdict
+from rpscli.sweep.statistics.verdicts import RateVerdict, Verdict
 
 SPREAD = {"median": "median", "84": "high", "largest": "largest"}
 """What follows the name of a quantity in a column, and the attribute of its spread."""
@@ -163,11 +163,15 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
         "exceeded": verdict.exceeded,
         "shown": verdict.shown,
         "shown_by_recordings": verdict.shown_by,
+        **({"interval": verdict.interval} if isinstance(verdict, RateVerdict) else {}),
     }
 
 
 def verdict_text(verdict: Verdict) -> str:
     """What a verdict rests on, in words."""
+    if isinstance(verdict, RateVerdict):
+        low, high = verdict.interval
+        return f"{verdict.value:.3g} a year ({low:.2g} to {high:.2g})"
     needed = f"; {shown_by_text(verdict)}" if verdict.shown_by else ""
     if verdict.fractile is not None:
         demand = "overturned" if math.isinf(verdict.fractile) else shown(verdict.fractile)
@@ -184,7 +188,7 @@ def shown_by_text(verdict: Verdict) -> str:
 def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:
     """How many limits are exceeded, or met, or met without being shown."""
     exceeded = sum(verdict.exceeded for verdict in verdicts)
-    unsure = sum(verdict.shown_by is not None for verdict in verdicts)
+    unsure = sum(not (verdict.exceeded or verdict.shown) for verdict in verdicts)
     first = f"{exceeded} of {what} exceeded" if exceeded else f"All {what} are met"
     return f"{first}{f', {unsure} met but not shown' * bool(unsure)}."
 

@@ -14,7 +14,7 @@ from rpscli.case.conditions import EVENTS, Condition
 from rpscli.case.design import DesignTask, Objective
 from rpscli.sweep.design.regions import regions
 from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, clustered, fractiles
-from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, worse
+from rpscli.sweep.statistics.verdicts import RateVerdict, Verdict, decisive, judge, worse
 from rpscli.sweep.table import Array, Indices, Table
 
 Demands = Mapping[str, Array]
@@ -32,6 +32,13 @@ class Requirement(NamedTuple):
     intensity: int
     measure: str = "scale"
     level: float | None = None
+    rates: tuple[float, ...] | None = None
+    """How often a year the structure overturns for a share of one at each intensity [1/year]."""
+
+    @property
+    def result(self) -> str:
+        """What its demands are of."""
+        return self.condition.name if self.rates is None else "overturning"
 
     @property
     def bound(self) -> float:
@@ -74,14 +81,15 @@ class Judged:
     `values` and `met` are (requirements, weightings, designs): the share of an event, or the demand
     that no more than the admissible records exceed, and whether that is enough. `excess`
     (requirements, designs) are records beyond the limit less those that may be, over all of them;
-    `beyond` (requirements, designs, histories) tells which histories are, NaN where one failed.
+    `beyond`, (designs, histories) of each requirement, tells which are, NaN where one failed; of
+    a rate those of one intensity after the other.
     `objectives` are (objectives, weightings, designs).
     """
 
     requirements: tuple[Requirement, ...]
     values: Array
     excess: Array
-    beyond: Array
+    beyond: Sequence[Array]
     met: np.typing.NDArray[np.bool_]
     objectives: Array
 
@@ -103,8 +111,21 @@ def judged_designs(
     members = next(iter(demands.values())).shape[3]
     weights = np.repeat(weights, members, axis=1) / members
     for requirement in requirements:
-        condition = requirement.condition
-        at = demands[condition.name][:, :, requirement.intensity].reshape(len(values), -1)
+        condition, every = requirement.condition, demands[requirement.result]
+        if requirement.rates is not None:
+            event = Condition(requirement.result, 0.0, "")
+            parts = [at.reshape(len(values), -1) for at in np.moveaxis(every, 2, 0)]
+            judgements = [judge(at, weights, event) for at in parts]
+            with np.errstate(invalid="ignore", divide="ignore"):
+                shares = [each.beyond / each.total for each in judgements]
+            rate = np.tensordot(requirement.rates, shares, axes=1)
+            found.append(rate)
+            met.append(rate <= condition.limit)
+            excess.append(np.nan_to_num(rate[0] / condition.limit - 1.0, nan=np.inf))
+            fallen = np.concatenate(parts, axis=1)
+            beyond.append(np.where(np.isnan(fallen), np.nan, fallen > 0.0))
+            continue
+        at = every[:, :, requirement.intensity].reshape(len(values), -1)
         counted = judge(at, weights, condition)
         excess.append(counted.excess[0])
         beyond.append(np.where(np.isnan(at), np.nan, at > condition.sign * condition.limit))
@@ -116,7 +137,8 @@ def judged_designs(
             found.append(condition.sign * decisive(at, weights, condition))
     keys = dict(zip(task.keys, values.T, strict=True))
     objectives = [_objective(objective, keys, demands, weights) for objective in task.file.minimise]
-    return Judged(tuple(requirements), *map(np.array, (found, excess, beyond, met, objectives)))
+    arrays = map(np.array, (met, objectives))
+    return Judged(tuple(requirements), np.array(found), np.array(excess), beyond, *arrays)
 
 
 def _objective(
@@ -145,6 +167,18 @@ ROBUST = 0.9
 
 NONE = -1
 """Place of a design that does not exist."""
+
+
+def rate_verdict(
+    requirement: Requirement, shares: Sequence[Share], values: tuple[object, ...] = ()
+) -> RateVerdict:
+    """On an annual rate, from the shares that overturned at each intensity."""
+    assert requirement.rates is not None, "it is a requirement on a rate"
+    ends = np.array([(share.fraction or 0.0, share.low, share.high) for share in shares])
+    rate, low, high = (np.array(requirement.rates) @ ends).tolist()
+    condition, largest = requirement.condition, shares[-1]
+    exceeded = not rate <= condition.limit
+    return RateVerdict(condition, values, largest, 0, rate, "", None, exceeded, (low, high))
 
 
 class Tolerated(NamedTuple):
@@ -285,9 +319,15 @@ class Answer:
         found = []
         for row, requirement in enumerate(judged.requirements):
             condition, value = requirement.condition, float(judged.values[row, 0, at])
-            counted, met = self.share_beyond(judged.beyond[row, at]), bool(judged.met[row, 0, at])
+            beyond, exceeded = judged.beyond[row][at], not judged.met[row, 0, at]
             fractile = None if condition.fractile is None else value
-            found.append(Verdict(condition, (), counted, 0, value, "", fractile, exceeded=not met))
+            parts = np.split(beyond, len(requirement.rates or [1.0]))
+            shares = [self.share_beyond(part) for part in parts]
+            if requirement.rates is None:
+                common = condition, (), shares[0], 0, value, "", fractile
+                found.append(Verdict(*common, exceeded=bool(exceeded)))
+            else:
+                found.append(rate_verdict(requirement, shares))
         return found
 
     def share_beyond(self, beyond: Array) -> Share:

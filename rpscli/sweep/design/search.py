@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.case import case_from_mapping
-from rpscli.case.conditions import EVENTS
+from rpscli.case.conditions import EVENTS, RATE, Condition
 from rpscli.case.design import DesignTask
 from rpscli.case.study.schema import SampleSection
 from rpscli.case.text.document import Fault
@@ -21,13 +21,18 @@ from rpscli.sweep.design.answer import (
     Requirement,
     demands_of,
     judged_designs,
+    rate_verdict,
     weights_of,
 )
 from rpscli.sweep.design.regions import neighbours
+from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.combinations import unit_cube
 from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.statistics.fractiles import share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
+from rpscli.sweep.statistics.summary import Summary
+from rpscli.sweep.statistics.verdicts import RateVerdict
 from rpscli.sweep.table import Array, Table
 
 Flags = NDArray[np.bool_]
@@ -120,7 +125,9 @@ class Search:
         self.valid = np.empty(0, dtype=bool)
         self.faults: dict[str, None] = {}
         self.checked: list[int] = []
-        self._members = 1
+        self._within_record = 1, 1
+        self.beyond = 0.0
+        """How often a year motions are stronger than those of the study, for a limit on a rate."""
         self._demands: dict[str, Array] = {}
         self._within: dict[str, Array] = {}
 
@@ -128,7 +135,7 @@ class Search:
     def names(self) -> tuple[str, ...]:
         """Results that requirements and objectives name."""
         objectives = (name for objective in self.task.file.minimise for name in objective)
-        named = [*(r.condition.name for r in self.requirements), *objectives]
+        named = [*(requirement.result for requirement in self.requirements), *objectives]
         return tuple(name for name in dict.fromkeys(named) if name not in self.task.keys)
 
     def next_round(self) -> Array:
@@ -222,13 +229,14 @@ class Search:
         """Take the requirements from the first designs that are laid out; refuse what cannot be."""
         document = self.task.study.document
         (measure,) = shown_keys(layout, (INTENSITY,))
-        self._members = len(layout.members)
+        self._within_record = len(layout.scales), len(layout.members)
         several = len(layout.scales) > 1
         self.requirements = tuple(
             Requirement(condition, place, measure, level if several else None)
             for condition in layout.properties[0].limits
             for place, level in enumerate(layout.scales)
         )
+        self.requirements += tuple(self._reliability(layout))
         if not self.requirements:
             text = "limits is missing: say what is required, here or in the case at the base"
             document.refuse([Fault((), f"{text}, as in `limits: {{overturning: 0.05}}`")])
@@ -270,16 +278,43 @@ class Search:
         self, valid: Flags, table: Table | None, invalid: float
     ) -> Iterator[tuple[str, Array]]:
         """Of every result that is needed; `invalid` ones of designs that are not valid cases."""
-        shape = len(valid), self.weights.rows.shape[1], self._intensities, self._members
+        shape = len(valid), self.weights.rows.shape[1], *self._within_record
         for name in self.names:
             found = np.full(shape, invalid)
             if table is not None:
                 found[valid] = demands_of(table, name)
             yield name, found
 
-    @property
-    def _intensities(self) -> int:
-        return 1 + max(requirement.intensity for requirement in self.requirements)
+    def _reliability(self, layout: StudyPoints) -> Iterator[Requirement]:
+        """The requirement on the annual rate, if there is one."""
+        task = self.task
+        if task.file.limits is None or task.file.limits.rate is None or task.file.hazard is None:
+            return
+        section, measure = task.file.hazard, layout.plan.measure
+        hazard = read_hazard(task.study.folder / section.file, section.measure)
+        levels = np.array(layout.scales, dtype=float)
+        if measure is None or measure.measure != section.measure or len(levels) < 2:
+            text = f"hazard: shares at two and more values of {section.measure} are needed; write"
+            text += f" `scale: {{measure: {section.measure}, values: [...]}}`"
+            task.study.document.refuse([Fault(("hazard",), text)])
+        order = np.argsort(levels)
+        rates = np.zeros(len(levels))
+        for place, share in zip(order, np.eye(len(levels)), strict=True):  # it is linear in them
+            rates[place] = rate_of_shares(hazard, levels[order], share)
+        self.beyond = float(exceeded(hazard, levels[order[-1:]])[0])
+        condition = Condition(RATE, task.file.limits.rate, "limits of the design")
+        yield Requirement(condition, 0, rates=tuple(rates.tolist()))
+
+    def rate_verdicts(self, table: Table, rows: Summary | None) -> Iterator[RateVerdict]:
+        """On the annual rate of the one design of a study, if it is limited."""
+        for requirement in self.requirements:
+            if requirement.rates is not None and rows is not None:
+                at = [
+                    np.flatnonzero((table.layout.places[2] == place) & ~table.failed)
+                    for place in range(len(requirement.rates))
+                ]
+                shares = [share_of(table, points, table.overturned[points]) for points in at]
+                yield rate_verdict(requirement, shares, (*rows.rows[0].values[:-1], "all"))
 
     def answer(self) -> Answer:
         """What is known so far."""

@@ -57,6 +57,26 @@ class Verdict:
         return shown_by(self.beyond, self.condition.admissible)
 
 
+@dataclass(frozen=True)
+class RateVerdict(Verdict):
+    """On the annual rate of overturning, of which `interval` is known [1/year].
+
+    The interval is that of the shares at all intensities at once, which is too wide.
+    """
+
+    interval: tuple[float, float]
+
+    @property
+    def shown(self) -> bool:
+        """Whether it is met, with all of its interval."""
+        return not self.exceeded and self.interval[1] <= self.condition.limit
+
+    @property
+    def shown_by(self) -> int | None:
+        """No number of records is told."""
+        return None
+
+
 class Judgement(NamedTuple):
     """(weightings, rows) histories that are counted, that exceed a limit, and that may."""
 
