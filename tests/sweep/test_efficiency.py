@@ -89,6 +89,7 @@ def test_slopes_between_bounds_are_the_maximum_of_the_likelihood() -> None:
 def test_bounds_that_one_value_satisfies_determine_no_scatter() -> None:
     assert censored_fit(np.array([-np.inf, 0.1, 0.2]), np.array([0.3, 0.5, np.inf])) is None
     assert censored_fit(np.empty(0), np.empty(0)) is None
+    assert censored_fit(VALUES - 0.1, VALUES + 0.1, np.ones((60, 1))) is None
 
 
 def test_a_limit_that_depends_on_one_measure_alone(study_of: Make) -> None:

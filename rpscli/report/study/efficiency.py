@@ -98,28 +98,31 @@ def efficiency(study: StudyResults, options: EfficiencyOptions) -> Found:
     measured = {
         measure_name(one): one for one in map(study.intensity, map(asked, options.measures))
     }
-    logs = {name: np.log(one.values) for name, one in measured.items()}
+    with np.errstate(divide="ignore"):  # nothing at a factor of 0
+        logs = {name: np.log(one.values) for name, one in measured.items()}
+    # The ratio of two measures of a record does not depend on the factor on it.
+    sizes = {name: logs[name] / (1 + (one.measure == "Arias")) for name, one in measured.items()}
     known, limits = _known_of_records(study), list(limit_states(options.limits))
     rows, further = [], []
     for limit, group in product(limits, found.groups):
         passed = _passed(group, limit.result, limit.threshold or 0.0)
-        first = passed.points[0]
-        weight = len(np.unique(study.table.clusters[first])) / max(len(first), 1)
+        last = passed.points[-1]
+        weight = len(np.unique(study.table.clusters[last])) / max(len(last), 1)
         for name, values in logs.items():
             between = passed.between(values)
             alone = censored_fit(*between)
-            others = {f"{o}/{name}": each - values for o, each in logs.items() if o != name}
+            others = {f"{o}/{name}": sizes[o] - sizes[name] for o in sizes if o != name}
             tests = [
                 Dependence(against, float(fit.slopes[0]), fit.sigma, chance(alone, fit, weight))
                 for against, each in (known | others).items()
-                if alone and (fit := censored_fit(*between, each[first][:, None]))
+                if alone and (fit := censored_fit(*between, each[last][:, None]))
             ]
             p_of = {test.against: test.p for test in tests}
             telling = {p_of[f"{o}/{name}"]: o for o in logs if f"{o}/{name}" in p_of}
             least = min(telling, default=math.nan)
             of = (group.values, limit.label, name)
             spread = (math.exp(alone.mean), alone.sigma) if alone else (math.nan, math.nan)
-            counts = (len(first), int(np.isinf(between[1]).sum()))
+            counts = (len(last), int(np.isinf(between[1]).sum()))
             chances = (*(p_of.get(each, math.nan) for each in KNOWN), least)
             rows.append((*of, measured[name].unit, telling.get(least), *spread, *counts, *chances))
             further += [(*of, *test) for test in tests]

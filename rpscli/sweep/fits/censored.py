@@ -34,6 +34,8 @@ def censored_fit(low: Array, high: Array, covariates: Array | None = None) -> Ce
         return None
     known = np.empty((len(low), 0)) if covariates is None else covariates
     centre, spread = known.mean(axis=0), known.std(axis=0)
+    if not spread.all():  # a covariate that is the same for all
+        return None
     design = np.column_stack([np.ones(len(low)), (known - centre) / spread])
     middle = np.where(np.isinf(low), high, np.where(np.isinf(high), low, 0.5 * (low + high)))
 
