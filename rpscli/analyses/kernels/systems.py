@@ -165,8 +165,8 @@ def fill_building(record: Record, building: Superstructure) -> None:
     of_shears, of_accelerations = omega**3 * shaken**-0.3, omega**-0.6 * shaken**-0.5
     record["shear_weight"][:n], record["acceleration_weight"][:n] = of_shears, of_accelerations
     record["bend_ratio"] = np.max(omega2 * omega2 * of_accelerations / of_shears)
-    record["shear_bound_of"][:n] = 1.0 / np.sum(shears.T**2 / of_shears, axis=1)
-    record["acceleration_bound_of"][:n] = 1.0 / np.sum(shapes.T**2 / of_accelerations, axis=1)
+    record["shear_bound_of"][:n] = np.sum(shears.T**2 / of_shears, axis=1) ** -0.5
+    record["acceleration_bound_of"][:n] = np.sum(shapes.T**2 / of_accelerations, axis=1) ** -0.5
 
 
 UPLIFTED_ANGLE = 0.6

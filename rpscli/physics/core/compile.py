@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import types
-from numba.extending import overload, register_jitable
+from numba.core import cgutils, types
+from numba.extending import intrinsic, overload, register_jitable
 
 from rpscli.user_cache import is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+Array = TypeVar("Array")
 
 OPTIONS: dict[str, Any] = {
     "nogil": True,
@@ -130,6 +131,54 @@ def compiled_with(field: str, *, otherwise: object = None) -> Callable[[Function
         return cast("Function", chosen)
 
     return decorate
+
+
+def uncounted(array: Array) -> Array:
+    """The same array, whose references machine code does not count: its caller holds one.
+
+    Counting takes a locked instruction for each array of each call.
+    """
+    return array
+
+
+@intrinsic
+def _without_owner(_typing: Any, array: Any) -> Any:
+    def code(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
+        view = context.make_array(array)(context, builder, given[0])
+        view.meminfo = cast("Any", view.meminfo).type(None)
+        return view._getvalue()  # noqa: SLF001 -- as numba's own code does
+
+    return array(array), code
+
+
+def prefetch(array: Any, index: int) -> None:
+    """Have the processor bring an entry, which will be asked for later, into its cache."""
+
+
+@intrinsic
+def _prefetch(_typing: Any, array: Any, index: Any) -> Any:
+    def code(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
+        entry = builder.gep(context.make_array(array)(context, builder, given[0]).data, given[1:])
+        tools = cast("Any", cgutils)
+        ir = tools.ir
+        byte, whole = ir.IntType(8).as_pointer(), ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [byte, whole, whole, whole])
+        fetch = tools.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
+        builder.call(fetch, [builder.bitcast(entry, byte), *(whole(k) for k in (0, 3, 1))])
+        return context.get_dummy_value()
+
+    return types.none(array, index), code
+
+
+_own: Any = _without_owner
+_fetch: Any = _prefetch
+for _function, _code in (
+    (uncounted, lambda array: _own(array)),  # noqa: PLW0108 -- functions are asked for
+    (prefetch, lambda array, index: _fetch(array, index)),  # noqa: PLW0108
+):
+    overload(_function, jit_options=cast("Any", OPTIONS), strict=False)(
+        lambda *_, code=_code: cast("Any", code)
+    )
 
 
 _compiled_here: set[str] = set()

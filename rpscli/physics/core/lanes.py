@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.compile import compiled, prefetch
 from rpscli.physics.core.records import INSTANTS, NO_RECORD, Floats, Record
 
 
@@ -17,6 +17,10 @@ class Ground(NamedTuple):
     g_up_slope: float  # their slopes over it [m/s3]
 
 
+AHEAD = 16
+"""Samples, two lines of the cache: every lane reads elsewhere, which no processor foresees."""
+
+
 @compiled
 def ground_in(s: Record, l: int, acceleration: Floats, interval: int) -> Ground:
     """How the ground moves in an interval of the lane's record."""
@@ -25,6 +29,7 @@ def ground_in(s: Record, l: int, acceleration: Floats, interval: int) -> Ground:
         return Ground(0.0, 0.0, gravity, 0.0)
     rate = s.sampling_rate[l]
     i = s.record[l] + interval
+    prefetch(acceleration, i + AHEAD)
     a_g, end = scale * acceleration[i], scale * acceleration[i + 1]
     slope = (end - a_g) * rate
     if s.vertical[l] == NO_RECORD:

@@ -70,6 +70,7 @@ class Field(NamedTuple):
 SIZES = {
     "lanes": LANES + PADDING,
     "modes": MOST_STOREYS + SPREAD,
+    "floors": MOST_STOREYS + PADDING,
     "terms": TERMS,
     "instants": INSTANTS,
     "ahead": INSTANTS + PADDING,

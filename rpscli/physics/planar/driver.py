@@ -14,7 +14,7 @@ from threading import Thread, current_thread, main_thread
 
 import numpy as np
 
-from rpscli.physics.core.compile import compiled, kernel
+from rpscli.physics.core.compile import compiled, kernel, uncounted
 from rpscli.physics.core.lanes import set_ground
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
 from rpscli.physics.planar.demands import (
@@ -93,12 +93,19 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
 def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- see below
     """The same, in lanes and a block of steps that are made already: arrays of one record.
 
-    What many samples need is handed on by itself: of each array in a tuple references are counted.
     What becomes of a lane is decided here: in a function of its own it would cost a tenth of the
     speed, and all that it calls would be compiled once more.
     """
     s = state[0]
-    systems, acceleration, output = run.systems, run.acceleration, run.output
+    systems, acceleration = uncounted(run.systems), uncounted(run.acceleration)
+    output = Output(
+        uncounted(run.output.samples),
+        uncounted(run.output.floors),
+        uncounted(run.output.log),
+        uncounted(run.output.devices),
+        run.output.finer,
+    )
+    run = Run(systems, uncounted(run.requests), acceleration, uncounted(run.results), output)
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, s.lanes
     begun = False
@@ -174,19 +181,20 @@ def next_history(s: Record, l: int, run: Run) -> int:
 def observe_lanes(s: Record, systems: Record, block: Record, output: Output) -> None:
     """What few steps ask for, lane by lane."""
     for l in range(s.lanes):
-        if s.audited > 0 and s.accepted[l] > 0.0:
+        if s.accepted[l] == 0.0:
+            continue
+        if s.audited > 0:
             book_energy(s, l, 1.0)
             if output.finer > 1:
                 store_within(s, l, systems[s.system[l]], output, 1.0)
-        if s.devices[l] > 0 and s.accepted[l] > 0.0:
+        if s.devices[l] > 0:
             book_devices(s, l, 1.0)
             observe_devices(s, l, 1.0)
         if s.peak_inside[l] > 0.0:
             raise_peak(s, l, block, output.log)
         if s.demands_rise[l] > 0.0:
             raise_floors(s, l, systems[s.system[l]])
-        if s.contacts_rise[l] > 0.0:
-            raise_contacts_within(s, l, 1.0)
+        raise_contacts_within(s, l, 1.0)
 
 
 @compiled
@@ -239,12 +247,12 @@ def load_system(s: Record, l: int, system: Record) -> None:
     s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
     s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
     s.theta_cr[l], s.last_term[l] = system.theta_cr, system.last_term
-    s.bend_ratio[l], s.last_look[l] = system.bend_ratio, -1.0
+    s.bend_ratio[l] = system.bend_ratio
     for r in range(s.n):
         s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[r], system.two_xi_omega[r]
         s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[r], system.shear_weight[r]
         s.acceleration_weight[r, l] = system.acceleration_weight[r]
-        s.q[r, l], s.dq[0, r, l] = 0.0, 0.0
+        s.q[r, l], s.dq[0, r, l], s.seen_q[r, l], s.seen_force[r, l] = 0.0, 0.0, 0.0, 0.0
 
 
 @compiled
@@ -256,8 +264,10 @@ def clear_results(s: Record, l: int) -> None:
     s.heavy_top[l], s.heavy_bottom[l] = 0.0, 0.0
     s.shear_top[l], s.shear_bottom[l] = 0.0, 0.0
     s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l] = 0.0, 0.0
+    s.shear_room[l], s.acceleration_room[l] = 0.0, 0.0
     for i in range(s.n):
         s.storey_shear[l, i], s.floor_acceleration[l, i] = 0.0, 0.0
+        s.last_shear[l, i], s.last_acceleration[l, i] = 0.0, 0.0
     s.energy_input[l], s.energy_damped[l] = 0.0, 0.0
     s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
     s.steps[l], s.creating_impacts[l] = 0.0, 0

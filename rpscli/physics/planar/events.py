@@ -23,7 +23,7 @@ from rpscli.physics.core.quintic import (
     value,
 )
 from rpscli.physics.core.records import NO_HISTORY, Floats, Record
-from rpscli.physics.planar.demands import observe_start, raise_contacts_within, raise_floors
+from rpscli.physics.planar.demands import observe_end, observe_start, raise_contacts_within
 from rpscli.physics.planar.devices.events import change_law, has_friction, locate_change
 from rpscli.physics.planar.devices.flows import book_devices, observe_devices, raise_devices
 from rpscli.physics.planar.devices.forces import set_devices
@@ -127,7 +127,7 @@ def end_on_event(
         observe_devices(s, l, fraction)
     raise_contacts_within(s, l, fraction)
     end_step_at(s, l, fraction, level)
-    raise_floors(s, l, system)
+    observe_end(s, l, system)
     turned = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
     if s.next_theta[l] > s.max_theta[l] or turned:
         raise_peak(s, l, block, log)

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+import math
+
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import INSTANTS, Floats, Record
 from rpscli.physics.core.series import middle_of, peak
-from rpscli.physics.planar.demands import BULGE, ENDS, WITHIN, raise_by, written
+from rpscli.physics.planar.demands import SURELY, WITHIN, raise_by, reach, written
 from rpscli.physics.planar.equation_of_motion import Measures, contact_measures
 
 
 @compiled
 def may_raise(s: Record, l: int, block: Record, h: float, steps: int) -> bool:
     """Whether a bound of the first steps, of length h [s], is passed, see `planar.demands`."""
-    found, part, ratio = 0, BULGE * h**4, s.bend_ratio[l]
+    found, part, ratio = 0, (WITHIN / 8.0 * h * h) ** 2, s.bend_ratio[l]
     shear, acceleration = s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l]
     for k in range(INSTANTS):
         bulge = part * block.shear_bend[k]
-        of_acceleration = ENDS * block.acceleration_bound[k] + ratio * bulge
-        more = (ENDS * block.shear_bound[k] + bulge > shear) | (of_acceleration > acceleration)
+        more = reach(block.shear_bound[k], bulge) > shear
+        more |= reach(block.acceleration_bound[k], ratio * bulge) > acceleration
         found |= 1 if more & (k <= steps) else 0
     return found > 0
 
@@ -27,20 +29,29 @@ def raise_floors_of_block(
     block: Record, system: Record, shears: Floats, accelerations: Floats, h: float, steps: int
 ) -> None:
     """Raise the largest storey shears [N] and absolute floor accelerations [m/s2], (n,) or more."""
-    bulge = (WITHIN / 8.0 * h * h) ** 2
+    bulge = WITHIN / 8.0 * h * h
     for r in range(block.n):
         omega2, damping, Gamma = system.omega2[r], system.two_xi_omega[r], system.Gamma[r]
         for k in range(INSTANTS):
             ddq = -Gamma * block.a_g[k] - block.forces[r, k]
             block.rises[r, k] = omega2 * block.dqs[r, k] + damping * ddq
+    shear, acceleration, ratio = 0.0, 0.0, math.sqrt(system.bend_ratio)
+    for k in range(steps + 1):
+        bent = (bulge * bulge) * block.shear_bend[k]
+        shear = max(shear, reach(block.shear_bound[k], bent))
+        acceleration = max(acceleration, reach(block.acceleration_bound[k], ratio * ratio * bent))
+    shear, acceleration = math.sqrt(shear) / SURELY, math.sqrt(acceleration) / SURELY
     for i in range(block.n):
-        add_modes(block, system.storey_shear_of, block.qs, block.row, i)
-        if row_may_rise(block, shears[i], system.shear_bound_of[i], bulge, steps):
+        share, other_share = system.shear_bound_of[i], system.acceleration_bound_of[i]
+        if shear > share * shears[i]:
+            add_modes(block, system.storey_shear_of, block.qs, block.row, i)
+        if shear > share * shears[i] and row_may_rise(block, shears[i], share, bulge, steps):
             add_modes(block, system.storey_shear_of, block.dqs, block.row_slope, i)
             shears[i] = max(shears[i], largest_of_row(block, h, steps))
+        if acceleration <= other_share * accelerations[i]:
+            continue
         add_modes(block, system.phi, block.forces, block.row, i)
-        bound = system.acceleration_bound_of[i] / system.bend_ratio
-        if row_may_rise(block, accelerations[i], bound, bulge, steps):
+        if row_may_rise(block, accelerations[i], other_share / ratio, bulge, steps):
             add_modes(block, system.phi, block.rises, block.row_slope, i)
             accelerations[i] = max(accelerations[i], largest_of_row(block, h, steps))
 
@@ -51,7 +62,7 @@ def row_may_rise(block: Record, largest: float, bound: float, bulge: float, step
     found = 0
     for k in range(INSTANTS):
         left = largest - abs(block.row[k])
-        more = (left < 0.0) | (left * left * bound < bulge * block.shear_bend[k])
+        more = left * bound < bulge * math.sqrt(block.shear_bend[k])
         found |= 1 if more & (k <= steps) else 0
     return found > 0
 

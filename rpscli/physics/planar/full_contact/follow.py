@@ -228,6 +228,7 @@ def follow_full_contact(
         return IS_OVER
     margin = margin_of(s, l, system)
     pull = pull_at_rest(s, l)
+    set_below_all_maxima(s, l, system)
     modes_to_block(s, l, block)
     fill_map(block, system, WHOLE_STEP, s.contact_step[l])
     if output.samples.shape[0] > 0:
