@@ -159,8 +159,9 @@ def headline_of(runs: Mapping[str, StudyRun]) -> str | None:
     return next((name for name in ("robust", "best") if name in runs), None)
 
 
-def validation_text(conditions: Iterable[Condition], n: int) -> Iterator[str]:
-    """What so many independent records can tell of limits that a share of them may exceed."""
+def validation_text(conditions: Iterable[Condition], n: int, behind: str = "") -> Iterator[str]:
+    """What so many records can tell of limits that a share of them may exceed."""
+    if_so = f", if these{behind} were independent" if behind else ""
     from scipy.special import betainc, betaincinv
 
     for condition in conditions:
@@ -172,7 +173,7 @@ def validation_text(conditions: Iterable[Condition], n: int) -> Iterator[str]:
         yield (
             f"{condition.name}: {may} of {n} may be beyond; of designs with exactly"
             f" {100.0 * condition.admissible:g} % beyond {100.0 * fails:.0f} % fail here, and"
-            f" {100.0 * (1.0 - CONFIDENCE):.0f} % of those with {100.0 * seen:.0f} % pass"
+            f" {100.0 * (1.0 - CONFIDENCE):.0f} % of those with {100.0 * seen:.0f} % pass{if_so}"
         )
 
 
@@ -188,7 +189,10 @@ def answer_tables(
     """What is recommended, its requirements, what the records do to it, and how it is validated."""
     counts = document["designs"]
     yield Heading(document["study"]["title"])
-    yield Table.listing([(name.replace("_", " "), str(count)) for name, count in counts.items()])
+    listing = [(name.replace("_", " "), str(count)) for name, count in counts.items()]
+    if aim := document["study"]["scaled_to"]:
+        listing.append(("records scaled to", aim))
+    yield Table.listing(listing)
     yield _values(document)
     yield _requirements(document, answer)
     if document["best"] is not None:
@@ -206,7 +210,9 @@ def answer_tables(
         ]
         yield Table.of_texts(("design", *VERDICT), rows, words=5, keys=2)
         conditions = dict.fromkeys(r.condition for r in answer.judged.requirements)
-        yield from validation_text(conditions, len(answer.task.confirming))
+        (run, *_) = confirmations.values()
+        behind = next((v.beyond.behind for v in run.verdicts), "")
+        yield from validation_text(conditions, len(answer.task.confirming), behind)
     yield ONE_DIRECTION
 
 
