@@ -219,7 +219,6 @@ def answer_tables(
 def _values(document: dict[str, Any]) -> Table:
     """What is recommended beside the least that passes, or the least violated one."""
     intervals = document["records"]["intervals"]
-    ends = {item["key"]: item["end"] for item in document["at_bounds"]}
     best = document["best"] or document["closest"]
     shown_designs = [best] if document["robust"] is None else [document["robust"], best]
     rows = []
@@ -227,10 +226,9 @@ def _values(document: dict[str, Any]) -> Table:
         unit = unit_of(key)
         name = symbol(key) if unit == "-" else f"{symbol(key)} [{unit}]"
         least = "minimised" if symbol(key) in best["aims"] else ""
-        end = f"{ends[key]} of its range" if key in ends else least
         # As it was judged: no digit less.
         values = [f"{design['values'][key]:.10g}" for design in shown_designs]
-        rows.append((name, end, *values, _interval(intervals[key])))
+        rows.append((name, least, *values, _interval(intervals[key])))
     for place, (objective, value) in enumerate(_further_objectives(document, best)):
         name = objective["aim"]
         interval = [large(end, objective["unit"])[0] or 0.0 for end in intervals.get(name, ())]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +16,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, in_force
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
-from rpscli.report.study.statistics import reached, share_document
+from rpscli.report.study.statistics import reached, verdict_document
 from rpscli.report.table import Column
 from rpscli.sweep.design.answer import NONE, Answer, Requirement
 from rpscli.sweep.intensities import unit_of
@@ -141,25 +140,22 @@ def requirement_rows(answer: Answer) -> list[dict[str, Any]]:
     """Each requirement at the recommended design, or at the least violated one."""
     judged, place = answer.judged_at(answer.headline)
     without, best = answer.without, answer.objectives[answer.best]
-    verdicts = answer.verdicts(answer.headline)
     return [
         {
             "requirement": requirement_label(requirement),
-            **asdict(requirement.condition),
+            **verdict_document((), verdict),
             "level": requirement.level,
             "value": float(judged.values[row, 0, place]),
             "bound": requirement.bound,
             "records_too_many": float(judged.excess[row, place]),
-            "met": bool(judged.met[row, 0, place]),
-            "beyond": share_document(verdicts[row].beyond),
-            "interval": getattr(verdicts[row], "interval", None),
-            "shown": verdicts[row].shown,
-            "shown_by_recordings": verdicts[row].shown_by,
+            "met": not verdict.exceeded,
             "designs_that_meet_it": int(answer.judged.met[row, 0].sum()),
             "binds": without[row] < best if without else None,
             "aim_without_it": without[row] if without else None,
         }
-        for row, requirement in enumerate(judged.requirements)
+        for row, (requirement, verdict) in enumerate(
+            zip(judged.requirements, answer.verdicts(answer.headline), strict=True)
+        )
     ]
 
 
@@ -246,7 +242,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
                 axes.plot(answer.values[answer.best, 0], answer.judged.values[row, 0, answer.best],
                           **BEST)  # fmt: skip
                 if answer.resamples:
-                    axes.axvspan(*answer.interval(0), color=style.ORANGE, alpha=0.12, lw=0.0,
+                    axes.axvspan(*answer.interval(0), ymax=0.03, color=style.ORANGE, lw=0.0,
                                  label="best in 95 % of the resamples")  # fmt: skip
             _draw_regions(axes, answer, row)
             top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
