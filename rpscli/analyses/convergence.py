@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.model.podium import PodiumStructure
 
 PROMISED = 1e-4
 """Of the largest rotation and base shear: what the default step keeps where motions converge."""
@@ -29,10 +31,9 @@ def steps_warning(result: TimeHistoryResult) -> str | None:
     before: Demand = result
     settings, first = result.settings, ""
     for factor in SHORTER:
-        if before.outcome == "failed" or before.history["steps"] > MOST_STEPS:
+        if not steps_left(before, MOST_STEPS):
             break
-        shorter = replace(settings, accuracy=factor * settings.accuracy)
-        after = demands([Request(result.structure, result.motion, shorter)])[0]
+        (after,) = run_again(result, [(result.structure, 1.0)], factor)
         changed = _changes(before, after)
         first = first or changed
         if not changed:
@@ -42,6 +43,23 @@ def steps_warning(result: TimeHistoryResult) -> str | None:
     if not first:
         return None
     return f"{first}, and it goes on with shorter ones: this is one of many; judge by many records"
+
+
+def steps_left(found: Demand, most: int) -> bool:
+    """Whether a history may be run again: one that ended, in no more steps."""
+    return found.outcome != "failed" and found.history["steps"] <= most
+
+
+def run_again(
+    result: TimeHistoryResult,
+    beside: Iterable[tuple[PodiumStructure, float]],
+    accuracy: float = 1.0,
+) -> list[Demand]:
+    """A history with other structures, factors on its motion, and steps so many times shorter."""
+    settings = replace(result.settings, accuracy=accuracy * result.settings.accuracy)
+    requests = [Request(st, result.motion, settings, factor) for st, factor in beside]
+    # One by one: the kernel for many at a time would have to be compiled first.
+    return demands(requests, worth_lanes=len(requests) + 1)
 
 
 def _changes(before: Demand, after: Demand) -> str:

@@ -134,7 +134,7 @@ HISTORY = (
     ResultQuantity(
         "max_cap_beam_displacement", "m", "cap beam displacement", limit="0.3", demand=True
     ),
-    ResultQuantity("max_lift", "m", "lift of the building", "$v_b$", limit="0.03"),
+    ResultQuantity("max_lift", "m", "lift of the building", "$v_b$", limit="0.03", demand=True),
     ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6", demand=True),
     ResultQuantity(
         "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
@@ -188,6 +188,11 @@ SAMPLED = (
         "fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$", limit="0.5",
         demand=True, needs="superstructure",
         meaning="largest base shear over that of the fixed base",
+    ),
+    ResultQuantity(
+        "floor_acceleration_over_fixed", "-", "floor acceleration over fixed base", limit="1",
+        demand=True, needs="superstructure",
+        meaning="largest floor acceleration over that of the fixed base",
     ),
     ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
     ResultQuantity(

@@ -173,6 +173,17 @@ class TimeHistoryResult(Demand):
         return self.max_base_shear / fixed if fixed > 0.0 else None
 
     @property
+    def floor_acceleration_over_fixed(self) -> float | None:
+        """Largest floor acceleration over that of the fixed base, of whatever floors these are.
+
+        None where `fixed_base_ratio` is.
+        """
+        if self.fixed_base is None or self.max_floor_acceleration is None:
+            return None
+        fixed = float(np.max(self.fixed_base.floor_accelerations))
+        return self.max_floor_acceleration / fixed if fixed > 0.0 else None
+
+    @property
     def column_forces(self) -> dict[str, ColumnForces]:
         """Envelopes at the `top` and at the `bottom` of a column.
 

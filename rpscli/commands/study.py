@@ -226,11 +226,12 @@ def summary_tables(summary: Summary) -> Iterator[Part]:
 
 
 def of_first_system(layout: StudyPoints) -> str:
-    """What counts as overturned: of the first system, whose sizes others need not have."""
-    from rpscli.report.tables.timehistory import overturned_text
+    """What counts as overturned, and the restitution: of the first system, others differ."""
+    from rpscli.report.tables.timehistory import overturned_text, restitution_text
 
     first = layout.system(0)
     text = overturned_text(first.structure, first.settings)
+    text = f"{text}; {restitution_text(first.structure)}"
     return text + " (the first system)" * (len(layout.combinations) > 1)
 
 

@@ -29,6 +29,7 @@ from rpscli.commands.timehistory_run import (
     add_summary,
     compute,
     history_requests,
+    look_beside,
 )
 from rpscli.errors import CaseError, UsageError, all_made
 from rpscli.report.documents import ONE_DIRECTION
@@ -109,10 +110,11 @@ def _one(
     film: FilmRequest | None,
     terminal: Terminal,
 ) -> None:
-    from rpscli.report.tables.timehistory import timehistory_tables
+    from rpscli.report.tables.timehistory import neighbours_texts, timehistory_tables
 
     title = request.given.case.title
     done, result = compute(request, conditions, look, terminal)
+    beside = look_beside(done, result)
     if film is not None:
         from rpscli.report.figures.animation import history_film
 
@@ -124,5 +126,6 @@ def _one(
     terminal.warn(done.document["warnings"])
     scaled_to = request.ground.scaled_to
     tables = timehistory_tables(result, done.verdicts, title, scaled_to)
-    terminal.result(done.document, [*tables, ONE_DIRECTION])
+    single = neighbours_texts(result, beside)
+    terminal.result(done.document, [*tables, *single, ONE_DIRECTION])
     leave(done.error)

@@ -30,6 +30,7 @@ from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 
 if TYPE_CHECKING:
+    from rpscli.analyses.neighbours import Neighbour
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.records.ground_motion import MotionComponents
     from rpscli.sweep.statistics.verdicts import Verdict
@@ -147,6 +148,15 @@ def compute(
         error = _exceeded(verdicts)
     document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]
     return HistoryResult(request, concluded(document, error), demands, verdicts, error), result
+
+
+def look_beside(done: HistoryResult, result: TimeHistoryResult) -> list[Neighbour]:
+    """Histories beside a single one, which go into its document too."""
+    from rpscli.analyses.neighbours import neighbours
+
+    found = neighbours(result)
+    done.document["neighbours"] = [each._asdict() for each in found]
+    return found
 
 
 def _exceeded(verdicts: Iterable[Verdict]) -> LimitExceeded | None:

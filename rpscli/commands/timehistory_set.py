@@ -40,7 +40,7 @@ from rpscli.report.study.statistics import (
     verdict_texts,
 )
 from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown
-from rpscli.report.tables.timehistory import overturned_text
+from rpscli.report.tables.timehistory import overturned_text, restitution_text
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.summary import Records, Summary, summary_of_records
 from rpscli.sweep.statistics.verdicts import Verdict, judged_records
@@ -196,6 +196,7 @@ def _tables(computed: Sequence[Computed]) -> Iterator[Part]:
             yield f"overturned: {row.overturned}; {CODES}"
         own = case.first.given.case
         yield overturned_text(own.structure, own.analysis)
+        yield restitution_text(own.structure)
     if any(case.verdicts for case in computed):
         yield _verdict_table(computed)
     yield ONE_DIRECTION

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED
 from rpscli.case.conditions import EVENTS
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
@@ -77,6 +79,71 @@ def overturned_text(structure: PodiumStructure, settings: TimeHistorySettings) -
     )
 
 
+def restitution_text(structure: PodiumStructure) -> str:
+    """What impacts leave, by which law, and what half of its loss would leave."""
+    law, e = structure.impact_law, structure.restitution
+    text = f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"
+    if law.kind == "value" or law.loss <= OTHER_LOSS:
+        return text
+    other = replace(structure, impact_law=replace(law, loss=OTHER_LOSS)).restitution
+    return f"{text}; with podium.impact.loss {OTHER_LOSS:g} it would be {shown(other)}"
+
+
+def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> Iterator[str]:
+    """That this is one history, and how much it moves with its motion and the impact law."""
+    motions = [each for each in found if each.factor != 1.0]
+    if motions:
+        near = [each for each in motions if abs(each.factor - 1.0) < 0.0101]
+        yield (
+            f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
+            f" {_reached(motions)}. Motions with impacts are chaotic: judge by several records"
+        )
+    elif result.outcome != "failed":
+        yield (
+            f"one history: its {result.history['steps']} steps are too many to look at motions 1 %"
+            " weaker and stronger; judge by several records"
+        )
+    for other in (each for each in found if each.factor == 1.0):
+        instead = f"{shown(other.restitution)} in place of {shown(result.structure.restitution)}"
+        yield (
+            f"one impact law: with podium.impact.loss {OTHER_LOSS:g}, which is e = {instead},"
+            f" {_reached([other])}"
+        )
+
+
+def _reached(found: Sequence[Neighbour]) -> str:
+    """Rotations and base shears of those that stood, and how many did not."""
+    stood = [each for each in found if not each.outcome.startswith(("overturned", "failed"))]
+    texts = []
+    if stood:
+        ratios = [each.rotation_ratio for each in stood]
+        shears = [1e-3 * each.max_base_shear for each in stood]
+        texts = [f"{_range(ratios)} theta_cr", f"base shear {_range(shears)} kN"]
+    for kind, word in (("overturned", "overturns"), ("failed", "fails")):
+        if count := sum(each.outcome.startswith(kind) for each in found):
+            texts.append(f"it {word}" + f" in {count} of {len(found)}" * (len(found) > 1))
+    return " and ".join(texts)
+
+
+def _range(values: Sequence[float]) -> str:
+    return " to ".join(dict.fromkeys((shown(min(values)), shown(max(values)))))
+
+
+def neighbours_table(found: Sequence[Neighbour]) -> Table:
+    """Histories beside the one shown."""
+    rows = [
+        (
+            f"motion x {each.factor:g}" if each.factor != 1.0 else f"impact loss {OTHER_LOSS:g}",
+            OUTCOMES[each.outcome],
+            shown(each.rotation_ratio),
+            shown(each.max_base_shear * 1e-3),
+        )
+        for each in found
+    ]
+    heads = ["beside it", "outcome", "rotation ratio", "base shear kN"]
+    return Table.of_texts(heads, rows, words=2)
+
+
 def outcome_table(result: TimeHistoryResult) -> Table:
     """The largest demands beside those of the fixed base."""
     rows = [
@@ -100,11 +167,16 @@ def outcome_table(result: TimeHistoryResult) -> Table:
         rows.append(_row(result, "max_base_shear", ratio, shear))
         if result.uplift_shear_ratio is not None:
             rows.append(_row(result, "uplift_shear_ratio"))
-        rows += [_row(result, "fixed_base_ratio"), _row(result, "max_roof_displacement")]
-        rows.append(_row(result, "max_floor_velocity"))
+        rows.append(_row(result, "fixed_base_ratio"))
+        fixed_acceleration = float(np.max(result.fixed_base.floor_accelerations))
+        rows.append(_row(result, "max_floor_acceleration", fixed=fixed_acceleration))
+        rows.append(_row(result, "floor_acceleration_over_fixed"))
+        rows += [_row(result, "max_roof_displacement"), _row(result, "max_floor_velocity")]
     demands = fixed_base_demands(result)
     if demands is not None and demands.storey_drift_ratios is not None:
         rows.append(_row(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios))))
+    e = result.structure.restitution
+    rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
     rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
     friction = result.friction_ratio
     of_friction = "" if friction is None else f"{shown(friction)} of mu"

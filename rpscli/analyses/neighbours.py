@@ -1,0 +1,43 @@
+"""Histories beside one: its motion a little weaker and stronger, another impact law."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from rpscli.analyses.convergence import run_again, steps_left
+from rpscli.analyses.results import TimeHistoryResult
+
+FACTORS = (0.97, 0.98, 0.99, 1.01, 1.02, 1.03)
+"""On the motion."""
+
+OTHER_LOSS = 0.5
+"""`podium.impact.loss` of the history beside that of the law as it is."""
+
+MOST_STEPS = 100_000
+"""Of a history that is run seven times more, some tenths of a second in all."""
+
+
+class Neighbour(NamedTuple):
+    """One of them: factor on its motion, its restitution, and what came of it, SI units."""
+
+    factor: float
+    restitution: float
+    outcome: str
+    rotation_ratio: float
+    max_base_shear: float
+
+
+def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
+    """Histories beside one; none if they take too long, or if it failed."""
+    if not steps_left(result, MOST_STEPS):
+        return []
+    structure, law = result.structure, result.structure.impact_law
+    beside = [(structure, factor) for factor in FACTORS]
+    if law.kind != "value" and law.loss > OTHER_LOSS:
+        beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0))
+    found = run_again(result, beside)
+    return [
+        Neighbour(factor, of.restitution, each.outcome, each.rotation_ratio, each.max_base_shear)
+        for (of, factor), each in zip(beside, found, strict=True)
+    ]
