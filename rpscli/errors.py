@@ -6,7 +6,9 @@ knows about terminals: the command line turns these into text and an exit status
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
+from pathlib import PurePath
 from typing import TypeVar
 
 Item = TypeVar("Item")
@@ -119,3 +121,32 @@ def listed(words: Iterable[str], last: str = "or") -> str:
     """
     *head, tail = words
     return f"{', '.join(head)} {last} {tail}" if head else tail
+
+
+# Control characters but for tabulators, blanks and line ends, and marks that turn the direction of
+# writing: a terminal obeys them.
+_UNSEEN = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+
+
+def visible(text: str) -> str:
+    r"""A text that only shows on a terminal, whoever wrote it.
+
+    >>> visible("\x1b[31mred") == "\ufffd[31mred"
+    True
+    """
+    return _UNSEEN.sub("\ufffd", text)
+
+
+def require_visible(name: str, fault: type[RpsError]) -> None:
+    """Refuse names of files that hold line ends or what does not show."""
+    if name != visible(name) or "\n" in name or "\t" in name:
+        raise fault(f"{name[:200]!r}: the name holds characters that do not show; rename the file")
+
+
+def stem_of(path: PurePath) -> str:
+    """The name of a file without its ending, as the name of a folder.
+
+    >>> stem_of(PurePath("a/b.at2")), stem_of(PurePath("...at2"))
+    ('b', '...at2')
+    """
+    return path.stem if path.stem.strip(". ") else path.name

@@ -37,7 +37,7 @@ from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.text.document import Document, is_design, is_study
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError
+from rpscli.errors import CaseError, stem_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.shown import Shown
 
@@ -198,7 +198,7 @@ def case_from_mapping(
     document.refuse(fault for fault in faults if not check.suggested.intersection(fault.needs))
     file = check.read
     assert file is not None, "without faults the file is read"
-    stem = Path(name.strip("<>")).stem or "case"
+    stem = stem_of(Path(name.strip("<>"))) or "case"
     podium = _podium(file, partial)
     ignored = ignored_keys(partial)
     doubts = (

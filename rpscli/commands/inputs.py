@@ -165,9 +165,11 @@ def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
 
 def motion_source(case: Case, request: MotionRequest) -> Path | str:
     """Which record a motion is, whatever its scale: a file, or a source that is none."""
+    from rpscli.records.source import file_and_options
+
     folder = case.folder if request.record is None else Path()
     given = case.record.source if request.record is None and case.record else request.record or ""
-    file = folder / given.partition("?")[0]
+    file = folder / file_and_options(given, folder)[0]
     return file if file.is_file() else given
 
 

@@ -23,7 +23,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
-from rpscli.report.files import OutputFolder, Run, write_whole
+from rpscli.report.files import OutputFolder, Run, encoded, write_whole
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
@@ -73,7 +73,9 @@ def record_folder(
     motion: GroundMotion, output: OutputRequest, command: str, **inputs: Any
 ) -> OutputFolder:
     """The folder of a command's results; a record that is no file is known by its samples."""
-    place = Path(motion.source.partition("?")[0])
+    from rpscli.records.source import file_and_options
+
+    place = Path(file_and_options(motion.source)[0])
     run = Run(
         f"record {command}",
         motion.name,
@@ -148,7 +150,7 @@ def write_record(
     if named and place is not None:
         if place.exists() and not output.force:
             raise Refused(f"{place} exists; name another file, or overwrite it with --force")
-        write_whole({place: content.encode()})
+        write_whole({place: encoded(content)})
         terminal.note(f"written to {place}")
         files = [str(place)]
     else:

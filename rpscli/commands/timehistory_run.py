@@ -98,14 +98,17 @@ def _label(ground: MotionComponents) -> str:
 def unique(names: Sequence[str]) -> list[str]:
     """The names, numbered where one comes again.
 
-    >>> unique(["a", "b", "a"])
-    ['a', 'b', 'a_2']
+    Folders are named so, and some systems do not tell small letters from capitals.
+
+    >>> unique(["a", "b", "a", "B"])
+    ['a', 'b', 'a_2', 'B_2']
     """
-    taken: list[str] = []
+    taken: dict[str, str] = {}
     for name in names:
-        numbered = (f"{name}_{number}" for number in range(2, len(names) + 2))
-        taken.append(name if name not in taken else next(n for n in numbered if n not in taken))
-    return taken
+        tried = (name, *(f"{name}_{number}" for number in range(2, len(names) + 2)))
+        free = next(each for each in tried if each.casefold() not in taken)
+        taken[free.casefold()] = free
+    return [*taken.values()]
 
 
 def compute(

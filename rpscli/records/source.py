@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rpscli.errors import RecordError, nearest
+from rpscli.errors import RecordError, nearest, require_visible
 from rpscli.records import pulses, sets, synthetic
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import angle_of, rotated
@@ -32,6 +32,7 @@ _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9_.+-]+):(.*)", re.DOTALL)
 # A question mark may also stand in a glob or a file name: options are key=value.
 _FACTOR = re.compile(r"(?<=[?&])factor=[^&]*(?:&|$)")
+_REMARK = re.compile(r"(?:^|\s)#")
 LIST = "list"
 """Scheme of a text file with one source a line, seen from its folder."""
 _FILE_OPTIONS = re.compile(r"(.+?)\?([A-Za-z_]\w*=[^&?]*(?:&[A-Za-z_]\w*=[^&?]*)*)", re.DOTALL)
@@ -97,7 +98,7 @@ def _loaded(source: str, folder: Path | None, dt: float | None, units: str | Non
         if dt is not None or units is not None:
             raise RecordError(f"{source}: dt and units describe files; leave them out here")
         return _MAKERS[scheme](rest, source)
-    place, options = split_options(source)
+    place, options = file_and_options(source, folder)
     query = parse_query(options, source, ("dt", "units", "channel", "second", "angle"))
     path = _located(place, folder)
     motion = _read(path, source, query, dt, units)
@@ -176,7 +177,8 @@ def _expand(source: str, folder: Path | None) -> list[str]:
             return found
         if plain.startswith(f"{LIST}:"):
             raise RecordError(f"{source}: each line of a list has a factor of its own")
-        return [f"{single}{'&' if '?' in single else '?'}{factor}" for single in found]
+        bare = [each for each in found if "?" not in each or _is_file(each, folder)]
+        return [f"{single}{'?' if single in bare else '&'}{factor}" for single in found]
 
 
 def _expanded(source: str, folder: Path | None) -> list[str]:
@@ -189,7 +191,7 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
         return [source]
     from rpscli.records.formats import is_record
 
-    place, options = split_options(source)
+    place, options = file_and_options(source, folder)
     suffix = f"?{options}" if options else ""
     path = _located(place, folder)
     if path.is_dir():
@@ -211,7 +213,7 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
 
 
 def _listed(place: str, source: str, folder: Path | None) -> list[str]:
-    """Sources of a list, one a line; files are seen from its folder, # begins a remark."""
+    """Sources of a list, one a line, files as seen from it; # after a blank begins a remark."""
     path = _located(place, folder)
     _require_file(path, source)
     try:
@@ -219,7 +221,7 @@ def _listed(place: str, source: str, folder: Path | None) -> list[str]:
     except UnicodeDecodeError:
         raise RecordError(f"{source}: is not text; name a list with one source a line") from None
     found = []
-    for line in filter(None, (line.partition("#")[0].strip() for line in lines)):
+    for line in filter(None, (_without_remark(line, path.parent) for line in lines)):
         scheme, _ = _split_scheme(split_factor(line)[0], path.parent)
         if scheme == LIST:
             raise RecordError(f"{source}: {line}: a list holds no lists; write its sources here")
@@ -229,10 +231,18 @@ def _listed(place: str, source: str, folder: Path | None) -> list[str]:
     return found
 
 
+def _without_remark(line: str, folder: Path) -> str:
+    """What a line names; the name of a file that is there may hold the mark of a remark."""
+    whole = line.strip()
+    place, _ = file_and_options(split_factor(whole)[0], folder)
+    named = len(place) if "#" in place and _is_file(place, folder) else 0
+    return whole[:named] + _REMARK.split(whole[named:])[0].strip()
+
+
 def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
     """Scheme and rest of a source that is not a file; an empty scheme means a file."""
     match = _SCHEME.fullmatch(source)
-    if not match or _located(split_options(source)[0], folder).exists():
+    if not match or _located(file_and_options(source, folder)[0], folder).exists():
         return "", source
     kinds = [*_MAKERS, LIST]
     if match[1] not in kinds:
@@ -240,6 +250,18 @@ def _split_scheme(source: str, folder: Path | None) -> tuple[str, str]:
             f"{source}: {match[1]!r} is not a kind of record source; {hint(match[1], kinds)}"
         )
     return match[1], match[2]
+
+
+def file_and_options(source: str, folder: Path | None = None) -> tuple[str, str]:
+    """The name of a file, which may itself look like options, and its options."""
+    return (source, "") if _is_file(source, folder) else split_options(source)
+
+
+def _is_file(place: str, folder: Path | None) -> bool:
+    try:
+        return ((folder or Path()) / Path(place).expanduser()).is_file()
+    except (OSError, ValueError, RuntimeError):  # too long, a zero byte, no such user
+        return False
 
 
 def split_options(source: str) -> tuple[str, str]:
@@ -255,6 +277,7 @@ def _located(place: str, folder: Path | None) -> Path:
         raise RecordError(f"{place}: there is no such user; write the folder out") from None
     if "\0" in place:
         raise RecordError(f"{place[:200]!r}: no path holds a zero byte; correct the name")
+    require_visible(place, RecordError)
     return (folder or Path()) / path
 
 

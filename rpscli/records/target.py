@@ -13,7 +13,7 @@ from typing import cast, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, stem_of
 from rpscli.records.pair_measure import Of
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
 from rpscli.records.requirements import Component
@@ -134,7 +134,7 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
     first, last = float(cells[0, 0]), float(cells[-1, 0])
     pgv = velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None
     return TargetSpectrum(
-        path.stem,
+        stem_of(path),
         source,
         shape,
         pgv,

@@ -18,6 +18,11 @@ Content: TypeAlias = bytes | Iterator[str]
 """Of a file, or its lines, which are made as they are written."""
 
 
+def encoded(text: str) -> bytes:
+    r"""As UTF-8; bytes of the name of a file that are none become \udce4."""
+    return text.encode("utf-8", "backslashreplace")
+
+
 def write_whole(contents: Mapping[Path, Content]) -> None:
     """Write files so that each appears whole or not at all, in folders that are made if needed."""
     ready: dict[Path, Path] = {}
@@ -33,7 +38,7 @@ def write_whole(contents: Mapping[Path, Content]) -> None:
                 temporary.write_bytes(data)
             else:
                 with temporary.open("wb") as file:
-                    file.writelines(map(str.encode, data))
+                    file.writelines(map(encoded, data))
         for path, temporary in ready.items():
             temporary.replace(path)
     except OSError as error:
@@ -151,7 +156,7 @@ class OutputFolder:
 
     def add_at(self, path: Path, content: str | Content) -> None:
         """Collect a file that stands elsewhere; it is guarded like those of the folder."""
-        self._contents[path] = content.encode() if isinstance(content, str) else content
+        self._contents[path] = encoded(content) if isinstance(content, str) else content
 
     def write(self) -> None:
         """Write all files, `run.json` with them."""
@@ -164,8 +169,8 @@ class OutputFolder:
             contents = {**self._contents, self.folder / RUN_FILE: self._run_text().encode()}
             write_whole(contents)
             for stale in self._own - {self._known_as(path) for path in contents}:
-                if Path(stale).name == stale:  # never outside the folder
-                    (self.folder / stale).unlink(missing_ok=True)
+                if Path(stale).name == stale and (self.folder / stale).is_file():
+                    (self.folder / stale).unlink()  # never outside the folder
 
     def _run_text(self) -> str:
         document = {
@@ -208,6 +213,7 @@ class OutputFolder:
         try:
             earlier = json.loads(place.read_text(encoding="utf-8"))
             owner = f"`rps {earlier['command']}` on {earlier['name']} ({earlier['file']})"
+            earlier["files"] = [name for name in earlier["files"] if isinstance(name, str)]
         except FileNotFoundError:
             return {}
         except (OSError, ValueError, TypeError, KeyError):

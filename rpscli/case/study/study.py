@@ -35,7 +35,7 @@ from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
 from rpscli.case.text.document import Document, is_case, is_design, is_study, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError
+from rpscli.errors import CaseError, stem_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +138,7 @@ def study_of(
     document.refuse(size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
     return Study(
-        name=Path(document.name.strip("<>")).stem or "study",
+        name=stem_of(Path(document.name.strip("<>"))) or "study",
         source=document.name,
         folder=folder,
         document=document,

@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import BinaryIO
 
-from rpscli.errors import CaseError, nearest
+from rpscli.errors import CaseError, nearest, require_visible
 
 STDIN = "-"
 LARGEST = 2_000_000
@@ -25,6 +25,7 @@ def read_text(source: str | Path) -> str:
         if sys.stdin is None:
             raise CaseError("<stdin>: the standard input is closed; name a file, or pipe a case in")
         return decoded(_bounded(sys.stdin.buffer, "<stdin>"), "<stdin>")
+    require_visible(str(source), CaseError)
     path = Path(source)
     try:
         kind = path.stat().st_mode

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from rpscli.commands.shell.terminal import emit
-from rpscli.errors import LimitExceeded, RpsError
+from rpscli.errors import LimitExceeded, RpsError, visible
 from rpscli.report.documents import failure_document, json_text
 
 INTERRUPTED = 130
@@ -96,4 +96,4 @@ def _lines(error: BaseException) -> str:
     usage = ""
     if isinstance(error, click.UsageError) and error.ctx is not None:
         usage = f"{error.ctx.get_usage()}\ntry {error.ctx.command_path} --help\n"
-    return usage + "".join(f"error: {line}\n" for line in message(error).splitlines())
+    return usage + "".join(f"error: {line}\n" for line in visible(message(error)).splitlines())

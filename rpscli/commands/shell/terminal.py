@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TextIO
 
-from rpscli.errors import OutputError
+from rpscli.errors import OutputError, visible
 from rpscli.report.documents import json_text
 from rpscli.report.table import Heading, Part, Table
 
@@ -40,7 +40,7 @@ class Terminal:
     def note(self, text: str) -> None:
         """A line about what goes on, on the standard error."""
         if not self.quiet:
-            emit(text + "\n", sys.stderr)
+            emit(visible(text) + "\n", sys.stderr)
 
     def warn(self, texts: Iterable[str]) -> None:
         """Lines that should be read before the numbers are used."""
@@ -100,7 +100,8 @@ def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> Ric
     from rich import box
     from rich.table import Table as RichTable
 
-    heads, rows = table.heads, table.rows
+    heads = [visible(head) for head in table.heads]
+    rows = [[visible(cell) for cell in row] for row in table.rows]
     if not any(heads):
         made = RichTable(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     else:
@@ -159,7 +160,7 @@ def _parts(tables: Iterable[Part], console: Console) -> Iterator[RichTable | Tex
         if isinstance(part, Table):
             yield from fitting(part, console)
         else:
-            yield Text(part, style="bold" if isinstance(part, Heading) else "")
+            yield Text(visible(part), style="bold" if isinstance(part, Heading) else "")
 
 
 def emit(text: str, stream: TextIO | None) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, stem_of
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, last_digit, unit_factor
 
 _BINARY_KINDS = {
@@ -56,7 +56,7 @@ class RecordText:
     @property
     def name(self) -> str:
         """File name without its extension, and the channel if one was asked for."""
-        return self.path.stem + ("" if self.channel is None else f"_ch{self.channel}")
+        return stem_of(self.path) + ("" if self.channel is None else f"_ch{self.channel}")
 
     def fault(self, message: str, line: int | None = None) -> RecordError:
         """An error that names this file and, if given, the line (counted from zero)."""

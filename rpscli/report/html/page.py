@@ -204,12 +204,12 @@ def page(title: str, subtitle: str, sections: Sequence[Section], name: str) -> b
         element("main", [_section(s, place, drawn) for place, s in enumerate(kept, 1)]),
     )
     root = element("html", _head(title, name), body, lang="en")
-    return ("<!DOCTYPE html>\n" + written(root) + "\n").encode()
+    return ("<!DOCTYPE html>\n" + written(root) + "\n").encode("utf-8", "backslashreplace")
 
 
 def is_about(content: bytes, name: str) -> bool:
     """Whether a file is a page about the case or the study of this name."""
-    return written(_mark(name)).encode() in content[:MARK_WITHIN]
+    return written(_mark(name)).encode("utf-8", "backslashreplace") in content[:MARK_WITHIN]
 
 
 MARK_WITHIN = 2000

@@ -12,6 +12,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
 from rpscli.records.selection import Selection
+from rpscli.records.source import file_and_options
 from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.table import Column, Table, picked, records, shown
 
@@ -154,7 +155,7 @@ def selection_list(selection: Selection, folder: Path) -> str:
 
 
 def _line(source: str, factor: float, folder: Path) -> str:
-    place, mark, options = source.partition("?")
+    place, options = file_and_options(source)
     if Path(place).expanduser().is_file() and not Path(place).expanduser().is_absolute():
         place = Path(os.path.relpath(place, folder)).as_posix()
-    return f"{place}?{options}{'&' * bool(mark)}factor={factor:g}"
+    return f"{place}?{options}{'&' * bool(options)}factor={factor:g}"

@@ -79,7 +79,8 @@ class RecordCache:
             try:
                 return self.motion(request).digest
             except RecordError as error:
-                return hashlib.sha256(f"unreadable: {request.source}: {error}".encode()).digest()
+                text = f"unreadable: {request.source}: {error}"
+                return hashlib.sha256(text.encode("utf-8", "surrogateescape")).digest()
 
         return self._digests.value(request, make)
 
