@@ -24,6 +24,12 @@ SINGLE_VALUES = [
     ("200 t", "{a: 1}", "4:16: superstructure.storey_mass = {a: 1}", ["a mass in kg"]),
     ("  impact", "  plan: {rows: 200}\n  impact", "17:16", ["podium.plan.rows = 200", "[0, 4 m"]),
     ("period: 0.3", "period: .inf", "6:11", ["finite"]),
+    (
+        "limits: {rotation_ratio: 0.5}",
+        "limits: 3",
+        "20:9: limits = 3",
+        ["rotation_ratio, ", " more"],
+    ),
     ("period: 0.3", f"period: {'9' * 350}", "6:11", ["finite"]),
     ("period: 0.3", "period: true", "6:11: superstructure.period = true", ["a time in s"]),
     ("profile: sine", "profile: sin", "7:12", ["sine, uniform, linear or flexural", "mean sine?"]),

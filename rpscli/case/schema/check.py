@@ -114,6 +114,10 @@ def _path(error: ErrorDetails, document: Document) -> Path:
     return (*path, error["loc"][-1]) if missing else path
 
 
+KEYS_SHOWN = 12
+"""Of a section in a message; `rps explain` has all."""
+
+
 def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
     kind = error["type"]
     if kind == "literal_error":
@@ -122,7 +126,9 @@ def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
         return f"must be {listed(words)}" + (f"; did you mean {suggestion}?" if suggestion else "")
     if kind in {"model_type", "model_attributes_type"}:
         section = section_at(model, path)
-        names = listed(fields_of(section), "and") if section else ""
+        keys = [*fields_of(section)] if section else []
+        more = f" and {len(keys) - KEYS_SHOWN} more" * (len(keys) > KEYS_SHOWN)
+        names = ", ".join(keys[:KEYS_SHOWN]) + more if more else listed(keys, "and")
         return f"must be a mapping with keys among {names}"
     if kind == "dict_type":
         return "must be a mapping, `key: value`"
