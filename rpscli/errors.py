@@ -69,6 +69,10 @@ class LimitExceeded(RpsError):
     exit_code = 10
 
 
+class PluginError(RpsError):
+    """What another package adds cannot be used; the text names the package."""
+
+
 class OutputError(RpsError):
     """A result cannot be written: no permission, a full disk, a file where a folder should be."""
 

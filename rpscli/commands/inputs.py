@@ -219,12 +219,12 @@ def _scaled_to(
 ) -> MotionComponents:
     """A motion by the factor that brings a measure of it, or of its pair, to a value."""
     from rpscli.records.clusters import pairs
-    from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, factor_to, measured
+    from rpscli.records.measures import MEASURES, factor_to, measured, needs_period
     from rpscli.records.pair_measure import USUAL, measure_label, pair_measure
     from rpscli.records.source import load_record
 
     measure, period = target.measure, target.period
-    if measure in AT_PERIOD and period is None:
+    if needs_period(measure) and period is None:
         building = case.structure.superstructure
         if building is None:
             raise UsageError(f"{source}: without storeys {measure} has no T1 to be taken at")
@@ -239,8 +239,8 @@ def _scaled_to(
         one, other = (load_record(each, **how) for each in pair)
         unscaled = pair_measure(one, other, measure, of, period, target.damping)
     factor = factor_to(target.value, unscaled, measure, motion.horizontal.source)
-    name = measure_label(measure, of, f"{period:g} s" if measure in AT_PERIOD else "")
-    aim = f"{name} = {target.value:g} {MEASURE_UNITS[measure]}"
+    name = measure_label(measure, of, f"{period:g} s" if needs_period(measure) else "")
+    aim = f"{name} = {target.value:g} {MEASURES[measure].unit}"
     return replace(motion.scaled(factor), scaled_to=aim)
 
 

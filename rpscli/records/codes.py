@@ -7,6 +7,7 @@ EN 1998-1:2004, EN 1998-1-1:2024, ASCE/SEI 7-16 and SP 14.13330.2018. None of th
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from rpscli.errors import RecordError
 from rpscli.records.quantities import hint, parse_query
 from rpscli.records.requirements import NOT_VERIFIED
 from rpscli.records.target import Array, TargetSpectrum, table_spectrum, velocity_of
+from rpscli.registry import Registry
 
 EN1998_SOILS = {
     "1": {
@@ -231,12 +233,16 @@ def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
     )
 
 
-CODES = {
-    "en1998": en1998_spectrum,
-    "en1998-2024": en1998_2024_spectrum,
-    "asce7": asce7_spectrum,
-    "sp14": sp14_spectrum,
-}
+CODES: Registry[Callable[[str, str], TargetSpectrum]] = Registry(
+    "targets",
+    {
+        "en1998": en1998_spectrum,
+        "en1998-2024": en1998_2024_spectrum,
+        "asce7": asce7_spectrum,
+        "sp14": sp14_spectrum,
+    },
+)
+"""Spectra of what follows a name and its colon, and of the whole source."""
 
 _UNKNOWN = ("sprk", "sp_rk", "ntprk", "ntp_rk")
 """SP RK 2.03-30-2017 and NTP RK 08-01, which are not SP 14.13330 and whose text was not found."""
@@ -256,10 +262,13 @@ def load_target(source: str) -> TargetSpectrum:
     path = Path(place)
     if path.is_file():
         return table_spectrum(path, options, source)
+    known = CODES.names()
+    if colon and scheme in known:
+        return CODES[scheme](rest, source)
     if colon and len(scheme) > 1:
         raise RecordError(
-            f"{source}: {scheme!r} is not a known code; {hint(scheme, [*CODES])}, or a file"
+            f"{source}: {scheme!r} is not a known code; {hint(scheme, known)}, or a file"
         )
     raise RecordError(
-        f"{source}: there is no file {path}; give a CSV file or a code: {', '.join(CODES)}"
+        f"{source}: there is no file {path}; give a CSV file or a code: {', '.join(known)}"
     )

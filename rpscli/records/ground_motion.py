@@ -209,8 +209,8 @@ class GroundMotion(Shown):
         Parameters
         ----------
         measure : str
-            ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``AvgSa``, ``FIV3``, ``Housner``, ``Arias`` or
-            ``CAV``.
+            ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``AvgSa``, ``FIV3``, ``Housner``, ``Arias``,
+            ``CAV``, or one that another package adds.
         value : float [SI]
             What it is to be.
         period : float, optional [s]
@@ -230,16 +230,16 @@ class GroundMotion(Shown):
         [0.0, 1.0, -1.5]
         """
         from rpscli.records.measures import (  # measures measure motions
-            AT_PERIOD,
-            MEASURE_UNITS,
+            MEASURES,
             factor_to,
             measured,
+            needs_period,
         )
 
-        if measure not in MEASURE_UNITS:
-            known = ", ".join(MEASURE_UNITS)
+        if measure not in MEASURES and measure not in (names := MEASURES.names()):
+            known = ", ".join(names)
             raise RecordError(f"{self.source}: {measure} is not a measure; there are {known}")
-        if measure in AT_PERIOD and period is None:
+        if needs_period(measure) and period is None:
             text = f"{self.source}: {measure} is scaled to at a period; give period=... in s"
             raise RecordError(text)
         if not value > 0.0:

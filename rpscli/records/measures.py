@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.spectrum import response_spectrum, spectral_acceleration
+from rpscli.registry import Registry
 
 
 def velocity(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
@@ -161,38 +162,63 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
     return float(np.trapezoid(spectrum * periods / (2.0 * math.pi), periods))
 
 
-Measure = Literal["PGA", "PGV", "PGD", "Sa", "AvgSa", "FIV3", "Housner", "Arias", "CAV"]
+Measure = str
+"""A name in `MEASURES`."""
 
-MEASURE_UNITS: dict[Measure, str] = {
-    "PGA": "m/s2",
-    "PGV": "m/s",
-    "PGD": "m",
-    "Sa": "m/s2",
-    "AvgSa": "m/s2",
-    "FIV3": "m/s",
-    "Housner": "m",
-    "Arias": "m/s",
-    "CAV": "m/s",
-}
-"""SI units."""
 
-AT_PERIOD: tuple[Measure, ...] = ("Sa", "AvgSa", "FIV3")
-"""Measures that are taken at a period."""
+@dataclass(frozen=True)
+class IntensityMeasure:
+    """A measure of ground motions."""
+
+    unit: str
+    """SI unit."""
+    of: Callable[[GroundMotion, float, float], float]
+    """Of a motion, a period [s] and a share of critical damping; SI units."""
+    at_period: bool = False
+    """Whether it depends on the period, which is NaN otherwise."""
+    power: float = 1.0
+    """Of the factor on a motion, by which the measure grows."""
+
+
+def _summary(name: str) -> Callable[[GroundMotion, float, float], float]:
+    return lambda motion, _period, _damping: float(getattr(intensity_measures(motion), name))
+
+
+MEASURES = Registry(
+    "measures",
+    {
+        "PGA": IntensityMeasure("m/s2", _summary("pga")),
+        "PGV": IntensityMeasure("m/s", _summary("pgv")),
+        "PGD": IntensityMeasure("m", _summary("pgd")),
+        "Sa": IntensityMeasure("m/s2", spectral_acceleration, at_period=True),
+        "AvgSa": IntensityMeasure("m/s2", average_spectral_acceleration, at_period=True),
+        "FIV3": IntensityMeasure(
+            "m/s", lambda m, T, _damping: filtered_incremental_velocity(m, T), at_period=True
+        ),
+        "Housner": IntensityMeasure("m", lambda m, _period, xi: housner_intensity(m, xi)),
+        "Arias": IntensityMeasure("m/s", _summary("arias"), power=2.0),
+        "CAV": IntensityMeasure("m/s", _summary("cav")),
+    },
+    IntensityMeasure,
+)
+
+
+def needs_period(measure: Measure | None) -> bool:
+    """Whether a measure is taken at a period.
+
+    >>> needs_period("Sa"), needs_period("PGV"), needs_period(None)
+    (True, False, False)
+    """
+    return measure is not None and MEASURES[measure].at_period
 
 
 def measured(
     motion: GroundMotion, measure: Measure, period: float | None = None, damping: float = 0.05
 ) -> float:
     """A measure of a motion, SI units."""
-    if measure == "Housner":
-        return housner_intensity(motion, damping)
-    if measure in AT_PERIOD:
-        assert period is not None, f"{measure} is asked for at a period"
-        if measure == "FIV3":
-            return filtered_incremental_velocity(motion, period)
-        of = spectral_acceleration if measure == "Sa" else average_spectral_acceleration
-        return of(motion, period, damping)
-    return float(getattr(intensity_measures(motion), measure.lower()))
+    found = MEASURES[measure]
+    assert period is not None or not found.at_period, f"{measure} is asked for at a period"
+    return float(found.of(motion, math.nan if period is None else period, damping))
 
 
 def factor_to(value: float, unscaled: float, measure: Measure, source: str) -> float:
@@ -201,7 +227,6 @@ def factor_to(value: float, unscaled: float, measure: Measure, source: str) -> f
     >>> factor_to(4.0, 1.0, "PGA", ""), factor_to(4.0, 1.0, "Arias", "")
     (4.0, 2.0)
     """
-    if unscaled <= 0.0:
-        raise RecordError(f"{source}: {measure} is 0: cannot scale it")
-    ratio = value / unscaled
-    return ratio**0.5 if measure == "Arias" else ratio
+    if not unscaled > 0.0:
+        raise RecordError(f"{source}: {measure} is {unscaled:g}: cannot scale it")
+    return float((value / unscaled) ** (1.0 / MEASURES[measure].power))

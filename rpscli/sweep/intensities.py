@@ -8,7 +8,7 @@ import numpy as np
 
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
-from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
+from rpscli.records.measures import MEASURES, Measure, needs_period
 from rpscli.records.pair_measure import Of, measure_label
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.table import Array, Table
@@ -21,9 +21,10 @@ def unit_of(name: str) -> str:
     ('m/s2', 's', '-')
     """
     alone = name.partition("(")[0]
-    return next(
-        (unit for measure, unit in MEASURE_UNITS.items() if measure == alone), key_unit(name)
-    )
+    # Keys have dots, all but those that a study varies besides them.
+    if alone in MEASURES or ("." not in name and alone in MEASURES.names()):
+        return MEASURES[alone].unit
+    return key_unit(name)
 
 
 class Asked(Protocol):
@@ -82,7 +83,7 @@ def intensity(table: Table, context: StudyContext, options: Asked) -> Intensity:
             values[point.number] = point.scale * _effect(measure, point.scale_change)
             continue
         at = None
-        if measure in AT_PERIOD:
+        if needs_period(measure):
             at = period or table.layout.properties[point.system].period
             assert at is not None, "`measure_without_period` was asked before"
         try:
@@ -92,9 +93,9 @@ def intensity(table: Table, context: StudyContext, options: Asked) -> Intensity:
         except RecordError:
             continue
         values[point.number] = unscaled * _effect(measure, table.scale[point.number])
-    return Intensity(measure, MEASURE_UNITS[measure], period, values, table.layout.of)
+    return Intensity(measure, MEASURES[measure].unit, period, values, table.layout.of)
 
 
 def _effect(measure: Measure, factor: float) -> float:
     """What a factor on the record does to the measure."""
-    return factor**2 if measure == "Arias" else abs(factor)
+    return float(abs(factor) ** MEASURES[measure].power)

@@ -10,7 +10,7 @@ import pytest
 from report.small_results import CURVED, KINDS, structure
 
 import rpscli
-from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, measured
+from rpscli.records.measures import MEASURES, measured, needs_period
 from rpscli.shown import Shown
 
 LONGEST = 600
@@ -81,13 +81,13 @@ def test_a_motion_of_an_array_needs_no_names() -> None:
     assert rpscli.demand(structure(CURVED, 0), motion).outcome == "survived"
 
 
-@pytest.mark.parametrize("measure", MEASURE_UNITS)
+@pytest.mark.parametrize("measure", MEASURES)
 def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.8")
-    period = 0.5 if measure in AT_PERIOD else None
-    scaled = motion.scaled_to(measure, 0.7, period=period)  # type: ignore[arg-type]
+    period = 0.5 if needs_period(measure) else None
+    scaled = motion.scaled_to(measure, 0.7, period=period)
     # a scaled motion is measured by the same sums
-    assert measured(scaled, measure, period) == pytest.approx(0.7, rel=1e-12)  # type: ignore[arg-type]
+    assert measured(scaled, measure, period) == pytest.approx(0.7, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -102,6 +102,6 @@ def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
 def test_what_cannot_be_scaled_to_is_told(arguments: tuple[str, float], says: str) -> None:
     motion = rpscli.GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5)
     with pytest.raises(rpscli.RpsError, match=says):
-        motion.scaled_to(*arguments)  # type: ignore[arg-type]
+        motion.scaled_to(*arguments)
     with pytest.raises(rpscli.RpsError, match="is 0"):
         rpscli.GroundMotion(np.zeros(3), 0.5).scaled_to("PGA", 1.0)

@@ -112,6 +112,6 @@ def test_contradicting_options_are_refused(tmp_path: Path, make: Callable[[], st
 def test_only_one_format_recognises_each_layout(tmp_path: Path) -> None:
     for make in (csmip, cosmos, esm, smc, geonet, knet):
         text = read_text(Path(write(tmp_path, make(), "rec")), "rec")
-        matching = [form.name for form in FORMATS if form.recognises(text)]
+        matching = [form.name for form in FORMATS.values() if form.recognises(text)]
         assert [name for name in matching if name != "columns"][1:] == []
         assert matching[0] != "columns"

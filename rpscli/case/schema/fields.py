@@ -25,6 +25,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rpscli.errors import hint, listed, nearest
+from rpscli.registry import Registry
 from rpscli.units import KINDS, si_value
 
 
@@ -309,6 +310,34 @@ class Several:
             custom_error_type="rps",
             custom_error_message="must be a list of values, or {low, high, count}",
         )
+
+
+@dataclass(frozen=True, eq=False)
+class NameOf:
+    """One of the names in a registry, of ours or of other packages."""
+
+    registry: Registry[Any]
+
+    def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """The check, for pydantic."""
+        del handler
+
+        def checked(value: object) -> str:
+            if isinstance(value, str) and (value in self.registry or value in self.names):
+                return value
+            meant = nearest(str(value), self.names)
+            refuse(f"must be {listed(self.names)}" + (f"; did you mean {meant}?" if meant else ""))
+
+        return core_schema.no_info_plain_validator_function(checked)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        """The JSON schema."""
+        return {"enum": self.names, "type": "string"}
+
+    @property
+    def names(self) -> list[str]:
+        """All of them."""
+        return self.registry.names()
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.fields import PLAIN, OneOf, Quantity, Several, ValueRange, Whole
+from rpscli.case.schema.fields import PLAIN, NameOf, OneOf, Quantity, Several, ValueRange, Whole
 from rpscli.case.text.document import Fault, Path, dotted
 from rpscli.errors import listed, nearest
 
@@ -208,7 +208,8 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
     quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
     whole = next((mark for mark in marks if isinstance(mark, Whole)), None)
     literals = (get_args(part) for part in marks if get_origin(part) is Literal)
-    words = (word for literal in literals for word in literal if isinstance(word, str))
+    listed_names = (mark.names for mark in marks if isinstance(mark, NameOf))
+    words = (word for each in (*literals, *listed_names) for word in each if isinstance(word, str))
     section = section_of(field.annotation)
     single = quantity is not None and not (section and "at_most" not in section.model_fields)
     default = field.get_default()

@@ -13,18 +13,21 @@ from pydantic import (
     WithJsonSchema,
 )
 
-from rpscli.case.schema.fields import DampingRatio, Quantity, Section, refuse
+from rpscli.case.schema.fields import DampingRatio, NameOf, Quantity, Section, refuse
 from rpscli.errors import hint
-from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
+from rpscli.records.measures import MEASURES, Measure, needs_period
 from rpscli.records.pair_measure import OF, Of
 
-_TARGET = re.compile(r"\s*([A-Za-z]+\d?)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
+_TARGET = re.compile(r"\s*([A-Za-z]\w*)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
+
+
+MeasureName = Annotated[Measure, NameOf(MEASURES)]
 
 
 def measured_value(value: object, info: ValidationInfo) -> float:
     """A value of the measure that stands before it, in SI: a number, or text with a unit."""
     measure = info.data.get("measure")
-    bounds = Quantity(MEASURE_UNITS[measure], symbol=measure, above=0) if measure else Quantity()
+    bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0) if measure else Quantity()
     found = bounds.number(value)
     assert isinstance(found, float), "there are no words in place of the number"
     return found
@@ -38,8 +41,9 @@ MeasuredValue = Annotated[
 
 
 def _at_period(period: float | None, info: ValidationInfo) -> float | None:
-    if (measure := info.data.get("measure", "Sa")) not in AT_PERIOD:
-        refuse(f"belongs to the measures {', '.join(AT_PERIOD)}; {measure} has none, take it out")
+    if not needs_period(measure := info.data.get("measure", "Sa")):
+        known = ", ".join(name for name, each in MEASURES.items() if each.at_period)
+        refuse(f"belongs to measures such as {known}; {measure} has none, take it out")
     return period
 
 
@@ -49,7 +53,7 @@ at_period = AfterValidator(_at_period)
 class ScaleToSection(Section):
     """A value of an intensity measure of the horizontal record, in place of a factor."""
 
-    measure: Measure
+    measure: MeasureName
     """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD or Housner [m] when scaled"""
     value: MeasuredValue
     """what it is to be, SI or with a unit, such as 0.4 g"""
@@ -74,10 +78,12 @@ def scale_to_of(text: str) -> ScaleToSection:
     if found is None:
         raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")
     name, inside, value = found.groups()
-    measure = next((known for known in MEASURE_UNITS if known.lower() == name.lower()), None)
-    if measure is None:
-        known_are = f"known are {', '.join(MEASURE_UNITS)}"
-        raise ValueError(f"{name} is not a measure; {hint(name, MEASURE_UNITS, known_are, 0.6)}")
+    ours = {known.lower(): known for known in MEASURES}
+    if (measure := ours.get(name.lower(), name)) not in MEASURES:
+        known = MEASURES.names()
+        if measure not in known:
+            known_are = f"known are {', '.join(known)}"
+            raise ValueError(f"{name} is not a measure; {hint(name, known, known_are, 0.6)}")
     given: dict[str, Any] = {"measure": measure, "value": _number(value)}
     for part in () if inside is None else map(str.strip, inside.split(",")):
         key, read = ("of", part.lower()) if part.lower() in OF else ("period", _number(part))

@@ -38,10 +38,9 @@ from rpscli.case.schema.fields import (
     refuse,
 )
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.schema.scale_to import MeasuredValue, at_period, measured_value
+from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
 from rpscli.case.text.document import shown
 from rpscli.records.clusters import By
-from rpscli.records.measures import Measure
 from rpscli.records.pair_measure import Of
 
 Number = Annotated[float, Quantity()]
@@ -107,7 +106,7 @@ Analysis = Literal["timehistory", "modal", "pushover"]
 class MeasureScale(Section):
     """Every record scaled to given values of an intensity measure."""
 
-    measure: Measure
+    measure: MeasureName
     """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD or Housner [m] when scaled"""
     values: MeasuredValues
     """values to scale to, SI or with a unit"""
@@ -220,7 +219,7 @@ class HazardSection(Section):
         description="CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it,"
         " `0.16 [1/year]`; seen from the study's folder"
     )
-    measure: Measure = Field(description="of its first column")
+    measure: MeasureName = Field(description="of its first column")
     component: Of | None = None
     """what of a pair of components it is of, as `of` in `scale`; said if it is not the same"""
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import RecordError
+from rpscli.errors import PluginError, RecordError
 from rpscli.records.formats.at2 import read_at2, recognises_at2
 from rpscli.records.formats.columns import read_columns, recognises_columns
 from rpscli.records.formats.cosmos import (
@@ -22,6 +23,7 @@ from rpscli.records.formats.knet import read_knet, recognises_knet
 from rpscli.records.formats.record_text import RecordText, read_text
 from rpscli.records.formats.smc import read_smc, recognises_smc
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.registry import Registry
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class RecordFormat:
     read: Callable[[RecordText], GroundMotion]
 
 
-FORMATS = (
+_OURS = (
     RecordFormat("PEER AT2", (".at2",), recognises_at2, read_at2),
     RecordFormat("COSMOS v1", (".v1", ".v1c", ".v2c"), recognises_cosmos, read_cosmos),
     RecordFormat("CSMIP volume 2", (".v2",), recognises_csmip, read_csmip),
@@ -47,9 +49,12 @@ FORMATS = (
     ),
     RecordFormat("ESM ASCII", (".asc",), recognises_esm, read_esm),
     RecordFormat("SMC", (".smc",), recognises_smc, read_smc),
-    RecordFormat("columns", (".txt", ".dat", ".csv", ".tsv"), recognises_columns, read_columns),
 )
-"""In the order of recognition; plain columns accept most, so they come last."""
+_PLAIN = RecordFormat("columns", (".txt", ".dat", ".csv", ".tsv"), recognises_columns, read_columns)
+"""Accepts most, so it comes last."""
+
+FORMATS = Registry("formats", {form.name: form for form in (*_OURS, _PLAIN)}, RecordFormat)
+"""In the order of recognition."""
 
 _OTHER_QUANTITIES = {".vt2": "velocity", ".dt2": "displacement"}
 _STRONGEST, _WEAKEST = 4.0, 1e-3  # g
@@ -72,7 +77,12 @@ def read_record(
             f"same station, {path.with_suffix('.AT2').name}"
         )
     text = read_text(path, source, dt=dt, units=units, channel=channel)
-    motion = (_by_content(text) or _by_extension(text)).read(text)
+    form = _by_content(text)
+    try:
+        motion = (form or _by_extension(text)).read(text)
+    except RecordError as error:
+        unusable = [] if form in _OURS else [o.fault for o in FORMATS.offers() if o.fault]
+        raise RecordError("\n".join([str(error), *unusable])) from error
     if motion.pga > _NONSENSE * STANDARD_GRAVITY:
         raise text.fault(
             f"the largest value is {motion.pga / STANDARD_GRAVITY:.3g} g, which is not a"
@@ -91,14 +101,24 @@ def is_record(path: Path) -> bool:
         return False
 
 
+def _in_order() -> Iterator[RecordFormat]:
+    yield from _OURS
+    yield from (form for _, form in FORMATS.theirs())
+    yield _PLAIN
+
+
 def _by_content(text: RecordText) -> RecordFormat | None:
-    return next((form for form in FORMATS if form.recognises(text)), None)
+    for form in _in_order():
+        with suppress(PluginError):  # a fault of one format is none of other files
+            if form.recognises(text):
+                return form
+    return None
 
 
 def _by_extension(text: RecordText) -> RecordFormat:
     # The format of that name then says what is missing.
     extension = text.path.suffix.lower()
-    return next((form for form in FORMATS if extension in form.extensions), FORMATS[-1])
+    return next((form for form in _in_order() if extension in form.extensions), _PLAIN)
 
 
 def _implausible(motion: GroundMotion) -> tuple[str, ...]:

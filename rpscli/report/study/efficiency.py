@@ -28,7 +28,7 @@ from rpscli.case.schema.fields import Several, Text
 from rpscli.case.schema.scale_to import ScaleToSection, scale_to_of
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.errors import RecordError
-from rpscli.records.measures import AT_PERIOD
+from rpscli.records.measures import needs_period
 from rpscli.report.study.fragility import (
     LimitStates,
     limit_name,
@@ -215,7 +215,7 @@ def wrong_measures(layout: StudyPoints, options: EfficiencyOptions) -> Iterator[
         except ValueError as error:
             yield f"measures: {error}"
             continue
-        at_first_period = own.measure in AT_PERIOD and own.period is None
+        at_first_period = needs_period(own.measure) and own.period is None
         if at_first_period and any(system.period is None for system in layout.properties):
             yield f"{each} at T1 needs storeys; write {each}(1 s)"
 

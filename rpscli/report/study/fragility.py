@@ -18,9 +18,10 @@ from rpscli.case.conditions import LIMITS
 from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.fields import DampingRatio, Quantity, Section, Whole
 from rpscli.case.schema.limits import described
+from rpscli.case.schema.scale_to import MeasureName
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Seed
-from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS, Measure
+from rpscli.records.measures import MEASURES, needs_period
 from rpscli.records.pair_measure import measure_label
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
@@ -61,7 +62,7 @@ class LimitStates(create_model("LimitStates", __base__=Section, **_THRESHOLDS)):
 class MeasureOptions(ReportOptions):
     """Options of reports that need an intensity measure."""
 
-    measure: Measure | None = Field(
+    measure: MeasureName | None = Field(
         None, description="the one that the study scales to by default, else PGV"
     )
     period: Time | None = Field(
@@ -309,7 +310,7 @@ def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.boo
 
 def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
     """What keeps a report from having the measure that it asks for."""
-    at_first_period = options.measure in AT_PERIOD and options.period is None
+    at_first_period = needs_period(options.measure) and options.period is None
     if at_first_period and any(system.period is None for system in layout.properties):
         yield f"{options.measure} at T1 needs storeys; give the report a `period`"
 
@@ -318,7 +319,7 @@ def named_intensities(layout: StudyPoints, options: FragilityOptions) -> dict[st
     """The intensities under `at` in SI; raises pydantic's error if one is none."""
     scaled = layout.plan.measure
     measure = options.measure or (scaled.measure if scaled else "PGV")
-    bounds = Quantity(MEASURE_UNITS[measure], symbol=measure, above=0)
+    bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0)
     return {name: float(bounds.number(value)) for name, value in options.at.items()}
 
 
@@ -542,7 +543,7 @@ def side_by_side(panels: int) -> int:
 
 def measure_name(intensity: Intensity) -> str:
     """The measure with its period."""
-    if intensity.measure not in AT_PERIOD:
+    if not needs_period(intensity.measure):
         return intensity.name
     at = "T1" if intensity.period is None else f"{intensity.period:g} s"
     return measure_label(intensity.measure, intensity.of, at)

@@ -13,7 +13,7 @@ from pydantic import Field
 from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.schema import HazardSection
 from rpscli.errors import CaseError
-from rpscli.records.measures import AT_PERIOD
+from rpscli.records.measures import needs_period
 from rpscli.records.pair_measure import SHOWN, Of
 from rpscli.report.figures import style
 from rpscli.report.study.fragility import (
@@ -120,7 +120,7 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
     measure = options.hazard.measure
     if options.measure not in (None, measure):
         yield f"measure: {options.measure} is not hazard.measure: {measure}; take the first out"
-    if measure in AT_PERIOD and options.period is None:
+    if needs_period(measure) and options.period is None:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
     yield from wrong_intensities(layout, options.model_copy(update={"measure": measure}))
     try:

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from rpscli.case.text.document import shown
 from rpscli.case.text.files import read_text
 from rpscli.errors import CaseError
-from rpscli.records.measures import MEASURE_UNITS, Measure
+from rpscli.records.measures import MEASURES, Measure
 from rpscli.units import si_value
 
 Array = NDArray[np.float64]
@@ -84,7 +84,7 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
 
 
 def _header(measure: Measure) -> str:
-    return f"`{measure} [{USUAL.get(measure, MEASURE_UNITS[measure])}],rate [1/year]`"
+    return f"`{measure} [{USUAL.get(measure, MEASURES[measure].unit)}],rate [1/year]`"
 
 
 def _head(
@@ -113,7 +113,7 @@ def _head(
         if not 0.0 < shares[-1] < 1.0:
             raise CaseError(f"{wrong}: {shown(name)} must be a fractile, as in `0.84 [1/year]`")
     try:
-        return si_value(f"1 {units[0]}", MEASURE_UNITS[measure]), tuple(shares)
+        return si_value(f"1 {units[0]}", MEASURES[measure].unit), tuple(shares)
     except ValueError as error:
         raise CaseError(f"{path}:{line}: the unit of {measure}: 1 {units[0]} {error}") from None
 

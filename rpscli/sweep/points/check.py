@@ -20,7 +20,7 @@ from rpscli.case.text.document import Fault, Path, Place
 from rpscli.errors import CaseError, RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.records.measures import AT_PERIOD
+from rpscli.records.measures import needs_period
 from rpscli.sweep.evaluation.context import (
     SYSTEMS_KEPT,
     System,
@@ -234,8 +234,8 @@ def _refuse_missing(study: Study, plan: Plan, case: Case) -> None:
         text = "record.scale_to cannot vary in a study; vary `scale: {measure: ..., values: [...]}`"
         study.document.refuse([Fault((), text)])
     measure = plan.measure
-    needs_period = measure and measure.measure in AT_PERIOD and measure.period is None
-    if measure and needs_period and case.structure.superstructure is None:
+    at_first_period = measure and needs_period(measure.measure) and measure.period is None
+    if measure and at_first_period and case.structure.superstructure is None:
         text = (
             f"scale.period is missing: without storeys {measure.measure} has no T1 to be taken at"
         )

@@ -20,7 +20,7 @@ from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RecordError, RpsError
 from rpscli.frozen import frozen
 from rpscli.records.clusters import By, clusters, pairs
-from rpscli.records.measures import AT_PERIOD, MEASURE_UNITS
+from rpscli.records.measures import MEASURES, needs_period
 from rpscli.records.pair_measure import Of, measure_label
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
@@ -166,13 +166,13 @@ class StudyPoints:
         if (measure := self.plan.measure) is None:
             return ""
         one, *others = measure.values
-        name, unit = measure_label(measure.measure, self.of), MEASURE_UNITS[measure.measure]
+        name, unit = measure_label(measure.measure, self.of), MEASURES[measure.measure].unit
         return f"{len(measure.values)} values of {name}" if others else f"{name} = {one:g} {unit}"
 
     def period_of_measure(self, properties: SystemProperties) -> float | None:
         """Period at which the records of a system are scaled; None unless they are [s]."""
         measure = self.plan.measure
-        if measure is None or measure.measure not in AT_PERIOD:
+        if measure is None or not needs_period(measure.measure):
             return None
         return measure.period or properties.period
 

@@ -1,0 +1,138 @@
+"""Things by name: ours, and those that other packages add by entry points `rpscli.<kind>`.
+
+Other packages are looked for when a name is none of ours, and where all are listed. One that is
+broken is named where it is asked for, and left out where others are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass, replace
+from functools import cache, wraps
+from inspect import isgenerator
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+
+from rpscli.errors import PluginError, RpsError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+Item = TypeVar("Item")
+
+
+class Offer(NamedTuple):
+    """What another package adds; `fault` says why it cannot be used, empty if it can."""
+
+    kind: str
+    name: str
+    package: str
+    target: str
+    meaning: str
+    fault: str
+
+
+class Registry(dict[str, Item]):
+    """Ours by name, of one `kind`; subscripts also find what other packages add.
+
+    Each of theirs must be an `item`, or a function where that is None. Its functions are guarded:
+    what they raise by mistake is a `PluginError` that names the package.
+    """
+
+    def __init__(self, kind: str, ours: dict[str, Item], item: type | None = None) -> None:
+        super().__init__(ours)
+        self.kind, self._item = kind, item
+
+    def __missing__(self, name: str) -> Item:
+        point = _points(self.kind).get(name)
+        if point is None:
+            raise KeyError(name)
+        found, what = _loaded(point), _named(point)
+        fits = callable(found) if self._item is None else isinstance(found, self._item)
+        if not fits:
+            wanted = "a function" if self._item is None else f"a {self._item.__name__}"
+            raise PluginError(f"{what} is a {type(found).__name__}, and must be {wanted}")
+        item: Item = _guarded(found, what)
+        return item
+
+    def names(self) -> list[str]:
+        """All names, ours first; nothing is imported."""
+        return list({**self, **_points(self.kind)})
+
+    def theirs(self) -> Iterator[tuple[str, Item]]:
+        """What other packages add, as far as it can be used."""
+        for name in _points(self.kind):
+            try:
+                if name not in self:
+                    yield name, self[name]
+            except PluginError:  # told where it is asked for, and by `rps explain plugins`
+                continue
+
+    def everything(self) -> dict[str, Item]:
+        """Ours, and what other packages add, as far as it can be used."""
+        return {**self, **dict(self.theirs())}
+
+    def offers(self) -> Iterator[Offer]:
+        """What other packages add, usable or not."""
+        for name, point in _points(self.kind).items():
+            meaning, fault = "", "rps has one of this name, which is taken" if name in self else ""
+            if not fault:
+                try:
+                    meaning = _meaning(self[name])
+                except PluginError as error:
+                    fault = str(error)
+            yield Offer(self.kind, name, _package(point), point.value, meaning, fault)
+
+
+@cache
+def _points(kind: str) -> dict[str, EntryPoint]:
+    from importlib.metadata import entry_points  # takes 60 ms
+
+    found = sorted(entry_points(group=f"rpscli.{kind}"), key=lambda point: point.name)
+    return {point.name: point for point in found}
+
+
+def _package(point: EntryPoint) -> str:
+    return f"{point.dist.name} {point.dist.version}" if point.dist else "an unknown package"
+
+
+def _named(point: EntryPoint) -> str:
+    return f"{point.group}: {point.name} of {_package(point)} ({point.value})"
+
+
+@cache
+def _loaded(point: EntryPoint) -> Any:
+    try:
+        return point.load()
+    except Exception as error:
+        raise PluginError(f"{_named(point)}: {type(error).__name__}: {error}") from error
+
+
+def _parts(found: Any) -> dict[str, Any]:
+    """Functions and classes that a dataclass holds."""
+    values = {each.name: getattr(found, each.name) for each in fields(found)}
+    return {name: value for name, value in values.items() if callable(value)}
+
+
+def _guarded(found: Any, what: str) -> Any:
+    if isinstance(found, type):
+        return found
+    if is_dataclass(found):
+        parts = {name: _guarded(part, what) for name, part in _parts(found).items()}
+        return replace(cast("Any", found), **parts)
+
+    @wraps(found)
+    def function(*arguments: Any, **named: Any) -> Any:
+        try:
+            made = found(*arguments, **named)
+            return list(made) if isgenerator(made) else made
+        except RpsError:
+            raise
+        except Exception as error:
+            raise PluginError(f"{what}: {type(error).__name__}: {error}") from error
+
+    return function
+
+
+def _meaning(found: Any) -> str:
+    described = next(iter(_parts(found).values())) if is_dataclass(found) else found
+    return (described.__doc__ or "").strip().split("\n")[0]
