@@ -45,6 +45,7 @@ from rpscli.report.figures.history import draw_events as events
 from rpscli.report.figures.history import draw_ground as ground_acceleration
 from rpscli.report.figures.history import draw_moment as moment
 from rpscli.report.figures.history import draw_rotation as rotation
+from rpscli.report.figures.look import FIGURES
 from rpscli.report.figures.modes import draw_mode as mode
 from rpscli.report.figures.motions import draw_motion as motion
 from rpscli.report.figures.motions import draw_spectra as spectra
@@ -99,6 +100,13 @@ def _examined(draw: Callable[..., None]) -> Callable[..., None]:
         draw(axes, drawn, *arguments, **named)
 
     return panel
+
+
+def __getattr__(name: str) -> Any:
+    """A panel that another package adds."""
+    if not name.startswith("_") and name in FIGURES.names():
+        return FIGURES[name]
+    raise AttributeError(f"module 'rpscli.figures' has no attribute {name!r}")
 
 
 for _name in __all__[: __all__.index("style")]:

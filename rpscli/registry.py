@@ -6,7 +6,7 @@ broken is named where it is asked for, and left out where others are.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass, replace
 from functools import cache, wraps
 from inspect import isgenerator
@@ -70,6 +70,14 @@ class Registry(dict[str, Item]):
     def everything(self) -> dict[str, Item]:
         """Ours, and what other packages add, as far as it can be used."""
         return {**self, **dict(self.theirs())}
+
+    def among(self, names: Iterable[object]) -> dict[str, Item]:
+        """Ours and, where others are named, what can be used; what is named must be usable."""
+        others = [name for name in names if isinstance(name, str) and name not in self]
+        if not others:
+            return dict(self)
+        named = {name: self[name] for name in others if name in self.names()}
+        return {**self.everything(), **named}
 
     def offers(self) -> Iterator[Offer]:
         """What other packages add, usable or not."""

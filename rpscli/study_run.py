@@ -206,7 +206,9 @@ class StudyRun:
                 found.broken.append(error)
             except Exception as error:  # noqa: BLE001 -- the points and the others must not be lost
                 text = f"the report {request.stem}: {type(error).__name__}: {error}"
-                found.broken.append(RpsError(f"{text}; this is a fault of rps: please report it"))
+                own = request.kind in REPORTS
+                whose = "rps: please report it" if own else "the package that adds it"
+                found.broken.append(RpsError(f"{text}; this is a fault of {whose}"))
         return found
 
     def _report(self, request: ReportRequest, look: Look, found: Collected) -> None:

@@ -39,6 +39,7 @@ from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, hint, listed
 from rpscli.records.clusters import clusters
+from rpscli.registry import Registry
 from rpscli.units import in_si
 
 PLUS = "plus"
@@ -370,7 +371,7 @@ def parse_design(
     study = study_of(
         replace(document, content=shared),
         of_base,
-        kinds={},
+        kinds=Registry("none", {}),
         folder=folder,
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from importlib import resources
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
     from rpscli.case.schema.keys import KeyReference
+    from rpscli.registry import Offer
 
 BEARING = """\
       <- 2B ->
@@ -32,6 +33,8 @@ BEARING = """\
    '.          .'    |   rho    r/2H, r the radius of the
      '--------'     ---         arcs between B and B'
 """
+PLUGINS = "plugins"
+"""The word for what other packages add."""
 DRAWINGS = {"podium.bearing": BEARING}
 """Small drawings of what sections describe."""
 
@@ -43,7 +46,7 @@ def command(word: str, terminal: Terminal) -> None:
     """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.
 
     Keys are named in full (podium.bearing.slenderness), by their end (slenderness) or by their
-    symbol (rho).
+    symbol (rho). `plugins` lists what other packages add.
     """
     # pydantic is slow.
     from rpscli.case.schema.keys import key_references
@@ -52,10 +55,11 @@ def command(word: str, terminal: Terminal) -> None:
     keys = _keys(word)
     results = [quantity for quantity in _results() if quantity.name == word]
     words = [row for row in glossary() if word.lower() in _names(row[0])]
-    report = REPORTS.get(word)
+    offers = [] if (keys or results or words) else list(_offers(word))
+    report = (REPORTS.everything() if offers else REPORTS).get(word)
     reports = [] if report is None else [(word, (report.options.__doc__ or "").split("\n")[0])]
     options = [] if report is None else list(key_references(report.options))
-    if not (keys or results or words or options):
+    if not (keys or results or words or options or offers or word == PLUGINS):
         raise UsageError(f"explain {word}: {_hint(word)}")
     document = {
         **heading(),
@@ -66,8 +70,32 @@ def command(word: str, terminal: Terminal) -> None:
         "words": [{"word": name, "meaning": meaning} for name, meaning in words],
         "reports": [{"report": name, "meaning": meaning} for name, meaning in reports],
         "options": [key._asdict() for key in options],
+        "plugins": [offer._asdict() for offer in offers],
     }
-    terminal.result(document, _tables(keys, results, words, reports, options))
+    parts = [*_tables(keys, results, words, reports, options), *_plugins(word, offers)]
+    terminal.result(document, parts)
+
+
+def _offers(word: str) -> Iterator[Offer]:
+    """What other packages add: all for the word plugins, else what is called so."""
+    from rpscli.records.codes import CODES
+    from rpscli.records.formats import FORMATS
+    from rpscli.records.measures import MEASURES
+    from rpscli.report.figures.look import FIGURES
+    from rpscli.report.study.registry import REPORTS
+
+    for registry in (FORMATS, MEASURES, CODES, REPORTS, FIGURES):
+        if word == PLUGINS or (word not in registry and word in registry.names()):
+            yield from (each for each in registry.offers() if word in {PLUGINS, each.name})
+
+
+def _plugins(word: str, offers: Sequence[Offer]) -> Iterator[Part]:
+    if word == PLUGINS and not offers:
+        yield "no package that is installed adds anything; help(rpscli.plugins) says how one does"
+    elif offers:
+        heads = ("group", "name", "package", "is")
+        rows = [(f"rpscli.{o.kind}", o.name, o.package, o.fault or o.meaning) for o in offers]
+        yield Table.of_texts(heads, rows, words=len(heads))
 
 
 def _formats() -> list[KeyReference]:
@@ -128,7 +156,7 @@ def _hint(word: str) -> str:
     names = [name for entry, _ in glossary() for name in _names(entry)]
     ends = [key.rsplit(".", 1)[-1] for key in keys]
     results = [quantity.name for quantity in _results()]
-    close = nearest(word, [*keys, *ends, *results, *REPORTS, *names])
+    close = nearest(word, [*keys, *ends, *results, *REPORTS.names(), *names])
     if close:
         return f"nothing is called so; did you mean {close}?"
     return "nothing is called so; `rps explain podium` and the like list the keys of a section"
@@ -172,7 +200,7 @@ def _lines(key: KeyReference) -> Table:
     from rpscli.report.study.registry import REPORTS
 
     needed = "cannot be, where its section stands" if key.required else ""
-    names = f"{', '.join(REPORTS)}; `rps explain NAME` lists the options of one"
+    names = f"{', '.join(REPORTS.names())}; `rps explain NAME` lists the options of one"
     rows = {
         "means": key.meaning,
         "symbol": key.symbol,

@@ -82,4 +82,4 @@ def schema_of(*, study: bool, design: bool = False) -> dict[str, Any]:
     from rpscli.case.study.reports import format_with
     from rpscli.report.study.registry import REPORTS
 
-    return study_json_schema(DesignFile if design else format_with(REPORTS))
+    return study_json_schema(DesignFile if design else format_with(REPORTS.everything()))

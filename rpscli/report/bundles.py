@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.selection import Selection
 from rpscli.records.spectrum import ResponseSpectrum
+from rpscli.report.figures import style
 from rpscli.report.figures.bearing import bearing_figure
 from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.floors import floor_spectra_figure, profile_figure
@@ -24,7 +25,7 @@ from rpscli.report.figures.history import (
     rotation_figure,
     thinned,
 )
-from rpscli.report.figures.look import USUAL, Draw, Look, figure_files
+from rpscli.report.figures.look import FIGURES, USUAL, Draw, Look, figure_files
 from rpscli.report.figures.modes import modes_figure
 from rpscli.report.figures.motions import record_figure, selection_figure
 from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
@@ -53,6 +54,17 @@ Files = Iterator[tuple[str, str | Content]]
 """Names and contents."""
 
 
+def _with_added(
+    figures: Mapping[str, Draw], result: object, title: str, look: Look
+) -> dict[str, Draw]:
+    """Our figures, and those of other packages that are asked for."""
+    added = {
+        name: partial(style.single, FIGURES[name], result, (title, name), 3.4)
+        for name in look.added
+    }
+    return {**added, **figures}
+
+
 def bearing_files(structure: PodiumStructure, title: str, look: Look = USUAL) -> Files:
     """The drawing of the bearing."""
     draw = partial(bearing_figure, pushover(structure, patterns=()), title)
@@ -64,7 +76,8 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     yield "modes.csv", csv_text(mode_columns(result))
     yield "shapes.csv", csv_text(shape_columns(result))
     yield "eigenvalues.csv", csv_text(eigenvalue_columns(result))
-    yield from figure_files({"modes": partial(modes_figure, result, title)}, look).items()
+    figures = _with_added({"modes": partial(modes_figure, result, title)}, result, title, look)
+    yield from figure_files(figures, look).items()
 
 
 def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Files:
@@ -77,7 +90,7 @@ def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Fi
     if result.capacity:
         yield "capacity.csv", csv_text(capacity_columns(result.capacity))
         figures["capacity"] = partial(capacity_figure, result, title)
-    yield from figure_files(figures, look).items()
+    yield from figure_files(_with_added(figures, result, title, look), look).items()
 
 
 def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:
@@ -95,7 +108,7 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     }
     few = thinned(result)
     draws = {stem: partial(draw, few, title) for stem, draw in figures.items()}
-    yield from figure_files(draws, look).items()
+    yield from figure_files(_with_added(draws, result, title, look), look).items()
 
 
 def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:

@@ -10,6 +10,7 @@ from rpscli.case.schema.fields import Section, Text
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.schema import Analysis, AnyKeys, StudyFile, study_file
 from rpscli.case.text.document import Document, Fault, Path
+from rpscli.registry import Registry
 
 _VARIED = "varied keys"
 VariedKeys = Annotated[AnyKeys, _VARIED]
@@ -86,6 +87,15 @@ OF_THE_STUDY = ("points", "failed", "statistics", "verdicts")
 def format_with(kinds: ReportKinds) -> type[StudyFile]:
     """The format of studies that may ask for reports of these kinds."""
     return study_file(tuple((name, kind.options) for name, kind in kinds.items()))
+
+
+def kinds_in(document: Document, known: Registry[Any]) -> ReportKinds:
+    """The kinds by which a study is read: those of other packages only if it names others."""
+    written = document.content.get("reports")
+    items = written if isinstance(written, list) else []
+    return known.among(
+        name for each in items for name in (each if isinstance(each, dict) else [each])
+    )
 
 
 def written_out(document: Document, kinds: ReportKinds) -> Document:

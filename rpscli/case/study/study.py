@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -16,9 +17,9 @@ from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Axis, axes_of, sources_of
 from rpscli.case.study.observed import Observed, observed_of
 from rpscli.case.study.reports import (
-    ReportKinds,
     ReportRequest,
     format_with,
+    kinds_in,
     requests_of,
     written_out,
 )
@@ -36,6 +37,7 @@ from rpscli.case.text.document import Document, is_case, is_design, is_study, sh
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, stem_of
+from rpscli.registry import Registry
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +91,7 @@ def parse_study(
     text: str,
     *,
     name: str,
-    kinds: ReportKinds,
+    kinds: Registry[Any],
     folder: Path | None = None,
     overrides: Sequence[str] = (),
 ) -> Study:
@@ -114,23 +116,24 @@ def study_of(
     document: Document,
     base_overrides: Sequence[str],
     *,
-    kinds: ReportKinds,
+    kinds: Registry[Any],
     folder: Path,
     digest: str,
 ) -> Study:
     """A study from its document, as `parse_study` says."""
-    whole = written_out(document, kinds)
-    check = schema_check(format_with(kinds), whole)
+    asked = kinds_in(document, kinds)
+    whole = written_out(document, asked)
+    check = schema_check(format_with(asked), whole)
     axes, axis_faults = axes_of(document)
     sources, source_faults = sources_of(document, folder)
-    reports = requests_of(whole, kinds)
+    reports = requests_of(whole, asked)
     faults = [*check.faults, *axis_faults, *source_faults]
     faults += [*unknown_keys(document), *twice(document), *record_rules(document)]
-    faults += analysis_rules(document, reports, kinds)
+    faults += analysis_rules(document, reports, asked)
     observed = None
     if not axis_faults and (axes or not document.content.get("vary")):
         observed, observed_faults = observed_of(document, folder, axes)
-        faults += [*observed_faults, *report_rules(document, axes, reports, kinds)]
+        faults += [*observed_faults, *report_rules(document, axes, reports, asked)]
     document.refuse(faults)
     file = check.read
     assert file is not None, "without faults the file is read"

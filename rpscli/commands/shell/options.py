@@ -15,9 +15,9 @@ from click.shell_completion import CompletionItem
 from rpscli.case.conditions import parse_condition
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import UsageError, hint
+from rpscli.errors import UsageError, hint, listed
 from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
-from rpscli.report.figures.look import FORMATS, Look, read_style
+from rpscli.report.figures.look import FIGURES, FORMATS, Look, read_style
 
 FILE = click.Path(allow_dash=True, readable=False)
 """A file, of which the command itself says what is wrong with it."""
@@ -138,26 +138,38 @@ case_options = _gathered(
 """CASE and --set, as `request`."""
 
 
+OF_ONE_RESULT = ("modal", "pushover", "timehistory")
+"""Commands whose results other packages may draw."""
+
+
 def _look(figures: str | None, columns: str | None, style_file: Path | None) -> Look:
-    formats = None if figures is None else _formats(figures)
+    formats, added = (None, ()) if figures is None else _formats(figures)
+    command = click.get_current_context().info_name
+    if added and command not in OF_ONE_RESULT:
+        raise UsageError(
+            f"--figures {figures}: {added[0]} is drawn by {listed(OF_ONE_RESULT)} alone"
+        )
     style = {} if style_file is None else read_style(style_file)
-    return Look(formats, None if columns is None else int(columns), style)
+    return Look(formats, None if columns is None else int(columns), style, added)
 
 
-def _formats(text: str) -> tuple[str, ...]:
-    """Formats of figures; none at all for the word none.
+def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
+    """Formats of figures, none at all for the word none; and figures of other packages.
 
     >>> _formats("svg, pdf"), _formats("none")
-    (('svg', 'pdf'), ())
+    ((('svg', 'pdf'), ()), ((), ()))
     """
-    words = [word.strip().lower() for word in text.split(",")]
-    if words == ["none"]:
-        return ()
-    for word in words:
-        if word not in FORMATS:
-            meant = hint(word, (*FORMATS, "none"), "write png, svg, pdf, svg,pdf or none", 0.6)
+    words = list(dict.fromkeys(word.strip() for word in text.split(",")))
+    if [word.lower() for word in words] == ["none"]:
+        return (), ()
+    formats = tuple(word.lower() for word in words if word.lower() in FORMATS)
+    added = tuple(word for word in words if word.lower() not in FORMATS)
+    for word in added:
+        if word not in (known := FIGURES.names()):
+            known = [*FORMATS, "none", *known]
+            meant = hint(word.lower(), known, "write png, svg, pdf, svg,pdf or none", 0.6)
             raise UsageError(f"--figures {text}: {word or 'nothing'} is not a format; {meant}")
-    return tuple(dict.fromkeys(words))
+    return tuple(dict.fromkeys(formats)) or None, added
 
 
 figure_options = _gathered(
@@ -166,7 +178,8 @@ figure_options = _gathered(
     click.option(
         "--figures",
         metavar="FORMATS",
-        help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none.",
+        help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none; besides them"
+        " figures that other packages add.",
     ),
     click.option(
         "--columns",

@@ -16,7 +16,11 @@ from pathlib import Path
 from typing import Any, TypeAlias, cast
 
 from rpscli.errors import UsageError
+from rpscli.registry import Registry
 from rpscli.user_cache import user_cache
+
+FIGURES: Registry[Callable[..., None]] = Registry("figures", {})
+"""Panels of other packages, drawn into axes from a result; ours are in `rpscli.figures`."""
 
 FORMATS = ("png", "svg", "pdf")
 COLUMN_WIDTHS = {1: 3.5, 2: 7.0}
@@ -35,6 +39,7 @@ class Look:
     formats: tuple[str, ...] | None = None  # none at all if empty, None if the user did not say
     columns: int | None = None  # of the page that a figure fills; None leaves it its own width
     style: Mapping[str, Any] = field(default_factory=dict)  # matplotlib's settings, over ours
+    added: tuple[str, ...] = ()  # names of `FIGURES`
 
     @property
     def endings(self) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from typing import Any
 
 from rpscli.case.conditions import FRICTION
 from rpscli.case.text.document import Fault
+from rpscli.registry import Registry
 from rpscli.report.study import (
     against,
     comparison,
@@ -24,25 +25,29 @@ from rpscli.report.study.report import Report
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.layout import StudyPoints
 
-REPORTS: dict[str, Report[Any]] = {
-    "overturning": table.OVERTURNING,
-    "rotation": against.ROTATION,
-    "contrast": against.CONTRAST,
-    "demand": scatter.DEMAND,
-    "demand_sample": heights.DEMAND_SAMPLE,
-    "directions": directions.REPORT,
-    "storey_shear": heights.STOREY_SHEAR,
-    "floor_spectra": heights.FLOOR_SPECTRA,
-    "fragility": fragility.REPORT,
-    "risk": risk.REPORT,
-    "ida": ida.REPORT,
-    "efficiency": efficiency.REPORT,
-    "overturning_spectrum": scatter.OVERTURNING_SPECTRUM,
-    "comparison": comparison.REPORT,
-    "lines": lines.REPORT,
-    "table": table.TABLE,
-    "scatter": scatter.SCATTER,
-}
+REPORTS: Registry[Report[Any]] = Registry(
+    "reports",
+    {
+        "overturning": table.OVERTURNING,
+        "rotation": against.ROTATION,
+        "contrast": against.CONTRAST,
+        "demand": scatter.DEMAND,
+        "demand_sample": heights.DEMAND_SAMPLE,
+        "directions": directions.REPORT,
+        "storey_shear": heights.STOREY_SHEAR,
+        "floor_spectra": heights.FLOOR_SPECTRA,
+        "fragility": fragility.REPORT,
+        "risk": risk.REPORT,
+        "ida": ida.REPORT,
+        "efficiency": efficiency.REPORT,
+        "overturning_spectrum": scatter.OVERTURNING_SPECTRUM,
+        "comparison": comparison.REPORT,
+        "lines": lines.REPORT,
+        "table": table.TABLE,
+        "scatter": scatter.SCATTER,
+    },
+    Report,
+)
 
 
 def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:

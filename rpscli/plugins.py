@@ -1,0 +1,55 @@
+"""What a package of yours needs to add things to rps, by entry points in its `pyproject.toml`.
+
+Each entry point has a name, which users write, and belongs to one of these groups:
+
+- `rpscli.formats`: a `RecordFormat` of files with ground motions, which is tried on files that none
+  of ours but plain columns recognises;
+- `rpscli.measures`: an `IntensityMeasure`, to scale records to and to stand on axes of reports;
+- `rpscli.targets`: a function of the options behind ``NAME:`` and of the whole source that returns
+  a `TargetSpectrum`, or raises `RecordError`;
+- `rpscli.reports`: a `Report` of studies, a class of `ReportOptions` with a function of
+  `StudyResults` and such options that returns what was `Found`;
+- `rpscli.figures`: a function that draws a result into axes, as those of `rpscli.figures` do;
+  ``--figures png,NAME`` makes files of it.
+
+Names of ours cannot be taken. Nothing of a package is imported before one of its names is asked
+for; `rps explain plugins` lists all. What stands here changes as slowly as `rpscli.__all__`.
+tests/example_package in the source tree has one of each.
+"""
+
+from __future__ import annotations
+
+from rpscli.case.schema.fields import Quantity, Whole
+from rpscli.case.study.reports import ReportOptions
+from rpscli.errors import PluginError, RecordError
+from rpscli.records.formats import RecordFormat
+from rpscli.records.formats.record_text import RecordText
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.measures import IntensityMeasure
+from rpscli.records.quantities import parse_query
+from rpscli.records.target import TargetSpectrum
+from rpscli.report.figures.style import single
+from rpscli.report.study.report import Found, Report
+from rpscli.report.table import Column
+from rpscli.sweep.points_csv import point_columns
+from rpscli.sweep.study_results import StudyResults
+
+__all__ = [
+    "Column",
+    "Found",
+    "GroundMotion",
+    "IntensityMeasure",
+    "PluginError",
+    "Quantity",
+    "RecordError",
+    "RecordFormat",
+    "RecordText",
+    "Report",
+    "ReportOptions",
+    "StudyResults",
+    "TargetSpectrum",
+    "Whole",
+    "parse_query",
+    "point_columns",
+    "single",
+]

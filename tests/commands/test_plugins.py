@@ -1,0 +1,219 @@
+"""What other packages add: the example is installed and used, broken ones break nothing else."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+
+import rpscli
+from rpscli import registry
+from rpscli.case.schema.scale_to import scale_to_of
+from rpscli.errors import PluginError, RecordError
+from rpscli.records.codes import CODES, load_target
+from rpscli.records.formats import FORMATS
+from rpscli.records.measures import MEASURES
+
+EXAMPLE = Path(__file__).parents[1] / "example_package"
+BROKEN = """\
+[rpscli.formats]
+tidy2 = no_such_module:X
+[rpscli.measures]
+XYZ = no_such_module:X
+PGV = no_such_module:X
+[rpscli.targets]
+flat = rpscli.constants:STANDARD_GRAVITY
+steep = json:loads
+[rpscli.reports]
+nothing = no_such_module:X
+"""
+STUDY = """\
+rps: 1
+base: small.yaml
+records: ["pulse:half_sine?amplitude=0.3g&period=0.6", "pulse:sine?amplitude=0.3g&period=0.6"]
+scale: {measure: ASI, values: [1, 2]}
+reports: [worst: {count: 3}]
+"""
+
+
+def as_installed(folder: Path, name: str, entry_points: str) -> None:
+    """What pip would leave of a package besides its modules."""
+    place = folder / f"{name.replace('-', '_')}-1.0.dist-info"
+    place.mkdir(parents=True)
+    metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n"
+    (place / "METADATA").write_text(metadata, encoding="utf-8")
+    (place / "entry_points.txt").write_text(entry_points, encoding="utf-8")
+
+
+@pytest.fixture
+def forgotten() -> Iterator[None]:
+    """What is installed is looked for anew."""
+
+    def forget() -> None:
+        importlib.invalidate_caches()
+        registry._points.cache_clear()
+        registry._loaded.cache_clear()
+
+    forget()
+    yield
+    forget()
+
+
+@pytest.fixture
+def example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
+    """The example, as its own `pyproject.toml` installs it."""
+    project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    groups = project["entry-points"].items()
+    lines = (f"[{g}]\n" + "".join(f"{k} = {v}\n" for k, v in e.items()) for g, e in groups)
+    as_installed(tmp_path / "site", project["name"], "".join(lines))
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    monkeypatch.syspath_prepend(EXAMPLE)
+
+
+@pytest.fixture
+def broken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
+    """A package of which nothing works."""
+    as_installed(tmp_path / "broken", "broken-plugins", BROKEN)
+    monkeypatch.syspath_prepend(tmp_path / "broken")
+
+
+def test_a_format(example: None, tmp_path: Path) -> None:
+    file = tmp_path / "one.tidy"
+    file.write_text("TIDY dt=0.01 unit=cm/s2\n100\n-300\n50\n", encoding="utf-8")
+    motion = rpscli.load_record(str(file))
+    assert (motion.format, motion.dt) == ("TIDY", 0.01)
+    assert motion.acceleration.tolist() == [1.0, -3.0, 0.5]
+    file.write_text("TIDY dt=0.01 unit=cm/s2\nhundred\n", encoding="utf-8")
+    with pytest.raises(RecordError, match=r"one\.tidy: could not convert.*; write one number"):
+        rpscli.load_record(str(file))
+
+
+def test_a_measure(example: None) -> None:
+    motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
+    scaled = motion.scaled_to("ASI", 2.0)
+    periods = np.linspace(0.1, 0.5, 41)
+    spectrum = rpscli.response_spectrum(scaled, periods).pseudo_acceleration
+    assert np.trapezoid(spectrum, periods) == pytest.approx(2.0, rel=1e-12)
+    assert scale_to_of("ASI=150 cm/s").value == 1.5
+    with pytest.raises(ValueError, match="belongs to measures such as Sa, AvgSa, FIV3; ASI has"):
+        scale_to_of("ASI(1 s)=150 cm/s")
+    with pytest.raises(ValueError, match="ASII is not a measure; did you mean ASI"):
+        scale_to_of("ASII=1")
+
+
+def test_a_target(example: None) -> None:
+    target = load_target("plateau:?a=4 m/s2&corner=0.5")
+    assert target.acceleration(np.array([0.1, 0.5, 1.0])).tolist() == [4.0, 4.0, 2.0]
+    with pytest.raises(RecordError, match="a and corner must be > 0"):
+        load_target("plateau:?a=4 m/s2&corner=0 s")
+
+
+def test_a_figure_of_a_history(example: None, rps: Callable[..., Result], workplace: Path) -> None:
+    result = rps("timehistory", "small.yaml", "-o", "here", "--figures", "png,phase_plane")
+    assert result.exit_code == 0, result.stderr
+    assert (workplace / "here" / "phase_plane.png").read_bytes()
+    result = rps("check", "small.yaml", "--draw", "--figures", "phase_plane")
+    assert "phase_plane is drawn by modal, pushover or timehistory alone" in result.stderr
+    assert rpscli.figures.phase_plane.__doc__ == "The rate of rotation over the rotation."
+
+
+def test_a_study(example: None, rps_json: Callable[..., Any], workplace: Path) -> None:
+    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
+    document = rps_json("sweep", "study.yaml", "-o", "here")
+    table = document["reports"]["worst"]["rows"]
+    assert len(table) == 3
+    ratios = [row["rotation_ratio"] for row in table]
+    assert ratios == sorted(ratios, reverse=True)
+    head, *lines = (workplace / "here" / "points.csv").read_text().splitlines()
+    assert "ASI [m/s]" in head
+    assert len(lines) == 4
+    assert (workplace / "here" / "worst.png").exists()
+
+
+def test_what_is_installed_is_listed(example: None, rps_json: Callable[..., Any]) -> None:
+    found = {each["name"]: each for each in rps_json("explain", "plugins")["plugins"]}
+    assert [*found] == ["tidy", "ASI", "plateau", "worst", "phase_plane"]
+    assert {each["package"] for each in found.values()} == {"rps-example 1.0"}
+    assert found["ASI"]["meaning"].startswith("ASI [m/s]: the integral of Sa")
+    assert not any(each["fault"] for each in found.values())
+    report = rps_json("explain", "worst")
+    assert [option["key"] for option in report["options"]] == ["name", "title", "count"]
+    schema = rps_json_schema()
+    assert "worst" in schema
+
+
+def rps_json_schema() -> str:
+    """The JSON schema of studies as text."""
+    from rpscli.commands.init import schema_of
+
+    return str(schema_of(study=True))
+
+
+def test_what_is_broken_is_named_and_breaks_nothing_else(
+    broken: None, rps: Callable[..., Result], workplace: Path
+) -> None:
+    motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
+    assert motion.scaled_to("PGV", 1.0).npts == motion.npts  # ours stays ours
+    named = r"XYZ of broken-plugins 1\.0 \(no_such_module:X\): ModuleNotFoundError"
+    with pytest.raises(PluginError, match=named):
+        motion.scaled_to("XYZ", 1.0)
+    with pytest.raises(PluginError, match=r"flat of broken-plugins .* is a float, and must be a f"):
+        load_target("flat:?a=1")
+    with pytest.raises(PluginError, match=r"steep of broken-plugins .*: TypeError"):
+        load_target("steep:?a=1")
+    file = workplace / "plain.txt"
+    file.write_text("0 0.1\n0.01 0.2\n0.02 0.1\n", encoding="utf-8")
+    assert rpscli.load_record(f"{file}?units=g").npts == 3
+    with pytest.raises(RecordError, match=r"units(?s:.*)tidy2 of broken-plugins 1\.0"):
+        rpscli.load_record(str(file))
+    (workplace / "study.yaml").write_text(STUDY.replace("worst: {count: 3}", "nothing"))
+    result = rps("sweep", "study.yaml", "--dry-run")
+    assert result.exit_code == 1
+    assert "nothing of broken-plugins 1.0 (no_such_module:X)" in result.stderr
+    listed = rps("explain", "plugins").stdout
+    assert "rps has one of this name" in listed.replace("\n", " ")
+    assert listed.count("broken-plugins") >= 6
+
+
+def test_nobody_is_asked_for_names_of_ours(
+    forgotten: None, monkeypatch: pytest.MonkeyPatch, workplace: Path
+) -> None:
+    def asked(**_: str) -> None:
+        raise AssertionError("other packages were looked for")
+
+    monkeypatch.setattr("importlib.metadata.entry_points", asked)
+    case = rpscli.load_case(workplace / "small.yaml")
+    motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5").scaled_to("PGA", 1.0)
+    rpscli.demand(case.structure, motion)
+    text = STUDY.replace("ASI", "Housner").replace("worst: {count: 3}", "overturning")
+    (workplace / "study.yaml").write_text(text, encoding="utf-8")
+    rpscli.load_study("study.yaml")
+    assert load_target("en1998:?ag=1 m/s2&soil=A").name
+    assert "PEER AT2" in FORMATS
+    assert "sp14" in CODES
+    assert "CAV" in MEASURES
+
+
+@pytest.mark.long
+def test_the_example_is_installed_by_pip(tmp_path: Path, workplace: Path) -> None:
+    """As users do it, into a folder of its own; pip fetches what builds it."""
+    options = ["--no-deps", "--quiet", "--target", str(tmp_path / "site")]
+    subprocess.run([sys.executable, "-m", "pip", "install", *options, str(EXAMPLE)], check=True)
+    search = os.pathsep.join([str(tmp_path / "site"), str(EXAMPLE.parents[1])])
+    found = subprocess.run(
+        [sys.executable, "-m", "rpscli", "explain", "plugins"],
+        env={**os.environ, "PYTHONPATH": search},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert found.stdout.count("rps-example 1.0") == 5
