@@ -122,11 +122,7 @@ class StudyRun:
         report: Callable[[Progress], None] = lambda _: None,
         announce: Callable[[], None] = lambda: None,
     ) -> Finish:
-        """Compute what is not stored yet; each point is stored as it ends.
-
-        The first Ctrl-C calls `announce` and lets the points under way end; then, and after the
-        second, `StudyInterrupted` is raised.
-        """
+        """Compute and store what is missing; a first Ctrl-C lets points end: `StudyInterrupted`."""
         remember(self.layout, self.store)
         finish = Finish(0, 0, 0.0, interrupted=False)
         if self.start.pending:

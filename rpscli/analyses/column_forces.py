@@ -64,11 +64,8 @@ def overturning_moment(structure: PodiumStructure, trace: Trace) -> Array:
 
 
 def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
-    """What leaning thrust lines and drifts add to that moment (samples,) [N m].
-
-    Columns bear on the beam beside their axes: at the edge that they turn about, or where a column
-    at rest is in equilibrium. Floors that have drifted weigh beside the beam.
-    """
+    """What leaning thrust lines and drifts add to that moment (samples,) [N m]."""
+    # Columns bear on the beam at the edge they turn about, or where one at rest is in equilibrium.
     b, t = structure.bearing, trace
     B, _, _, _ = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(t.rotation))
     edge = np.sign(t.rotation) * b.semi_diagonal * B + 0.5 * t.cap_beam_displacement
@@ -85,11 +82,8 @@ def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
 
 
 def shock(structure: PodiumStructure, time: Array, events: Sequence[Event]) -> Array:
-    """What impacts add to the force under the building (samples,) [N].
-
-    An impact turns the beam's descent with 2 B |w-| into a rise with 2 B |w+|. The floors stand on
-    it like a chain of equal vertical springs, whose modes ring at that jump of its velocity.
-    """
+    """What impacts add to the force under the building (samples,) [N]."""
+    # 2 B (|w-| + |w+|) on the beam rings in the floors, a chain of equal vertical springs.
     building = structure.superstructure
     found = np.zeros_like(time)
     impacts = [event for event in events if event.kind == "impact"]

@@ -23,11 +23,8 @@ MOST_STEPS = 300_000
 
 
 def steps_warning(result: TimeHistoryResult) -> str | None:
-    """What to know of a history whose maxima change with its steps; None if they do not.
-
-    The residual of the energy does not tell: a vibration that hardly decays may shift the time at
-    which friction holds or columns lift off, and the motion goes another way with every joule kept.
-    """
+    """What to know of a history whose maxima change with its steps; None if they do not."""
+    # The energy does not tell: a slow vibration may shift when friction holds or columns lift off.
     before: Demand = result
     settings, first = result.settings, ""
     for factor in SHORTER:

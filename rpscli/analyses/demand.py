@@ -39,14 +39,8 @@ with the same results. A step of all lanes takes as long as some five of one."""
 def histories(
     requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
 ) -> Iterator[tuple[list[int], Histories]]:
-    """Many histories: numbers of the requests with one number of storeys, and their results.
-
-    Structures and records that are the same object are stored once. Those with the same number of
-    storeys run together, side by side in one core if there are at least `worth_lanes`. No result
-    depends on the others, or on the order.
-
-    The kernels run without the GIL: call this from several threads to use several cores.
-    """
+    """Numbers of the requests with one number of storeys, and their results; without the GIL."""
+    # From `worth_lanes` on they run side by side; no result depends on the others, or on the order.
     groups: dict[int, list[int]] = {}
     for i, request in enumerate(requests):
         groups.setdefault(request.structure.storeys, []).append(i)

@@ -85,10 +85,7 @@ class Histories:
 
     @cached_property
     def path(self) -> tuple[Array, Array]:
-        """u_b and v_b (3, histories) at the largest rotation, the largest up to theta_cr, the end.
-
-        u_b grows with |theta|, v_b up to theta_cr.
-        """
+        """u_b, v_b (3, histories) at the largest rotation, the largest up to theta_cr, the end."""
         largest = self.left["max_theta"]
         highest = np.minimum(largest, self.critical_rotation)
         bearings = [structure.bearing for structure in self.structures]

@@ -190,13 +190,9 @@ def _fixed_base(building: Superstructure) -> FixedBaseModes:
 def linearised_matrices(
     structure: PodiumStructure, state: UpliftedState
 ) -> tuple[Array, Array, Array]:
-    """M_L, C_L, K_L in the coordinates [2 R theta, u_t], each (n + 1, n + 1).
-
-    About a state at rest, whose weight a constant moment holds (Theory, section 6). To first order
-    paper, Table 2, where the sign of the (2 rho - 1) term must be +: with the printed one a larger
-    radius would soften the storey (Theory, section 9). Linear dampers and elastic tendons are in it
-    (Theory, section 11).
-    """
+    """M_L, C_L, K_L in [2 R theta, u_t], each (n + 1, n + 1), about a state at rest."""
+    # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a larger radius
+    # would soften the storey (Theory, section 9). Dampers, elastic tendons: Theory, section 11.
     n = structure.storeys
     M, C, K = (np.zeros((n + 1, n + 1)) for _ in range(3))
     M[0, 0] = _base_mass(structure, state) + structure.superstructure_mass * state.arm**2
@@ -261,13 +257,10 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
 
 
 def _own_pair(values: NDArray[np.complex128], kappa: float, decay: float) -> tuple[int, int]:
-    """Indices of the storey's own eigenvalues, the growing or the slowest one first.
-
-    With negative stiffness K_L has one negative eigenvalue, so exactly one root grows; its partner
-    is the real root nearest to its mirror image, shifted by the decay that dampers cause. Tall
-    buildings have slower modes than these two, so the smallest pair will not do. With positive
-    stiffness the slow pair is the storey's, unless dampers make one of its roots fast.
-    """
+    """Indices of the storey's own eigenvalues, the growing or the slowest one first."""
+    # With negative stiffness one root grows; its partner is the real one nearest to its mirror
+    # image shifted by damping, as tall buildings have slower modes. Else it is the slow pair, but
+    # dampers may make one of its roots fast.
     slow = np.argsort(np.abs(values), kind="stable")[:2]
     if kappa >= 0.0 and (decay == 0.0 or values[slow[0]].imag != 0.0):
         return int(slow[0]), int(slow[1])
@@ -282,11 +275,9 @@ def _over(M: Array, X: Array) -> Array:
 
 
 def _pairs(values: NDArray[np.complex128]) -> list[tuple[complex, complex, int]]:
-    """Eigenvalues two by two, ascending in frequency, with the index of the first of each pair.
-
-    Conjugates belong together. Real ones come from overdamped modes, of which higher modes have
-    the larger fast and the smaller slow root: the outermost two belong together, and so inwards.
-    """
+    """Eigenvalues two by two, ascending in frequency, with the index of the first of each pair."""
+    # Real ones are of overdamped modes, higher ones with the larger fast and smaller slow root: the
+    # outermost two belong together, and so inwards.
     oscillating = [i for i, v in enumerate(values) if v.imag > 0.0]
     pairs = [(values[i], values[i].conjugate(), i) for i in oscillating]
     real = sorted((i for i, v in enumerate(values) if v.imag == 0.0), key=lambda i: abs(values[i]))

@@ -65,9 +65,7 @@ class Condition:
 
 
 def parse_condition(text: str) -> Condition:
-    """A condition as `--fail-on` gives it: ``overturning``, ``uplift`` or ``NAME=VALUE``.
-
-    An event may have the share of the records of a study that is admissible: ``overturning=0.1``.
+    """A condition of `--fail-on`: ``overturning``, ``overturning=0.1`` (a share), ``NAME=VALUE``.
 
     >>> parse_condition("rotation_ratio=0.5")
     Condition(name='rotation_ratio', limit=0.5, source='--fail-on', share=0.0, fractile=None)
@@ -118,10 +116,7 @@ def case_conditions(limits: LimitsSection, *, overturning: bool = False) -> list
 def with_friction(
     conditions: Iterable[Condition], structure: PodiumStructure
 ) -> tuple[Condition, ...]:
-    """The conditions, and that columns do not slide where their coefficient of friction is given.
-
-    A limit on the friction ratio stands in place of that.
-    """
+    """The conditions, and that columns do not slide, unless the friction ratio has a limit."""
     given = tuple(conditions)
     if structure.friction is None or any(each.name == "friction_ratio" for each in given):
         return given

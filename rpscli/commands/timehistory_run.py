@@ -96,9 +96,7 @@ def _label(ground: MotionComponents) -> str:
 
 
 def unique(names: Sequence[str]) -> list[str]:
-    """The names, numbered where one comes again.
-
-    Folders are named so, and some systems do not tell small letters from capitals.
+    """The names, numbered where one comes again, in small letters or capitals: folders have them.
 
     >>> unique(["a", "b", "a", "B"])
     ['a', 'b', 'a_2', 'B_2']

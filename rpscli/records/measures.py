@@ -28,9 +28,7 @@ def velocity(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64
 
 
 def displacement(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-    """Ground displacement at the samples, zero at the first one.
-
-    Each step adds v dt + (2 a_0 + a_1) dt^2/6, the double integral of a linear acceleration.
+    """Displacement at the samples, zero at first; v dt + (2 a_0 + a_1) dt^2/6 in each step.
 
     >>> displacement(np.array([3.0, 3.0, 3.0]), 1.0).tolist()
     [0.0, 1.5, 6.0]

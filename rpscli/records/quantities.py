@@ -48,14 +48,12 @@ def to_float(numeral: str) -> float:
 def numbers_in(line: str) -> list[float] | None:
     """The finite numbers of a line that holds nothing else, or None.
 
-    Blanks separate; so do commas when each field holds one number, which keeps decimal commas
-    from being read as separators.
-
     >>> numbers_in("-.1234E-02-.5678E-03  .5D-1")
     [-0.001234, -0.0005678, 0.05]
     >>> numbers_in("0,005 0,123") is None, numbers_in("0.005, 0.123"), numbers_in("nan") is None
     (True, [0.005, 0.123], True)
     """
+    # Commas separate if each field holds one number: decimal commas are not read as separators.
     if not _NUMERIC_LINE.fullmatch(line):
         return None
     fields = line.split()

@@ -61,10 +61,7 @@ class Goal:
         return np.hstack([logarithms, logarithms**2])
 
     def judged(self, total: Array, size: int, least: Array, most: Array) -> tuple[Array, Array]:
-        """Cost and logarithm of the common factor, (...), of sets with sums (..., features).
-
-        `least` and `most` (...) are the extremes of their factors.
-        """
+        """Cost and logarithm of the common factor, (...), of sets with sums (..., features)."""
         if self.deviation is not None:
             first, second = np.split(total / size, 2, axis=-1)
             scatter = np.sqrt(np.maximum(second - first**2, 0.0) * size / max(size - 1, 1))
@@ -94,12 +91,7 @@ class Goal:
 
 
 def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> list[int]:
-    """Places of the best set that is found, in order.
-
-    From each first motion, by what it costs alone, the set grows by the best next one; then one is
-    exchanged for another as long as that helps. The best is left at random and improved again, from
-    a fixed seed: the same motions give the same choice.
-    """
+    """Places of the best set that is found, in order; the same for the same motions."""
     search = _Search(pool, goal, per_event)
     alone, _ = goal.judged(search.features, 1, pool.factors, pool.factors)
     first = np.argsort(alone, kind="stable")[:STARTS].tolist()

@@ -140,12 +140,9 @@ def _read(
 
 
 def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> list[str]:
-    """Single sources for a list that may hold folders, globs and patterns of record sets.
-
-    Files of a folder or glob come sorted by name, each with the options of the pattern; what a
-    source stands for keeps its place in the list, and nothing comes twice. Of a folder, only the
-    files that are recognised as records count (velocities and displacements do not).
-    """
+    """The single sources of a list that may hold folders, globs and patterns of record sets."""
+    # What a source stands for keeps its place in the list, sorted by name, and nothing comes twice.
+    # Of a folder only files that are recognised as records count, not velocities or displacements.
     expanded = [single for source in sources for single in _expand(source, folder)]
     return list(dict.fromkeys(expanded))
 

@@ -139,11 +139,9 @@ def _refined(motion: GroundMotion, period: float) -> tuple[NDArray[np.float64], 
 def _step_matrices(
     w: float, damping: float, dt: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Map of (displacement, velocity) over a step, and of the ground acceleration at its ends.
-
-    Exponential of the system extended by the ground acceleration and its slope, with the step as
-    the unit of time. The closed formulae lose all digits where w dt is small.
-    """
+    """Map of (displacement, velocity) over a step, and of the ground acceleration at its ends."""
+    # The system is extended by the acceleration and its slope, and the step is the unit of time:
+    # the closed formulae lose all digits where w dt is small.
     k = w * dt
     system = np.zeros((4, 4))
     system[0, 1] = system[2, 3] = 1.0

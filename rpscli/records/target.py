@@ -99,12 +99,8 @@ _DEVIATION = re.compile(r"\s*sigma_ln\s*(?:\[-\])?\s*", re.IGNORECASE)
 
 
 def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
-    """Columns period and acceleration, linear between logarithms, and perhaps `sigma_ln [-]`.
-
-    The third one is the standard deviation of ln Sa, linear over the logarithm of the period; the
-    acceleration is then the median, as of conditional spectra. `?component=rotd50` says what it
-    is of, `?level=MCE_R` which level of shaking.
-    """
+    """Columns period and acceleration, linear between logarithms, and perhaps `sigma_ln [-]`."""
+    # With the third one, the standard deviation of ln Sa, the acceleration is the median.
     try:
         lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
     except (OSError, UnicodeDecodeError) as error:

@@ -68,10 +68,7 @@ def _scales(table: Table) -> Array | None:
 
 
 def point_columns(table: Table) -> Columns:
-    """(points,) of each column of `points.csv` under its name: SI numbers, else objects.
-
-    Results that do not exist are NaN.
-    """
+    """(points,) of each column of `points.csv` by name: SI numbers, NaN for none, else objects."""
     layout, scales = table.layout, _scales(table)
     units = dict(units_of_columns(layout))
     columns = {

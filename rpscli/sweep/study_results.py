@@ -41,10 +41,8 @@ class StudyResults:
         return intensity(self.table, self.context, options)
 
     def floor_spectra(self, number: int, damping: float) -> Array:
-        """(2, 2, n, p) of a point: isolated and fixed base; pseudo-acceleration and displacement.
-
-        Samples are not stored, so that the history is run once more.
-        """
+        """(2, 2, n, p): isolated and fixed base; pseudo-acceleration and displacement."""
+        # Samples are not stored, so that the history is run once more.
         from rpscli.analyses import floor_spectra as spectra
         from rpscli.analyses.timehistory import time_history
 

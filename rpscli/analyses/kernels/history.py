@@ -57,10 +57,7 @@ def run_of(
     events: int = 0,
     finer: int = 1,
 ) -> Run:
-    """What the kernel needs to run histories, and room for their results.
-
-    `rows`, `finer` of them a sample, and `events` of the first history are kept.
-    """
+    """What the kernel needs, with room for results, and rows and events of the first history."""
     first = systems.view(np.ndarray)
     n, devices = int(first["n"][0]), int(first["devices"].max())
     starts = [0, *accumulate(motion.samples.size for motion in motions)]

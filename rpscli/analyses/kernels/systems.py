@@ -139,21 +139,15 @@ def fill_settings(
 
 
 def bounces_left_out(structure: PodiumStructure) -> float:
-    """What the impacts after re-contact would add to each floor's relative velocity, over u_b'.
-
-    Left to bounce for ever, the cap beam stops, and the floors keep their absolute velocity but
-    for the jumps of the impact law: 2/(1 + e) if they jump with the beam, 1 if they do not
-    (Theory, section 3).
-    """
+    """What impacts after re-contact would add to each floor's relative velocity, over u_b'."""
+    # The beam stops, floors keep their velocity but for its jumps: 2/(1 + e) with it, else 1
+    # (Theory, section 3).
     return 2.0 / (1.0 + structure.restitution) if structure.impact_law.floors_jump else 1.0
 
 
 def fill_building(record: Record, building: Superstructure) -> None:
-    """The modes of the fixed base, mass-normalised, with the storey shears of each.
-
-    The weights of `physics.planar.demands` may be any; these, tried on buildings of three and nine
-    storeys, let the fewest steps pass the bound.
-    """
+    """The modes of the fixed base, mass-normalised, with the storey shears of each."""
+    # Any weights would do for `physics.planar.demands`; these let the fewest steps pass the bound.
     n = record["n"] = building.storeys
     omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T
     omega2, shaken = omega * omega, np.abs(building.participation)
@@ -242,11 +236,9 @@ def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
 
 
 def uplifted_angle(structure: PodiumStructure) -> float:
-    """Largest Taylor step times the highest uplifted frequency [rad].
-
-    A step of the angle z loses z^8/8! of a vibration's energy, thus w t z^7/8! in the time t. What
-    the dampers do not take in 1/(2 xi w) goes on for as long as histories are followed.
-    """
+    """Largest Taylor step times the highest uplifted frequency [rad]."""
+    # A step of angle z loses z^8/8! of a vibration's energy, thus w t z^7/8! in the time t; what
+    # the dampers do not take in 1/(2 xi w) goes on for as long as histories are followed.
     if (building := structure.superstructure) is None:
         return UPLIFTED_ANGLE
     damped = float(2.0 * building.damping_ratios[-1] * building.frequencies[-1])
@@ -280,11 +272,9 @@ def contact_rate(structure: PodiumStructure) -> float:
 
 
 def highest_frequency(structure: PodiumStructure) -> float:
-    """A bound on the frequencies of the uplifted structure [rad/s].
-
-    Freeing the cap beam, whose inertia is at least N m_c Io/4 + m_b, adds at most the first storey
-    spring over that mass (Theory, section 6; Weyl's inequality).
-    """
+    """A bound on the frequencies of the uplifted structure [rad/s]."""
+    # A free beam of at least N m_c Io/4 + m_b adds at most the first storey's spring over that
+    # (Theory, section 6; Weyl's inequality).
     square = (structure.gravity / structure.bearing.semi_diagonal) * (
         1.0 + abs(2.0 * structure.bearing.curvature_ratio - 1.0)
     )

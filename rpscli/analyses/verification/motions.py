@@ -99,11 +99,7 @@ def _weak_motion() -> GroundMotion:
 
 
 def _after_impact() -> Comparison:
-    """V swings from V_st about -V_st: it reaches 1 + 2 exp(-pi xi_u/sqrt(1 - xi_u^2)).
-
-    xi_u = xi omega_u/omega_0 for stiffness-proportional damping, gravity neglected (Theory,
-    section 6).
-    """
+    """V swings from V_st about -V_st: 1 + 2 exp(-pi xi_u/sqrt(1 - xi_u^2)) (Theory, section 6)."""
     structure = paper_podium(1, 0.15, 0.5)
     base = 0.25 * structure.columns_mass * structure.bearing.inertia_ratio
     base += structure.cap_beam_mass + structure.superstructure_mass * structure.bearing.alpha**2

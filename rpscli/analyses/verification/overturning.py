@@ -121,10 +121,7 @@ def polygon_threshold(p: float) -> float:
 
 
 def least_amplitude(structure: PodiumStructure, pulse: str, near: float) -> float:
-    """The least amplitude that overturns [g], sought within 5 % of a value.
-
-    Not a number if the structure stands 5 % above it, or falls 5 % below it.
-    """
+    """The least amplitude that overturns [g], sought within 5 % of a value; NaN beyond that."""
     low, high = 0.95 * near, 1.05 * near
     if _overturns(structure, low, pulse) or not _overturns(structure, high, pulse):
         return math.nan

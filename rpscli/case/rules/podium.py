@@ -207,9 +207,7 @@ def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
 
 
 def largest_slenderness(law: ImpactLaw, inertia_ratio: float, gamma: float, eta: float) -> float:
-    """tan(alpha) at which the restitution of a law vanishes (Theory, section 4, solved for alpha).
-
-    Housner's block, I_o/(m_c R^2) = 4/3: e = 1 - (3/2) sin^2(alpha) is zero at sin^2 = 2/3.
+    """tan(alpha) at which a law's restitution is zero (Theory, section 4); Housner: sin^2 = 2/3.
 
     >>> round(largest_slenderness(ImpactLaw("rigid"), 4 / 3, 0.0, 0.0) ** 2, 12)
     2.0

@@ -140,10 +140,7 @@ class Document:
         return Document(self.name, self.at(path), below(self.keys), below(self.values), faults)
 
     def pruned(self, paths: Iterable[Path], *, elements: bool = False) -> dict[str, Any]:
-        """A copy of the content without the values at some paths.
-
-        A faulty element takes its list with it, but what is inside `elements` may go alone.
-        """
+        """The content without values at some paths; a faulty element takes its list with it."""
         content = copy.deepcopy(self.content)
         for path in paths:
             owner: Any = content

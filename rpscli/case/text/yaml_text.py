@@ -249,10 +249,8 @@ class _Reader:
 
 
 def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
-    """The fractions of whole numbers with a decimal comma, as in ``{period: 0,3}``.
-
-    YAML reads a second key, a number without a value. By the identity of the number before.
-    """
+    """The fractions of whole numbers with a decimal comma, as in ``{period: 0,3}``."""
+    # YAML reads a second key, a number without a value. By the identity of the number before.
     if not node.flow_style:
         return {}
     items = node.value

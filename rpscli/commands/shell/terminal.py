@@ -93,10 +93,7 @@ def _width(made: RichTable, console: Console) -> int:
 
 
 def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> RichTable:
-    """Some columns of a table: words fold where it is narrow, numbers stand right and never do.
-
-    Columns of numbers are as narrow as heads of so many lines let them be, if that is said.
-    """
+    """Some columns of a table: words fold where it is narrow, numbers stand right and never do."""
     from rich import box
     from rich.table import Table as RichTable
 

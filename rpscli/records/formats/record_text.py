@@ -82,11 +82,7 @@ class RecordText:
         return unit, unit_factor(unit)
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
-        """The sampling interval [s], from the file or from the user.
-
-        A contradiction is refused. Within the tolerance the user may know the interval better than
-        the file.
-        """
+        """The sampling interval [s], from the file or from a user who does not contradict it."""
         if stated is None and self.dt is None:
             raise self.fault(
                 "the file does not state its sampling interval and none was given; say "
@@ -180,12 +176,10 @@ def printed_resolution(
 ) -> NDArray[np.float64]:
     """The unit of the last digit of each time of a column, dropped zeros included.
 
-    Writers keep either a number of decimals or a number of significant digits: a unit holds for
-    a whole decade of times, and from one decade to the next grows by no more than ten.
-
     >>> printed_resolution(np.array([0.0, 0.5, 1.0, 1.5]), ["0", "0.5", "1", "1.5"]).tolist()
     [0.1, 0.1, 0.1, 0.1]
     """
+    # Of so many decimals or significant digits: one a decade, and growing by no more than ten.
     times = np.abs(printed)
     units = np.fromiter(map(last_digit, numerals), dtype=np.float64, count=times.size)
     decades = np.floor(np.log10(np.maximum(times, 1e-12)))

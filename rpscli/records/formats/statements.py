@@ -157,11 +157,8 @@ def series(
     stop: int | None = None,
     closed_by: re.Pattern[str] | None = None,
 ) -> NDArray[np.float64]:
-    """Exactly `count` numbers of consecutive lines from `start`; blank lines are skipped.
-
-    Rows have `width` numbers, or as many as the first one, but for the last. They end before the
-    line `stop`, and only what `closed_by` matches may follow.
-    """
+    """Exactly `count` numbers of the lines from `start` on; blank lines are skipped."""
+    # Rows have `width` numbers, or as many as the first one, but for the last.
     rows: list[tuple[int, list[float]]] = []
     found = 0
     end = len(text.lines) if stop is None else min(stop, len(text.lines))

@@ -170,10 +170,7 @@ def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
 def history_film(
     result: TimeHistoryResult, title: str, wanted: FilmRequest, progress: Progress = lambda *_: None
 ) -> bytes:
-    """The structure, a column's end enlarged, and the record below.
-
-    Bearings and cap beam move to scale, storey drifts are magnified.
-    """
+    """The structure, a column's end enlarged, and the record; storey drifts alone are magnified."""
     plan = frame_plan(result, wanted)
 
     def draw(figure: Figure) -> Motion:

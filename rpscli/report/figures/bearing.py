@@ -48,10 +48,7 @@ def upright_outline(bearing: Bearing) -> Array:
 
 
 def leaning_outline(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
-    """Corners of the column, (points, 2) [m], turned clockwise by `rotation` [rad].
-
-    Upright it stands on the origin; its centre makes half of the cap beam's u_b and v_b [m].
-    """
+    """Corners of the column, (points, 2) [m], turned clockwise by `rotation` [rad]."""
     cosine, sine = math.cos(rotation), math.sin(rotation)
     turn = np.array([[cosine, -sine], [sine, cosine]])
     centre = (0.5 * displacement, bearing.half_height + 0.5 * lift)
@@ -59,10 +56,7 @@ def leaning_outline(bearing: Bearing, rotation: float, displacement: float, lift
 
 
 def contact_points(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
-    """Where a leaning column touches ground and cap beam, (2, 2) [m]; arguments as above.
-
-    It has rolled the arc's length r |theta| beyond the edge of the flat part, up to r beta.
-    """
+    """Where a leaning column touches ground and cap beam, (2, 2) [m]; arguments as above."""
     side = math.copysign(1.0, rotation)
     reach = side * (bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta))
     return np.array([[reach, 0.0], [displacement - reach, 2.0 * bearing.half_height + lift]])
@@ -109,10 +103,8 @@ class BearingView:
         return [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
 
     def show(self, rotation: float) -> tuple[float, float]:
-        """Lean the column to a rotation [rad]; u_b and v_b there [m].
-
-        The dashed line joins the contacts: the weight restores as long as it leans the other way.
-        """
+        """Lean the column to a rotation [rad]; u_b and v_b there [m]."""
+        # The dashed line joins the contacts: the weight restores as long as it leans the other way.
         bearing = self.structure.bearing
         _, u, v = self.structure.path(np.array([abs(rotation)]))
         shift, lift = math.copysign(float(u[0]), rotation), float(v[0])
@@ -267,10 +259,7 @@ def _frame(
     room: tuple[float, float, float, float],
     aspect: float,
 ) -> None:
-    """Limits around left, right, bottom and top; a metre is as high as it is wide.
-
-    `room` is kept free on these sides, as parts of the picture; `aspect` is height over width.
-    """
+    """Limits of one scale both ways; `room` is kept free, in parts of the picture."""
     left, right, bottom, top = content
     across, upwards = 1.0 - room[0] - room[1], 1.0 - room[2] - room[3]
     width = (right - left) / across

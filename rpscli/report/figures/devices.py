@@ -60,10 +60,7 @@ def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
 
 
 def draw_device(axes: Axes, result: TimeHistoryResult, index: int) -> None:
-    """Resistance of a device against displacement, of tendons tension against elongation.
-
-    A loop that dissipates runs clockwise and its area is the energy.
-    """
+    """Resistance of a device against displacement, of tendons tension against elongation."""
     style.require("devices", index, range(len(result.structure.devices)))
     trace, device = result.trace.devices, result.structure.devices[index]
     drawn = DRAWN[type(device)]

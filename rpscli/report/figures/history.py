@@ -40,10 +40,9 @@ def extremes(*curves: NDArray[Any]) -> NDArray[np.intp]:
 
 
 def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
-    """The history with the samples that its figures need; maxima and events stay what they are.
-
-    But for those of velocities, which are of all samples, and are not drawn: these are no numbers.
-    """
+    """The history with the samples that its figures need; maxima stay what they are."""
+    # But for those of velocities, which are of all samples, and are not drawn: these are no
+    # numbers.
     trace = result.trace
     if len(trace.time) <= MOST:
         return result
@@ -253,10 +252,7 @@ def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
 
 
 def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
-    """Input against what was damped, dissipated by each device, lost at impacts and is stored.
-
-    One stands on top of the other.
-    """
+    """Input against what is stored and lost on the way, one on top of the other."""
     trace = result.trace
     factor, prefix = style.engineering(
         float(np.nanmax(np.abs([trace.energy_input, trace.energy_stored])))

@@ -118,10 +118,8 @@ def figure_files(figures: Mapping[str, Draw], look: Look) -> dict[str, bytes]:
 
 
 def quiet_matplotlib() -> None:
-    """Give matplotlib a folder for its list of fonts where its own cannot be written.
-
-    Otherwise it makes a new one each time, and prints two lines about it.
-    """
+    """Give matplotlib a folder for its list of fonts where its own cannot be written."""
+    # Otherwise it makes a new one each time, and prints two lines about it.
     if "MPLCONFIGDIR" in os.environ or "matplotlib" in sys.modules:
         return
     home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")  # noqa: PTH111

@@ -75,10 +75,7 @@ def picture(
     width: float = WIDTH,
     layout: Literal["constrained"] | None = "constrained",
 ) -> bytes:
-    """The file of a figure (width, height) [in], with the look and in the format that are in force.
-
-    Without a layout it places its axes itself, which draws four times as fast.
-    """
+    """The file of a figure (width, height) [in], with the look and in the format in force."""
     if (kept := _kept.get()) is not None and kept.target is not None:
         draw(cast("Figure", kept.target))
         return b""
@@ -128,10 +125,7 @@ _kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
 
 
 def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) -> Target:
-    """The figure that `draw` would make a file of; drawn into the target if there is one.
-
-    Axes make room for a part of their figure.
-    """
+    """The figure that `draw` would make a file of; drawn into the target if there is one."""
     from matplotlib.axes import Axes
 
     kept = Kept(_in_place_of(target) if isinstance(target, Axes) else target)
@@ -198,11 +192,7 @@ def small() -> float:
 
 
 def heading(figure: Figure, *parts: str) -> None:
-    """What the figure belongs to and how to read it, above it.
-
-    What does not fit beside the first part, the title, stands in at most two lines below it; lines
-    are cut to the width.
-    """
+    """What the figure belongs to and how to read it: a line, and at most two below it."""
     title, *others = [part for part in parts if part] or [""]
     most = int(LETTERS_PER_INCH * inches(figure)[0] * 8.0 / small())
     lines = ["   |   ".join((title, *others))]

@@ -87,10 +87,7 @@ def pictures(files: Iterable[tuple[str, object]]) -> Iterator[tuple[str, dict[st
 
 
 def figures(shown: Sequence[Picture], room: int) -> list[Element]:
-    """Pictures above their captions, numbered from 1, in so much room [letters] for all together.
-
-    The largest drawings become images, if these are smaller, until there is room.
-    """
+    """Pictures above captions; the largest drawings become images until there is room [letters]."""
     # Each drawing has names inside: a prefix keeps them apart from those of the others.
     drawn = [_drawing(each.files["svg"], f"f{n}-", each.caption) for n, each in enumerate(shown, 1)]
     sizes = [len(written(each)) for each in drawn]

@@ -18,11 +18,8 @@ def study_folder(
     *,
     force: bool = False,
 ) -> OutputFolder:
-    """Claimed for the results of a command on a study.
-
-    A folder with a store belongs to its study, which the store itself looks after: after a kill
-    there may be files there that no `run.json` speaks of.
-    """
+    """Claimed for a command on a study; a folder with a store belongs to its study."""
+    # After a kill there may be files there that no `run.json` speaks of.
     require_writable(place)
     study, plan = layout.study, layout.plan
     inputs = {

@@ -348,11 +348,9 @@ def told(found: Fragilities, notes: Iterable[tuple[Fragility, str | None]]) -> I
 
 
 def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) -> list[Column]:
-    """Collapse margin ratios and probabilities at the intensities that the report names.
-
-    CMR is the median over the intensity, ACMR = SSF CMR, and the probability that of a lognormal
-    variable with the dispersion beta_TOT, Phi(-ln(ACMR)/beta_TOT): FEMA P695 (2009), chapter 7.
-    """
+    """Collapse margin ratios and probabilities at the intensities that the report names."""
+    # CMR is the median over the intensity, ACMR = SSF CMR, and P = Phi(-ln(ACMR)/beta_TOT): FEMA
+    # P695 (2009), chapter 7.
     from scipy.special import ndtr
 
     factor, total = options.spectral_shape, options.dispersion.total
@@ -454,10 +452,7 @@ def fit_cells(fit: Lognormal) -> tuple[object, ...]:
 
 
 def fragility_figure(report: Fragilities, title: str) -> bytes:
-    """One panel a limit state; markers are observed shares, shades the bootstrap bands.
-
-    Curves that could not be fitted are not drawn, nor are limit states without any.
-    """
+    """One panel a limit state with a fit; markers are observed shares, shades the bands."""
     from scipy.special import ndtr
 
     groups = len(report.systems.groups)

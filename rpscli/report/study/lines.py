@@ -88,11 +88,7 @@ class Panel(NamedTuple):
 
 
 def lines(study: StudyResults, options: LinesOptions) -> Found:
-    """The lines of every series of every panel.
-
-    Where several points share an abscissa (the records of a study) the line is the statistic that
-    the options name; failed points are left out.
-    """
+    """The lines of every series of every panel; a statistic where points share an abscissa."""
     layout, together = study.table.layout, axis_keys(study.table.layout, options.x)
     panel_keys, series = options.panels or (), options.series
     if series is None:

@@ -54,10 +54,7 @@ class Layout(NamedTuple):
 
 
 def by_values(keys: Sequence[str], panels: Sequence[Any]) -> Layout:
-    """Panels that have `values` of some keys.
-
-    As many stand side by side as the last key has values, if the panels fill such a table.
-    """
+    """Panels that have `values` of keys; the last key's stand side by side if they fill a table."""
     across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
     fills = 1 < across <= 5 and len(panels) % across == 0
     columns = across if fills else max(1, min(4, len(panels)))

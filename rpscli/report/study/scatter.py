@@ -84,11 +84,7 @@ def scatter(study: StudyResults, options: ScatterOptions) -> Found:
 
 
 def demand(study: StudyResults, options: DemandOptions) -> Found:
-    """What lifted off and stood, with a curve in each panel.
-
-    By default the axis in the middle of three gives the colours, the others and the intensity give
-    the panels.
-    """
+    """What lifted off and stood, with a curve in each panel."""
     leading = leading_keys(study.table.layout)
     series = options.series if options.series is not None else leading[1:-1]
     lifted = np.isin(study.table.outcomes, STOOD)

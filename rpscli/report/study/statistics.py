@@ -42,10 +42,7 @@ def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
 
 
 def summary_columns(summary: Summary) -> list[Column]:
-    """`statistics.csv`: one row a system and intensity.
-
-    A demand is ``inf`` where so many overturned, and empty where there is none.
-    """
+    """`statistics.csv`: one row a system and intensity; ``inf`` where so many overturned."""
     rows = summary.rows
     columns = key_columns(summary.keys, [row.values for row in rows])
     columns += counted_columns([row.overturned for row in rows])

@@ -49,11 +49,7 @@ def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, 
 
 
 def shape_columns(result: ModalResult) -> list[Column]:
-    """`shapes.csv`: one row a level of each mode.
-
-    Mode 0 is the storey's own mode, level 0 the cap beam. `horizontal` is relative to the ground,
-    `elastic` to the cap beam.
-    """
+    """`shapes.csv`: one row a level of each mode; mode 0 is the storey's own, level 0 the beam."""
     heads = dict.fromkeys(("state", "mode", "level", "horizontal", "elastic"), "-")
     return columns_of(heads, _shape_rows(result))
 

@@ -98,10 +98,7 @@ def _lines(sums: Array) -> tuple[Array, Array, Array]:
 
 
 def _squares_at(sums: _Sums, knees: Array) -> Array:
-    """Sum of squares of the best curves with their breaks at given places.
-
-    The curve is a + b min(x, k) + c max(x - k, 0): the normal equations of its coefficients.
-    """
+    """Sum of squares of the best a + b min(x, k) + c max(x - k, 0), at given breaks k."""
     k = knees - sums.middle
     n, x, y, xx, xy, _ = sums.up_to(knees)
     m, u, v, uu, uv, _ = sums.total - sums.up_to(knees)

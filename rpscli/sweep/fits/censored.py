@@ -58,8 +58,6 @@ def censored_fit(low: Array, high: Array, covariates: Array | None = None) -> Ce
 
 
 def chance(without: Censored, with_one: Censored, weight: float) -> float:
-    """The p-value of one further covariate, by the ratio of likelihoods.
-
-    A weight below 1 is that of values which hang together in so many independent clusters.
-    """
+    """The p-value of one further covariate, by the ratio of likelihoods."""
+    # A weight below 1 is that of values which hang together in so many independent clusters.
     return math.erfc(math.sqrt(max(weight * (with_one.likelihood - without.likelihood), 0.0)))

@@ -55,10 +55,7 @@ class Hazard:
 
 
 def read_hazard(path: Path, measure: Measure) -> Hazard:
-    """A hazard curve from a CSV file with the header ``PGV [cm/s],rate [1/year]``.
-
-    Further columns are fractiles of the curve, headed ``0.16 [1/year]``.
-    """
+    """A hazard curve from a CSV file headed ``PGV [cm/s],rate [1/year]``, then fractiles."""
     text = read_text(path)
     rows = [
         (line, row)
@@ -140,12 +137,9 @@ def exceeded(hazard: Hazard, intensities: Array) -> Array:
 
 
 def rate_of_shares(hazard: Hazard, intensities: Array, shares: Array) -> float:
-    """The annual rate straight from shares (levels,) that exceed the limit [1/year].
-
-    Between ascending intensities the share is linear in their logarithm, outside it stays as it is
-    at the ends. Integrated by parts: P(im_0) H(im_0) + integral of H dP, where the mean of a power
-    law over a step of the logarithm is the logarithmic mean of its ends.
-    """
+    """The annual rate straight from shares (levels,) that exceed the limit [1/year]."""
+    # By parts: P(im_0) H(im_0) + integral of H dP. Shares are linear in ln im and constant outside;
+    # the mean of a power law over a step of the logarithm is the logarithmic mean of its ends.
     levels = intensities[intensities > hazard.intensity[0]]
     grid = np.unique(np.concatenate([hazard.intensity, levels]))
     rates = exceeded(hazard, grid)

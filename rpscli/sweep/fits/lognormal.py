@@ -79,13 +79,10 @@ def lognormal_fit(
     bootstrap: Bootstrap,
     level: Array | None = None,
 ) -> Lognormal:
-    """A lognormal distribution function through data (points,), at the intensities of a grid.
-
-    The bootstrap draws whole clusters, which are records. A point has a weight below 1 where many
-    variations share a motion, which do not tell as much as so many motions would; the penalty is
-    the stronger for it. A `level` (points,) is the intensity without small perturbations, which
-    cannot tell what intensities do: by it data are called separated.
-    """
+    """A lognormal distribution function through data (points,), at the intensities of a grid."""
+    # The bootstrap draws whole clusters. A weight below 1 is that of variations that share a
+    # motion; the penalty is the stronger for it. A `level` (points,) is the intensity without small
+    # perturbations, which cannot tell what intensities do: by it data are called separated.
     x = np.log(intensity)
     level = intensity if level is None else level
     note = _hopeless(level, exceeded)
@@ -256,12 +253,9 @@ def probit_fit(
     penalised: NDArray[np.bool_],
     close_enough: float = CLOSE_ENOUGH,
 ) -> Probit:
-    """Fit every row of weights, with or without the penalty.
-
-    Fisher scoring, halving steps that lower the objective. Adjustment of the score for the
-    penalty: h/2 times the logarithmic derivative of the working weight, h being the leverage.
-    Data with a single x have no slope even so: they do not converge.
-    """
+    """Fit every row of weights by Fisher scoring, with or without the penalty."""
+    # The penalty adjusts the score by h/2 times the logarithmic derivative of the working weight, h
+    # being the leverage. Data with a single x have no slope even so: they do not converge.
     middle, spread = float(x.mean()), float(x.std()) or 1.0
     z = (x - middle) / spread
     penalty = penalised.astype(float)

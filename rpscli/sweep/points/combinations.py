@@ -22,11 +22,7 @@ Array = NDArray[np.float64]
 
 
 def sample(section: SampleSection) -> Array:
-    """The sample, (size, keys), in the order of the section's keys.
-
-    A scrambled Sobol sequence, or a Latin hypercube; the seed fixes both. Each column goes through
-    the inverse of its distribution function.
-    """
+    """The sample, (size, keys): scrambled Sobol or Latin hypercube, fixed by the seed."""
     unit = unit_cube(section, len(section.ranges))
     columns = [_values(unit[:, i], given) for i, given in enumerate(section.ranges.values())]
     return np.column_stack(columns)
@@ -88,10 +84,7 @@ UNCHANGED = Change(1.0, 1.0)
 
 
 def changes(section: PerturbSection | None) -> tuple[Change, ...]:
-    """The members of an ensemble; the first is the unperturbed one.
-
-    Uniform within the given shares. More members leave the earlier ones as they are.
-    """
+    """The members of an ensemble, uniform within the given shares; the first is unperturbed."""
     if section is None:
         return (UNCHANGED,)
     generator = np.random.default_rng(section.seed)

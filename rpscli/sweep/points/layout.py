@@ -106,10 +106,8 @@ class StudyPoints:
 
     @cached_property
     def identifying(self) -> dict[str, tuple[int, Sequence[Any]]]:
-        """What tells points from others: for each column which of `places`, and the values there.
-
-        `scale` is missing: it is a result where records are scaled to a measure.
-        """
+        """What tells points apart: of each column which of `places`, and the values there."""
+        # `scale` is missing: it is a result where records are scaled to a measure.
         of_systems = zip(*(properties.values for properties in self.properties), strict=True)
         columns: dict[str, tuple[int, Sequence[Any]]] = {
             key: (0, values) for key, values in zip(self.plan.keys, of_systems, strict=True)
@@ -128,10 +126,7 @@ class StudyPoints:
 
     @cached_property
     def clusters(self) -> Indices:
-        """(points,) numbers of what is independent: recordings, or events if the study says so.
-
-        Under a single record points tell of that record alone, each for itself.
-        """
+        """(points,) numbers of recordings or events; under a single record of the points."""
         return frozen(np.arange(len(self))) if self.alone else self.recordings
 
     @cached_property

@@ -67,11 +67,9 @@ class Cluster:
         self.jobs = max(1, sum(self._client.nthreads().values()))
 
     def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
-        """The batches with their results, as they come.
-
-        A batch whose worker dies is computed by another one; points that take every worker with
-        them come back as failed.
-        """
+        """The batches with their results, as they come."""
+        # A batch whose worker dies is computed by another; points that take every worker come as
+        # failed.
         source = iter(batches)
         given: dict[Any, list[Point]] = {}
         finished = self._dask.as_completed(

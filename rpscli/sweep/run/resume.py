@@ -36,10 +36,7 @@ def all_keys(layout: StudyPoints, context: StudyContext) -> list[bytes]:
 
 
 def _of_motion(context: StudyContext, point: Point) -> bytes:
-    """Content of the record, scale and perturbation.
-
-    A record that cannot be read counts by the reason, so that a repaired one is a new point.
-    """
+    """Content of the record, or why it cannot be read; scale and perturbation."""
     if context.plan.analysis != "timehistory":
         return b""
     assert point.record is not None, "points of histories have a record"

@@ -68,11 +68,7 @@ def run(
     report: Callable[[Progress], None] = lambda _: None,
     announce: Callable[[], None] = lambda: None,
 ) -> Finish:
-    """Compute the pending points and store each as it ends.
-
-    The first Ctrl-C calls `announce` and lets the points under way end and be stored; the second
-    one raises `KeyboardInterrupt` at once, and what is stored stays.
-    """
+    """Compute and store points; Ctrl-C lets those under way end, a second one stops at once."""
     began = time.monotonic()
     computed = failed = 0
     first: tuple[int, float] | None = None

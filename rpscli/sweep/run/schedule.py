@@ -74,11 +74,7 @@ class Engine(Protocol):
         """How many batches are computed at a time."""
 
     def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
-        """The batches with their results, as they come.
-
-        A batch is taken from the iterable only when somebody is there to compute it. When the
-        iterable ends, the batches under way are waited for; every batch comes back once.
-        """
+        """The batches with their results, each once, as they come; taken when a worker is free."""
 
 
 PROBES = 96

@@ -154,9 +154,7 @@ def _interval(number: float, of: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=4096)
 def shown_by(found: Share, admissible: float) -> int:
-    """By how many recordings, or events, the interval would end at an admissible share.
-
-    No more of them would be beyond than are.
+    """By how many recordings, with no more beyond, the interval would end at an admissible share.
 
     >>> [shown_by(share(number, 31), 0.05) for number in (0, 1)], shown_by(share(0, 5), 0.1)
     ([59, 110], 29)
@@ -185,10 +183,7 @@ class Spread(NamedTuple):
 
 
 def demand(table: Outcomes, values: Array, *, from_below: bool = False) -> Array:
-    """(points,) values of a result; infinite where overturned, NaN where the point failed.
-
-    Where small values are bad an overturned history has minus infinity.
-    """
+    """(points,) of a result; overturned infinite (minus, if small is bad), failed NaN."""
     reached = np.where(table.overturned, -np.inf if from_below else np.inf, values)
     return np.where(table.failed, np.nan, reached)
 
@@ -199,9 +194,7 @@ def rank(fractile: float | Array, total: Any) -> Any:
 
 
 def fractiles(demands: Array, shares: Sequence[float]) -> Array:
-    """The least demands that so large shares of the demands do not exceed; NaN is left out.
-
-    They are demands of the sample themselves, so that infinite ones may stand.
+    """The least of the demands that so large shares do not exceed; NaN is left out.
 
     >>> fractiles(np.array([3.0, np.inf, 1.0, 2.0]), [0.5, 0.75, 0.76]).tolist()
     [2.0, 3.0, inf]

@@ -163,16 +163,13 @@ def outcome_worth(computed: Flags, observed: Flags) -> Worth:
 
 
 def best_place(worths: Sequence[Worth]) -> int:
-    """Which worth a fit takes: the best count among those that the misfit does not tell apart.
-
-    Misfits up to one standard error above the least are not told apart (the one-standard-error
-    rule of Breiman et al., Classification and Regression Trees, 1984): the least alone follows
-    chance, and its count is off to either side. Of several equal ones the middle is taken, which a
-    little more data moves least.
+    """Which worth a fit takes: the best count among those the misfit does not tell apart.
 
     >>> best_place([Worth(0.10, 0.06, 0.03), Worth(0.12, 0.01, 0.03), Worth(0.15, 0.0, 0.03)])
     1
     """
+    # Up to one standard error above the least (Breiman et al., Classification and Regression Trees,
+    # 1984): the least alone follows chance. Of equals the middle, which more data moves least.
     least = min(worths)
     near = [worth for worth in worths if worth.misfit <= least.misfit + least.error]
     best = min(near, key=lambda worth: (worth.count_off, worth.misfit))
@@ -195,13 +192,12 @@ def agreement(computed: Flags, observed: Flags, cluster: Indices) -> Agreement:
 def threshold(intensity: Array, observed: Flags) -> float:
     """The intensity beyond which all is taken to overturn, chosen as `best_place` says.
 
-    It lies midway (geometrically) between two data, or is the least or twice the largest of them.
-
     >>> import numpy as np
     >>> im = np.array([1.0, 2.0, 4.0, 8.0])
     >>> round(threshold(im, np.array([False, False, True, True])), 3)
     2.828
     """
+    # It lies midway (geometrically) between two data, or is the least or twice the largest of them.
     levels = np.unique(intensity)
     cuts = np.array([levels[0], *np.sqrt(levels[1:] * levels[:-1]), 2.0 * levels[-1]])
     worths = [outcome_worth(intensity >= cut, observed) for cut in cuts]

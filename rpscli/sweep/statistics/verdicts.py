@@ -127,11 +127,8 @@ def _admissible(condition: Condition, total: Array) -> Array:
 
 
 def worse(table: Outcomes, name: str) -> Array:
-    """(points,) demands on a limit, larger ones the worse; NaN where the point failed.
-
-    Of results of which small values are bad the negative ones. An overturned history exceeds every
-    limit, and so does one without such a result. An event counts how often it happened.
-    """
+    """(points,) demands on a limit, larger ones the worse; NaN where the point failed."""
+    # An overturned history exceeds every limit, and so does one without such a result.
     condition = Condition(name, 0.0, "")
     if name == "overturning":
         found = table.overturned.astype(float)
