@@ -8,13 +8,14 @@ import warnings
 from pathlib import Path
 
 import pytest
+from matplotlib.colors import to_hex, to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
 from report.small_results import KINDS
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.history import rotation_figure
+from rpscli.report.figures.history import energy_figure, moment_figure, rotation_figure
 from rpscli.report.figures.look import Look, figure_files, put_in_force, read_style
 
 
@@ -64,6 +65,48 @@ def test_a_style_file_goes_over_ours(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert label.get_fontfamily() == ["serif"]
     assert axes.yaxis.get_ticklabels()[0].get_fontsize() == pytest.approx(12.0 * 8.0 / 9.0)
     assert 3.0 in {line.get_linewidth() for line in axes.lines}
+
+
+def test_colours_and_widths_of_a_style_file_take_the_place_of_ours(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: kept.append(figure))
+    file = tmp_path / "grey.mplstyle"
+    greys = ["#101010", "#808080"]
+    bare = [grey[1:] for grey in greys]
+    file.write_text(f"lines.linewidth: 2.2\naxes.prop_cycle: cycler(color={bare})\n")
+    result = KINDS["rolls"]()
+    for draw in (rotation_figure, energy_figure, moment_figure):
+        kept.clear()
+        for look in (Look(), Look(style=read_style(file))):
+            with put_in_force(look, "png"):
+                draw(result, "")
+        ours, theirs = kept
+        for before, after in zip(ours.axes, theirs.axes, strict=True):
+            for one, other in zip(before.lines, after.lines, strict=True):
+                assert other.get_linewidth() == pytest.approx(2.0 * one.get_linewidth())
+                known = str(one.get_color()) in style.PALETTE
+                wanted = one.get_color()
+                if known:
+                    wanted = greys[style.PALETTE.index(str(one.get_color())) % 2]
+                assert to_hex(other.get_color()) == to_hex(wanted)
+            for area, shown in zip(before.collections, after.collections, strict=True):
+                colour, found = (
+                    to_hex(to_rgba_array(of.get_facecolor())[0]) for of in (area, shown)
+                )
+                assert (colour.upper() in style.PALETTE) == (found in greys)
+                assert shown.get_alpha() == area.get_alpha()
+
+
+def test_text_of_svg_is_text_with_fonts_to_fall_back_on() -> None:
+    found = drawn_as("svg", title="Six storeys").decode()
+    assert ">Six storeys   |   " in found
+    assert "time [s]</text>" in found
+    families = re.findall(r'font-family: ([^;"]*)', found)
+    assert len(families) > 20
+    assert all(family.startswith("'DejaVu Sans'") for family in families)
+    assert all(family.endswith(", sans-serif") for family in families)
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
     "elastic_displacements": (lambda: (result(),), TIME, "relative\nto the cap beam [m]"),
     "energy": (lambda: (result(),), TIME, "energy [kJ]"),
     "moment": (lambda: (result(),), "rotation $\\theta$ [rad]", "contact points [MN m]"),
-    "storey_shears": (lambda: (result(),), "storey shear [kN]", "level (0 = cap beam)"),
+    "storey_shears": (lambda: (result(),), "storey shear [MN]", "level (0 = cap beam)"),
     "storey_drifts": (lambda: (result(),), "storey drift ratio [%]", "level (0 = cap beam)"),
     "floor_accelerations": (lambda: (result(),), "floor acceleration [m/s²]", "level"),
     "device": (lambda: (result(), 0), "$u_b$ [m]", "resistance [kN]"),

@@ -128,7 +128,7 @@ style_option = click.option(
     "style_file",
     type=click.Path(path_type=Path),
     metavar="FILE.mplstyle",
-    help="matplotlib's settings for the figures: fonts, sizes, lines.",
+    help="matplotlib's settings for the figures: fonts, sizes, lines, colours.",
 )
 
 

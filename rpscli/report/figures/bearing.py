@@ -65,9 +65,11 @@ def contact_points(bearing: Bearing, rotation: float, displacement: float, lift:
 COLUMN, BEAM = "#DDDDDD", "#CCE3F0"
 
 ASPECT = 1.15
-"""Height of the picture of a column over its width."""
+"""Largest height of the picture of a column over its width."""
 END_ASPECT = 1.0
 """The same of the picture of an end."""
+LOWER_HEIGHT = 2.7
+"""Of the end of a column and the restoring force [in]."""
 NARROW = 1.5
 """Width of a picture in which a title needs more lines [in]."""
 BESIDE = 0.35
@@ -130,13 +132,14 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
     structure = result.structure
     beta, critical = structure.bearing.beta, structure.critical_rotation
     states = [0.0, *([beta] if 0.0 < beta < critical else []), critical]
-    narrow = style.room(style.WIDTH) < style.WIDTH
+    narrow = style.narrow()
+    rows, columns = (2, 2) if narrow else (1, 3)
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title)
-        heights = [1.9 if narrow else 1.15, 1.0]
-        above, below = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)[:, 0]
-        cells = above.subplots(2 if narrow else 1, 2 if narrow else 3).ravel()
+        grid = figure.add_gridspec(2, 1)
+        above, below = (figure.add_subfigure(grid[row]) for row in (0, 1))
+        cells = above.subplots(rows, columns).ravel()
         for axes, rotation in zip(cells, states, strict=False):
             draw_bearing(axes, structure, rotation)
         if len(states) < len(cells):
@@ -147,8 +150,14 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
             axes.set_axis_off()
         draw_end(end, structure.bearing)
         draw_force(force, result)
+        # As high as columns are with their titles: wide ones leave no gap.
+        width = style.inches(figure)[0]
+        heights = [rows * (width / columns * float(cells[0].get_box_aspect()) + 0.6), LOWER_HEIGHT]
+        grid.set_height_ratios(heights)
+        if style.given() is None:
+            figure.set_size_inches(width, 0.3 + sum(heights))
 
-    return style.picture(draw, 7.6 if narrow else 6.2)
+    return style.picture(draw, 6.2)
 
 
 def draw_bearing(axes: Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
@@ -211,7 +220,10 @@ def draw_end(axes: Axes, bearing: Bearing) -> None:
             arc, (0.0, 4.0 * step), arrowprops={"arrowstyle": "->", "lw": 0.6},
             ha="center", va="center", fontsize=style.small(),
         )  # fmt: skip
-        axes.text(1.06 * half, edge, f"{1e3 * edge:.3g} mm", va="bottom", fontsize=style.small())
+        axes.annotate(
+            f"{1e3 * edge:.3g} mm", (1.06 * half, edge), (0.0, 3.0), va="bottom",
+            textcoords="offset points", fontsize=style.small(),
+        )  # fmt: skip
         title = "an end, enlarged"
     axes.set_title(title, fontsize=style.small())
 
@@ -259,14 +271,15 @@ def _frame(
     room: tuple[float, float, float, float],
     aspect: float,
 ) -> None:
-    """Limits of one scale both ways; `room` is kept free, in parts of the picture."""
+    """Limits of one scale both ways; `room` is kept free, in its parts; `aspect` at most."""
     left, right, bottom, top = content
     across, upwards = 1.0 - room[0] - room[1], 1.0 - room[2] - room[3]
     width = (right - left) / across
     if upwards > 0.0:
         width = max(width, (top - bottom) / upwards / aspect)
-    start = 0.5 * (left + right) - width * (room[0] + 0.5 * across)
+        aspect = min(aspect, (top - bottom) / upwards / width)
     floor = bottom - room[2] * aspect * width
+    start = 0.5 * (left + right) - width * (room[0] + 0.5 * across)
     axes.set(xlim=(start, start + width), ylim=(floor, floor + aspect * width))
     axes.set_box_aspect(aspect)
 

@@ -33,7 +33,7 @@ FIXED: dict[str, Any] = {"color": style.BLACK, "ls": "--", "label": "fixed base"
 
 
 def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
-    """Largest storey shears (kN, and over V_st), drifts and floor accelerations."""
+    """Largest storey shears beside V_st, drifts and floor accelerations."""
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title, result.record.name)
@@ -44,20 +44,27 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
             draw_one(axes, result)
             axes.set_xlabel(style.folded(figure, axes.get_xlabel()))
             axes.label_outer()
-        entries = panels[-1].get_legend_handles_labels()
-        figure.legend(*entries, loc="outside lower center", ncols=3)
+        entries = {
+            name: handle
+            for axes in (panels[-1], panels[0])
+            for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
+        }
+        columns = 2 if style.narrow() else 4
+        figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=columns)
 
     return style.picture(draw, 4.2)
 
 
 def draw_shears(axes: Axes, result: TimeHistoryResult) -> None:
-    """Largest storey shears, over V_st on top."""
-    for demands, look in _series(result):
-        _stairs(axes, demands.storey_shears * 1e-3, look)
-    axes.set_xlabel(STOREY_SHEARS.in_unit("kN"))
-    static = result.structure.static_base_shear * 1e-3
-    ratio = axes.secondary_xaxis("top", functions=style.over(static))
-    ratio.set_xlabel("$V_i/V_{st}$ [-]")
+    """Largest storey shears, and V_st."""
+    series = [*_series(result)]
+    factor, prefix = style.engineering(max(float(of.storey_shears.max()) for of, _ in series))
+    for demands, look in series:
+        _stairs(axes, demands.storey_shears * factor, look)
+    axes.set_xlabel(STOREY_SHEARS.in_unit(f"{prefix}N"))
+    static = result.structure.static_base_shear * factor
+    label = f"$V_{{st}}$ = {static:.4g} {prefix}N"
+    axes.axvline(static, color=style.GREEN, lw=0.9, ls="-.", label=label)
     _levels(axes, result.structure.storeys)
 
 
@@ -77,7 +84,8 @@ def draw_accelerations(axes: Axes, result: TimeHistoryResult) -> None:
     floors = np.arange(1, result.structure.storeys + 1)
     for demands, look in _series(result):
         axes.plot(demands.floor_accelerations, floors, marker="o", ms=3.5, **look)
-    axes.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label="PGA")
+    label = f"PGA = {result.record.pga:.3g} m/s²"
+    axes.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label=label)
     axes.set_xlabel(FLOOR_ACCELERATIONS.axis_label)
     _levels(axes, result.structure.storeys)
 

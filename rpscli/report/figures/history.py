@@ -61,10 +61,12 @@ def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
 
 
 FLOOR_COLOURS = (style.RED, style.ORANGE, style.GREEN)
+PALE = "#B5B5B5"
+"""Of what lies below something else."""
 
 
 def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
-    """Roof, floors at mid-height and cap beam over the ground; below, floors over the cap beam."""
+    """Roof and cap beam over the ground; below, roof and floors at mid-height over the cap beam."""
     rows = 2 if result.structure.storeys else 1
 
     def draw(figure: Figure) -> None:
@@ -80,12 +82,12 @@ def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
 
 
 def draw_displacements(axes: Axes, result: TimeHistoryResult) -> None:
-    """Floors and cap beam, relative to the ground."""
+    """Roof and cap beam, relative to the ground: the one thin upon the other."""
     trace = result.trace
-    _draw_floors(axes, result, trace.floor_displacements)
     base = "cap beam" if result.structure.cap_beam_mass > 0.0 else "top of the columns"
-    line = "--" if result.structure.storeys else "-"
-    axes.plot(trace.time, trace.cap_beam_displacement, color=style.BLACK, ls=line, label=base)
+    wide: dict[str, Any] = {"color": PALE, "lw": 3.0} if result.structure.storeys else {}
+    axes.plot(trace.time, trace.cap_beam_displacement, **{"color": style.BLACK} | wide, label=base)
+    _draw_floors(axes, result, trace.floor_displacements, 1, lw=0.8)
     axes.set_ylabel("displacement relative\nto the ground [m]")
     style.legend_above(axes, 4)
 
@@ -96,14 +98,15 @@ def draw_drifts(axes: Axes, result: TimeHistoryResult) -> None:
     drifts = trace.floor_displacements - trace.cap_beam_displacement[:, None]
     _draw_floors(axes, result, drifts, lw=0.8)
     axes.set_ylabel("displacement relative\nto the cap beam [m]")
+    style.legend_above(axes, 4)
 
 
 def _draw_floors(
-    axes: Axes, result: TimeHistoryResult, values: NDArray[np.float64], **look: Any
+    axes: Axes, result: TimeHistoryResult, values: NDArray[np.float64], most: int = 3, **look: Any
 ) -> None:
-    """Some columns of (samples, n), with time below."""
+    """Some columns of (samples, n), the roof's first, with time below."""
     time, storeys = result.trace.time, result.structure.storeys
-    for floor, colour in zip(shown_floors(storeys), FLOOR_COLOURS, strict=False):
+    for floor, colour in zip(shown_floors(storeys)[:most], FLOOR_COLOURS, strict=False):
         name = "roof" if floor == storeys else f"floor {floor}"
         axes.plot(time, values[:, floor - 1], color=colour, label=name, **look)
     axes.set(xlim=(0.0, time[-1]), xlabel="time [s]")
@@ -125,14 +128,14 @@ EVENT_ROWS: tuple[EventRow, ...] = (
     (("uplift",), "uplift", style.GREEN),
     (("impact",), "impact", style.BLACK),
     (("recontact",), "re-contact", style.GREY),
-    (("rolling_to_rocking", "rocking_to_rolling"), "rolling, rocking", style.PINK),
+    (("rolling_to_rocking", "rocking_to_rolling"), "passing $\\beta$", style.PINK),
     (("critical_rotation_passed", "overturning"), "critical", style.RED),
 )
 """Kinds of event, their name in the figure, and its colour."""
 
 PHASES = ((1, "rolling", style.ROLLING_SHADE), (2, "rocking", style.ROCKING_SHADE))
 
-NEAR = 2.0
+NEAR = 8.0
 """A level up to so many times the largest rotation is brought into view."""
 
 
@@ -151,7 +154,7 @@ def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
         events.set_xlim(0.0, result.trace.time[-1])
         for axes in (ground, rotation):
             axes.label_outer()
-        figure.align_ylabels()
+        figure.align_ylabels((ground, rotation))
 
     return style.picture(draw, 4.6 + 0.15 * len(rows))
 
@@ -204,15 +207,17 @@ def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
 
 
 def draw_events(axes: Axes, result: TimeHistoryResult) -> None:
-    """Marks at the times of the events, one row a kind."""
+    """Marks at the times of the events, one row a kind, with their number: marks may merge."""
     rows = _rows(result)
-    axes.set_yticks(range(len(rows)), [name for _, name, _ in rows])
     axes.tick_params(axis="y", length=0.0, labelsize=0.9 * style.small())
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.grid(visible=False)
-    for row, (kinds, _, colour) in enumerate(rows):
+    names = []
+    for row, (kinds, name, colour) in enumerate(rows):
         times = [event.time for event in result.events if event.kind in kinds]
-        axes.plot(times, [row] * len(times), "|", color=colour, ms=6.0, mew=0.7)
+        axes.plot(times, [row] * len(times), "|", color=colour, ms=6.0, mew=0.35)
+        names.append(f"{name}: {len(times)}")
+    axes.set_yticks(range(len(rows)), names)
     axes.set_xlabel("time [s]")
 
 
@@ -227,9 +232,10 @@ def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
     reach = 1.1 * max(result.max_rotation, 0.02 * critical)
     factor, prefix = style.engineering(float(np.nanmax(np.abs(trace.driving_moment))))
     axes.plot(
-        trace.rotation, factor * trace.driving_moment, color=style.BLUE, lw=0.7,
+        trace.rotation, factor * trace.driving_moment, color=PALE, lw=0.5,
         label="driving moment (ground and building)",
     )  # fmt: skip
+    _draw_longest(axes, result, factor)
     for side, name in ((-1.0, "restoring moment of the weight"), (1.0, None)):
         rotation = side * np.linspace(1e-9, reach, 300)
         static = factor * result.restoring_moment(rotation)
@@ -240,6 +246,22 @@ def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
     axes.set_xlabel("rotation $\\theta$ [rad]")
     axes.set_ylabel(f"moment about the contact points [{prefix}N m]")
     style.legend_above(axes, 2)
+
+
+def _draw_longest(axes: Axes, result: TimeHistoryResult, factor: float) -> None:
+    """The swing to one side that turns the columns most, with its times and its direction."""
+    time, rotation = result.trace.time, result.trace.rotation
+    peak = int(np.nanargmax(np.abs(rotation)))
+    ends = np.flatnonzero(rotation * rotation[peak] <= 0.0)
+    if rotation[peak] == 0.0 or not ends[ends < peak].size:
+        return
+    first, last = ends[ends < peak][-1] + 1, min([*ends[ends > peak], len(time)])
+    x, y = rotation[first:last], factor * result.trace.driving_moment[first:last]
+    label = f"the largest swing, {time[first]:.2f} to {time[last - 1]:.2f} s"
+    axes.plot(x, y, color=style.BLUE, lw=1.4, label=label)
+    for place in np.linspace(0, len(x) - 2, 7).astype(int)[1:-1]:
+        line = {"arrowstyle": "-|>", "color": style.BLUE, "lw": 0.0, "mutation_scale": 10.0}
+        axes.annotate("", (x[place + 1], y[place + 1]), (x[place], y[place]), arrowprops=line)
 
 
 DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)

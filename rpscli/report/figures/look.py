@@ -1,7 +1,4 @@
-"""How figures are written: formats, width, and what a user's own style file says.
-
-Colours mean something in these figures, and stay.
-"""
+"""How figures are written: formats, width, and what a user's own style file says."""
 
 from __future__ import annotations
 

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 MOST_MODES = 3
 """Vibration modes that are drawn, at most."""
+ELASTIC = "elastic shape (over the cap beam)"
+NORMALISED = "shapes scaled to 1 at their largest component"
 
 
 def modes_figure(result: ModalResult, title: str) -> bytes:
@@ -35,7 +37,7 @@ def draw_modes(figure: Figure, result: ModalResult, title: str) -> None:
     """Fill an empty figure."""
     states = list(result.uplifted)
     vibrations = min(MOST_MODES, result.structure.storeys)
-    style.heading(figure, title)
+    style.heading(figure, title, NORMALISED)
     panels = figure.subplots(len(states), 1 + vibrations, sharex=True, sharey=True, squeeze=False)
     for row, state in zip(panels, states, strict=True):
         for mode, axes in enumerate(row):
@@ -48,7 +50,9 @@ def draw_modes(figure: Figure, result: ModalResult, title: str) -> None:
     narrow = style.inches(figure)[0] < modes_size(result)[0]
     figure.legend(handles, names, loc="outside lower center", ncols=1 if narrow else 3)
     for axes in panels.flat if narrow else ():
-        axes.set_title(axes.get_title().replace(": ", "\n").replace(" rad/s", "\nrad/s"))
+        axes.set_title(
+            axes.get_title().replace(": ", "\n").replace(" rad/s", "\nrad/s").replace(" (", "\n(")
+        )
 
 
 def draw_mode(axes: Axes, result: ModalResult, state: str, mode: int) -> None:
@@ -66,10 +70,13 @@ def draw_mode(axes: Axes, result: ModalResult, state: str, mode: int) -> None:
     axes.plot([0.0, *shape], levels, color=style.BLACK, marker="o", ms=2.5, label="uplifted")
     if len(shape) > 1:
         elastic = [0.0, *(shape[1:] - shape[0])]
-        axes.plot(elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label="elastic shape")
+        axes.plot(elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label=ELASTIC)
     axes.axvline(0.0, color=style.GREY, lw=0.5)
     axes.set(xlabel="shape [-]", ylabel="height [m]", ylim=(-0.02 * levels[-1], 1.03 * levels[-1]))
     if mode == 0:
-        axes.set_title(f"storey: $p_{{ext}}$ = {modes.frequency_parameter:#.3g} rad/s")
+        rate = f"{modes.frequency_parameter:#.3g} rad/s"
+        # Where the force is the same at every displacement, nothing grows or swings.
+        rate = rate if modes.frequency_parameter else "0 (neutral)"
+        axes.set_title(f"storey: $p_{{ext}}$ = {rate}")
     else:
         axes.set_title(f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import UsageError
 from rpscli.records.measures import displacement, velocity
 from rpscli.records.requirements import component_text
@@ -31,7 +32,7 @@ LOOKS = [
 """Of the spectra of motions; those of mean and target are their own."""
 
 NAMES_A_ROW = 6
-"""Of motions below their spectra."""
+"""Of motions below their spectra, in a wide figure."""
 
 Quantity = Literal["acceleration", "velocity", "displacement"]
 
@@ -42,19 +43,29 @@ QUANTITIES: dict[Quantity, tuple[str, str]] = {
 }
 
 
-def record_figure(motion: GroundMotion, spectrum: ResponseSpectrum) -> bytes:
-    """Time histories on the left, the spectrum on the right."""
+def record_figure(
+    motion: GroundMotion, spectrum: ResponseSpectrum, period: float | None = None
+) -> bytes:
+    """Time histories, and the spectrum with the first period of a building [s] if it is known."""
 
     def draw(figure: Figure) -> None:
         style.heading(figure, motion.name, motion.description[:90])
-        left, right = figure.subfigures(1, 2, width_ratios=[1.45, 1.0], squeeze=False)[0]
+        rows, columns = (2, 1) if style.narrow() else (1, 2)
+        left, right = figure.subfigures(
+            rows, columns, width_ratios=[1.45, 1.0][:columns], height_ratios=[1.6, 1.0][:rows],
+            squeeze=False,
+        ).flat  # fmt: skip
         for axes, quantity in zip(left.subplots(3, 1, sharex=True), QUANTITIES, strict=True):
             draw_motion(axes, motion, quantity)
             axes.label_outer()
         left.align_ylabels()
-        draw_spectrum(right.subplots(), spectrum)
+        axes = right.subplots()
+        draw_spectrum(axes, spectrum)
+        if period is not None:
+            axes.axvline(period, color=style.BLUE, ls="--", label=f"$T_1$ = {period:.3g} s")
+            axes.legend()
 
-    return style.picture(draw, 4.2, 8.0)
+    return style.picture(draw, 6.4 if style.narrow() else 4.2, 8.0)
 
 
 def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "acceleration") -> None:
@@ -70,9 +81,10 @@ def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "accelera
     axes.plot(time[kept], values[kept], color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
     axes.set(xlim=(0.0, motion.duration), xlabel="time [s]", ylabel=f"{quantity}\n[{unit}]")
-    axes.set_title(
-        f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s", loc="right", fontsize=style.small()
-    )
+    text = f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s"
+    if quantity == "acceleration":
+        text = f"{text}, {motion.pga / STANDARD_GRAVITY:.3g} g"
+    axes.set_title(text, loc="right", fontsize=style.small())
 
 
 def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
@@ -83,7 +95,9 @@ def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
 
 def _frame(axes: Axes, spectrum: ResponseSpectrum) -> None:
     axes.set_xlabel("period [s]")
-    axes.set_ylabel(f"pseudo-acceleration, {style.percent(spectrum.damping)} damping [m/s²]")
+    room = "\n" if style.narrow() else " "
+    damping = style.percent(spectrum.damping)
+    axes.set_ylabel(f"pseudo-acceleration,{room}{damping} damping [m/s²]")
     axes.set_xlim(0.0, spectrum.periods[-1])
     axes.set_ylim(bottom=0.0)
 
@@ -117,16 +131,20 @@ def selection_figure(selection: Selection, title: str) -> bytes:
 
     def draw(figure: Figure) -> None:
         style.heading(figure, title, note)
-        left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
+        if style.narrow():
+            left, right = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
+        else:
+            left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
         _draw_spectra(left, selection)
         _draw_peaks(right, selection)
         motions = left.lines[: len(selection.chosen)]
         figure.legend(
-            handles=motions, loc="outside lower center", ncols=NAMES_A_ROW, fontsize=style.small()
+            handles=motions, loc="outside lower center", ncols=in_row, fontsize=style.small()
         )
 
-    rows = -(-len(selection.chosen) // NAMES_A_ROW)
-    return style.picture(draw, 3.6 + 0.17 * rows, 8.0)
+    in_row = 2 if style.narrow() else NAMES_A_ROW
+    rows = -(-len(selection.chosen) // in_row)
+    return style.picture(draw, (6.0 if style.narrow() else 3.6) + 0.17 * rows, 8.0)
 
 
 def _draw_spectra(axes: Axes, selection: Selection) -> None:

@@ -99,7 +99,7 @@ def _mark(axes: Axes, x: float, y: float, text: str, offset: tuple[float, float]
     )  # fmt: skip
 
 
-LOOKS = ((style.BLUE, "-"), (style.RED, "--"), (style.GREEN, "-."), (style.PINK, ":"))
+LOOKS = ((style.SKY, "-"), (style.RED, "-"), (style.BLACK, "-"), (style.PINK, ":"))
 
 
 def capacity_figure(result: PushoverResult, title: str) -> bytes:
@@ -113,8 +113,9 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
         uplift = max(c.roof_displacement_at_uplift for c in result.capacity)
         close.set_xlim(0.0, 3.0 * uplift)
         close.locator_params(axis="x", nbins=5)
-        whole.set_xlabel(style.folded(figure, "roof displacement [m]"))
-        close.set(xlabel=style.folded(figure, "near uplift [m]"), ylabel="")
+        close.set(ylabel="", title="near uplift")
+        for axes in (whole, close):
+            axes.set_xlabel(style.folded(figure, "roof displacement [m]"))
         columns = 5 if style.inches(figure)[0] >= style.WIDTH else 2
         legend = close.get_legend_handles_labels()
         figure.legend(*legend, loc="outside lower center", ncols=columns)
@@ -123,7 +124,10 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
 
 
 def draw_capacity(axes: Axes, result: PushoverResult) -> None:
-    """Sum of floor forces against roof displacement by pattern, and where it uplifts."""
+    """Sum of floor forces against roof displacement by pattern, and where it uplifts.
+
+    Curves may coincide: the first one drawn is the widest.
+    """
     if not result.capacity:
         raise UsageError("a structure without storeys has no capacity curve; draw `storey_curve`")
     factor, prefix = style.engineering(max(c.sum_of_floor_forces.max() for c in result.capacity))
@@ -131,7 +135,7 @@ def draw_capacity(axes: Axes, result: PushoverResult) -> None:
         colour, line = LOOKS[k % len(LOOKS)]
         axes.plot(
             curve.roof_displacement, factor * curve.sum_of_floor_forces,
-            color=colour, ls=line, lw=1.5, label=curve.pattern.replace("_", " "),
+            color=colour, ls=line, lw=3.6 / (k + 1), label=curve.pattern.replace("_", " "),
         )  # fmt: skip
         axes.plot(
             curve.roof_displacement_at_uplift, factor * result.uplift_force, "o",

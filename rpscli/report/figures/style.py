@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, cast
 
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import SMALL, in_force, quiet_matplotlib
+from rpscli.report.figures.own_style import restyle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,6 +29,8 @@ ORANGE = "#E69F00"
 SKY = "#56B4E9"
 PINK = "#CC79A7"
 GREY = "#7F7F7F"
+PALETTE = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
+"""What colours of a style file take the place of, in this order."""
 
 ROLLING_SHADE = "#DCEBF7"
 ROCKING_SHADE = "#FBE3D0"
@@ -55,6 +58,7 @@ STYLE: dict[str, Any] = {
     "ytick.direction": "in",
     "agg.path.chunksize": 20000,
     "pdf.fonttype": 42,  # TrueType: journals refuse the other kind
+    "svg.fonttype": "none",  # text stays text, in the first of several fonts that a viewer has
     "svg.hashsalt": "rps",  # the same data give the same file
 }
 
@@ -88,6 +92,7 @@ def picture(
         if kept is not None:
             kept.target = figure
             return b""
+        restyle(figure, PALETTE, STYLE["lines.linewidth"], now.look.style)
         if (engine := figure.get_layout_engine()) is not None:
             # Once, and no more: matplotlib would do it in a trial drawing, and again in the real
             # one, which takes twice as long.
@@ -95,6 +100,8 @@ def picture(
             figure.set_layout_engine(None)
         buffer = io.BytesIO()
         figure.savefig(buffer, format=now.ending, **SAVED[now.ending])
+    if now.ending == "svg":  # formulas name one font, and none to fall back on
+        return re.sub(rb"(font-family: '[^',]+')(?=[;\"])", rb"\1, sans-serif", buffer.getvalue())
     return buffer.getvalue()
 
 
@@ -159,6 +166,11 @@ def room(usual: float) -> float:
     return in_force().look.width(usual) if target is None else inches(target)[0]
 
 
+def narrow() -> bool:
+    """Whether the figure will be narrower than a page."""
+    return room(WIDTH) < WIDTH
+
+
 @contextmanager
 def in_style() -> Iterator[None]:
     """Figures that are made inside look like those that the program writes."""
@@ -166,7 +178,9 @@ def in_style() -> Iterator[None]:
     import matplotlib.style
 
     # "default" first: a user's own matplotlibrc must not change what a report looks like.
-    with matplotlib.style.context(["default", STYLE, in_force().look.settings]):
+    # Widths of lines keep their relations: they follow the user's once all is drawn.
+    widths = {"lines.linewidth": STYLE["lines.linewidth"]}
+    with matplotlib.style.context(["default", STYLE, in_force().look.settings, widths]):
         yield
 
 
@@ -242,7 +256,7 @@ def legend_above(axes: Axes, columns: int) -> None:
     axes.legend(
         in_rows(handles, columns),
         in_rows(names, columns),
-        loc="lower left",
+        loc="lower right" if width < WIDTH else "lower left",
         bbox_to_anchor=(0.0, 1.0, 1.0, 0.1),
         ncols=columns,
         borderaxespad=0.1,

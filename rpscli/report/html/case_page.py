@@ -68,7 +68,8 @@ def case_sections(
         tables = [outcome_table(result)]
         tables += [storeys_table(result)] * bool(result.structure.storeys)
         drawn = [Picture(files, CAPTIONS[stem]) for stem, files in pictures(history.files)]
-        motions = [motion_pictures(each, look) for each in ground.named.values()]
+        building = result.structure.superstructure
+        motions = [motion_pictures(each, look, building) for each in ground.named.values()]
         measured = record_table(result.record, intensity_measures(result.record))
         results.append(Section("Ground motion", [measured, *motions]))
         results.append(Section("Response", [*tables, *drawn]))

@@ -34,6 +34,7 @@ from rpscli.report.tables.derivation import derivations, first_shape
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.model.podium import PodiumStructure
+    from rpscli.model.superstructure import Superstructure
     from rpscli.records.ground_motion import GroundMotion
 
 
@@ -42,10 +43,13 @@ MOST_ROWS = 100
 MOST_SPECTRA = 200
 
 
-def motion_pictures(motion: GroundMotion, look: Look) -> Picture:
-    """Acceleration, velocity, displacement and response spectrum of a motion."""
+def motion_pictures(
+    motion: GroundMotion, look: Look, building: Superstructure | None = None
+) -> Picture:
+    """Acceleration, velocity, displacement and response spectrum of a motion, with T1."""
+    period = None if building is None else float(building.periods[0])
     return _picture(
-        lambda: record_figure(motion, _spectrum(motion)),
+        lambda: record_figure(motion, _spectrum(motion), period),
         look,
         f"{motion.name}: acceleration, velocity and displacement of the ground, and the response"
         f" spectrum at {style.percent(DAMPING)} of critical damping.",

@@ -187,7 +187,7 @@ def _wrapped(names: Sequence[str], columns: int) -> list[str]:
 
 def break_if_narrow() -> str:
     """What stands between the parts of a text inside a panel: a new line in narrow figures."""
-    return "\n" if style.room(style.WIDTH) < style.WIDTH else " "
+    return "\n" if style.narrow() else " "
 
 
 def log_ticks(axis: Axis) -> None:
