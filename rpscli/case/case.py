@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -73,6 +73,8 @@ class Case(Shown):
         What is unusual in the values as they are written, and keys without effect.
     digest
         SHA-256 of the text; empty for a case made in memory.
+    written
+        The values as they were written, with the units of the user.
     """
 
     name: str
@@ -82,6 +84,7 @@ class Case(Shown):
     podium: Podium
     doubts_of_text: tuple[Doubt, ...] = ()
     digest: str = ""
+    written: Mapping[str, Any] = field(default_factory=dict)
 
     def facts(self) -> dict[str, Any]:
         """What it is about."""
@@ -205,7 +208,8 @@ def case_from_mapping(
         *((Doubt(ignored_text(ignored)),) if ignored else ()),
         *doubts_of_storeys(file.superstructure, document),
     )
-    return Case(stem, name, folder or Path(), file, podium, doubts)
+    written = document.content
+    return Case(stem, name, folder or Path(), file, podium, doubts, written=written)
 
 
 def _podium(file: CaseFile, partial: PartialCase) -> Podium:

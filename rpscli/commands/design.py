@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -19,7 +20,13 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, show_dry_run, study_heading
 from rpscli.report.documents import ONE_DIRECTION, heading
 from rpscli.report.figures.look import Look
-from rpscli.report.table import csv_text
+from rpscli.report.files import OutputFolder
+from rpscli.report.table import Part, csv_text
+
+if TYPE_CHECKING:
+    from rpscli.errors import RpsError
+    from rpscli.studies import Study
+    from rpscli.sweep.design.answer import Answer
 
 
 @click.command("design")
@@ -45,6 +52,36 @@ def command(
     Every point is stored as it ends: after an interruption the same command goes on. The exit code
     is 10 if no design passes, or if the recommended one does not keep the limits in its validation.
     """
+    done = designed(design, overrides, SweepChoices(**choices), output, look, terminal)
+    if done is None:
+        return
+    terminal.warn_first(done.document["warnings"], "with --json")
+    terminal.result(done.document, done.tables)
+    leave(done.error)
+
+
+class Designed(NamedTuple):
+    """A design that was searched for: its answer, all its designs as a study, what to show."""
+
+    answer: Answer
+    study: Study
+    folder: OutputFolder
+    document: dict[str, Any]
+    tables: Sequence[Part]
+    error: RpsError | None
+
+
+def designed(
+    design: str,
+    overrides: tuple[str, ...],
+    chosen: SweepChoices,
+    output: OutputRequest,
+    look: Look,
+    terminal: Terminal,
+    *,
+    written: bool = True,
+) -> Designed | None:
+    """Search, and write the results unless only the points are kept; None after a dry run."""
     from rpscli.case.design import read_design
     from rpscli.commands.design_rounds import (
         Rounds,
@@ -61,19 +98,19 @@ def command(
     from rpscli.sweep.design.search import Search
     from rpscli.sweep.store import Store
 
-    chosen = SweepChoices(**choices)
     search = Search(read_design(design, overrides))
     rounds = Rounds(search, overrides, chosen, terminal)
     first = rounds.first()
     if chosen.dry_run:
         terminal.note(f"the first of at most {search.most} designs:")
         show_dry_run(first, chosen, terminal)
-        return
+        return None
     place = output.place or RESULTS / first.layout.study.name / "design"
     folder = study_folder(first.layout, place, overrides, "design", force=output.force)
     with Store(place, fresh=chosen.fresh) as store:
         answer = rounds.run(first, store)
         confirmations = dict(rounds.confirm(answer, store))
+        softer = rounds.with_other_loss(answer, store)
         study, run = rounds.everything(answer, first, store)
         found = run.collect(place, look)
         folder.add_all(found.files.items())
@@ -90,9 +127,9 @@ def command(
         error = run.error(found, limits=False) or nothing_passes(answer)
         error = error or unconfirmed(confirmations)
         store.require()
-        write(folder, terminal)
+        if written:
+            write(folder, terminal)
     notes = [*rounds.notes(answer, confirmations), *study.warnings, *found.notes]
-    terminal.warn_first(notes, "with --json")
     judged = headline_of(confirmations)
     document = {
         **heading(),
@@ -106,9 +143,10 @@ def command(
             name: [verdict_document(each.keys_of_rows, verdict) for verdict in each.verdicts]
             for name, each in confirmations.items()
         },
+        "other_loss": softer
+        and [verdict_document(softer.keys_of_rows, verdict) for verdict in softer.verdicts],
         "warnings": notes,
         "files": [str(store.path), *folder.files],
     }
-    tables = answer_tables(document, answer, confirmations)
-    terminal.result(concluded(document, error), tables)
-    leave(error)
+    tables = [*answer_tables(document, answer, confirmations, softer)]
+    return Designed(answer, study, folder, concluded(document, error), tables, error)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from rpscli.analyses.neighbours import OTHER_LOSS
 from rpscli.case.conditions import LIMITS, RATE, Condition, condition_text
+from rpscli.case.overrides import apply_overrides
+from rpscli.case.rules.plausibility import RESTITUTION
 from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, compute, of_first_system
@@ -93,6 +96,18 @@ class Rounds:
                 run = self._computed(study, store)
                 run.verdicts.extend(self.search.rate_verdicts(run.table, run.summary))
                 yield name, run
+
+    def with_other_loss(self, answer: Answer, store: Store) -> StudyRun | None:
+        """The recommended design where impacts take half: only if they take much by their law."""
+        checked = self.search.task.study_of(answer.values[[answer.headline]])
+        structure = lay_out(checked).system(0).structure
+        if structure.impact_law.kind == "value" or structure.restitution >= RESTITUTION.least:
+            return None
+        base = apply_overrides(checked.base, [f"podium.impact.loss={OTHER_LOSS:g}"])
+        self.terminal.note(f"the same design with podium.impact.loss {OTHER_LOSS:g}")
+        run = self._computed(self._laid_out(replace(checked, base=base)), store)
+        run.verdicts.extend(self.search.rate_verdicts(run.table, run.summary))
+        return run
 
     def everything(self, answer: Answer, first: Study, store: Store) -> tuple[Study, StudyRun]:
         """All valid designs as one study, whose points are in the store."""
@@ -184,7 +199,10 @@ WORDS = {"best": "least that passes", "robust": "recommended design"}
 
 
 def answer_tables(
-    document: dict[str, Any], answer: Answer, confirmations: Mapping[str, StudyRun]
+    document: dict[str, Any],
+    answer: Answer,
+    confirmations: Mapping[str, StudyRun],
+    softer: StudyRun | None = None,
 ) -> Iterator[Part]:
     """What is recommended, its requirements, what the records do to it, and how it is validated."""
     counts = document["designs"]
@@ -199,6 +217,9 @@ def answer_tables(
         yield Table.listing([*_region(document, answer), *_records(document, answer)])
     design = answer.task.study_of(answer.values[[answer.headline]])
     yield of_first_system(lay_out(design))
+    if softer is not None:
+        yield Heading(f"the same design with podium.impact.loss {OTHER_LOSS:g}: impacts take half")
+        yield Table.of_texts(VERDICT, map(verdict_texts, softer.verdicts), words=4)
     if len(answer.front):
         yield f"Pareto front of both objectives: {len(answer.front)} designs, in front.csv"
     if confirmations:

@@ -11,17 +11,21 @@ from typing import Any
 import click
 
 from rpscli.case.conditions import Condition
-from rpscli.commands.inputs import FACTOR, RESULTS, MotionRequest, read_case
+from rpscli.commands.inputs import FACTOR, RESULTS, MotionRequest, read_case, single_motions
 from rpscli.commands.report_case import (
+    DESIGN,
     HISTORY,
+    SWEEP,
+    Asked,
     PageDone,
     case_page,
     earlier_case,
     earlier_results,
-    is_study,
+    kind_of,
 )
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
+    FILE,
     CaseRequest,
     fail_on_option,
     overrides_option,
@@ -36,7 +40,7 @@ from rpscli.report.files import require_writable, write_whole
 
 
 @click.command("report")
-@click.argument("subject", metavar="CASE|STUDY|FOLDER")
+@click.argument("subject", metavar="CASE|STUDY|DESIGN|FOLDER")
 @click.option(
     "-o",
     "--output",
@@ -46,11 +50,21 @@ from rpscli.report.files import require_writable, write_whole
     help="The page; results/<name>/report.html by default.",
 )
 @overrides_option("Override a value of the case or study")
-@click.option("--record", metavar="SRC", help="Ground motion in place of the case's own.")
+@click.option(
+    "--record",
+    "records",
+    multiple=True,
+    metavar="SRC",
+    type=FILE,
+    help="Ground motion in place of the case's own, sets and folders too; repeatable.",
+)
 @click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
 @click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
 @click.option("--scale-to", metavar="MEASURE=VALUE", help="Scale to a measure, as PGA=0.4g.")
 @fail_on_option("A limit besides those of the case or study, as in `rps timehistory`; repeatable.")
+@click.option("--project", metavar="TEXT", help="Name or number of the project, for the page.")
+@click.option("--author", metavar="NAME", help="Who made the page and signs it.")
+@click.option("--checker", metavar="NAME", help="Who checks the page and signs it.")
 @style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
 @terminal_options
@@ -58,29 +72,40 @@ def command(
     subject: str,
     place: Path | None,
     overrides: tuple[str, ...],
+    records: tuple[str, ...],
     conditions: list[Condition],
+    project: str | None,
+    author: str | None,
+    checker: str | None,
     style_file: Path | None,
     terminal: Terminal,
     *,
     force: bool,
     **motion: Any,
 ) -> None:
-    """One page about a CASE, a STUDY or a FOLDER of results.
+    """One page about a CASE, a STUDY, a DESIGN or a FOLDER of results.
 
     It has the structure, the input, the formulas with their numbers, the ground motions, verdicts,
     tables and figures, and the command that repeats it. It needs no network and no scripts, and
-    prints on A4. The history of a CASE is computed; so are points of a STUDY that are not stored
-    yet. That of a FOLDER is computed again and held against what is stored.
+    prints on A4. Histories of a CASE are computed, with mean and largest of several records; so are
+    points of a STUDY or DESIGN that are not stored yet. Those of a FOLDER are computed again and
+    held against what is stored.
     """
     look = Look(style={} if style_file is None else read_style(style_file))
     request, asked = CaseRequest(subject, overrides), MotionRequest(**motion)
     earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None
-    history = earlier is not None and earlier.run["command"] == HISTORY
-    study = not history and (earlier is not None or is_study(subject))
-    _require_sense(subject, asked, overrides, study=study, stored=earlier is not None)
+    kind = kind_of(subject) if earlier is None else earlier.run["command"]
+    _require_sense(subject, (records, asked), overrides, kind, stored=earlier is not None)
     name: str
     make: Callable[[], PageDone]
-    if study:
+    if kind == DESIGN:
+        from rpscli.commands.report_design import design_page
+
+        if conditions:
+            raise UsageError(f"{subject}: a design has limits of its own; leave --fail-on out")
+        name = Path(subject).stem if earlier is None else earlier.run["name"]
+        make = partial(design_page, subject, overrides, earlier, look, terminal)
+    elif kind == SWEEP:
         from rpscli.commands.report_study import read_subject, study_page
 
         made = read_subject(request, earlier, conditions, terminal)
@@ -89,31 +114,31 @@ def command(
         make = partial(study_page, made, folder, conditions, look, terminal)
     else:
         if earlier is not None:
-            given, asked = earlier_case(earlier)
+            given, motions = earlier_case(earlier)
+            typed: list[Asked] = [([each.record] if each.record else [], each) for each in motions]
         else:
-            given = read_case(request, terminal)
+            given, motions = read_case(request, terminal), [*single_motions(records, asked)]
+            typed = [(records, asked)]
         name = given.case.name
-        make = partial(case_page, given, asked, conditions, look, earlier, terminal)
+        make = partial(case_page, given, motions, typed, conditions, look, earlier, terminal)
     file = place or RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()
-    _write(file, name, done, terminal)
+    signed = {"project": project, "made by": author, "checked by": checker}
+    _write(file, name, done, signed, terminal)
     leave(done.error)
 
 
 def _require_sense(
-    subject: str,
-    motion: MotionRequest,
-    overrides: tuple[str, ...],
-    *,
-    study: bool,
-    stored: bool,
+    subject: str, motion: Asked, overrides: tuple[str, ...], kind: str, *, stored: bool
 ) -> None:
     """Refuse options that the subject does not take."""
     if stored and overrides:
         raise UsageError(f"{subject}: stored results keep the values they have; leave --set out")
-    if (study or stored) and motion != MotionRequest():
-        reason = "a study has records of its own" if study else "a stored history has its record"
+    if (kind != HISTORY or stored) and motion != ((), MotionRequest()):
+        reason = "a stored history has its record"
+        if kind != HISTORY:
+            reason = f"a {'study' if kind == SWEEP else 'design'} has records of its own"
         raise UsageError(f"{subject}: {reason}; leave --record, --vertical and --scale out")
 
 
@@ -135,12 +160,14 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
         )
 
 
-def _write(file: Path, name: str, done: PageDone, terminal: Terminal) -> None:
+def _write(
+    file: Path, name: str, done: PageDone, signed: dict[str, str | None], terminal: Terminal
+) -> None:
     from rpscli.report.html.page import MOST_BYTES, page
 
     made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
     subtitle = f"{done.subtitle}. Made by rps {program_version()} on {made}."
-    content = page(done.title, subtitle, done.sections, name)
+    content = page(done.title, subtitle, done.sections, name, signed)
     write_whole({file: content})
     if len(content) > MOST_BYTES:
         terminal.warn([f"{file} has {1e-6 * len(content):.1f} MB: too many figures for a page"])

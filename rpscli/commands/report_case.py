@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rpscli.analyses.result_quantities import plain
 from rpscli.commands.inputs import CaseInput, MotionRequest, case_heading
@@ -16,7 +16,12 @@ from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation
-from rpscli.commands.timehistory_run import HistoryRequest, HistoryResult, compute, history_requests
+from rpscli.commands.timehistory_run import (
+    HistoryRequest,
+    compute,
+    history_requests,
+    look_beside,
+)
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
@@ -25,11 +30,16 @@ from rpscli.report.html.page import Block, Notice, Section, page_look
 from rpscli.report.table import Table
 
 if TYPE_CHECKING:
+    from rpscli.case.case import Case
     from rpscli.case.conditions import Condition
     from rpscli.errors import RpsError
 
 SUMMARY = "summary.json"
-HISTORY, SWEEP = "timehistory", "sweep"
+HISTORY, SWEEP, DESIGN = "timehistory", "sweep", "design"
+
+
+Asked: TypeAlias = tuple[Sequence[str], MotionRequest]
+"""Sources of records as they were typed, and what else the command line said of them."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +55,12 @@ class Earlier:
         name = self.run["file"]
         return None if name is None else _shortened(self.folder / name)
 
+    @property
+    def records(self) -> list[dict[str, Any]]:
+        """The motions of one history, or of several."""
+        inputs = self.run["inputs"]
+        return list(inputs["records"]) if "records" in inputs else [inputs["record"]]
+
 
 def earlier_results(folder: Path) -> Earlier:
     """What a folder holds."""
@@ -54,10 +70,11 @@ def earlier_results(folder: Path) -> Earlier:
         command, inputs = run["command"], run["inputs"]
         needed = [*(run[key] for key in ("file", "name", "sha256")), inputs["overrides"]]
         if command == HISTORY:
-            record = inputs["record"]
-            needed += [inputs["case"], record["scale"], record["vertical"]]
-            needed += [record["horizontal"][key] for key in ("source", "sha256")]
-        if command in {HISTORY, SWEEP}:
+            needed.append(inputs["case"])
+            for record in Earlier(folder, run).records:
+                needed += [record["scale"], record["vertical"]]
+                needed += [record["horizontal"][key] for key in ("source", "sha256")]
+        if command in {HISTORY, SWEEP, DESIGN}:
             return Earlier(folder, run)
     except (OSError, ValueError, TypeError, KeyError):
         pass  # told below, together with folders of other commands
@@ -65,22 +82,27 @@ def earlier_results(folder: Path) -> Earlier:
     hint = f"; name one of the folders in it, such as {inside[0]}" if inside else ""
     what = f"holds results of `rps {command}`" if command else f"has no {RUN_FILE} of rps"
     raise UsageError(
-        f"{folder}: {what}, and a report is made of one time history or one study{hint}"
+        f"{folder}: {what}, and a report is made of time histories of one case, of one study or of"
+        f" one design{hint}"
     )
 
 
-def is_study(source: str) -> bool:
-    """Whether a file is a study: these have a case at their base."""
+def kind_of(source: str) -> str:
+    """The command that runs a file: studies and designs have a case at their base."""
     if source == "-":
-        return False
+        return HISTORY
+    from rpscli.case.text.document import is_design
     from rpscli.case.text.files import read_text
     from rpscli.case.text.yaml_text import read_yaml
 
-    return "base" in read_yaml(read_text(source), source).content
+    document = read_yaml(read_text(source), source)
+    if is_design(document):
+        return DESIGN
+    return SWEEP if "base" in document.content else HISTORY
 
 
-def earlier_case(earlier: Earlier) -> tuple[CaseInput, MotionRequest]:
-    """The case and the motion of earlier results, as they were then."""
+def earlier_case(earlier: Earlier) -> tuple[CaseInput, list[MotionRequest]]:
+    """The case and the motions of earlier results, as they were then."""
     from rpscli.case.case import parse_case
 
     run, file = earlier.run, earlier.file
@@ -88,16 +110,21 @@ def earlier_case(earlier: Earlier) -> tuple[CaseInput, MotionRequest]:
     name = str(file or f"{run['name']}.yaml")
     # JSON is YAML too.
     case = parse_case(json.dumps(run["inputs"]["case"]), name=name, folder=folder)
-    case = replace(case, digest=run["sha256"])
+    case = replace(case, digest=run["sha256"], written={})
     request = CaseRequest(name, tuple(run["inputs"]["overrides"]))
-    given, own = run["inputs"]["record"], case.record
+    motions = [_earlier_motion(case, record) for record in earlier.records]
+    return CaseInput(case, request), motions
+
+
+def _earlier_motion(case: Case, given: Mapping[str, Any]) -> MotionRequest:
+    own = case.record
     horizontal, vertical = (
         None if given[name] is None else str(given[name]["source"])
         for name in ("horizontal", "vertical")
     )
     if own is not None and own.source == horizontal:
         horizontal, vertical = None, None if vertical == own.vertical else vertical
-    return CaseInput(case, request), MotionRequest(horizontal, vertical, given["scale"])
+    return MotionRequest(horizontal, vertical, given["scale"])
 
 
 def _shortened(path: Path) -> Path:
@@ -120,30 +147,53 @@ class PageDone:
 
 def case_page(
     given: CaseInput,
-    motion: MotionRequest,
+    motions: Sequence[MotionRequest],
+    asked: Sequence[Asked],
     conditions: Sequence[Condition],
     look: Look,
     earlier: Earlier | None,
     terminal: Terminal,
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
-    from rpscli.report.html.case_page import History, case_sections
+    from rpscli.commands.timehistory_set import (
+        all_document,
+        computed_set,
+        set_document,
+        set_error,
+        set_tables,
+    )
+    from rpscli.report.html.case_page import History, Several, case_sections
 
-    case = given.case
-    made = partial(case_sections, case, given.request.overrides, _commands(given, motion), look)
-    if case.record is None and motion.record is None:
+    case, commands = given.case, _commands(given, asked)
+    made = partial(case_sections, case, given.request.overrides, commands, look)
+    if case.record is None and motions[0].record is None:
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
         sections = made(case.warnings)
         return PageDone(case.title, "Structure", sections, concluded(document, None), None)
     # A place for the files, which are not written there.
-    (request,) = history_requests([given], [motion], OutputRequest(Path(), force=True))
+    requests = history_requests([given], motions, OutputRequest(Path(), force=True))
     announce_compilation(terminal, moving=True)
+    if len(requests) > 1:
+        quiet = replace(look, formats=())
+        found = computed_set(requests, conditions, quiet, terminal, None, written=False)
+        error = set_error([found])
+        document = all_document([found], error)
+        terminal.warn(document["warnings"])
+        stored = () if earlier is None else _stored(earlier, requests, set_document(found))
+        worst = max(found.histories, key=lambda each: each.demands["rotation_ratio"]).request
+        done, result = compute(worst, conditions, page_look(look), terminal)
+        history = History(worst.ground, result, done.verdicts, _files(worst))
+        grounds = [request.ground for request in requests]
+        several = Several(grounds, found.verdicts, [*set_tables([found])][1:], history)
+        title, warnings = f"Time histories under {len(requests)} records", document["warnings"]
+        return PageDone(case.title, title, made(warnings, several, stored), document, error)
+    (request,) = requests
     done, result = compute(request, conditions, page_look(look), terminal)
+    beside = look_beside(done, result)
     warnings = done.document["warnings"]
     terminal.warn(warnings)
-    stored = () if earlier is None else _stored(earlier, request, done)
-    files = [(path.name, content) for path, content in request.folder.contents.items()]
-    history = History(request.ground, result, done.verdicts, files)
+    stored = () if earlier is None else _stored(earlier, requests, done.document)
+    history = History(request.ground, result, done.verdicts, _files(request), beside)
     return PageDone(
         case.title,
         f"Time history under {result.record.name}",
@@ -153,33 +203,45 @@ def case_page(
     )
 
 
+def _files(request: HistoryRequest) -> list[tuple[str, object]]:
+    return [(path.name, content) for path, content in request.folder.contents.items()]
+
+
 def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
     """A case or a study on a command line, with what is put over it."""
     return [source, *(word for override in overrides for word in ("--set", override))]
 
 
-def _commands(given: CaseInput, motion: MotionRequest) -> list[list[str]]:
+def _commands(given: CaseInput, asked: Sequence[Asked]) -> list[list[str]]:
     """That make the same again."""
     words = subject_words(given.request.source, given.request.overrides)
-    options = {
-        "--record": motion.record,
-        "--vertical": motion.vertical,
-        "--scale": None if motion.scale is None else repr(motion.scale),
-        "--scale-to": motion.scale_to,
-    }
-    for option, value in options.items():
-        words += [] if value is None else [option, value]
-    without = given.case.record is None and motion.record is None
-    return [["rps", command, *words] for command in ("timehistory", "report")[without:]]
+    if given.case.record is None and not any(records for records, _ in asked):
+        return [["rps", "report", *words]]
+    return [
+        ["rps", command, *words, *_motion_words(*each)]
+        for command in ("timehistory", "report")
+        for each in asked
+    ]
 
 
-def _stored(earlier: Earlier, request: HistoryRequest, done: HistoryResult) -> list[Block]:
-    """Whether case, record and results are those of the stored results."""
+def _motion_words(records: Sequence[str], motion: MotionRequest) -> list[str]:
+    options = [("--record", record) for record in records]
+    options += [("--vertical", motion.vertical)] if motion.vertical else []
+    options += [] if motion.scale is None else [("--scale", repr(motion.scale))]
+    options += [("--scale-to", motion.scale_to)] if motion.scale_to else []
+    return [word for option in options for word in option]
+
+
+def _stored(
+    earlier: Earlier, requests: Sequence[HistoryRequest], document: Mapping[str, Any]
+) -> list[Block]:
+    """Whether case, records and results are those of the stored results."""
     found: list[Block] = []
     file = earlier.file
-    known = earlier.run["inputs"]["record"]["horizontal"]["sha256"]
-    if request.ground.horizontal.digest != known:
-        found.append(Notice("The record is not the one of the stored results any more."))
+    for request, record in zip(requests, earlier.records, strict=True):
+        if request.ground.horizontal.digest != record["horizontal"]["sha256"]:
+            text = f"The record {request.label} is not the one of the stored results any more."
+            found.append(Notice(text))
     if file is not None:
         try:
             now = hashlib.sha256(file.read_bytes()).hexdigest()
@@ -189,7 +251,7 @@ def _stored(earlier: Earlier, request: HistoryRequest, done: HistoryResult) -> l
             state = "has changed since" if now else "is not there any more"
             found.append(Notice(f"{file} {state}; this page keeps to the case in run.json."))
     if (earlier.folder / SUMMARY).exists():
-        found += compared(earlier.folder, done.document)
+        found += compared(earlier.folder, document)
     return found
 
 

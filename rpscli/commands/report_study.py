@@ -118,7 +118,7 @@ def _sections(
         statistics = Section(
             "Statistics", [*summary_tables(run.summary), of_first_system(run.layout), *found.parts]
         )
-        results = [motions_section(*_motions(study), study.title, look), statistics, *results]
+        results = [motions_section(*motions_of(study), study.title, look), statistics, *results]
     which = []
     if (systems := len(layout.combinations)) > 1:
         values = zip(layout.plan.keys, layout[0].values, strict=True)
@@ -129,7 +129,10 @@ def _sections(
         f"Every point is stored in {folder}; points.csv there has them all, failed.csv the"
         " command that computes each failed point alone."
     )
-    short, inputs = _in_short(run, found, notes), _input(study, first)
+    short, inputs = (
+        _in_short(run, found, notes),
+        study_input(study, first, "The case" if systems == 1 else "Its first system"),
+    )
     repeat = [*repeated(["rps", "sweep", *words], ["rps", "report", *words]), stored]
     return page_sections(first, study.title, look, short, inputs, results, repeat, which)
 
@@ -154,7 +157,7 @@ def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator
     yield from notices(texts)
 
 
-def _motions(study: Study) -> tuple[list[GroundMotion], list[str]]:
+def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     """The records before they are scaled, and why some cannot be read."""
     layout, motions, reasons = study.layout, [], []
     own = [properties.record for properties in layout.properties if None in layout.records]
@@ -174,11 +177,12 @@ def _caption(study: Study, stem: str) -> str:
     return f"{request.kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
 
 
-def _input(study: Study, first: Case) -> Iterator[Block]:
+def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
+    """The file as it is written, and a case of it."""
     checked, plan = study.layout.study, study.layout.plan
     yield Table.listing(
         [
-            ("study", checked.source),
+            ("file", checked.source),
             ("SHA-256 of its text", checked.digest),
             ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
             ("overridden values", ", ".join(study.overrides)),
@@ -186,8 +190,7 @@ def _input(study: Study, first: Case) -> Iterator[Block]:
             ("made by", programs()),
         ]
     )
-    yield "The study as it is written:"
+    yield "What it says:"
     yield input_table(checked.document.content)
-    which = "The case" if len(study.layout.combinations) == 1 else "Its first system"
-    yield f"{which} in SI units, with all defaults:"
-    yield input_table(first.document)
+    yield f"{which}, as it is written and in SI units, with all defaults:"
+    yield input_table(first.document, first.written)

@@ -14,7 +14,7 @@ from rpscli.case.conditions import (
     case_conditions,
     with_friction,
 )
-from rpscli.commands.inputs import RESULTS, case_folder, write
+from rpscli.commands.inputs import RESULTS, case_folder, motion_inputs, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal
@@ -86,21 +86,10 @@ def run_all(
     """Compute all histories, and write each as soon as it is over."""
     cases = [list(group) for _, group in groupby(requests, lambda request: request.case_label)]
     folders = [_set_folder(group, output, alone=len(cases) == 1) for group in cases]
-    computed = []
-    for group, folder in zip(cases, folders, strict=True):
-        histories = []
-        for request in group:
-            done, _ = compute(request, conditions, look, terminal)
-            add_summary(done)
-            request.folder.write()
-            histories.append(done)
-        outcomes = [history.document["outcome"] for history in histories]
-        sources = [request.ground.horizontal.source for request in group]
-        records = Records.of(outcomes, [history.demands for history in histories], sources)
-        judged = group[0].given.case
-        limits = with_friction(case_conditions(judged.limits), judged.structure)
-        found = judged_records(records, [each.label for each in group], [*limits, *conditions])
-        computed.append(Computed(histories, summary_of_records(records), found, folder))
+    computed = [
+        computed_set(group, conditions, look, terminal, folder)
+        for group, folder in zip(cases, folders, strict=True)
+    ]
     for case in computed:
         if case.folder is None:
             terminal.note(f"written to {case.first.folder.folder}")
@@ -108,13 +97,39 @@ def run_all(
         scalars = [history.document for history in case.histories]
         case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
         case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
-        case.folder.add("summary.json", json_text({**heading(), **_set_document(case)}))
+        case.folder.add("summary.json", json_text({**heading(), **set_document(case)}))
         write(case.folder, terminal)
-    error = _error(computed)
-    document = _document(computed, error)
+    error = set_error(computed)
+    document = all_document(computed, error)
     terminal.warn_first(document["warnings"], "in the documents")
-    terminal.result(document, _tables(computed))
+    terminal.result(document, set_tables(computed))
     leave(error)
+
+
+def computed_set(
+    group: Sequence[HistoryRequest],
+    conditions: Sequence[Condition],
+    look: Look,
+    terminal: Terminal,
+    folder: OutputFolder | None,
+    *,
+    written: bool = True,
+) -> Computed:
+    """Compute the histories of one case, each written as soon as it is over, and judge them."""
+    histories = []
+    for request in group:
+        done, _ = compute(request, conditions, look, terminal)
+        if written:
+            add_summary(done)
+            request.folder.write()
+        histories.append(done)
+    outcomes = [history.document["outcome"] for history in histories]
+    sources = [request.ground.horizontal.source for request in group]
+    records = Records.of(outcomes, [history.demands for history in histories], sources)
+    judged = group[0].given.case
+    limits = with_friction(case_conditions(judged.limits), judged.structure)
+    found = judged_records(records, [each.label for each in group], [*limits, *conditions])
+    return Computed(histories, summary_of_records(records), found, folder)
 
 
 def _set_folder(
@@ -129,10 +144,16 @@ def _set_folder(
     place = RESULTS / first.case_label / COMMAND / name
     if output.place is not None:
         place = output.place if alone else output.place / first.case_label
-    return case_folder(first.given, OutputRequest(place, output.force), COMMAND, record_source=name)
+    return case_folder(
+        first.given,
+        OutputRequest(place, output.force),
+        COMMAND,
+        record_source=name,
+        records=[motion_inputs(request.ground) for request in group],
+    )
 
 
-def _error(computed: Sequence[Computed]) -> RpsError | None:
+def set_error(computed: Sequence[Computed]) -> RpsError | None:
     """What ends the command: failed histories, else limits that are exceeded."""
     lines = [
         f"{history.request.name}: {history.error}"
@@ -150,9 +171,10 @@ def _error(computed: Sequence[Computed]) -> RpsError | None:
     return LimitExceeded("\n".join(lines)) if lines else None
 
 
-def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str, Any]:
+def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[str, Any]:
+    """All histories and sets in JSON."""
     histories = [history for case in computed for history in case.histories]
-    files = [file for history in histories for file in history.document["files"]]
+    files = [file for history in histories for file in history.document.get("files", ())]
     files += [file for case in computed if case.folder is not None for file in case.folder.files]
     warnings = [
         f"{history.request.name}: {text}"
@@ -164,14 +186,15 @@ def _document(computed: Sequence[Computed], error: RpsError | None) -> dict[str,
         "command": COMMAND,
         "note": ONE_DIRECTION,
         "histories": [history.document for history in histories],
-        "sets": [_set_document(case) for case in computed],
+        "sets": [set_document(case) for case in computed],
         "warnings": warnings,
         "files": files,
     }
     return concluded(document, error)
 
 
-def _set_document(case: Computed) -> dict[str, Any]:
+def set_document(case: Computed) -> dict[str, Any]:
+    """What the records of a case say together."""
     return {
         "case": case.histories[0].document["case"],
         "records": case.labels,
@@ -180,7 +203,8 @@ def _set_document(case: Computed) -> dict[str, Any]:
     }
 
 
-def _tables(computed: Sequence[Computed]) -> Iterator[Part]:
+def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
+    """Every record, mean and largest, and the verdicts."""
     for case in computed:
         yield Heading(case.first.given.case.title)
         if aims := dict.fromkeys(

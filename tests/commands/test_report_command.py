@@ -160,16 +160,13 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
         (("empty",), "has no run.json of rps"),
         (("above",), "name one of the folders in it"),
         (("modes",), "holds results of `rps modal`"),
-        (("set",), "name one of the folders in it, such as set/"),
     ],
 )
 def test_what_makes_no_page_is_said(
     rps: Invoke, study: str, arguments: tuple[str, ...], said: str
 ) -> None:
-    pulses = [f"--record=pulse:sine?amplitude={size}g&period=1" for size in (0.1, 0.2)]
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     rps("timehistory", "small.yaml", "-o", "above/one", "--figures", "none")
-    rps("timehistory", "small.yaml", "-o", "set", *pulses, "--figures", "none")
     rps("modal", "small.yaml", "-o", "modes", "--figures", "none")
     Path("empty").mkdir()
     result = rps("report", *arguments)
@@ -196,3 +193,101 @@ def test_a_study_that_is_stopped_goes_on(
     assert "the same command goes on" in result.stderr
     assert not Path("out.html").exists()
     assert rps("report", study, "-o", "out.html").exit_code in {0, 10}
+
+
+PULSES = [f"--record=pulse:sine?amplitude={size}g&period=1" for size in (0.2, 0.3)]
+
+
+def test_several_records_are_on_one_page(rps: Invoke, rps_json: Callable[..., Any]) -> None:
+    """Every record, mean and largest: the numbers of the time histories."""
+    document = rps_json("report", "small.yaml", *PULSES, "--scale", "1.1", "-o", "out.html")
+    text = text_of("out.html")
+    found = rps_json("timehistory", "small.yaml", *PULSES, "--scale", "1.1", "-o", "set")
+    assert document["sets"] == found["sets"]
+    demands = found["sets"][0]["demands"]["rotation_ratio"]
+    for name in ("mean_of_maxima", "largest"):
+        assert shown(demands[name]) in text
+    assert "mean of maxima" in text
+    assert "Time histories under 2 records" in text
+    worst = max(found["histories"], key=lambda each: each["rotation_ratio"])
+    assert f"turns the columns most, {worst['record']['name']}" in text
+    assert "--scale 1.1" in text
+    # The folder of these makes the same page, and knows that it is the same.
+    assert rps("report", "set", "-o", "again.html").exit_code == 0
+    again = text_of("again.html")
+    same = re.search(r"(\d+) of (\d+) stored results are the same to the last digit", again)
+    assert same
+    assert int(same[1]) == int(same[2]) > 4
+    assert again.count("--scale 1.1") == 4  # two commands for each record
+
+
+def test_a_single_history_says_that_it_is_one(rps_json: Callable[..., Any]) -> None:
+    document = rps_json("report", "small.yaml", "-o", "out.html")
+    text = text_of("out.html")
+    assert "one history: with 1 % less or more motion" in text
+    assert "judge by several records" in text
+    assert "restitution at impact: e = " in text
+    assert "one horizontal direction at a time" in text.lower()
+    assert len(document["neighbours"]) == 7
+
+
+def test_values_stand_as_they_were_written(rps: Invoke) -> None:
+    rps("report", "small.yaml", "-o", "out.html", "--set", "superstructure.storey_mass=210 t")
+    assert "superstructure.storey_mass 210 t 210000" in text_of("out.html")
+    rps("timehistory", "small.yaml", "-o", "old", "--set", "superstructure.storey_mass=210 t")
+    rps("report", "old", "-o", "again.html")
+    assert "superstructure.storey_mass 210000" in text_of("again.html")
+
+
+def test_whoever_signs_is_named_or_signs_on_paper(rps: Invoke) -> None:
+    rps("report", "small.yaml", "-o", "out.html", "--project", "17 <b>", "--checker", "C. Hecker")
+    text = text_of("out.html")
+    assert "project 17 &lt;b&gt; made by date, signature: checked by C. Hecker" in text
+    assert 'class="signed"' in Path("out.html").read_text(encoding="utf-8")
+    rps("report", "small.yaml", "-o", "bare.html")
+    assert 'class="signed paper"' in Path("bare.html").read_text(encoding="utf-8")
+
+
+DESIGN = """\
+rps: 1
+title: A small design
+base: small.yaml
+variables: {podium.bearing.semi_diagonal: [1.0, 2.0]}
+minimise: podium.bearing.semi_diagonal
+records: [{source: "synthetic:?pga=0.5g&duration=4&dt=0.02", seed: [1, 2, 3, 4]}]
+limits: {rotation_ratio: 0.9}
+search: {first: 4, most: 8}
+validate: {share: 0.25}
+"""
+
+
+SOFT = ("--set", "podium.impact.factor=0.5")
+"""A restitution below 0.5, so that what half of the loss makes of the design is shown."""
+
+
+def test_a_design_has_a_page(rps: Invoke) -> None:
+    Path("design.yaml").write_text(DESIGN, encoding="utf-8")
+    result = rps("report", "design.yaml", "-o", "out.html", "--json", *SOFT)
+    document = json.loads(result.stdout)
+    text = text_of("out.html")
+    assert f"Design: {document['designs']['looked_at']} looked at" in text
+    assert "rps design design.yaml --set podium.impact.factor=0.5" in text
+    found = document["robust"] or document["best"]
+    value = f"{found['values']['podium.bearing.semi_diagonal']:.10g}"
+    assert f"podium.bearing.semi_diagonal {value} {value} m" in text
+    assert "the same design with podium.impact.loss 0.5" in text
+    options = (*SOFT, f"--set=podium.bearing.semi_diagonal={value}", "--set=podium.impact.loss=0.5")
+    seeds = (f"--record=synthetic:?pga=0.5g&duration=4&dt=0.02&seed={n}" for n in (1, 2, 3, 4))
+    alone = json.loads(rps("timehistory", "small.yaml", *options, *seeds, "--json").stdout)
+    ratios = [each["rotation_ratio"] for each in alone["histories"]]
+    (verdict,) = document["other_loss"]
+    assert verdict["counted"] == 3  # one is held back
+    assert verdict["value"] in ratios
+    done = rps("design", "design.yaml", "--figures", "none", *SOFT)
+    assert done.exit_code == result.exit_code
+    again = rps("report", "results/design/design", "-o", "again.html")
+    assert again.exit_code == result.exit_code
+    assert "A small design" in text_of("again.html")
+    refused = rps("report", "design.yaml", "--record", "x.at2")
+    assert "a design has records of its own" in refused.stderr
+    assert "limits of its own" in rps("report", "design.yaml", "--fail-on", "uplift").stderr

@@ -6,15 +6,18 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import NamedTuple
 
+from rpscli.analyses.neighbours import Neighbour
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.case.case import Case
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import intensity_measures
+from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.figures.look import Look
 from rpscli.report.html.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.html.sections import (
     input_table,
     motion_pictures,
+    motions_section,
     notices,
     page_sections,
     programs,
@@ -25,8 +28,10 @@ from rpscli.report.table import Table
 from rpscli.report.tables.motions import record_table
 from rpscli.report.tables.timehistory import (
     limits_table,
+    neighbours_texts,
     outcome_table,
     outcome_text,
+    restitution_text,
     storeys_table,
 )
 from rpscli.sweep.statistics.verdicts import Verdict
@@ -44,12 +49,79 @@ CAPTIONS = {
 
 
 class History(NamedTuple):
-    """What came of a case under a motion, and the files of it by name."""
+    """What came of a case under a motion, the files of it by name, and histories beside it."""
 
     ground: MotionComponents
     result: TimeHistoryResult
     verdicts: Sequence[Verdict]
     files: Iterable[tuple[str, object]]
+    beside: Sequence[Neighbour] = ()
+
+    @property
+    def grounds(self) -> list[MotionComponents]:
+        """Its motion."""
+        return [self.ground]
+
+    def short(self) -> Iterator[Block]:
+        """Outcome and verdicts, and how much a single history says."""
+        yield f"Outcome: {outcome_text(self.result)}."
+        if self.result.failure:
+            yield Notice(self.result.failure)
+        if self.verdicts:
+            yield verdicts_in_short(self.verdicts, f"{len(self.verdicts)} limits")
+            yield limits_table(self.verdicts)
+        else:
+            yield "No limits were set."
+        yield restitution_text(self.result.structure)
+        yield from map(Notice, neighbours_texts(self.result, self.beside))
+        yield f"{ONE_DIRECTION.capitalize()}."
+
+    def sections(self, look: Look) -> list[Section]:
+        """Motion and response."""
+        result = self.result
+        building = result.structure.superstructure
+        motions = [motion_pictures(each, look, building) for each in self.ground.named.values()]
+        measured = record_table(result.record, intensity_measures(result.record))
+        tables = [outcome_table(result)]
+        tables += [storeys_table(result)] * bool(result.structure.storeys)
+        return [
+            Section("Ground motion", [measured, *motions]),
+            Section("Response", [*tables, *self.drawn(*CAPTIONS)]),
+        ]
+
+    def drawn(self, *names: str) -> list[Block]:
+        """Its figures."""
+        drawn = pictures(self.files)
+        return [Picture(files, CAPTIONS[stem]) for stem, files in drawn if stem in names]
+
+
+class Several(NamedTuple):
+    """What came of a case under several motions: their tables, and the history that turns most."""
+
+    grounds: Sequence[MotionComponents]
+    verdicts: Sequence[Verdict]
+    parts: Sequence[Block]
+    worst: History
+
+    def short(self) -> Iterator[Block]:
+        """Each record, mean and largest, and verdicts."""
+        if self.verdicts:
+            yield verdicts_in_short(self.verdicts, f"{len(self.verdicts)} limits")
+        else:
+            yield "No limits were set."
+        yield from self.parts
+
+    def sections(self, look: Look) -> list[Section]:
+        """Motions, and the response to the one that turns the columns most."""
+        result, title = self.worst.result, self.worst.result.record.name
+        motions = [each.horizontal for each in self.grounds]
+        tables = [outcome_table(result)]
+        tables += [storeys_table(result)] * bool(result.structure.storeys)
+        name = f"Response to the record that turns the columns most, {title}"
+        return [
+            motions_section(motions, [], title, look, "as they were scaled"),
+            Section(name, [*tables, *self.worst.drawn("rotation", "storey_shears")]),
+        ]
 
 
 def case_sections(
@@ -58,49 +130,33 @@ def case_sections(
     commands: Sequence[Sequence[str]],
     look: Look,
     warnings: Sequence[str],
-    history: History | None = None,
+    history: History | Several | None = None,
     stored: Sequence[Block] = (),
 ) -> list[Section]:
-    """Everything about a case, and its history if there is one; `stored` says what was before."""
-    short, results, ground = _outcome(history), list[Section](), None
+    """Everything about a case, and its histories if there are any; `stored`: what was before."""
+    short: Iterable[Block] = [
+        "The case names no ground motion: this page ends with what follows without one."
+    ]
+    results, grounds = list[Section](), list[MotionComponents]()
     if history is not None:
-        result, ground = history.result, history.ground
-        tables = [outcome_table(result)]
-        tables += [storeys_table(result)] * bool(result.structure.storeys)
-        drawn = [Picture(files, CAPTIONS[stem]) for stem, files in pictures(history.files)]
-        building = result.structure.superstructure
-        motions = [motion_pictures(each, look, building) for each in ground.named.values()]
-        measured = record_table(result.record, intensity_measures(result.record))
-        results.append(Section("Ground motion", [measured, *motions]))
-        results.append(Section("Response", [*tables, *drawn]))
-    inputs, repeat = _input(case, overrides, ground), [*repeated(*commands), *stored]
+        short, results, grounds = history.short(), history.sections(look), [*history.grounds]
+    inputs, repeat = _input(case, overrides, grounds), [*repeated(*commands), *stored]
     short = chain(short, notices(warnings))
     return page_sections(case, case.title, look, short, inputs, results, repeat)
 
 
-def _outcome(history: History | None) -> Iterator[Block]:
-    if history is None:
-        yield "The case names no ground motion: this page ends with what follows without one."
-        return
-    yield f"Outcome: {outcome_text(history.result)}."
-    if history.result.failure:
-        yield Notice(history.result.failure)
-    if history.verdicts:
-        yield verdicts_in_short(history.verdicts, f"{len(history.verdicts)} limits")
-        yield limits_table(history.verdicts)
-    else:
-        yield "No limits were set."
-
-
 def _input(
-    case: Case, overrides: Sequence[str], ground: MotionComponents | None
+    case: Case, overrides: Sequence[str], grounds: Sequence[MotionComponents]
 ) -> Iterator[Block]:
     motions = {}
-    if ground is not None:
+    for number, ground in enumerate(grounds, 1):
         for component, each in ground.named.items():
             name = f"{component} record".removeprefix("horizontal ")
+            # The table of several records has their digests.
+            name += f" {number}" * (len(grounds) > 1)
             motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
-            motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
+            if len(grounds) == 1:
+                motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
     yield Table.listing(
         [
             ("case", case.source),
@@ -110,5 +166,5 @@ def _input(
             ("made by", programs()),
         ]
     )
-    yield "The case in SI units, with all defaults:"
-    yield input_table(case.document)
+    yield "The case as it is written and in SI units, with all defaults:"
+    yield input_table(case.document, case.written)

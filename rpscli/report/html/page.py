@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from xml.etree import ElementTree as ET
@@ -185,8 +185,17 @@ class Section:
     blocks: Sequence[Block]
 
 
-def page(title: str, subtitle: str, sections: Sequence[Section], name: str) -> bytes:
-    """The file of a page: sections that hold something; by `name` a later page knows its own."""
+def page(
+    title: str,
+    subtitle: str,
+    sections: Sequence[Section],
+    name: str,
+    signed: Mapping[str, str | None] | None = None,
+) -> bytes:
+    """The file of a page: sections that hold something; by `name` a later page knows its own.
+
+    `signed` says who answers for it; what is not known is left to be filled in on paper.
+    """
     kept = [section for section in sections if section.blocks]
     shown = [block for s in kept for block in s.blocks if isinstance(block, Picture)]
     drawn = iter(figures(shown, FOR_FIGURES))
@@ -196,12 +205,28 @@ def page(title: str, subtitle: str, sections: Sequence[Section], name: str) -> b
     ]
     body = element(
         "body",
-        element("header", element("h1", title), element("p", subtitle)),
+        element("header", element("h1", title), element("p", subtitle), _signatures(signed or {})),
         element("nav", element("ol", links)),
         element("main", [_section(s, place, drawn) for place, s in enumerate(kept, 1)]),
     )
     root = element("html", _head(title, name), body, lang="en")
     return ("<!DOCTYPE html>\n" + written(root) + "\n").encode("utf-8", "backslashreplace")
+
+
+def _signatures(signed: Mapping[str, str | None]) -> Element | None:
+    """Who made and who checked the page, with room for dates and signatures; else on paper only."""
+    if not signed:
+        return None
+
+    def cells(name: str, text: str) -> list[Element]:
+        if name == "project":
+            return [element("td", text, colspan="2")]
+        return [element("td", text), element("td", "date, signature:")]
+
+    rows = [
+        element("tr", element("th", name), cells(name, text or "")) for name, text in signed.items()
+    ]
+    return element("table", rows, class_="signed" if any(signed.values()) else "signed paper")
 
 
 def is_about(content: bytes, name: str) -> bool:

@@ -62,9 +62,13 @@ def _picture(draw: Draw, look: Look, caption: str) -> Picture:
 
 
 def motions_section(
-    motions: Sequence[GroundMotion], unreadable: Sequence[str], title: str, look: Look
+    motions: Sequence[GroundMotion],
+    unreadable: Sequence[str],
+    title: str,
+    look: Look,
+    which: str = "before they are scaled",
 ) -> Section:
-    """Records of a study before they are scaled: peaks, digests and spectra."""
+    """Records of a study, or of several histories: peaks, digests and spectra."""
     blocks: list[Block] = [*unreadable]
     if motions:
         blocks.append(_table(motions[:MOST_ROWS]))
@@ -73,7 +77,7 @@ def motions_section(
             _picture(
                 lambda: spectra_figure([_spectrum(each) for each in shown], title),
                 look,
-                f"Response spectra of {len(shown)} records before they are scaled, at"
+                f"Response spectra of {len(shown)} records {which}, at"
                 f" {style.percent(DAMPING)} of critical damping, with their median.",
             )
         )
@@ -171,17 +175,28 @@ def _storeys(structure: PodiumStructure) -> Table:
     columns = {
         "storey": np.arange(count) + 1,
         "height [m]": [None] * count if heights is None else heights,
-        "mass m_i [kg]": building.masses,
-        "stiffness k_i [N/m]": building.stiffnesses,
+        "mass m_i [t]": building.masses * 1e-3,
+        "stiffness k_i [kN/m]": building.stiffnesses * 1e-3,
         "first mode φ_i": shape,
     }
     return Table([Column(name, "-", each[::-1], name, _number) for name, each in columns.items()])
 
 
-def input_table(content: Mapping[str, Any]) -> Table:
-    """Every key of a case in SI units, defaults written out."""
+def input_table(content: Mapping[str, Any], written: Mapping[str, Any] | None = None) -> Table:
+    """Every key of a case in SI units, defaults written out, beside what the user wrote."""
     rows = [(key, _plain(value), unit(key).removeprefix("-")) for key, value in _leaves(content)]
-    return Table.of_texts(("key", "value", "unit"), rows, words=3)
+    if not written:
+        return Table.of_texts(("key", "value", "unit"), rows, words=3)
+    own = {key: _as_typed(value) for key, value in _leaves(written)}
+    beside = [(key, own.get(key, ""), *rest) for key, *rest in rows]
+    return Table.of_texts(("key", "as written", "value in SI", "unit"), beside, words=4)
+
+
+def _as_typed(value: object) -> str:
+    """A value of the file, lists of texts without their quotes."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_as_typed, value))}]"
+    return _plain(value)
 
 
 def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> list[Block]:

@@ -129,21 +129,6 @@ def _range(values: Sequence[float]) -> str:
     return " to ".join(dict.fromkeys((shown(min(values)), shown(max(values)))))
 
 
-def neighbours_table(found: Sequence[Neighbour]) -> Table:
-    """Histories beside the one shown."""
-    rows = [
-        (
-            f"motion x {each.factor:g}" if each.factor != 1.0 else f"impact loss {OTHER_LOSS:g}",
-            OUTCOMES[each.outcome],
-            shown(each.rotation_ratio),
-            shown(each.max_base_shear * 1e-3),
-        )
-        for each in found
-    ]
-    heads = ["beside it", "outcome", "rotation ratio", "base shear kN"]
-    return Table.of_texts(heads, rows, words=2)
-
-
 def outcome_table(result: TimeHistoryResult) -> Table:
     """The largest demands beside those of the fixed base."""
     rows = [
