@@ -159,13 +159,8 @@ def unit_of_text(written: str) -> Unit | None:
 
 
 def si_value(text: str, unit: str) -> float:
-    """Value in the SI unit `unit` of a text such as ``200 t`` or ``30 kN/mm``.
-
-    A ValueError's message continues a sentence that names the field and the text.
-
-    >>> si_value("200 t", "kg"), si_value("0.5 g", "m/s2")
-    (200000.0, 4.903325)
-    """
+    """Value in the SI unit `unit` of a text such as ``200 t`` or ``30 kN/mm``."""
+    # A ValueError's message continues a sentence that names the field and the text.
     kind, units = KINDS[unit]
     match = WITH_UNIT.match(text)
     if match is None:
@@ -180,11 +175,7 @@ def si_value(text: str, unit: str) -> float:
 
 
 def si_factor(written: str, unit: str) -> float:
-    """What a value in the unit `written` is multiplied by to be in the SI unit `unit`.
-
-    >>> si_factor("cm/s^2", "m/s2"), si_factor("kip", "N")
-    (0.01, 4448.2216152605)
-    """
+    """What a value in the unit `written` is multiplied by to be in the SI unit `unit`."""
     if written == "g" and unit == "m/s2":  # elsewhere a gram
         return STANDARD_GRAVITY
     kind, units = KINDS[unit]

@@ -101,11 +101,7 @@ def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str,
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON knows it: arrays as lists, complex numbers as [re, im], NaN as null.
-
-    >>> plain({"a": (1.0, float("inf")), "z": 1 + 2j})
-    {'a': [1.0, None], 'z': [1.0, 2.0]}
-    """
+    """A value as JSON knows it: arrays as lists, complex numbers as [re, im], NaN as null."""
     if type(value) is not float and hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, float):

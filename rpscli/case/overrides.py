@@ -34,12 +34,7 @@ def apply_overrides(
     label: str = "--set",
     model: type[BaseModel] = CaseFile,
 ) -> Document:
-    """A new document with values put over those that are written; null takes a key out.
-
-    >>> document = Document("a.yaml", {"podium": {"bearing": {"slenderness": 0.15}}})
-    >>> apply_overrides(document, ["podium.bearing.slenderness=0.2"]).content
-    {'podium': {'bearing': {'slenderness': 0.2}}}
-    """
+    """A new document with values put over those that are written; null takes a key out."""
     changed = replace(
         document,
         content=copy.deepcopy(document.content),

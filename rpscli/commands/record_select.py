@@ -327,14 +327,14 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
 def _tables(
     selection: Selection, why: str, left_out: Mapping[str, Mapping[str, int]]
 ) -> Iterator[Part]:
-    from rpscli.records.requirements import component_text
+    from rpscli.records.requirements import COMPONENTS
     from rpscli.report.tables.motions import selection_columns
 
     names = ("name", "event", "factor", "pgv", "pgd", "misfit", "clamped")
     yield Table(picked(selection_columns(selection), *names), words=2)
     target, errors, asked = selection.target, selection.errors, selection.requirements
     low, high = selection.periods[[0, -1]]
-    of = component_text(selection.of) + ("" if target.of else "; the target does not say")
+    of = COMPONENTS[selection.of] + ("" if target.of else "; the target does not say")
     by = f" ({target.pgv_by})" if target.pgv else ""
     rows = {
         "target": target.name,

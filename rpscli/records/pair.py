@@ -26,13 +26,7 @@ class Direction(NamedTuple):
 
 
 def direction_of(source: str) -> Direction | None:
-    """The pair and the angle of a source; None if it names no angle.
-
-    >>> direction_of("fema_p695:farfield/1?normalised&angle=30")
-    Direction(pair='fema_p695:farfield/1?normalised', angle=30.0)
-    >>> direction_of("fema_p695:farfield/1/a") is None
-    True
-    """
+    """The pair and the angle of a source; None if it names no angle."""
     match = _ANGLE.search(source)
     if match is None:
         return None
@@ -46,13 +40,7 @@ def angle_of(query: Query) -> float:
 
 
 def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMotion:
-    """What a structure sees whose plane stands at an angle to the first component.
-
-    >>> north = GroundMotion(np.array([2.0, 0.0]), 0.1, "n", "n.at2", "PEER AT2")
-    >>> east = GroundMotion(np.array([0.0, 4.0]), 0.1, "e", "e.at2", "PEER AT2")
-    >>> rotated(north, east, 30.0).acceleration.round(6).tolist()
-    [1.732051, 2.0]
-    """
+    """What a structure sees whose plane stands at an angle to the first component."""
     require_one_step(first, second, "second")
     cosine, sine = _exact_at_right_angles(angle)
     values = np.zeros(max(first.npts, second.npts))

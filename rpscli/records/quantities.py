@@ -46,13 +46,8 @@ def to_float(numeral: str) -> float:
 
 
 def numbers_in(line: str) -> list[float] | None:
-    """The finite numbers of a line that holds nothing else, or None.
-
-    >>> numbers_in("-.1234E-02-.5678E-03  .5D-1")
-    [-0.001234, -0.0005678, 0.05]
-    >>> numbers_in("0,005 0,123") is None, numbers_in("0.005, 0.123"), numbers_in("nan") is None
-    (True, [0.005, 0.123], True)
-    """
+    """The finite numbers of a line that holds nothing else, or None."""
+    # Commas separate if each field holds one number: decimal commas are not read as separators.
     # Commas separate if each field holds one number: decimal commas are not read as separators.
     if not _NUMERIC_LINE.fullmatch(line):
         return None
@@ -105,11 +100,7 @@ def _glued(fields: list[str]) -> list[float] | None:
 
 
 def canonical_unit(text: str) -> str | None:
-    """One of the known names for a unit of acceleration, or None if it is not one.
-
-    >>> canonical_unit("CM/SEC/SEC"), canonical_unit("m/s^2"), canonical_unit("cm/s")
-    ('cm/s2', 'm/s2', None)
-    """
+    """One of the known names for a unit of acceleration, or None if it is not one."""
     unit = re.sub(r"[\s()\[\]]", "", text.lower())
     unit = unit.replace("sec", "s").replace("²", "2").replace("**", "^").replace("^", "")
     unit = re.sub(r"/s/s$", "/s2", unit)

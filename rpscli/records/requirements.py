@@ -18,8 +18,7 @@ Component = Of | Literal["srss"]
 NOT_VERIFIED = "NOT VERIFIED"
 """How statements begin that nothing was found to check."""
 
-
-_COMPONENTS: dict[Component, str] = {
+COMPONENTS: dict[Component, str] = {
     "component": "single components",
     "rotd50": "RotD50 of pairs",
     "rotd100": "RotD100 of pairs, the maximum direction",
@@ -28,15 +27,7 @@ _COMPONENTS: dict[Component, str] = {
     "x": "first components of pairs",
     "srss": "SRSS of both components of pairs",
 }
-
-
-def component_text(of: Component) -> str:
-    """A definition of the component as readers see it.
-
-    >>> component_text("rotd100"), component_text("component")
-    ('RotD100 of pairs, the maximum direction', 'single components')
-    """
-    return _COMPONENTS[of]
+"""As readers see them."""
 
 
 class Periods(NamedTuple):
@@ -93,7 +84,7 @@ class Requirements:
         # 1e-6 of the ratios are for factors of six digits.
         found = [Rule(f"number of {noun}", f">= {self.count}", f"{number}", number >= self.count)]
         if self.of is not None:
-            texts = component_text(self.of), component_text(of)
+            texts = COMPONENTS[self.of], COMPONENTS[of]
             found.append(Rule("component", *texts, of == self.of))
         if self.level:
             same = level.lower() == self.level.lower() if level else None

@@ -142,29 +142,14 @@ def _step_matrices(
     """Map of (displacement, velocity) over a step, and of the ground acceleration at its ends."""
     # The system is extended by the acceleration and its slope, and the step is the unit of time:
     # the closed formulae lose all digits where w dt is small.
+    from scipy.linalg import expm
+
     k = w * dt
     system = np.zeros((4, 4))
     system[0, 1] = system[2, 3] = 1.0
     system[1, :3] = -(k**2), -2.0 * damping * k, -1.0
     units = np.array([1.0, 1.0 / dt])  # of displacement and velocity, in steps
-    grown = _exponential(system)
+    grown = np.asarray(expm(system), dtype=np.float64)
     a = grown[:2, :2] * units[:, None] / units
     level, slope = grown[:2, 2] * units * dt**2, grown[:2, 3] * units * dt**2
     return a, level - slope, slope
-
-
-def _exponential(system: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Of a small matrix: the series of a 2^n-th part, whose norm is below 1/2, squared n times.
-
-    >>> bool(np.allclose(_exponential(np.array([[0.0, 3.0], [0.0, 0.0]])), [[1, 3], [0, 1]]))
-    True
-    """
-    # A general routine solves equations, for which linear algebra packages start all threads.
-    halvings = max(0, math.ceil(math.log2(2.0 * np.abs(system).sum(axis=1).max())))
-    part, term, grown = system / 2.0**halvings, np.eye(len(system)), np.eye(len(system))
-    for order in range(1, 16):  # 0.5^16/16! is 1e-18
-        term = term @ part / order
-        grown += term
-    for _ in range(halvings):
-        grown = grown @ grown
-    return grown

@@ -169,14 +169,7 @@ def picked(columns: Iterable[Column], *names: str) -> list[Column]:
 
 
 def csv_text(columns: Sequence[Column]) -> str:
-    """The columns as CSV; numbers with ten significant digits, quotes where a cell needs them.
-
-    >>> print(csv_text([Column("time", "s", [0.0, 0.5]), Column("kind", "-", ["a, b", None])]))
-    time [s],kind [-]
-    0,"a, b"
-    0.5,
-    <BLANKLINE>
-    """
+    """The columns as CSV; numbers with ten significant digits, quotes where a cell needs them."""
     return "".join(csv_lines(columns))
 
 

@@ -120,6 +120,7 @@ def test_names_of_earthquakes() -> None:
     assert earthquake("NORTHRIDGE 1/17/94, MULHOL, 009") == "northridge 1994"
     assert earthquake("Kobe_ Japan, 1/16/1995, Nishi-Akashi, 0") == "kobe 1995"
     assert earthquake("Irpinia, Italy-01 1980") == "irpinia 1980"
+    assert earthquake("Chi-Chi, Taiwan-03 1999") == "chi-chi 1999"
     assert earthquake("") == ""
 
 

@@ -131,11 +131,7 @@ def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]
 
 @lru_cache(maxsize=1024)
 def unit(key: str) -> str:
-    """SI unit of a case key; ``-`` for plain numbers and words.
-
-    >>> unit("superstructure.period"), unit("podium.bearing.slenderness")
-    ('s', '-')
-    """
+    """SI unit of a case key; ``-`` for plain numbers and words."""
     found = next((mark.unit for mark in _marks_of(key) if isinstance(mark, Quantity)), "1")
     return "-" if found == "1" else found
 

@@ -114,12 +114,7 @@ for _tag, _pattern in PATTERNS.items():
 
 
 def read_yaml(text: str, name: str) -> Document:
-    r"""Read one YAML document whose root is a mapping.
-
-    >>> document = read_yaml("analysis:\n  recontact_tolerance: 1e-6\n", "a.yaml")
-    >>> document.content, str(document.value_place(("analysis", "recontact_tolerance")))
-    ({'analysis': {'recontact_tolerance': 1e-06}}, 'a.yaml:2:24')
-    """
+    r"""Read one YAML document whose root is a mapping."""
     root = _root(text, name)
     if root is None or (isinstance(root, ScalarNode) and not root.value):
         raise CaseError(f"{name}: the file is empty; `rps init` writes a case to start from")

@@ -259,19 +259,8 @@ _MADE = ("synthetic", "pulse")
 
 
 def at2_text(motion: GroundMotion) -> str:
-    """The content of the AT2 file of a motion, in g, to eight digits.
-
-    Its first line says that it is synthetic, or what it was converted from; DT is written with all
-    its digits.
-
-    >>> motion = GroundMotion([0.0, 9.80665], 0.01, "m", "m.txt", "one-column text")
-    >>> lines = at2_text(motion).splitlines()
-    >>> lines[0].partition(" BY ")[0]
-    'PEER AT2 LAYOUT, CONVERTED FROM ONE-COLUMN TEXT'
-    >>> lines[1:]  # doctest: +NORMALIZE_WHITESPACE
-    ['m', 'ACCELERATION TIME SERIES IN UNITS OF G', 'NPTS=      2, DT= 0.01 SEC',
-     '  0.0000000E+00  1.0000000E+00']
-    """
+    """The content of the AT2 file of a motion, in g, to eight digits."""
+    # Its first line says that it is synthetic, or what it was converted from.
     made = motion.format in _MADE
     origin = (
         "SYNTHETIC, NOT A RECORDING, MADE" if made else f"CONVERTED FROM {motion.format.upper()}"

@@ -194,11 +194,7 @@ def printed_resolution(
 
 
 def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | float) -> float:
-    """The step of uniform times, the shortest decimal number that fits all of them.
-
-    >>> uniform_step(np.array([0.0, 0.0039, 0.0078, 0.0117, 0.0156]), 1e-4)
-    0.0039
-    """
+    """The step of uniform times, the shortest decimal number that fits all of them."""
     steps = np.diff(times)
     if not steps.min() > 0.0:
         raise ValueError(f"the times do not increase after sample {int(np.argmin(steps)) + 1}")

@@ -11,7 +11,7 @@ import numpy as np
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import UsageError
 from rpscli.records.measures import displacement, velocity
-from rpscli.records.requirements import component_text
+from rpscli.records.requirements import COMPONENTS
 from rpscli.report.figures import style
 from rpscli.report.figures.history import extremes
 
@@ -123,7 +123,7 @@ def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
 
 def selection_figure(selection: Selection, title: str) -> bytes:
     """Spectra on the left, PGV against PGD of the scaled motions on the right."""
-    of = component_text(selection.of)
+    of = COMPONENTS[selection.of]
     note = (
         f"{len(selection.chosen)} of {selection.candidates}, {of}; misfit of the mean"
         f" {selection.misfit:.3f}, factors at a bound: {selection.clamped}"

@@ -33,6 +33,7 @@ from rpscli.report.study.fragility import (
     LimitStates,
     limit_name,
     limit_states,
+    limited_results,
     measure_name,
     side_by_side,
 )
@@ -225,5 +226,5 @@ REPORT = Report(
     efficiency,
     check=single_intensity,
     requires=wrong_measures,
-    results=lambda options: [limit.result for limit in limit_states(options.limits)],
+    results=limited_results,
 )

@@ -385,6 +385,7 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     fits = [(*of, measure, *fit_cells(curve.fit), *counted(curve)) for of, curve in curves]
     counts = ("beta_total", "exceeded", "counted", "overturned_among_them", "failed", "note")
     fit_heads = {"limit": "-", "intensity": "-", **fit_units(unit), **dict.fromkeys(counts, "-")}
+    parts = attrgetter("of", "recordings", "number", "fraction", "low", "high")
     lines = [
         (*of, *numbers)
         for of, curve in curves
@@ -392,16 +393,7 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
         for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
     ]
     observed = [
-        (
-            *of,
-            level,
-            shares.of,
-            shares.recordings,
-            shares.number,
-            shares.fraction,
-            shares.low,
-            shares.high,
-        )
+        (*of, level, *parts(shares))
         for of, curve in curves
         for level, shares in zip(curve.observed.intensity, curve.observed.shares, strict=True)
     ]
@@ -421,13 +413,8 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
         del main["beta_total"]
     shown = {"": main} | ({"_at": {}} if options.at else {})
     figure = (lambda title: fragility_figure(found, title)) if drawable else None
-    return Found(
-        tables,
-        figure,
-        found.notes,
-        shown=shown,
-        remark=what_bands_hold(study.table.layout, options),
-    )
+    remark = what_bands_hold(study.table.layout, options)
+    return Found(tables, figure, found.notes, shown=shown, remark=remark)
 
 
 def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
@@ -544,9 +531,9 @@ def measure_name(intensity: Intensity) -> str:
     return measure_label(intensity.measure, intensity.of, at)
 
 
-REPORT = Report(
-    FragilityOptions,
-    fragility,
-    requires=fragility_faults,
-    results=lambda options: [limit.result for limit in limit_states(options.limits)],
-)
+def limited_results(options: Any) -> list[str]:
+    """Results that the limit states of a report are about."""
+    return [limit.result for limit in limit_states(options.limits)]
+
+
+REPORT = Report(FragilityOptions, fragility, requires=fragility_faults, results=limited_results)

@@ -26,7 +26,7 @@ from rpscli.report.study.fragility import (
     beyond_computed,
     fragilities,
     limit_name,
-    limit_states,
+    limited_results,
     margins,
     measure_name,
     side_by_side,
@@ -107,11 +107,7 @@ class Risk:
 
 
 def probability(rate: float, years: float) -> float:
-    """Of at least one excess within so many years, if excesses are a Poisson process.
-
-    >>> round(probability(1 / 475, 50), 3)
-    0.1
-    """
+    """Of at least one excess within so many years, if excesses are a Poisson process."""
     return -math.expm1(-rate * years)
 
 
@@ -376,9 +372,4 @@ def _chance(risk: Risk, years: float) -> str:
     return f"P = {with_band(*(probability(rate, years) for rate in (risk.rate, *risk.band)))}"
 
 
-REPORT = Report(
-    RiskOptions,
-    risk,
-    requires=risk_faults,
-    results=lambda options: [limit.result for limit in limit_states(options.limits)],
-)
+REPORT = Report(RiskOptions, risk, requires=risk_faults, results=limited_results)

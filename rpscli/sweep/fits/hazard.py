@@ -164,7 +164,7 @@ def rates_above(hazard: Hazard, median: float, beta: float, intensities: Array) 
     slopes = -np.diff(height) / np.diff(x)
     at = np.log(intensities)
     first = np.minimum(np.searchsorted(x, at, side="right") - 1, len(slopes) - 1)
-    here = height[first] - slopes[first] * (at - x[first])
+    here = np.log(exceeded(hazard, intensities))
     # Whole pieces, then the one without end, and of each the part above an intensity in it.
     ends = np.append(x[1:-1], math.inf)
     pieces = _pieces(height[:-1], slopes, x[:-1], ends, math.log(median), beta)
