@@ -10,7 +10,7 @@ import numpy as np
 
 from rpscli.analyses.kernels.history import Request as HistoryRequest
 from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
-from rpscli.analyses.kernels.systems import longest_time, stacked_systems
+from rpscli.analyses.kernels.systems import longest_free_vibration, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.frozen import frozen
@@ -99,7 +99,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
     shaken = [motion for _, motion in motions.values()]
     durations = [motion.duration for motion in shaken]
     for r, history in zip(requests, given, strict=True):
-        seconds = longest_time(r.settings, durations[history.motion])
+        seconds = durations[history.motion] + longest_free_vibration(r.structure, r.settings)
         refuse_steps(seconds * rates[history.system], r.structure)
     run = run_of(stacked, shaken, given)
     follow(run, LANES if len(requests) >= worth_lanes else 1)

@@ -271,7 +271,12 @@ class TimeHistoryResult(Demand):
                 " compare with `impact: {law: flexible}`"
             )
         if self.outcome == "survived" and self.history["phase"] not in RESTING:
-            if self.settings.free_vibration is not None:
+            if self.structure.bearing.is_spherical:
+                notes.append(
+                    "columns without a flat part still roll at the end, as nothing but dampers and"
+                    " friction stops them: the residual rotation is that of this instant"
+                )
+            elif self.settings.free_vibration is not None:
                 notes.append(
                     "the storey still moves at the end; a longer `analysis.free_vibration`"
                     " may bring larger maxima"

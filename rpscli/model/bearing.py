@@ -37,7 +37,7 @@ class Bearing:
     semi_diagonal
         R = sqrt(H^2 + B^2) of the half-height H and the half-width B of the flat part [m].
     slenderness
-        tan(alpha) = B/H.
+        tan(alpha) = B/H; 0 for spherical ends, whose arc leaves no flat part.
     wedge_slenderness
         tan(alpha') = B'/H, B' the half-width up to which the ends are curved. Flat ends ignore it.
     curvature_ratio
@@ -48,8 +48,8 @@ class Bearing:
     Raises
     ------
     ValueError
-        If a size is not positive, or if the arc cannot span from B to B'
-        (0 <= sin(beta) <= 1 fails).
+        If a size is not positive, if the arc cannot span from B to B' (0 <= sin(beta) <= 1
+        fails), or if spherical ends would not stand: their radius must exceed H, rho > 1/2.
 
     Notes
     -----
@@ -70,12 +70,20 @@ class Bearing:
 
     def __post_init__(self) -> None:
         """Refuse a shape that cannot be built."""
-        for name in ("semi_diagonal", "slenderness", "inertia_ratio"):
+        for name in ("semi_diagonal", "inertia_ratio"):
             if not 0.0 < (value := getattr(self, name)) < math.inf:
                 raise ValueError(f"{name} = {value} must be > 0 and finite")
+        if not 0.0 <= self.slenderness < math.inf:
+            raise ValueError(f"slenderness = {self.slenderness} must be >= 0 and finite")
         if not 0.0 <= self.curvature_ratio < math.inf:
             raise ValueError(
                 f"curvature_ratio = {self.curvature_ratio} must be >= 0 and finite; 0 = flat ends"
+            )
+        if self.is_spherical and not (self.curvature_ratio > 0.5 and self.wedge_slenderness > 0.0):
+            raise ValueError(
+                f"without a flat part (slenderness = 0) curvature_ratio = {self.curvature_ratio}"
+                f" must be > 0.5 and wedge_slenderness = {self.wedge_slenderness} > 0: an arc whose"
+                " radius is not above half the height does not hold the column upright"
             )
         if self.is_flat:
             return
@@ -95,6 +103,11 @@ class Bearing:
     def is_flat(self) -> bool:
         """Whether the ends are flat: the column rocks from the start and never rolls."""
         return self.curvature_ratio == 0.0 or self.wedge_slenderness == self.slenderness
+
+    @property
+    def is_spherical(self) -> bool:
+        """Whether an arc takes all of the ends: the column rolls from rest, without impacts."""
+        return self.slenderness == 0.0
 
     @property
     def alpha(self) -> float:
@@ -209,8 +222,8 @@ class Bearing:
         Solves tan alpha/(1 - 2 rho) = tan beta(rho) (Theory, section 9). 0 for flat ends.
         """
         rise = math.tan(self.alpha_wedge) - self.slenderness
-        if rise <= 0.0:
-            return 0.0
+        if rise <= 0.0 or self.is_spherical:
+            return 0.5 if self.is_spherical else 0.0
         # With t = 2 rho the condition squares to t^2 - rise^2 = (rise (1 - t)/tan(alpha))^2, a
         # quadratic whose root between rise and 1 is wanted (beta from 90 degrees down).
         ratio = (rise / self.slenderness) ** 2

@@ -74,6 +74,8 @@ class ViscousDamper(_OnCapBeam):
         return 0.0, self.coefficient if self.exponent == 1.0 else 0.0
 
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        if structure.bearing.is_spherical:
+            return
         speed = (structure.uplift_force / self.coefficient) ** (1.0 / self.exponent)
         yield Consequence("velocity_at_uplift_force", "reaches W tan(alpha) at", "m/s", speed)
 
@@ -112,6 +114,8 @@ class FrictionDamper(_OnCapBeam):
         return 0.0, 0.0
 
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        if structure.bearing.is_spherical:
+            return
         share = self.force / structure.uplift_force
         yield Consequence("uplift_share", "over W tan(alpha)", "-", share)
 
@@ -305,6 +309,8 @@ class RollingResistance(_OnCapBeam):
         return 0.0, 0.0
 
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        if structure.bearing.is_spherical:
+            return
         share = self.lever / structure.bearing.half_width
         yield Consequence("uplift_share", "over W tan(alpha)", "-", share)
 

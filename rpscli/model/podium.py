@@ -58,7 +58,8 @@ class PodiumStructure(Shown):
     ------
     ValueError
         If a mass is not admissible, or the restitution is not in (0, 1]: with e <= 0 the columns
-        would not go over to the other edge (Theory, section 4), or there are too many devices.
+        would not go over to the other edge (Theory, section 4), or there are too many devices; of
+        spherical ends, if the restitution is not 1 or there is a tendon.
 
     Notes
     -----
@@ -91,6 +92,13 @@ class PodiumStructure(Shown):
                 f"{len(self.devices)} devices must be at most {MOST_DEVICES}; write equal ones as"
                 " one, with the sum of their forces and stiffnesses"
             )
+        if self.bearing.is_spherical and self.restitution != 1.0:
+            raise ValueError(
+                f"restitution e = {self.restitution:.4g} must be 1: columns without a flat part"
+                " roll through the upright position without an impact"
+            )
+        if self.bearing.is_spherical and any(device.kind == "tendon" for device in self.devices):
+            raise ValueError("tendons are not followed in columns without a flat part")
         if not 0.0 < self.restitution <= 1.0:
             raise ValueError(
                 f"restitution e = {self.restitution:.4g} must be in (0, 1]: with e <= 0 the"
@@ -195,6 +203,19 @@ class PodiumStructure(Shown):
         C = geometry.contact_height(phase, 1.0, 0.0)
         slope = (phase.c - C) * C - B**2
         return self.weight * slope / (2.0 * self.bearing.semi_diagonal * C**3)
+
+    @property
+    def rolling_period(self) -> float | None:
+        """T of small rolling under a rigid building [s]; None where a flat part makes it jump.
+
+        2 pi sqrt(M/K) with M = N m_c Io/4 + m_b + M_tot and K = W (2 rho - 1)/(2 H), exact as the
+        swing vanishes (Theory, section 6).
+        """
+        if not self.bearing.is_spherical:
+            return None
+        columns = 0.25 * self.columns_mass * self.bearing.inertia_ratio
+        mass = columns + self.cap_beam_mass + self.superstructure_mass
+        return 2.0 * math.pi * math.sqrt(mass / self.initial_stiffness)
 
     @cached_property
     def rigid_frequency_parameter(self) -> float:

@@ -102,8 +102,8 @@ def test_an_arc_of_no_width_is_a_flat_end() -> None:
     [
         ({"semi_diagonal": 0.0}, "semi_diagonal = 0.0 must be > 0"),
         ({"semi_diagonal": math.inf}, "semi_diagonal = inf must be > 0 and finite"),
-        ({"slenderness": -0.1}, "slenderness = -0.1 must be > 0"),
-        ({"slenderness": math.nan}, "slenderness = nan must be > 0"),
+        ({"slenderness": -0.1}, "slenderness = -0.1 must be >= 0"),
+        ({"slenderness": math.nan}, "slenderness = nan must be >= 0"),
         ({"inertia_ratio": 0.0}, "inertia_ratio = 0.0 must be > 0"),
         ({"curvature_ratio": -0.2}, "curvature_ratio = -0.2 must be >= 0"),
         ({"curvature_ratio": math.nan}, "curvature_ratio = nan must be >= 0"),

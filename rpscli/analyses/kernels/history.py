@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.compilation import compiled
 from rpscli.analyses.kernels.systems import (
+    longest_free_vibration,
     most_seconds,
     most_steps,
     stacked_systems,
     steps_a_second,
 )
-from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
@@ -120,10 +121,11 @@ class SampledHistory:
     """(intervals + 1, 4, devices), see `physics.planar.run.Output`."""
 
 
-def longest_history(settings: TimeHistorySettings, motion: MotionComponents) -> int:
+def longest_history(
+    structure: PodiumStructure, settings: TimeHistorySettings, motion: MotionComponents
+) -> int:
     """Samples of a history that never comes to rest."""
-    free = settings.free_vibration
-    longest = LONGEST_FREE_VIBRATION if free is None else free
+    longest = longest_free_vibration(structure, settings)
     return motion.npts + math.ceil(longest / motion.dt) + 1
 
 
@@ -142,7 +144,7 @@ def refuse_endless(
 ) -> None:
     """Refuse a history that may take more memory or time than anybody has."""
     remedy = "give a shorter analysis.free_vibration"
-    samples = longest_history(settings, motion) * finer
+    samples = longest_history(structure, settings, motion) * finer
     numbers = float(samples) * numbers_of_a_sample(structure)
     if numbers > MOST_NUMBERS:
         raise CaseError(
@@ -186,7 +188,7 @@ def sampled_history(
     """Run one history and keep everything, at so many even parts of each sampling interval."""
     systems = stacked_systems([(structure, settings)])
     refuse_endless(structure, settings, motion, finer)
-    rows = longest_history(settings, motion) * finer
+    rows = longest_history(structure, settings, motion) * finer
     seconds = most_seconds(structure, settings, motion.duration)
     events = FIRST_LOG
     while True:

@@ -124,7 +124,6 @@ def fill_settings(
             f"initial_rotation = {settings.initial_rotation:.6g} rad must stay below the"
             f" overturning limit {limit:.6g} rad"
         )
-    free = settings.free_vibration
     record["theta_limit"] = limit
     record["uplifted_rate"] = settings.accuracy * uplifted_rate(structure)
     record["contact_rate"] = contact_rate(structure)
@@ -134,8 +133,8 @@ def fill_settings(
     record["bounces"] = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
     record["max_events"] = settings.max_events
     record["initial_rotation"] = settings.initial_rotation
-    record["free_vibration"] = LONGEST_FREE_VIBRATION if free is None else free
-    record["until_rest"] = free is None
+    record["free_vibration"] = longest_free_vibration(structure, settings)
+    record["until_rest"] = settings.free_vibration is None
 
 
 def bounces_left_out(structure: PodiumStructure) -> float:
@@ -249,13 +248,20 @@ def uplifted_angle(structure: PodiumStructure) -> float:
 
 def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, duration: float) -> float:
     """Taylor steps of a history that never comes to rest, a bound on those of all others."""
-    return longest_time(settings, duration) * steps_a_second(structure, settings.accuracy)
+    free = longest_free_vibration(structure, settings)
+    return (duration + free) * steps_a_second(structure, settings.accuracy)
 
 
-def longest_time(settings: TimeHistorySettings, duration: float) -> float:
-    """How long a history may be followed [s]."""
-    free = settings.free_vibration
-    return duration + (LONGEST_FREE_VIBRATION if free is None else free)
+SWINGS = 2.0
+"""Free vibration `auto` of columns that roll from rest and never come to it, over their period."""
+
+
+def longest_free_vibration(structure: PodiumStructure, settings: TimeHistorySettings) -> float:
+    """How long a history may be followed after its record [s]."""
+    if settings.free_vibration is not None:
+        return settings.free_vibration
+    period = structure.rolling_period
+    return min(LONGEST_FREE_VIBRATION, math.inf if period is None else SWINGS * period)
 
 
 def most_seconds(

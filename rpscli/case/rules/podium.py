@@ -55,8 +55,26 @@ def bearing_rules(case: PartialCase) -> Iterator[Fault]:
         if sizes.radius if sizes else bearing.curvature_ratio:
             meaning = "2B', across the outer edges of the arcs" if sizes else "tan(alpha') = B'/H"
             yield from case.missing(path, f"{meaning}; only flat ends do without")
-        if case.shape and case.shape.curvature_ratio:
+        if case.shape and case.shape.slenderness == 0.0 and case.shape.curvature_ratio <= 0.5:
+            yield _small_sphere(case, case.shape)
+        elif case.shape and case.shape.curvature_ratio:
             yield from _arc(case, case.shape)
+
+
+def _small_sphere(case: PartialCase, shape: Shape) -> Fault:
+    """Spherical ends: the column stands as long as its centre is below that of the arc."""
+    sizes = case.bearing.dimensions if case.bearing else None
+    path, flat = (*BEARING, "curvature_ratio"), "slenderness"
+    value, least = f"{shape.curvature_ratio:g}", "0.5"
+    if sizes:
+        path, value, flat = (*DIMENSIONS, "radius"), f"{sizes.radius:g} m", "width"
+        least = f"{0.5 * sizes.height:g} m, half the height,"
+    return Fault(
+        path,
+        f"{'.'.join(map(str, path))} = {value} must be > {least} with {flat}: 0: without a flat"
+        " part a smaller arc does not hold the columns upright; use a larger one, or a"
+        f" {flat} above 0",
+    )
 
 
 def _arc(case: PartialCase, shape: Shape) -> Iterator[Fault]:
@@ -177,6 +195,15 @@ def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
     """The impact law sends the columns to their other edge: 0 < e <= 1 (Theory, section 4)."""
     column, law = podium.bearing, podium.impact_law
     e = law.ratio(column, podium.gamma, podium.eta)
+    if column.is_spherical:
+        if e != 1.0:
+            yield Fault(
+                IMPACT,
+                "podium.impact: columns without a flat part roll through the upright position and"
+                " have no impact; take restitution and factor out",
+                at_key=True,
+            )
+        return
     if e > 1.0:
         yield Fault(
             (*IMPACT, "factor"),
@@ -236,6 +263,12 @@ def devices_rules(case: PartialCase) -> Iterator[Fault]:
         if isinstance(device, dict) and str(device.get("kind")) in DEVICE_KEYS:
             yield from _keys_of(case, (*DEVICES, index), device["kind"])
             yield from _yield_force(case, (*DEVICES, index), device)
+            if device["kind"] == "tendon" and case.shape and case.shape.slenderness == 0.0:
+                text = (
+                    f"podium.devices.{index}: tendons are not followed in columns without a flat"
+                    " part; leave it out, or give the columns a flat part above 0"
+                )
+                yield Fault((*DEVICES, index), text, at_key=True)
     named = [str(isinstance(device, dict) and device.get("kind")) for device in devices]
     of_columns = [i for i, kind in enumerate(named) if kind in LAWS and LAWS[kind].in_each_column()]
     columns = (*PODIUM, "columns")

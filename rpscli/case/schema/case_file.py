@@ -138,8 +138,8 @@ class DimensionsSection(Section):
 
     height: Length
     """2H, between the flat parts of the two ends"""
-    width: Length
-    """2B, of the flat part"""
+    width: Annotated[float, Quantity("m", at_least=0)]
+    """2B, of the flat part; 0 = spherical ends, which roll from rest"""
     wedge_width: Length | None = None
     """2B', across the outer edges of the arcs; ignored for flat ends"""
     radius: Annotated[
@@ -153,8 +153,8 @@ class BearingSection(Section):
 
     semi_diagonal: Length | None = None
     """R = sqrt(H^2 + B^2), half height and half width of the flat part"""
-    slenderness: PositiveRatio | None = None
-    """tan(alpha) = B/H"""
+    slenderness: Annotated[float | None, Quantity(at_least=0)] = None
+    """tan(alpha) = B/H; 0 = spherical ends, which roll from rest"""
     wedge_slenderness: PositiveRatio | None = None
     """tan(alpha') = B'/H; ignored for flat ends"""
     curvature_ratio: Annotated[

@@ -227,7 +227,7 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.phase[l] = FULL_CONTACT
     clear_results(s, l)
     set_ground(s, l, run.acceleration)
-    if system.initial_rotation != 0.0:
+    if system.initial_rotation != 0.0 or system.alpha == 0.0:
         release(s, l, system)
         return GOES_ON
     s.next_a_g[l], s.next_g_up[l], s.next_V[l] = s.a_g[l], s.g_up[l], 0.0
@@ -277,7 +277,7 @@ def clear_results(s: Record, l: int) -> None:
 
 @compiled
 def release(s: Record, l: int, system: Record) -> None:
-    """Start from rest at a rotation, the building unstrained."""
+    """Start from rest at a rotation, the building unstrained; without a flat part perhaps at 0."""
     theta = abs(system.initial_rotation)
     s.side[l] = math.copysign(1.0, system.initial_rotation)
     s.theta[l], s.max_theta[l], s.restart_after[l] = theta, theta, AFTER_RELEASE
@@ -294,7 +294,8 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     else:
         result.energy_stored = uplifted_energy(s, l)
     if s.outcome[l] == RUNNING:
-        moved = system.initial_rotation != 0.0 or s.events[l, UPLIFT] > 0
+        released = system.initial_rotation != 0.0 or s.max_theta[l] > 0.0
+        moved = released or s.events[l, UPLIFT] > 0
         s.outcome[l] = SURVIVED if moved else AT_REST
     result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
     result.steps, result.creating_impacts = int(s.steps[l]), s.creating_impacts[l]

@@ -11,6 +11,7 @@ from rpscli.physics.planar.energy import relative_momentum
 from rpscli.physics.planar.equation_of_motion import tilting_energy
 from rpscli.physics.planar.state import (
     AFTER_IMPACT,
+    AFTER_PHASE_CHANGE,
     AFTER_UPLIFT,
     FULL_CONTACT,
     IMPACT,
@@ -110,8 +111,12 @@ def is_negligible(system: Record, theta_dot: float, theta_ddot: float) -> bool:
 
 @compiled
 def apply_impact(s: Record, l: int, system: Record, log: Record) -> None:
-    """Impact at theta = 0."""
+    """Impact at theta = 0; without a flat part the same motion goes on, told of the other side."""
     enter_first_phase(s, l, system)
+    if system.alpha == 0.0:
+        s.side[l], s.theta[l], s.theta_dot[l] = -s.side[l], 0.0, max(-s.theta_dot[l], 0.0)
+        s.restart_after[l] = AFTER_PHASE_CHANGE
+        return
     arriving = s.side[l] * s.theta_dot[l]
     lost = change_edge(s, l, system)
     s.energy_lost[l] += lost

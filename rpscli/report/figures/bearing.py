@@ -207,7 +207,8 @@ def draw_end(axes: Axes, bearing: Bearing) -> None:
     frame_end(axes, bearing, below=0.42)
     axes.set_axis_off()
     step = 0.08 * (axes.get_ylim()[1] - axes.get_ylim()[0])
-    measure(axes, (-B, -step), (B, -step), f"2B = {2.0 * B:.4g} m")
+    if B > 0.0:
+        measure(axes, (-B, -step), (B, -step), f"2B = {2.0 * B:.4g} m")
     title = "an end, enlarged: flat"
     if not bearing.is_flat:
         measure(axes, (-half, -3.2 * step), (half, -3.2 * step), f"2B' = {2.0 * half:.4g} m")
@@ -259,7 +260,9 @@ def _draw_dimensions(axes: Axes, bearing: Bearing) -> None:
     axes.plot(0.0, H, "o", color=style.RED, ms=3.0)
     words: dict[str, Any] = {"fontsize": style.small(), "color": style.RED}
     axes.annotate("$R$", (0.5 * B, 0.5 * H), (3.0, 0.0), textcoords="offset points", **words)
-    axes.annotate("$\\alpha$", (0.0, 0.45 * H), (-9.0, 0.0), textcoords="offset points", **words)
+    if B > 0.0:
+        at = (0.0, 0.45 * H), (-9.0, 0.0)
+        axes.annotate("$\\alpha$", *at, textcoords="offset points", **words)
     start, end = axes.get_xlim()
     left = start + 0.14 * (end - start)
     measure(axes, (left, 0.0), (left, 2.0 * H), f"2H = {2.0 * H:.4g} m", turned=True)

@@ -63,8 +63,9 @@ def draw_shears(axes: Axes, result: TimeHistoryResult) -> None:
         _stairs(axes, demands.storey_shears * factor, look)
     axes.set_xlabel(STOREY_SHEARS.in_unit(f"{prefix}N"))
     static = result.structure.static_base_shear * factor
-    label = f"$V_{{st}}$ = {static:.4g} {prefix}N"
-    axes.axvline(static, color=style.GREEN, lw=0.9, ls="-.", label=label)
+    if static > 0.0:
+        label = f"$V_{{st}}$ = {static:.4g} {prefix}N"
+        axes.axvline(static, color=style.GREEN, lw=0.9, ls="-.", label=label)
     _levels(axes, result.structure.storeys)
 
 

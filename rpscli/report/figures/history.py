@@ -168,10 +168,12 @@ def draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
     """Ground acceleration, and what uplifts quasi-statically."""
     limit = result.structure.uplift_acceleration
     axes.plot(result.trace.time, result.trace.ground_acceleration, color=style.BLACK, lw=0.7)
+    axes.set(ylabel="ground\nacceleration [m/s²]", xlabel="time [s]")
+    if limit == 0.0:
+        return
     for sign in (1.0, -1.0):
         axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
     axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
-    axes.set(ylabel="ground\nacceleration [m/s²]", xlabel="time [s]")
     style.legend_above(axes, 1)
 
 

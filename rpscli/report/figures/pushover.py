@@ -43,7 +43,8 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
     returns = bool(np.any(back != F))
     if returns:
         axes.axhline(0.0, color=style.GREY, lw=0.6)
-    axes.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
+    if F[0] > 0.0:
+        axes.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
     for inside, colour, name in _phases(result):
         axes.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
         if returns:
@@ -53,7 +54,8 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
     rises = F[1] > F[0] > 0.15 * F.max()  # and there is room below
     # Above the name of beta, if that stands to the left of its point.
     higher = 18.0 if returns else 6.0
-    _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else higher))
+    if F[0] > 0.0:
+        _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else higher))
     if 0.0 < beta < result.critical_rotation:
         at = int(np.searchsorted(curve.rotation, beta))
         side = (-7.0 if F[at + 1] > F[at] else 7.0, 6.0)
@@ -63,10 +65,11 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
     low = min(0.0, back.min()) if returns else 0.0
     axes.set(xlim=(-0.02 * u[-1], 1.04 * u[-1]), ylim=(1.1 * low, 1.18 * F.max()))
     axes.set(xlabel=DISPLACEMENT, ylabel=f"force at the cap beam [{prefix}N]")
-    ratio = axes.secondary_yaxis(
-        "right", functions=style.over(factor * result.structure.uplift_force)
-    )
-    ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
+    if result.structure.uplift_force > 0.0:
+        ratio = axes.secondary_yaxis(
+            "right", functions=style.over(factor * result.structure.uplift_force)
+        )
+        ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
     style.legend_above(axes, 3 + returns)
 
 
@@ -111,7 +114,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
         for axes in (whole, close):
             draw_capacity(axes, result)
         uplift = max(c.roof_displacement_at_uplift for c in result.capacity)
-        close.set_xlim(0.0, 3.0 * uplift)
+        close.set_xlim(0.0, 3.0 * uplift or 0.1 * whole.get_xlim()[1])
         close.locator_params(axis="x", nbins=5)
         close.set(ylabel="", title="near uplift")
         for axes in (whole, close):

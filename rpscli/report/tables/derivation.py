@@ -99,6 +99,7 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "initial_stiffness": "-W / (2 * R * cos(alpha)^3)"
         if structure.bearing.is_flat
         else "-W * (1 - 2 * rho * cos(alpha)^2) / (2 * R * cos(alpha)^3)",
+        "rolling_period": "2 * pi * sqrt((m_c * I / 4 + m_b + M) / K)",
         "p_hat": "sqrt(g / R * (1 + 2 * gamma_t) / (I + 4 * gamma_t))",
         "T1": "2 * pi * sqrt(sum_m / sum_k)",
         "e_edge": EDGES.get(structure.impact_law.kind, ""),
@@ -186,6 +187,7 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
         "gamma_t": structure.gamma_total,
         "g": structure.gravity,
         "W": structure.weight,
+        "K": structure.initial_stiffness,
         "f": law.factor,
         "kappa": law.loss,
     }

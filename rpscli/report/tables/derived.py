@@ -81,6 +81,10 @@ DYNAMICS = (
         "initial_stiffness", "stiffness after uplift", "", "N/m", lambda s: s.initial_stiffness
     ),
     Derived(
+        "rolling_period", "period of rolling, rigid building", "T", "s",
+        lambda s: s.rolling_period,
+    ),
+    Derived(
         "p_hat", "frequency parameter, rigid estimate", "p_hat", "rad/s",
         lambda s: s.rigid_frequency_parameter,
     ),
