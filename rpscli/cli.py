@@ -15,7 +15,7 @@ COMMANDS = {
     "check": Member("rpscli.commands.check", "what follows from a case, and what is wrong in it"),
     "explain": Member("rpscli.commands.explain", "what a key, a result, a report or a word means"),
     "schema": Member(
-        "rpscli.commands.init", "the formats of case and study as JSON schemas", "schema"
+        "rpscli.commands.init", "the formats of files and of results as JSON schemas", "schema"
     ),
     "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
     "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),

@@ -311,7 +311,9 @@ class DesignTask:
     @cached_property
     def clusters(self) -> tuple[int, ...]:
         """Numbers of the recordings, or events, of the records of the search."""
-        return clusters(self.study.sources or ("",), self.study.folder, self.file.independent)
+        sources = self.study.sources
+        # Without any it is the case's own record.
+        return clusters(sources, self.study.folder, self.file.independent) if sources else (0,)
 
     def study_of(self, values: Array, sources: tuple[str, ...] | None = None) -> Study:
         """The study of some designs, (designs, keys), under the design's records or others."""

@@ -44,7 +44,7 @@ def command(
     if editor:
         schema = file.with_name(f"rps-{kind}.schema.json")
         files[file] = f"# yaml-language-server: $schema={schema.name}\n{text}"
-        files[schema] = json_text(schema_of(study=study))
+        files[schema] = json_text(schema_of(kind))
     for each in files:
         if each.exists() and not force:
             raise Refused(f"{each} exists; name another file, or overwrite it with --force")
@@ -55,25 +55,36 @@ def command(
         terminal.result({**heading(), "command": "init", "files": [str(each) for each in files]})
 
 
-@click.command("schema")
-@click.option("--study", is_flag=True, help="Of a study file, with the options of all reports.")
-@click.option("--design", is_flag=True, help="Of a design file.")
-@terminal_options
-def schema(*, study: bool, design: bool, terminal: Terminal) -> None:
-    """Print the JSON schema of a case file, with or without --json.
+FORMATS = ("case", "study", "design", "results")
 
-    Editors that know YAML check and complete a case by it: `rps init --editor`.
+
+@click.command("schema")
+@click.argument(
+    "what", metavar=f"[{'|'.join(FORMATS)}]", type=click.Choice(FORMATS), default="case"
+)
+@click.option("--study", "also", flag_value="study", help="The same as `rps schema study`.")
+@click.option("--design", "also", flag_value="design", help="The same as `rps schema design`.")
+@terminal_options
+def schema(*, what: str, also: str | None, terminal: Terminal) -> None:
+    """Print the JSON schema of a case file, a study (with the options of all reports) or a design.
+
+    Editors that know YAML check and complete a file by it: `rps init --editor`. That of results
+    is of what all commands print with --json, and of run.json.
     """
     del terminal
-    if study and design:
-        raise UsageError("--study and --design are two formats; take one of them")
-    emit(json_text(schema_of(study=study, design=design)), sys.stdout)
+    if also and what not in {"case", also}:
+        raise UsageError(f"{what} and --{also} are two formats; take one of them")
+    emit(json_text(schema_of(also or what)), sys.stdout)
 
 
-def schema_of(*, study: bool, design: bool = False) -> dict[str, Any]:
-    """The schema of cases, of studies or of designs."""
+def schema_of(what: str) -> dict[str, Any]:
+    """The schema of cases, of studies, of designs or of results."""
     # pydantic is slow.
-    if not (study or design):
+    if what == "results":
+        from rpscli.report.result_schema import results_json_schema
+
+        return results_json_schema()
+    if what == "case":
         from rpscli.case.json_schema import case_json_schema
 
         return case_json_schema()
@@ -82,4 +93,4 @@ def schema_of(*, study: bool, design: bool = False) -> dict[str, Any]:
     from rpscli.case.study.reports import format_with
     from rpscli.report.study.registry import REPORTS
 
-    return study_json_schema(DesignFile if design else format_with(REPORTS.everything()))
+    return study_json_schema(DesignFile if what == "design" else format_with(REPORTS.everything()))

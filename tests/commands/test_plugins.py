@@ -155,7 +155,7 @@ def rps_json_schema() -> str:
     """The JSON schema of studies as text."""
     from rpscli.commands.init import schema_of
 
-    return str(schema_of(study=True))
+    return str(schema_of("study"))
 
 
 def test_what_is_broken_is_named_and_breaks_nothing_else(
