@@ -37,7 +37,8 @@ from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import CaseError, UsageError, hint
 from rpscli.frozen import frozen
-from rpscli.report.figures.look import Look, read_style
+from rpscli.report.figures.look import Look
+from rpscli.report.figures.style import drawable_style
 from rpscli.report.study.folder import study_folder
 from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.report import Found
@@ -374,7 +375,7 @@ class StudyResult(Shown):
         """
         if folder is None and self._keeper:
             raise UsageError("name a folder: that of the store ends with the result")
-        look = Look(tuple(figures), columns, read_style(Path(style)) if style else {})
+        look = Look(tuple(figures), columns, drawable_style(Path(style)) if style else {})
         place = Path(folder or self.folder)
         made = study_folder(self.study.layout, place, self.study.overrides, force=force)
         with self._run.reopened():

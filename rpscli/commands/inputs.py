@@ -75,6 +75,8 @@ def write(folder: OutputFolder, terminal: Terminal) -> None:
     folder.write()
     note = "; replaces results of the same case with other inputs" if replaced else ""
     terminal.note(f"written to {folder.folder}{note}")
+    if folder.removed:
+        terminal.note(f"removed, of an earlier run: {', '.join(sorted(folder.removed))}")
 
 
 def conclude(

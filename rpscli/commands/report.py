@@ -35,7 +35,8 @@ from rpscli.commands.shell.options import (
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import program_version
-from rpscli.report.figures.look import Look, read_style
+from rpscli.report.figures.look import Look
+from rpscli.report.figures.style import drawable_style
 from rpscli.report.files import require_writable, write_whole
 
 
@@ -91,7 +92,7 @@ def command(
     points of a STUDY or DESIGN that are not stored yet. Those of a FOLDER are computed again and
     held against what is stored.
     """
-    look = Look(style={} if style_file is None else read_style(style_file))
+    look = Look(style={} if style_file is None else drawable_style(style_file))
     request, asked = CaseRequest(subject, overrides), MotionRequest(**motion)
     earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None
     kind = kind_of(subject) if earlier is None else earlier.run["command"]

@@ -125,6 +125,7 @@ class OutputFolder:
         self.run = run
         self.force = force
         self._contents: dict[Path, Content] = {}
+        self.removed: list[str] = []
         self._earlier = self._claimed()
 
     @property
@@ -150,9 +151,14 @@ class OutputFolder:
         self.add_at(self.folder / name, content)
 
     def add_all(self, files: Iterable[tuple[str, str | Content]]) -> None:
-        """Collect files of the folder by their names."""
-        for name, content in files:
-            self.add(name, content)
+        """Collect files of the folder by their names; tables are written though a figure fails."""
+        try:
+            for name, content in files:
+                self.add(name, content)
+        except Exception:
+            if self._contents:
+                self.write()
+            raise
 
     def add_at(self, path: Path, content: str | Content) -> None:
         """Collect a file that stands elsewhere; it is guarded like those of the folder."""
@@ -171,6 +177,7 @@ class OutputFolder:
             for stale in self._own - {self._known_as(path) for path in contents}:
                 if Path(stale).name == stale and (self.folder / stale).is_file():
                     (self.folder / stale).unlink()  # never outside the folder
+                    self.removed.append(stale)
 
     def _run_text(self) -> str:
         document = {

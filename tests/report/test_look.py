@@ -110,6 +110,33 @@ def test_text_of_svg_is_text_with_fonts_to_fall_back_on() -> None:
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "figure.dpi: 1e9", "figure.figsize: 1e5, 1e5", "font.size: 1e6",
+        "savefig.format: exe", "figure.subplot.left: 2", "font.family: nosuchfont",
+    ],
+)  # fmt: skip
+def test_a_style_that_cannot_be_drawn_is_blamed_before_anything_is_computed(
+    tmp_path: Path, text: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "paper.mplstyle"
+    file.write_text(text)
+    with pytest.raises(UsageError, match=r"paper.mplstyle: cannot be drawn with: .*correct"):
+        style.drawable_style(file)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_style_says_nothing_of_windows_and_little_of_other_files(tmp_path: Path) -> None:
+    file = tmp_path / "paper.mplstyle"
+    file.write_text("backend: TkAgg\nlines.markersize: 3\n")
+    assert style.drawable_style(file) == {"lines.markersize": 3.0}
+    file.write_text("the first line, 'secret'\nthe second: secret\n")
+    with pytest.raises(UsageError) as caught:
+        style.drawable_style(file)
+    assert "secret" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
     ("text", "reason"),
     [
         ("font.siize: 9\n", "font.siize"),

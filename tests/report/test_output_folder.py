@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -39,6 +40,17 @@ def test_files_of_an_earlier_run_that_are_no_longer_made_go_away(tmp_path: Path)
     second.add("a.csv", "new")
     second.write()
     assert sorted(file.name for file in tmp_path.iterdir()) == ["a.csv", "notes.txt", "run.json"]
+    assert second.removed == ["b.csv"]
+
+
+def test_tables_are_written_though_a_figure_fails(tmp_path: Path) -> None:
+    def files() -> Iterator[tuple[str, str]]:
+        yield "a.csv", "1"
+        raise RuntimeError("no figure")
+
+    with pytest.raises(RuntimeError):
+        folder_of(tmp_path).add_all(files())
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.csv", "run.json"]
 
 
 def test_a_file_that_someone_put_there_is_not_ours(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint, listed
 from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
-from rpscli.report.figures.look import FIGURES, FORMATS, Look, read_style
+from rpscli.report.figures.look import FIGURES, FORMATS, Look
+from rpscli.report.figures.style import drawable_style
 
 FILE = click.Path(allow_dash=True, readable=False)
 """A file, of which the command itself says what is wrong with it."""
@@ -149,7 +150,7 @@ def _look(figures: str | None, columns: str | None, style_file: Path | None) -> 
         raise UsageError(
             f"--figures {figures}: {added[0]} is drawn by {listed(OF_ONE_RESULT)} alone"
         )
-    style = {} if style_file is None else read_style(style_file)
+    style = {} if style_file is None else drawable_style(style_file)
     return Look(formats, None if columns is None else int(columns), style, added)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -121,39 +122,59 @@ def quiet_matplotlib() -> None:
         return
     home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")  # noqa: PTH111
     usual = Path(home) if sys.platform == "linux" else Path(os.path.expanduser("~"))  # noqa: PTH111
-    existing = next(place for place in (usual / "matplotlib", *usual.parents) if place.exists())
-    if not os.access(existing, os.W_OK) and (place := user_cache()):
+    try:
+        (usual / "matplotlib").mkdir(parents=True, exist_ok=True)
+        usable = os.access(usual / "matplotlib", os.W_OK)
+    except OSError:
+        usable = False
+    if not usable and (place := user_cache()):
         os.environ["MPLCONFIGDIR"] = str(place / "matplotlib")
 
 
 def read_style(path: Path) -> dict[str, Any]:
     """matplotlib's settings in a style file."""
     quiet_matplotlib()
-    from logging.handlers import BufferingHandler
-
     from matplotlib import rc_params_from_file
 
-    complaints = BufferingHandler(capacity=1000)  # which would be printed, and then go on
-    complaints.setLevel(logging.WARNING)
+    with complaints() as texts:
+        try:
+            settings = rc_params_from_file(_regular(path), use_default_template=False)
+            found = cast("dict[str, Any]", settings)
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or "is not a text"
+            raise UsageError(
+                f"--style {str(path)[:200]}: cannot be read: {reason}; name a style file of"
+                " matplotlib"
+            ) from None
+    if texts:
+        # Of a file that was not meant, a line is not shown.
+        tail = "" if texts[0].startswith("Bad value") else r" \(['\"].*|"
+        first = re.sub(rf"{tail}(?<=^Bad key .{{20}}).*(?= in file)", "", texts[0])
+        more = f" (and {len(texts) - 1} more)" if len(texts) > 1 else ""
+        raise UsageError(f"--style {path}: {first[:200]}{more}")
+    # Which window figures are shown in is no matter of style: matplotlib would say so each time.
+    return {key: value for key, value in found.items() if key not in NO_STYLE}
+
+
+NO_STYLE = frozenset(("backend", "backend_fallback", "interactive", "toolbar", "webagg.port"))
+
+
+@contextmanager
+def complaints() -> Iterator[list[str]]:
+    """What matplotlib would print, and then go on."""
+    from logging.handlers import BufferingHandler
+
+    handler, texts = BufferingHandler(capacity=1000), list[str]()
+    handler.setLevel(logging.WARNING)
     logger = logging.getLogger("matplotlib")
-    logger.addHandler(complaints)
+    logger.addHandler(handler)
     passed_on, logger.propagate = logger.propagate, False
     try:
-        settings = rc_params_from_file(_regular(path), use_default_template=False)
-        found = cast("dict[str, Any]", settings)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "is not a text"
-        raise UsageError(
-            f"--style {str(path)[:200]}: cannot be read: {reason}; name a style file of matplotlib"
-        ) from None
+        yield texts
     finally:
-        logger.removeHandler(complaints)
+        logger.removeHandler(handler)
         logger.propagate = passed_on
-    if complaints.buffer:
-        texts = (record.getMessage() for record in complaints.buffer)
-        reasons = "; ".join(" ".join(text.split()) for text in texts)
-        raise UsageError(f"--style {path}: {reasons}")
-    return dict(found)
+        texts += [" ".join(record.getMessage().split()) for record in handler.buffer]
 
 
 def _regular(path: Path) -> Path:

@@ -9,11 +9,20 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, cast
 
 from rpscli.errors import UsageError
-from rpscli.report.figures.look import SMALL, in_force, quiet_matplotlib
+from rpscli.report.figures.look import (
+    SMALL,
+    Look,
+    complaints,
+    drawn_with,
+    in_force,
+    quiet_matplotlib,
+    read_style,
+)
 from rpscli.report.figures.own_style import restyle
 
 if TYPE_CHECKING:
@@ -103,6 +112,31 @@ def picture(
     if now.ending == "svg":  # formulas name one font, and none to fall back on
         return re.sub(rb"(font-family: '[^',]+')(?=[;\"])", rb"\1, sans-serif", buffer.getvalue())
     return buffer.getvalue()
+
+
+def drawable_style(path: Path) -> dict[str, Any]:
+    """The settings of a style file, with which something small was drawn."""
+    settings = read_style(path)
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        axes.plot([0.0, 1.0], label="$\\theta$ text")
+        axes.legend()
+        heading(figure, "title", "remark")
+
+    with complaints() as texts:
+        try:
+            for ending in SAVED:
+                drawn_with(Look(style=settings), ending, lambda: picture(draw, 3.0))
+            reason = ""
+        except Exception as error:  # noqa: BLE001 -- it may fail in any way
+            reason = " ".join(str(error).split())[:160]
+    if reason or texts:
+        raise UsageError(
+            f"--style {path}: cannot be drawn with: {reason or '; '.join(dict.fromkeys(texts))};"
+            " correct the style, or install what it asks for"
+        )
+    return settings
 
 
 def single(
