@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import warnings
 
 from rpscli.cli import program
 
@@ -18,6 +19,8 @@ def main() -> None:
     # Matrices of a hundred storeys are small: threads of the linear algebra would only wait for
     # work, which costs as much as work, and studies use all cores by threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # Which line of the program warns is nothing to its users.
+    warnings.formatwarning = lambda text, *_, **__: f"warning: {text}\n"
     try:
         program(prog_name="rps")
     finally:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import errno
 import os
 import shutil
 import stat
@@ -275,3 +276,22 @@ def test_the_second_process_runs_nothing_from_the_working_folder(
     fresh_folder.setattr(sys, "path", [place for place in sys.path if place])
     prepare.compile_kernel(equipped=False)
     assert not (tmp_path / "was_run").exists()
+
+
+@needs_compiled_kernels
+def test_a_full_disk_keeps_nothing_and_stops_nothing(
+    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
+
+    def doubled(x: float) -> float:
+        return 2.0 * x
+
+    made = kernel(doubled)
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    fresh_folder.setattr("numba.core.caching.IndexDataCacheFile.save", full)
+    with pytest.warns(UserWarning, match=rf"{tmp_path}.*No space left.*make room"):
+        assert made(2.0) == 4.0

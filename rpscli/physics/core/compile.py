@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import warnings
 from collections.abc import Callable
 from functools import cache, wraps
 from pathlib import Path
@@ -18,7 +19,7 @@ import numba
 from numba.core import cgutils, types
 from numba.extending import intrinsic, overload, register_jitable
 
-from rpscli.user_cache import is_private, user_cache
+from rpscli.user_cache import VARIABLE, is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Array = TypeVar("Array")
@@ -87,9 +88,36 @@ def kernel(function: Function) -> Function:
     folder, config = cache_folder(), cast("Any", numba.config)
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
     try:
-        return cast("Function", numba.njit(function, cache=folder is not None, **OPTIONS))
+        made = numba.njit(function, cache=folder is not None, **OPTIONS)
     finally:
         config.CACHE_DIR = before
+    if folder is not None:
+        _kept_if_there_is_room(made, folder)
+    return cast("Function", made)
+
+
+def _kept_if_there_is_room(made: Any, folder: Path) -> None:
+    """A full disk is no reason to stop: the machine code is in memory when it is to be kept."""
+    cached = made._cache  # noqa: SLF001 -- numba has no other place for this
+    save = cached.save_overload
+
+    def saved(*compiled_code: Any) -> None:
+        try:
+            save(*compiled_code)
+        except OSError as error:
+            _not_kept(folder, error.strerror or str(error))
+
+    cached.save_overload = saved
+
+
+@cache
+def _not_kept(folder: Path, reason: str) -> None:
+    """Say it once for all kernels."""
+    warnings.warn(
+        f"{folder}: {reason}: compiled kernels are not kept there, and compiled each time;"
+        f" make room, or name another place in {VARIABLE}",
+        stacklevel=2,
+    )
 
 
 def compiled(function: Function) -> Function:
@@ -194,7 +222,10 @@ def remember_compiled(name: str) -> None:
     """Note that the machine code of a kernel is in memory and, if there is a cache, on disk."""
     _compiled_here.add(name)
     if (folder := cache_folder()) is not None:
-        (folder / _mark(name)).touch()
+        try:
+            (folder / _mark(name)).touch()
+        except OSError as error:
+            _not_kept(folder, error.strerror or str(error))
 
 
 def _mark(name: str) -> str:
