@@ -89,13 +89,8 @@ def spectra_over_directions(
     first: GroundMotion, second: GroundMotion, periods: Sequence[float] | Array, damping: float
 ) -> Array:
     """(180, periods) pseudo-acceleration of the pair turned to each direction [m/s2]."""
-    x, y = (rotated(first, second, angle) for angle in (0.0, 90.0))
-    return np.column_stack(
-        [
-            _peaks(*(pseudo_acceleration_history(each, float(t), damping) for each in (x, y)))
-            for t in periods
-        ]
-    )
+    spectra = (over_directions(first, second, "Sa", float(t), damping) for t in periods)
+    return np.column_stack([*spectra])
 
 
 def pair_measure(

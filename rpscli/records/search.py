@@ -83,11 +83,11 @@ class Goal:
         cost = np.sqrt(shape.var(axis=-1) + (offset + common) ** 2) + SHORT * missing
         return cost, common
 
-    def common_factor(self, spectra: Array, factors: Array) -> float:
-        """That of one set, with spectra (size, 1 + n) under factors (size,)."""
-        total = self.features(spectra).sum(axis=0)
-        _, common = self.judged(total, len(factors), factors.min(), factors.max())
-        return math.exp(float(common))
+    def of_set(self, features: Array, factors: Array) -> tuple[float, float]:
+        """Cost and common factor of one set, with features (size, ...) under factors (size,)."""
+        total = features.sum(axis=0)
+        cost, common = self.judged(total, len(factors), factors.min(), factors.max())
+        return float(cost), math.exp(float(common))
 
 
 def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> list[int]:
@@ -121,9 +121,7 @@ class _Search:
 
     def cost(self, places: list[int]) -> float:
         """Of a set."""
-        factors = self.pool.factors[places]
-        total = self.features[places].sum(axis=0)
-        return float(self.goal.judged(total, len(places), factors.min(), factors.max())[0])
+        return self.goal.of_set(self.features[places], self.pool.factors[places])[0]
 
     def with_one_more(self, places: list[int]) -> tuple[float, int] | None:
         """The least cost of these places and another one, and that; None if none is free."""

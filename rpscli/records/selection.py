@@ -193,17 +193,11 @@ def select(
     places = best_choice(pool, goal, request.count, request.per_event)
     # Codes ask for all periods: the common factor and the verdicts are from a finer grid.
     periods, goal = _goal(target, request, asked, FINER * PERIODS)
-    finer = [
-        replace(
-            _measured(fitting[place].motions, target.damping, periods, request.of),
-            factor=fitting[place].factor,
-            clamped=fitting[place].clamped,
-        )
-        for place in places
-    ]
-    common = goal.common_factor(
-        np.array([one.scaled for one in finer]), np.array([one.factor for one in finer])
-    )
+    best = [fitting[place] for place in places]
+    spectra = [_spectrum(one.motions, target.damping, periods, request.of) for one in best]
+    finer = [replace(one, acceleration=s[1:]) for one, s in zip(best, spectra, strict=True)]
+    features = goal.features(np.array([one.scaled for one in finer]))
+    _, common = goal.of_set(features, np.array([one.factor for one in finer]))
     chosen = tuple(_under(common, one, goal.wanted[1:], request) for one in finer)
     scaled = np.array([one.scaled for one in chosen])
     mean = scaled.mean(axis=0) if goal.deviation is None else np.exp(np.log(scaled).mean(axis=0))
@@ -270,22 +264,32 @@ def _sources(motions: list[GroundMotion], of: Component) -> list[tuple[GroundMot
     return [(load_record(first), load_record(second)) for first, second in both]
 
 
+def _of_pair(values: Array, of: Component) -> Array:
+    """Of values (180, ...) over the directions, (...)."""
+    return np.hypot(values[0], values[90]) if of == "srss" else of_directions(values, of)
+
+
+def _spectrum(
+    motions: tuple[GroundMotion, ...], damping: float, periods: Array, of: Component
+) -> Array:
+    """(1 + n,) PGA and spectrum of a motion or a pair [m/s2]."""
+    at = [0.0, *periods]
+    if len(motions) == 1:
+        return response_spectrum(motions[0], at, damping).pseudo_acceleration
+    return _of_pair(spectra_over_directions(motions[0], motions[1], at, damping), of)
+
+
 def _measured(
     motions: tuple[GroundMotion, ...], damping: float, periods: Array, of: Component
 ) -> Candidate:
     """A motion or a pair with its spectrum and its peaks."""
-
-    def one_of(values: Array) -> Array:
-        return np.hypot(values[0], values[90]) if of == "srss" else of_directions(values, of)
-
-    first, at = motions[0], [0.0, *periods]
+    first, spectrum = motions[0], _spectrum(motions, damping, periods, of)
     if len(motions) == 1:
-        spectrum = response_spectrum(first, at, damping).pseudo_acceleration
         peaks = intensity_measures(first)
         pgv, pgd = peaks.pgv, peaks.pgd
     else:
-        spectrum = one_of(spectra_over_directions(first, motions[1], at, damping))
-        pgv, pgd = (float(one_of(over_directions(first, motions[1], m))) for m in ("PGV", "PGD"))
+        both = (over_directions(first, motions[1], measure) for measure in ("PGV", "PGD"))
+        pgv, pgd = (float(_of_pair(peaks, of)) for peaks in both)
     if not spectrum.all() or pgv <= 0.0:
         raise RecordError(f"{first.source}: does not move the ground; leave it out")
     return Candidate(motions, event_of(first) or "", float(spectrum[0]), pgv, pgd, spectrum[1:])

@@ -146,7 +146,7 @@ def test_a_limit_that_depends_on_one_measure_alone(study_of: Make) -> None:
 
 @pytest.mark.parametrize(
     ("measures", "words"),
-    [("PGX", "PGX is not a measure"), ("PGA(1 s)", "belongs to the measure")],
+    [("PGX", "PGX is not a measure"), ("PGA(1 s)", "belongs to measures such as Sa")],
 )
 def test_what_is_no_measure_is_refused(
     measures: str, words: str, workplace: Path, sweep: Callable[..., Result]
