@@ -62,11 +62,7 @@ class ResultQuantity(NamedTuple):
 
     @property
     def axis_label(self) -> str:
-        """Symbol or words, with the unit, for the axis of a figure.
-
-        >>> ResultQuantity("duration", "s", "duration").axis_label
-        'duration [s]'
-        """
+        """Symbol or words, with the unit, for the axis of a figure."""
         return self.in_unit(self.unit, self.symbol)
 
     def in_unit(self, unit: str, symbol: str = "") -> str:

@@ -139,11 +139,7 @@ def building(section: SuperstructureSection) -> Superstructure | None:
 
 
 def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[float]:
-    """One value for each storey from the bottom.
-
-    >>> each_storey(3.0, 2), each_storey((4.0, 3.0), 2)
-    ([3.0, 3.0], [4.0, 3.0])
-    """
+    """One value for each storey from the bottom."""
     assert value is not None, "the rules of the case make sure that the value is given"
     return list(value) if isinstance(value, tuple) else [value] * storeys
 

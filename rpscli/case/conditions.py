@@ -124,15 +124,7 @@ def with_friction(
 
 
 def condition_text(condition: Condition) -> str:
-    """What a condition asks for.
-
-    >>> condition_text(Condition("rotation_ratio", 0.5, "", share=0.1))
-    'at most 0.5 but for 10 % of the records'
-    >>> condition_text(Condition("overturning", 0.0, "")), condition_text(Condition("a", 2.0, ""))
-    ('no record', 'at most 2 in every record')
-    >>> condition_text(Condition("min_column_force", 1e5, "", fractile=0.1))
-    'at least 100000 at the 10 % fractile'
-    """
+    """What a condition asks for."""
     if condition.name == RATE:
         return f"at most {condition.limit:.3g} a year"
     if condition.fractile is not None:

@@ -151,16 +151,7 @@ def _event(source: str, folder: Path | None) -> str | None:
 
 
 def event_of(motion: GroundMotion) -> str | None:
-    """The earthquake of a motion, by name and year, where its file says so.
-
-    >>> import numpy as np
-    >>> text = "PEER STRONG MOTION DATABASE; NORTHRIDGE EQ 1/17/94, MULHOL, 009; values in g"
-    >>> event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text))
-    'northridge 1994'
-    >>> text = "Northridge-01, 1/17/1994, Beverly Hills - Mulhol, 9; values in g"
-    >>> event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text))
-    'northridge 1994'
-    """
+    """The earthquake of a motion, by name and year, where its file says so."""
     # Without numbers of shocks: sets call `Northridge` what flatfiles call `Northridge-01`, and
     # shocks of one sequence are not independent.
     return earthquake(motion.recording.event or _told(motion)) or None

@@ -23,20 +23,12 @@ LEAST, MOST = 0.25, 4.0
 
 
 def is_usual(factor: float) -> bool:
-    """Whether a factor on a recorded motion is usual; its sign does not matter.
-
-    >>> is_usual(0.25), is_usual(-4.0), is_usual(4.01)
-    (True, True, False)
-    """
+    """Whether a factor on a recorded motion is usual; its sign does not matter."""
     return LEAST <= abs(factor) <= MOST
 
 
 def scale_warning(name: str, factor: float) -> str:
-    """What to say of a record under a factor that is not usual.
-
-    >>> scale_warning("quake.at2", 1720.0)[:56]
-    'quake.at2 is scaled by 1720, beyond the usual 0.25 to 4:'
-    """
+    """What to say of a record under a factor that is not usual."""
     return (
         f"{name} is scaled by {factor:.4g}, beyond the usual {LEAST:g} to {MOST:g}: records of"
         " another size differ in more than their amplitude"

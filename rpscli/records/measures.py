@@ -194,11 +194,7 @@ MEASURES = Registry(
 
 
 def needs_period(measure: Measure | None) -> bool:
-    """Whether a measure is taken at a period.
-
-    >>> needs_period("Sa"), needs_period("PGV"), needs_period(None)
-    (True, False, False)
-    """
+    """Whether a measure is taken at a period."""
     return measure is not None and MEASURES[measure].at_period
 
 
@@ -212,11 +208,7 @@ def measured(
 
 
 def factor_to(value: float, unscaled: float, measure: Measure, source: str) -> float:
-    """Factor on a motion that brings a measure of it to a value.
-
-    >>> factor_to(4.0, 1.0, "PGA", ""), factor_to(4.0, 1.0, "Arias", "")
-    (4.0, 2.0)
-    """
+    """Factor on a motion that brings a measure of it to a value."""
     if not unscaled > 0.0:
         raise RecordError(f"{source}: {measure} is {unscaled:g}: cannot scale it")
     return float((value / unscaled) ** (1.0 / MEASURES[measure].power))

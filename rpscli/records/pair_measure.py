@@ -43,23 +43,14 @@ DIRECTIONS = np.arange(180.0)
 
 
 def measure_label(measure: str, of: Of | None, at: str = "") -> str:
-    """A measure, at a period perhaps, as columns and axes name it.
-
-    >>> measure_label("PGV", "component"), measure_label("Sa", "rotd50", "T1")
-    ('PGV', 'Sa(T1, RotD50)')
-    """
+    """A measure, at a period perhaps, as columns and axes name it."""
     pair = "" if of in (None, "component") else SHOWN.get(of, of)
     inside = ", ".join(filter(None, (at, pair)))
     return f"{measure}({inside})" if inside else measure
 
 
 def of_directions(values: Array, of: Of = USUAL) -> Array:
-    """Of values (180, ...) over the directions, (...).
-
-    >>> plane = np.abs(np.cos(np.radians(DIRECTIONS)))  # all motion along the first component
-    >>> [round(float(of_directions(plane, of)), 3) for of in ("rotd50", "rotd100", "geomean")]
-    [0.707, 1.0, 0.0]
-    """
+    """Of values (180, ...) over the directions, (...)."""
     first, second = values[0], values[90]
     if of == "rotd50":
         return np.asarray(np.median(values, axis=0))

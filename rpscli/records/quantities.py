@@ -62,11 +62,7 @@ def numbers_in(line: str) -> list[float] | None:
 
 
 def why_no_numbers(line: str) -> str:
-    """What keeps a line from being read as numbers, if that is its punctuation; else nothing.
-
-    >>> why_no_numbers("0,005 0,123"), why_no_numbers("0.1; 0.2"), why_no_numbers("end")
-    (' (decimal commas: write points)', ' (semicolons: separate by commas or blanks)', '')
-    """
+    """What keeps a line from being read as numbers, if that is its punctuation; else nothing."""
     if re.fullmatch(r"[-+.,0-9EeDd;\s]*[0-9][-+.,0-9EeDd;\s]*", line):
         if re.search("[0-9],[0-9]", line):
             return " (decimal commas: write points)"
@@ -81,11 +77,7 @@ def numerals_in(line: str) -> list[str]:
 
 
 def last_digit(numeral: str) -> float:
-    """The unit of the last digit that is printed.
-
-    >>> last_digit(".0050"), last_digit("2.50E-02")
-    (0.0001, 0.0001)
-    """
+    """The unit of the last digit that is printed."""
     mantissa, _, exponent = re.sub("[dD]", "E", numeral.upper()).partition("E")
     decimals = len(mantissa.partition(".")[2])
     # Beyond these the unit is zero or infinite anyway, however many digits the exponent has.
@@ -109,11 +101,7 @@ def canonical_unit(text: str) -> str | None:
 
 
 def unit_factor(unit: str) -> float:
-    """The size of a canonical unit in m/s2.
-
-    >>> unit_factor("g"), unit_factor("gal")
-    (9.80665, 0.01)
-    """
+    """The size of a canonical unit in m/s2."""
     return _FACTORS[unit]
 
 

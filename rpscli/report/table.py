@@ -18,11 +18,7 @@ if TYPE_CHECKING:
 
 
 def shown(value: float | str | None, digits: int = 4) -> str:
-    """A number with so many significant digits; ``-`` if there is none.
-
-    >>> shown(0.10501282), shown(17321.4), shown(3), shown(None), shown(2.4e-9)
-    ('0.1050', '17321', '3', '-', '2.400e-09')
-    """
+    """A number with so many significant digits; ``-`` if there is none."""
     if value is None:
         return "-"
     if isinstance(value, str | int):
@@ -43,41 +39,25 @@ LARGE_UNITS = {"N": "kN", "J": "kJ", "kg": "t", "N/m": "kN/m"}
 
 
 def large(value: float | None, unit: str) -> tuple[float | None, str]:
-    """A value in SI and its unit as people read them.
-
-    >>> large(1.5e6, "N"), large(0.1, "rad"), large(None, "s"), large(0.2, "-")
-    ((1500.0, 'kN'), (0.1, 'rad'), (None, 's'), (0.2, ''))
-    """
+    """A value in SI and its unit as people read them."""
     if unit in LARGE_UNITS:
         return None if value is None else value * 1e-3, LARGE_UNITS[unit]
     return value, "" if unit == "-" else unit
 
 
 def headed(label: str, unit: str) -> str:
-    """What stands above values in the unit in which people read them.
-
-    >>> headed("base shear", "N"), headed("rotation ratio", "-")
-    ('base shear kN', 'rotation ratio')
-    """
+    """What stands above values in the unit in which people read them."""
     return f"{label} {large(None, unit)[1]}".strip()
 
 
 def measured(value: float | None, unit: str) -> str:
-    """A value in SI as text with its unit.
-
-    >>> measured(1.5e6, "N"), measured(None, "s"), measured(0.2, "-")
-    ('1500 kN', '-', '0.2000')
-    """
+    """A value in SI as text with its unit."""
     number, name = large(value, unit)
     return shown(number) if value is None or not name else f"{shown(number)} {name}"
 
 
 def percent(part: float, whole: float) -> str:
-    """A share of a whole.
-
-    >>> percent(1.0, 3.0), percent(1.0, 0.0)
-    ('33.3 %', '-')
-    """
+    """A share of a whole."""
     return f"{100.0 * part / whole:.1f} %" if whole else "-"
 
 

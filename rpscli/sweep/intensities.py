@@ -15,11 +15,7 @@ from rpscli.sweep.table import Array, Table
 
 
 def unit_of(name: str) -> str:
-    """SI unit of a measure or of a varied key; ``-`` for plain numbers and words.
-
-    >>> unit_of("PGA(RotD50)"), unit_of("superstructure.period"), unit_of("scale")
-    ('m/s2', 's', '-')
-    """
+    """SI unit of a measure or of a varied key; ``-`` for plain numbers and words."""
     alone = name.partition("(")[0]
     # Keys have dots, all but those that a study varies besides them.
     if alone in MEASURES or ("." not in name and alone in MEASURES.names()):

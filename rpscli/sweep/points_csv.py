@@ -105,11 +105,7 @@ def _numbers(values: Array, *, whole: bool = False) -> list[str]:
 
 
 def _cell(value: object, unit: str) -> str:
-    """A value in the unit of its column; lists and mappings as JSON.
-
-    >>> _cell(0.1, "-"), _cell("critical", "-"), _cell([1, 2], "-"), _cell("500 mm", "m")
-    ('0.1', 'critical', '[1, 2]', '0.5')
-    """
+    """A value in the unit of its column; lists and mappings as JSON."""
     value = in_si(value, unit)
     if isinstance(value, str):
         return value

@@ -26,22 +26,13 @@ class Doubt(NamedTuple):
     detail: str = ""
 
     def __str__(self) -> str:
-        """As a warning.
-
-        >>> str(Doubt("a storey drifts by {0} of its height{1}", 0.03, " (storey 2)"))
-        'a storey drifts by 0.03 of its height (storey 2)'
-        """
+        """As a warning."""
         number = "" if self.value is None else f"{self.value:.4g}"
         return self.sentence.format(number, self.detail)
 
 
 def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
-    """Each kind of doubt once, with how many systems raise it and the range of its number.
-
-    >>> wide = Doubt("the width {0} is unusual", 9.0)
-    >>> doubts_of_many([[wide], [], [wide._replace(value=7.5)], [Doubt("it is odd{1}", None, "!")]])
-    ['2 of 4 systems: the width 7.5 to 9 is unusual', '1 of 4 systems: it is odd']
-    """
+    """Each kind of doubt once, with how many systems raise it and the range of its number."""
     kinds: dict[str, dict[int, list[float]]] = {}
     for system, doubts in enumerate(systems):
         for sentence, value, _ in doubts:

@@ -137,11 +137,7 @@ def unit(key: str) -> str:
 
 
 def is_whole(key: str) -> bool:
-    """Whether a case key holds whole numbers.
-
-    >>> is_whole("podium.columns"), is_whole("superstructure.period")
-    (True, False)
-    """
+    """Whether a case key holds whole numbers."""
     return any(isinstance(mark, Whole) for mark in _marks_of(key))
 
 

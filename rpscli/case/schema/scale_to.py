@@ -67,13 +67,7 @@ class ScaleToSection(Section):
 
 
 def scale_to_of(text: str) -> ScaleToSection:
-    """What a text such as ``PGA=0.4g``, ``Sa(0.6 s)=1 g`` or ``PGV(rotd100)=0.5`` asks for.
-
-    >>> scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period
-    (0.5, 0.6)
-    >>> scale_to_of("PGV(RotD100)=0.5").of, scale_to_of("Sa(0.6 s, geomean)=1").of
-    ('rotd100', 'geomean')
-    """
+    """What a text such as ``PGA=0.4g``, ``Sa(0.6 s)=1 g`` or ``PGV(rotd100)=0.5`` asks for."""
     found = _TARGET.fullmatch(text)
     if found is None:
         raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")

@@ -114,11 +114,7 @@ def _product(pattern: RecordPattern, path: Path) -> list[str]:
 
 
 def _text(value: object) -> str:
-    """A value as an option is written: whole numbers without a fraction.
-
-    >>> _text(20.0), _text(0.5), _text("0.4 g")
-    ('20', '0.5', '0.4 g')
-    """
+    """A value as an option is written: whole numbers without a fraction."""
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return str(int(value))
     return str(value)

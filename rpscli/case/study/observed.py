@@ -55,13 +55,7 @@ class Observed:
 
 
 def comparable(key: str, value: object) -> str:
-    """A value of a varied key as text that is the same for the same value.
-
-    >>> comparable("podium.bearing.semi_diagonal", "1500 mm"), comparable("title", "tower A")
-    ('1.5', 'tower A')
-    >>> comparable("podium.bearing.semi_diagonal", 1.5), comparable("scale", "0.50")
-    ('1.5', '0.5')
-    """
+    """A value of a varied key as text that is the same for the same value."""
     found = in_si(value, key_unit(key))
     try:
         return format(float(found), ".9g")  # type: ignore[arg-type]

@@ -48,20 +48,12 @@ class Fault:
 
 
 def dotted(path: Path) -> str:
-    """A path as the user writes it, long keys cut.
-
-    >>> dotted(("superstructure", "storey_mass", 0))
-    'superstructure.storey_mass.0'
-    """
+    """A path as the user writes it, long keys cut."""
     return ".".join(part if len(part) <= 60 else f"{part[:57]}..." for part in map(str, path))
 
 
 def shown(value: object, width: int = 60) -> str:
-    """A value as it goes into a message: text in quotes, long ones cut.
-
-    >>> shown("200 t"), shown(0.5), shown(None), shown(True)
-    ("'200 t'", '0.5', 'null', 'true')
-    """
+    """A value as it goes into a message: text in quotes, long ones cut."""
     if value is None or isinstance(value, bool):
         return {None: "null", True: "true", False: "false"}[value]
     if isinstance(value, dict):

@@ -155,11 +155,7 @@ def _look(figures: str | None, columns: str | None, style_file: Path | None) -> 
 
 
 def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
-    """Formats of figures, none at all for the word none; and figures of other packages.
-
-    >>> _formats("svg, pdf"), _formats("none")
-    ((('svg', 'pdf'), ()), ((), ()))
-    """
+    """Formats of figures, none at all for the word none; and figures of other packages."""
     words = list(dict.fromkeys(word.strip() for word in text.split(",")))
     if [word.lower() for word in words] == ["none"]:
         return (), ()

@@ -174,11 +174,7 @@ _COARSEST = 0.25
 def printed_resolution(
     printed: NDArray[np.float64], numerals: Iterable[str]
 ) -> NDArray[np.float64]:
-    """The unit of the last digit of each time of a column, dropped zeros included.
-
-    >>> printed_resolution(np.array([0.0, 0.5, 1.0, 1.5]), ["0", "0.5", "1", "1.5"]).tolist()
-    [0.1, 0.1, 0.1, 0.1]
-    """
+    """The unit of the last digit of each time of a column, dropped zeros included."""
     # Of so many decimals or significant digits: one a decade, and growing by no more than ten.
     times = np.abs(printed)
     units = np.fromiter(map(last_digit, numerals), dtype=np.float64, count=times.size)

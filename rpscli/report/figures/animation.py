@@ -107,11 +107,7 @@ class Scene:
 
 
 def _pace(speed: float) -> str:
-    """How fast a film runs, in words.
-
-    >>> _pace(2.13), _pace(1.0), _pace(0.5)
-    ('2.1 times faster than real', 'in real time', '2 times slower than real')
-    """
+    """How fast a film runs, in words."""
     if f"{speed:.2g}" == "1":
         return "in real time"
     return f"{max(speed, 1.0 / speed):.2g} times {'faster' if speed > 1.0 else 'slower'} than real"

@@ -119,11 +119,7 @@ MOST_FLOORS = 3
 
 
 def shown_floors(count: int) -> list[int]:
-    """Numbers of the floors that are drawn, from 1: the lowest, the middle one and the roof.
-
-    >>> shown_floors(1), shown_floors(2), shown_floors(6)
-    ([1], [1, 2], [1, 4, 6])
-    """
+    """Numbers of the floors that are drawn, from 1: the lowest, the middle one and the roof."""
     floors = np.linspace(1.0, count, min(count, MOST_FLOORS))
     return [int(floor + 0.5) for floor in floors]
 

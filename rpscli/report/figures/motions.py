@@ -186,11 +186,7 @@ def _draw_spectra(axes: Axes, selection: Selection) -> None:
 
 
 def _second_tick(value: float) -> str:
-    """Labels between powers of ten, as many as there is room for.
-
-    >>> _second_tick(0.2), _second_tick(0.4), _second_tick(50.0)
-    ('0.2', '', '50')
-    """
+    """Labels between powers of ten, as many as there is room for."""
     return f"{value:g}" if f"{value:e}"[0] in "235" else ""
 
 

@@ -253,29 +253,17 @@ def heading(figure: Figure, *parts: str) -> None:
 
 
 def percent(share: float) -> str:
-    """A share in per cent.
-
-    >>> percent(0.05), percent(0.975)
-    ('5 %', '97.5 %')
-    """
+    """A share in per cent."""
     return f"{100.0 * share:.3g} %"
 
 
 def typeset(text: str) -> str:
-    """A text of tables as figures show it.
-
-    >>> typeset("PGA [m/s2]")
-    'PGA [m/s²]'
-    """
+    """A text of tables as figures show it."""
     return text.replace("m/s2", "m/s²")
 
 
 def in_rows(entries: Sequence[Entry], columns: int) -> list[Entry]:
-    """Entries in the order in which a legend that fills column by column reads row by row.
-
-    >>> in_rows("abcde", 3)
-    ['a', 'd', 'b', 'e', 'c']
-    """
+    """Entries in the order in which a legend that fills column by column reads row by row."""
     return [entry for column in range(columns) for entry in entries[column::columns]]
 
 
@@ -300,11 +288,7 @@ def legend_above(axes: Axes, columns: int) -> None:
 
 
 def _letters(text: str) -> int:
-    r"""How many letters a text with formulas shows, about.
-
-    >>> _letters(r"$\theta_{cr}$ = 0.3")
-    9
-    """
+    """How many letters a text with formulas shows, about."""
     return len(re.sub(r"[${}_^]", "", re.sub(r"\\[A-Za-z]+", "x", text)))
 
 
@@ -319,11 +303,7 @@ def over(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
 
 
 def engineering(largest: float) -> tuple[float, str]:
-    """Factor and prefix that bring a value between 1 and 1000.
-
-    >>> engineering(3.2e6), engineering(15.0), engineering(4e4)
-    ((1e-06, 'M'), (1.0, ''), (0.001, 'k'))
-    """
+    """Factor and prefix that bring a value between 1 and 1000."""
     for factor, prefix in ((1e-6, "M"), (1e-3, "k")):
         if largest * factor >= 1.0:
             return factor, prefix

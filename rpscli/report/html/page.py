@@ -18,11 +18,7 @@ Content = str | Element | None | Iterable["Content"]
 
 
 def element(tag: str, *content: Content, **attributes: str) -> Element:
-    """An element with text and others in it; ``class_`` is the attribute `class`.
-
-    >>> written(element("p", "a < b, ", element("b", "or not"), " & so on", class_="x"))
-    '<p class="x">a &lt; b, <b>or not</b> &amp; so on</p>'
-    """
+    """An element with text and others in it; ``class_`` is the attribute `class`."""
     made = Element(tag, {name.rstrip("_"): text for name, text in attributes.items()})
     for part in content:
         _append(made, part)

@@ -138,11 +138,7 @@ class LimitState(NamedTuple):
 
     @property
     def label(self) -> str:
-        """The state in words.
-
-        >>> LimitState("rotation_ratio", 0.5).label, LimitState("min_column_force", 1e5).label
-        ('rotation_ratio > 0.5', 'min_column_force < 100000')
-        """
+        """The state in words."""
         if self.threshold is None:
             return self.result
         sign = "<" if LIMITS[self.result].from_below else ">"
@@ -506,11 +502,7 @@ def beyond_computed(axes: Axes, largest: float, end: float) -> None:
 
 
 def limit_name(limit: LimitState) -> str:
-    """The limit state in the words of the results.
-
-    >>> limit_name(LimitState("drift_ratio", 0.002)), limit_name(LimitState("max_lift", 0.1))
-    ('drift ratio > 0.002', 'lift of the building > 0.1 m')
-    """
+    """The limit state in the words of the results."""
     if limit.result not in LIMITS:
         return limit.label
     known = LIMITS[limit.result]

@@ -30,24 +30,12 @@ Values = Sequence[object]
 
 
 def symbol(key: str) -> str:
-    """A key's letter or its last word.
-
-    >>> symbol("superstructure.storeys"), symbol("podium.impact.law")
-    ('n', 'law')
-    """
+    """A key's letter or its last word."""
     return SYMBOLS.get(key, key.rpartition(".")[2])
 
 
 def label(key: str, value: object) -> str:
-    """A key with its value and unit.
-
-    >>> label("superstructure.storeys", 3), label("podium.bearing.curvature_ratio", 0)
-    ('n = 3', 'flat ends')
-    >>> label("title", "tower A")
-    'tower A'
-    >>> label("superstructure.period", 0.3), label("superstructure.period", "300 ms")
-    ('T₁ = 0.3 s', 'T₁ = 300 ms')
-    """
+    """A key with its value and unit."""
     if key.endswith("curvature_ratio") and not isinstance(value, list | dict | bool):
         known = CURVATURES.get(value) if isinstance(value, str | int | float) else None
         if known:
@@ -67,11 +55,7 @@ def labels(keys: Iterable[str], values: Values) -> str:
 
 
 def plain(value: object) -> str:
-    """A value as text: numbers short, devices by their kinds, lists as the study has them.
-
-    >>> plain(0.25), plain([]), plain([{"kind": "stop", "gap": 0.2, "stiffness": 1e6}])
-    ('0.25', 'none', 'stop 0.2 m')
-    """
+    """A value as text: numbers short, devices by their kinds, lists as the study has them."""
     if isinstance(value, float):
         return f"{value:g}"
     if isinstance(value, list) and all(isinstance(item, dict) and "kind" in item for item in value):

@@ -255,11 +255,7 @@ def _say_what_is_left_out(axes: Axes, line: Line, x: list[float]) -> None:
 
 
 def _distinct(results: tuple[str, ...]) -> list[str]:
-    """Names without what they have in common at both ends; empty for a single one.
-
-    >>> _distinct(("rolling.frequency_ratio.0", "rocking.frequency_ratio.0"))
-    ['rolling', 'rocking']
-    """
+    """Names without what they have in common at both ends; empty for a single one."""
     parts = [name.split(".") for name in results]
     for end in (0, -1):
         while all(parts) and len({names[end] for names in parts}) == 1:
@@ -275,11 +271,7 @@ def _abscissae(values: tuple[object, ...]) -> tuple[list[float], list[str]]:
 
 
 def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
-    """Dashes that show each of so many series, up to three, that lie on each other.
-
-    >>> _staggered(0, 1), _staggered(1, 3)
-    ('--', (2, (2, 4)))
-    """
+    """Dashes that show each of so many series, up to three, that lie on each other."""
     return (2 * place, (2, 2 * min(among, 3) - 2)) if among > 1 else "--"
 
 

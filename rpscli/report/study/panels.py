@@ -200,11 +200,7 @@ def log_ticks(axis: Axis) -> None:
 
 
 def over(pooled: Sequence[str]) -> str:
-    """A remark on what differs within a panel.
-
-    >>> over(("3 intensities", "4 members")), over(())
-    ('over 3 intensities and 4 members', '')
-    """
+    """A remark on what differs within a panel."""
     return f"over {' and '.join(pooled)}" if pooled else ""
 
 

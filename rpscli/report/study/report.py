@@ -92,11 +92,7 @@ class Found:
 
 
 def with_band(value: float, low: float, high: float) -> str:
-    """A value and the band around it.
-
-    >>> with_band(0.25, 0.125, 0.5), with_band(0.25, math.nan, math.nan), with_band(*[math.nan] * 3)
-    ('0.250 (0.12 to 0.50)', '0.250 (no band)', '-')
-    """
+    """A value and the band around it."""
     if not math.isfinite(value):
         return "-"
     known = math.isfinite(low) and math.isfinite(high)
@@ -151,12 +147,6 @@ def preset(of: Report[Any], options: type[Options], **fixed: object) -> Report[O
 
 
 def add_notes(notes: list[str], name: str, found: Iterable[str]) -> None:
-    """Notes under the name of their report; what another report has said is not said again.
-
-    >>> notes = ["fragility: the data are separated"]
-    >>> add_notes(notes, "risk", ["the data are separated", "the hazard curve is continued"])
-    >>> notes
-    ['fragility: the data are separated', 'risk: the hazard curve is continued']
-    """
+    """Notes under the name of their report; what another report has said is not said again."""
     told = {note.partition(": ")[2] for note in notes}
     notes += [f"{name}: {note}" for note in found if note not in told]

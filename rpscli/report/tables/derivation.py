@@ -214,21 +214,13 @@ def first_shape(building: Superstructure) -> NDArray[np.float64]:
 
 
 def symbolic(expression: str) -> str:
-    r"""An expression with its symbols.
-
-    >>> symbolic("atan(tan_alpha / (1 - 2 * rho))"), symbolic("sin(alpha)^2")
-    ('atan(tan α / (1 − 2 ρ))', 'sin(α)²')
-    """
+    """An expression with its symbols."""
     text = _LETTER.sub(lambda found: SYMBOLS.get(found[0], found[0]), expression)
     return _printed(text.replace(" * ", " "))
 
 
 def numeric(expression: str, letters: Mapping[str, float]) -> str:
-    r"""An expression with numbers for its letters.
-
-    >>> numeric("2 * R * cos(alpha)", {"R": 1.5, "alpha": 0.1488899})
-    '2 · 1.5 · cos(0.14889)'
-    """
+    """An expression with numbers for its letters."""
 
     def number(found: re.Match[str]) -> str:
         name = found[0]
@@ -238,11 +230,7 @@ def numeric(expression: str, letters: Mapping[str, float]) -> str:
 
 
 def greek(text: str) -> str:
-    """Letters that are written out, as they are.
-
-    >>> greek("gamma (1 + eta)"), greek("alpha'")
-    ('γ (1 + η)', 'α′')
-    """
+    """Letters that are written out, as they are."""
     return _printed(re.sub("alpha|beta|gamma|theta|rho|eta", lambda f: GREEK[f[0]], text))
 
 

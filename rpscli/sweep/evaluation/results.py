@@ -111,11 +111,7 @@ KNOWN: dict[Analysis, Named] = {
 
 
 def quantity(analysis: Analysis, path: str) -> ResultQuantity | None:
-    """The quantity at a dotted path; None if the analysis has no such result.
-
-    >>> quantity("modal", "rolling.frequency_ratio.0").unit, quantity("modal", "rolling.period")
-    ('-', None)
-    """
+    """The quantity at a dotted path; None if the analysis has no such result."""
     return KNOWN[analysis].get(split(path)[0])
 
 
@@ -163,11 +159,7 @@ def stacked(values: Sequence[Any]) -> Array:
 
 
 def split(path: str) -> tuple[str, tuple[int, ...]]:
-    """The name of a column and the place in its rows that a dotted path stands for.
-
-    >>> split("rolling.frequency_ratio.0"), split("max_rotation")
-    (('rolling.frequency_ratio', (0,)), ('max_rotation', ()))
-    """
+    """The name of a column and the place in its rows that a dotted path stands for."""
     parts, places = path.split("."), []
     while len(parts) > 1 and parts[-1].isdecimal():
         places.append(int(parts.pop()))

@@ -70,11 +70,7 @@ class Share(NamedTuple):
 
     @property
     def interval(self) -> str:
-        """The interval in words.
-
-        >>> share(0, 22).interval, share(3, 22).interval, share(5, 5).interval, share(0, 0).interval
-        ('below 0.13', '0.029 to 0.35', 'above 0.55', '-')
-        """
+        """The interval in words."""
         if not self.of:
             return "-"
         if self.number in {0, self.of}:
@@ -83,11 +79,7 @@ class Share(NamedTuple):
         return f"{low} to {self.high:#.2g}"
 
     def __str__(self) -> str:
-        """Counts and interval.
-
-        >>> str(share(0, 22)), str(clustered(np.zeros(48, dtype=bool), np.arange(48) // 12))
-        ('0 of 22 (95 %: below 0.13)', '0 of 48 from 4 recordings (95 %: below 0.53)')
-        """
+        """Counts and interval."""
         return (
             f"{self.number} of {self.of}{self.behind} ({100.0 * CONFIDENCE:g} %: {self.interval})"
         )

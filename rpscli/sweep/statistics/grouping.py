@@ -79,11 +79,7 @@ class Histories:
 
 
 def statistic_words(wanted: float | str) -> str:
-    """A statistic in words.
-
-    >>> statistic_words("mean"), statistic_words(0.84)
-    ('mean of survivors', '84 % fractile')
-    """
+    """A statistic in words."""
     if wanted == "mean":
         return "mean of survivors"
     return wanted if isinstance(wanted, str) else f"{100.0 * wanted:g} % fractile"

@@ -163,11 +163,7 @@ def outcome_worth(computed: Flags, observed: Flags) -> Worth:
 
 
 def best_place(worths: Sequence[Worth]) -> int:
-    """Which worth a fit takes: the best count among those the misfit does not tell apart.
-
-    >>> best_place([Worth(0.10, 0.06, 0.03), Worth(0.12, 0.01, 0.03), Worth(0.15, 0.0, 0.03)])
-    1
-    """
+    """Which worth a fit takes: the best count among those the misfit does not tell apart."""
     # Up to one standard error above the least (Breiman et al., Classification and Regression Trees,
     # 1984): the least alone follows chance. Of equals the middle, which more data moves least.
     least = min(worths)
@@ -178,25 +174,14 @@ def best_place(worths: Sequence[Worth]) -> int:
 
 
 def agreement(computed: Flags, observed: Flags, cluster: Indices) -> Agreement:
-    """Count the four pairs of outcomes, of clusters as `clustered` takes them.
-
-    >>> import numpy as np
-    >>> agreement(np.array([True, True, False]), np.array([True, False, False]), np.arange(3))[:4]
-    (1, 1, 0, 1)
-    """
+    """Count the four pairs of outcomes, of clusters as `clustered` takes them."""
     cells = (computed & observed, computed & ~observed, ~computed & observed, ~computed & ~observed)
     a, b, c, d = (int(cell.sum()) for cell in cells)
     return Agreement(a, b, c, d, clustered(computed == observed, cluster))
 
 
 def threshold(intensity: Array, observed: Flags) -> float:
-    """The intensity beyond which all is taken to overturn, chosen as `best_place` says.
-
-    >>> import numpy as np
-    >>> im = np.array([1.0, 2.0, 4.0, 8.0])
-    >>> round(threshold(im, np.array([False, False, True, True])), 3)
-    2.828
-    """
+    """The intensity beyond which all is taken to overturn, chosen as `best_place` says."""
     # It lies midway (geometrically) between two data, or is the least or twice the largest of them.
     levels = np.unique(intensity)
     cuts = np.array([levels[0], *np.sqrt(levels[1:] * levels[:-1]), 2.0 * levels[-1]])
@@ -205,13 +190,7 @@ def threshold(intensity: Array, observed: Flags) -> float:
 
 
 def maxima(computed: Array, observed: Array) -> Maxima:
-    """Compare maxima; computed ones are infinite where the structure overturned.
-
-    >>> import numpy as np
-    >>> found = maxima(np.array([2.0, 8.0, np.inf]), np.array([1.0, 1.0, 1.0]))
-    >>> found.counted, found.overturned, round(found.median, 6), found.distance
-    (2, 1, 2.0, 1.0)
-    """
+    """Compare maxima; computed ones are infinite where the structure overturned."""
     from scipy.stats import ks_2samp
 
     stood = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)

