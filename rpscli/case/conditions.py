@@ -65,11 +65,7 @@ class Condition:
 
 
 def parse_condition(text: str) -> Condition:
-    """A condition of `--fail-on`: ``overturning``, ``overturning=0.1`` (a share), ``NAME=VALUE``.
-
-    >>> parse_condition("rotation_ratio=0.5")
-    Condition(name='rotation_ratio', limit=0.5, source='--fail-on', share=0.0, fractile=None)
-    """
+    """A condition of `--fail-on`: ``overturning``, with a share ``=0.1``, or ``NAME=VALUE``."""
     name, sign, value = (part.strip() for part in text.partition("="))
     if name in EVENTS and not sign:
         return Condition(name, 0.0, "--fail-on")

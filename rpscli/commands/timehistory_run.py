@@ -96,11 +96,7 @@ def _label(ground: MotionComponents) -> str:
 
 
 def unique(names: Sequence[str]) -> list[str]:
-    """The names, numbered where one comes again, in small letters or capitals: folders have them.
-
-    >>> unique(["a", "b", "a", "B"])
-    ['a', 'b', 'a_2', 'B_2']
-    """
+    """The names, numbered where one comes again in small letters or capitals."""
     taken: dict[str, str] = {}
     for name in names:
         tried = (name, *(f"{name}_{number}" for number in range(2, len(names) + 2)))

@@ -109,11 +109,7 @@ def _family(place: str, source: str, pairs: set[str]) -> str:
 
 
 def _numbered(families: Sequence[set[str]]) -> list[int]:
-    """Numbers from 0 in the order of the sources; the same where names are shared, by others too.
-
-    >>> _numbered([{"a"}, {"b"}, {"a", "c"}, {"c"}])
-    [0, 1, 0, 0]
-    """
+    """Numbers from 0 in the order of the sources, the same where names are shared."""
     root: dict[str, str] = {}
 
     def find(name: str) -> str:

@@ -60,11 +60,6 @@ def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
     A. Arias, in Seismic Design for Nuclear Power Plants, MIT Press, 1970.
     M. D. Trifunac and A. G. Brady, Bull. Seism. Soc. Am. 65, 1975 (duration to 95 %);
     P. G. Somerville and others, SAC/BD-97/04, 1997, use that to 75 %.
-
-    >>> flat = GroundMotion(np.ones(101), 0.1, "flat", "", "")
-    >>> measures = intensity_measures(flat)
-    >>> round(measures.pgv, 9), round(measures.pgd, 9), round(measures.d5_95, 9)
-    (10.0, 50.0, 9.0)
     """
     a, dt = motion.acceleration, motion.dt
     husid = _cumulative(a**2, dt)

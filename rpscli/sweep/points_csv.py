@@ -81,11 +81,7 @@ def point_columns(table: Table) -> Columns:
 
 
 def array(values: Any) -> NDArray[Any]:
-    """Numbers if all of them are, with NaN for None; else objects.
-
-    >>> array([1, None, "inf"]).tolist(), array([0.5, "critical"]).tolist()
-    ([1.0, nan, inf], [0.5, 'critical'])
-    """
+    """Numbers if all of them are, with NaN for None; else objects."""
     kept = list(values)
     numbers = [np.nan if value is None else np.inf if value == "inf" else value for value in kept]
     if all(isinstance(value, int | float) for value in numbers):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rpscli.case.build import each_storey
-from rpscli.case.conditions import Condition, condition_text
+from rpscli.case.conditions import Condition, condition_text, parse_condition
 from rpscli.case.rules.plausibility import Doubt, doubts_of_many
 from rpscli.case.rules.podium import above, largest_slenderness
 from rpscli.case.schema.fields import ValueRange
@@ -90,3 +90,7 @@ def test_text_document() -> None:
         "null",
         "true",
     )
+
+
+def test_conditions_of_options() -> None:
+    assert parse_condition("rotation_ratio=0.5") == Condition("rotation_ratio", 0.5, "--fail-on")

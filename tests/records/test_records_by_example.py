@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rpscli.records.clusters import event_of
+from rpscli.records.clusters import _numbered, event_of
 from rpscli.records.formats.record_text import printed_resolution
 from rpscli.records.ground_motion import GroundMotion, is_usual, scale_warning
 from rpscli.records.measures import factor_to, needs_period
@@ -75,3 +75,7 @@ def test_sets() -> None:
 
 def test_synthetic() -> None:
     assert envelope(np.array([0.0, 0.2, 1.0])).round(3).tolist() == [0.0, 1.0, 0.01]
+
+
+def test_numbers_of_clusters() -> None:
+    assert _numbered([{"a"}, {"b"}, {"a", "c"}, {"c"}]) == [0, 1, 0, 0]

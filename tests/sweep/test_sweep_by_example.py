@@ -7,17 +7,24 @@ import numpy as np
 from rpscli.sweep.evaluation.results import quantity, split
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.points.layout import yaml_scalar
-from rpscli.sweep.points_csv import _cell
-from rpscli.sweep.statistics.fractiles import clustered, share
+from rpscli.sweep.points_csv import _cell, array
+from rpscli.sweep.statistics.fractiles import clustered, fractiles, share, shown_by
 from rpscli.sweep.statistics.grouping import statistic_words
-from rpscli.sweep.statistics.observations import Worth, agreement, best_place, maxima, threshold
+from rpscli.sweep.statistics.observations import (
+    Worth,
+    agreement,
+    best_place,
+    maxima,
+    outcome_worth,
+    threshold,
+)
 
 
 def test_evaluation_results() -> None:
-    assert (
-        quantity("modal", "rolling.frequency_ratio.0").unit,
-        quantity("modal", "rolling.period"),
-    ) == ("-", None)
+    known = quantity("modal", "rolling.frequency_ratio.0")
+    assert known is not None
+    assert known.unit == "-"
+    assert quantity("modal", "rolling.period") is None
     assert (split("rolling.frequency_ratio.0"), split("max_rotation")) == (
         ("rolling.frequency_ratio", (0,)),
         ("max_rotation", ()),
@@ -86,3 +93,18 @@ def test_statistics_observations() -> None:
         2.0,
         1.0,
     )
+    even = np.array([True, True, False, False])
+    worth = outcome_worth(even, np.array([True, False, False, False]))
+    assert worth == Worth(misfit=0.25, count_off=0.25, error=0.21650635094610965)
+
+
+def test_points_csv_columns() -> None:
+    np.testing.assert_equal(array([1, None, "inf"]), [1.0, np.nan, np.inf])
+    assert array([0.5, "critical"]).tolist() == [0.5, "critical"]
+
+
+def test_statistics_fractiles_of_demands() -> None:
+    wanted = [0.5, 0.75, 0.76]
+    assert fractiles(np.array([3.0, np.inf, 1.0, 2.0]), wanted).tolist() == [2.0, 3.0, np.inf]
+    assert [shown_by(share(number, 31), 0.05) for number in (0, 1)] == [59, 110]
+    assert shown_by(share(0, 5), 0.1) == 29

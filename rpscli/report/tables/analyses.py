@@ -151,16 +151,12 @@ ENERGIES = ("energy_input", "energy_damped", "energy_impact", "energy_stored")
 
 
 def history_columns(result: TimeHistoryResult) -> list[Column]:
-    """`timehistory.csv`: one row a sample of the record, on through the free vibration.
-
-    Largest results may lie between the rows. Floors and storeys are counted from the bottom.
-
-    `phase` is 0 in full contact, 1 rolling, 2 rocking, 3 held by friction. Displacements are
-    relative to the ground, floor accelerations absolute. Forces are those of one column, F to the
-    right and N upwards on what is above; of all columns together where the case does not give
-    their number. Devices are counted from 0, as in `podium.devices`; their energy is what they
-    dissipated so far, of a damped stop that has let go as the cap beam moves back to the gap.
-    """
+    """`timehistory.csv`: one row a sample of the record, on through the free vibration."""
+    # Largest results may lie between the rows. Displacements are relative to the ground, floor
+    # accelerations absolute. Forces are those of one column, F to the right and N upwards on what
+    # is above; of all columns together where the case does not give their number. Devices' energy
+    # is what they dissipated so far, of a damped stop that has let go as the cap beam moves back to
+    # the gap.
     t, columns = result.trace, result.structure.columns
     return [
         Column("time", "s", t.time),

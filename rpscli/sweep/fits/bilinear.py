@@ -41,11 +41,6 @@ def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
     the neighbours of the split that is the best curve with its break there. Otherwise the best
     break of the interval is one of its ends, where the fit is linear. The least sum of squares of
     all counts (D. J. Hudson, J. Am. Stat. Assoc. 61, 1966).
-
-    >>> x = np.linspace(0.0, 1.0, 21)
-    >>> fit = bilinear_fit(x, 1.0 + 2.0 * np.minimum(x, 0.43))
-    >>> round(fit.break_x, 6), round(fit.break_y, 6), abs(fit.slope_after) < 1e-9
-    (0.43, 1.86, True)
     """
     order = np.argsort(x, kind="stable")
     x, y = np.asarray(x)[order], np.asarray(y)[order]

@@ -146,11 +146,7 @@ def _interval(number: float, of: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=4096)
 def shown_by(found: Share, admissible: float) -> int:
-    """By how many recordings, with no more beyond, the interval would end at an admissible share.
-
-    >>> [shown_by(share(number, 31), 0.05) for number in (0, 1)], shown_by(share(0, 5), 0.1)
-    ([59, 110], 29)
-    """
+    """How many recordings would end the interval at an admissible share, with no more beyond."""
     effective = found.of if math.isnan(found.effective) else found.effective
     number = found.number if effective == found.of else found.number * effective / found.of
     each = found.recordings / effective
@@ -186,11 +182,7 @@ def rank(fractile: float | Array, total: Any) -> Any:
 
 
 def fractiles(demands: Array, shares: Sequence[float]) -> Array:
-    """The least of the demands that so large shares do not exceed; NaN is left out.
-
-    >>> fractiles(np.array([3.0, np.inf, 1.0, 2.0]), [0.5, 0.75, 0.76]).tolist()
-    [2.0, 3.0, inf]
-    """
+    """The least of the demands that so large shares do not exceed; NaN is left out."""
     known = np.sort(demands[~np.isnan(demands)])
     if not len(known):
         return np.full(len(shares), np.nan)

@@ -151,12 +151,7 @@ class Worth(NamedTuple):
 
 
 def outcome_worth(computed: Flags, observed: Flags) -> Worth:
-    """Worth of computed outcomes beside observed ones.
-
-    >>> import numpy as np
-    >>> outcome_worth(np.array([True, True, False, False]), np.array([True, False, False, False]))
-    Worth(misfit=0.25, count_off=0.25, error=0.21650635094610965)
-    """
+    """Worth of computed outcomes beside observed ones."""
     misfit = float(np.mean(computed != observed))
     error = math.sqrt(misfit * (1.0 - misfit) / len(observed))
     return Worth(misfit, abs(float(computed.mean() - observed.mean())), error)
