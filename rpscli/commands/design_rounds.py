@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rpscli.analyses.neighbours import OTHER_LOSS
-from rpscli.case.conditions import LIMITS, RATE, Condition, condition_text
+from rpscli.case.conditions import EVENTS, LIMITS, RATE, Condition, condition_text
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.rules.plausibility import RESTITUTION
 from rpscli.case.study.study import Study as CheckedStudy
@@ -218,8 +218,13 @@ def answer_tables(
     design = answer.task.study_of(answer.values[[answer.headline]])
     yield of_first_system(lay_out(design))
     if softer is not None:
-        yield Heading(f"the same design with podium.impact.loss {OTHER_LOSS:g}: impacts take half")
-        yield Table.of_texts(VERDICT, map(verdict_texts, softer.verdicts), words=4)
+        yield Heading(f"the same design with podium.impact.loss {OTHER_LOSS:g}")
+        rows = [
+            (*texts, "" if verdict.condition.name in EVENTS else shown(verdict.value, DIGITS))
+            for verdict in softer.verdicts
+            for texts in [verdict_texts(verdict)]
+        ]
+        yield Table.of_texts((*VERDICT, "largest"), rows, words=4)
     if len(answer.front):
         yield f"Pareto front of both objectives: {len(answer.front)} designs, in front.csv"
     if confirmations:

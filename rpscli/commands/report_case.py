@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import numpy as np
+
 from rpscli.analyses.result_quantities import plain
 from rpscli.commands.inputs import CaseInput, MotionRequest, case_heading
 from rpscli.commands.shell.failure import concluded
@@ -54,6 +56,13 @@ class Earlier:
         """The case or the study, as seen from the working folder."""
         name = self.run["file"]
         return None if name is None else _shortened(self.folder / name)
+
+    @property
+    def subject(self) -> CaseRequest:
+        """The study or the design as it is on the disk, which has to be there, and overrides."""
+        if self.file is None or not self.file.exists():
+            raise UsageError(f"{self.folder}: its file {self.file or ''} is not there; give it")
+        return CaseRequest(str(self.file), tuple(self.run["inputs"]["overrides"]))
 
     @property
     def records(self) -> list[dict[str, Any]]:
@@ -180,7 +189,9 @@ def case_page(
         document = all_document([found], error)
         terminal.warn(document["warnings"])
         stored = () if earlier is None else _stored(earlier, requests, set_document(found))
-        worst = max(found.histories, key=lambda each: each.demands["rotation_ratio"]).request
+        # That of a history that failed is none, and counts as 0.
+        turned = [np.nan_to_num(each.demands["rotation_ratio"]) for each in found.histories]
+        worst = requests[int(np.argmax(turned))]
         done, result = compute(worst, conditions, page_look(look), terminal)
         history = History(worst.ground, result, done.verdicts, _files(worst))
         grounds = [request.ground for request in requests]

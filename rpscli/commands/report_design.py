@@ -5,10 +5,9 @@ from __future__ import annotations
 from rpscli.commands.design import designed
 from rpscli.commands.report_case import Earlier, PageDone, subject_words
 from rpscli.commands.report_study import motions_of, study_input
-from rpscli.commands.shell.options import OutputRequest
+from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices
-from rpscli.errors import UsageError
 from rpscli.report.figures.look import Look
 from rpscli.report.html.page import Picture, Section, page_look, pictures
 from rpscli.report.html.sections import motions_section, notices, page_sections, repeated
@@ -25,14 +24,12 @@ def design_page(
     terminal: Terminal,
 ) -> PageDone:
     """Search, or go on from the points that are stored, and put all in order."""
-    folder = None
-    if earlier is not None:
-        source, overrides = str(earlier.file), tuple(earlier.run["inputs"]["overrides"])
-        folder = earlier.folder
-        if earlier.file is None or not earlier.file.exists():
-            raise UsageError(f"{folder}: its design {source} is not there; give the design")
+    request = CaseRequest(source, overrides) if earlier is None else earlier.subject
+    folder = None if earlier is None else earlier.folder
     output, look = OutputRequest(folder, force=folder is not None), page_look(look)
-    done = designed(source, overrides, SweepChoices(), output, look, terminal, written=False)
+    done = designed(
+        request.source, request.overrides, SweepChoices(), output, look, terminal, written=False
+    )
     assert done is not None, "it is no dry run"
     answer, study, notes = done.answer, done.study, done.document["warnings"]
     terminal.warn(notes)

@@ -20,7 +20,7 @@ from rpscli.commands.study import (
     summary_tables,
     verdict_table,
 )
-from rpscli.errors import RecordError, UsageError
+from rpscli.errors import RecordError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
@@ -54,13 +54,7 @@ def read_subject(
     terminal: Terminal,
 ) -> Study:
     """The study, or that of a folder of its results."""
-    if earlier is not None:
-        if earlier.file is None or not earlier.file.exists():
-            raise UsageError(
-                f"{earlier.folder}: its study {earlier.file or ''} is not there; give the study"
-            )
-        request = CaseRequest(str(earlier.file), tuple(earlier.run["inputs"]["overrides"]))
-    return read(request, conditions, terminal)
+    return read(request if earlier is None else earlier.subject, conditions, terminal)
 
 
 def study_page(

@@ -27,6 +27,7 @@ from rpscli.report.html.page import (
     page,
     page_look,
     pictures,
+    printable,
     written,
 )
 from rpscli.report.html.sections import (
@@ -184,3 +185,7 @@ def test_a_long_record_leaves_the_page_small_enough_to_be_sent() -> None:
     blocks: list[Block] = [Picture(found, stem) for stem, found in pictures(files)]
     blocks.append(motion_pictures(result.record, USUAL))
     assert len(page("a", "b", [Section("c", blocks)], "d")) < 0.9 * MOST_BYTES  # tables: a tenth
+
+
+def test_spaces_of_drawings_are_no_control_characters() -> None:
+    assert printable("0.1\u2009m\u00a0x\x07") == "0.1\u2009m\u00a0x\ufffd"

@@ -74,7 +74,7 @@ class History(NamedTuple):
             yield "No limits were set."
         yield restitution_text(self.result.structure)
         yield from map(Notice, neighbours_texts(self.result, self.beside))
-        yield f"{ONE_DIRECTION.capitalize()}."
+        yield ONE_DIRECTION
 
     def sections(self, look: Look) -> list[Section]:
         """Motion and response."""
@@ -82,17 +82,17 @@ class History(NamedTuple):
         building = result.structure.superstructure
         motions = [motion_pictures(each, look, building) for each in self.ground.named.values()]
         measured = record_table(result.record, intensity_measures(result.record))
-        tables = [outcome_table(result)]
-        tables += [storeys_table(result)] * bool(result.structure.storeys)
-        return [
-            Section("Ground motion", [measured, *motions]),
-            Section("Response", [*tables, *self.drawn(*CAPTIONS)]),
-        ]
+        response = Section("Response", self.response(*CAPTIONS))
+        return [Section("Ground motion", [measured, *motions]), response]
 
-    def drawn(self, *names: str) -> list[Block]:
-        """Its figures."""
-        drawn = pictures(self.files)
-        return [Picture(files, CAPTIONS[stem]) for stem, files in drawn if stem in names]
+    def response(self, *figures: str) -> list[Block]:
+        """Its tables, and some of its figures."""
+        drawn, storeys = pictures(self.files), self.result.structure.storeys
+        return [
+            outcome_table(self.result),
+            *([storeys_table(self.result)] if storeys else []),
+            *(Picture(files, CAPTIONS[stem]) for stem, files in drawn if stem in figures),
+        ]
 
 
 class Several(NamedTuple):
@@ -113,14 +113,12 @@ class Several(NamedTuple):
 
     def sections(self, look: Look) -> list[Section]:
         """Motions, and the response to the one that turns the columns most."""
-        result, title = self.worst.result, self.worst.result.record.name
+        name = self.worst.result.record.name
         motions = [each.horizontal for each in self.grounds]
-        tables = [outcome_table(result)]
-        tables += [storeys_table(result)] * bool(result.structure.storeys)
-        name = f"Response to the record that turns the columns most, {title}"
+        title = f"Response to the record that turns the columns most, {name}"
         return [
-            motions_section(motions, [], title, look, "as they were scaled"),
-            Section(name, [*tables, *self.worst.drawn("rotation", "storey_shears")]),
+            motions_section(motions, [], f"{len(motions)} records", look, "as they were scaled"),
+            Section(title, self.worst.response("rotation", "storey_shears")),
         ]
 
 

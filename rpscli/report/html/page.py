@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
+from unicodedata import category
 from xml.etree import ElementTree as ET
 from xml.etree.ElementTree import Element, tostring
 
@@ -45,8 +46,12 @@ def _append(parent: Element, part: Content) -> None:
 
 
 def printable(text: str) -> str:
-    """Text without the control characters that no page may hold."""
-    return "".join(sign if sign.isprintable() or sign in "\n\t" else "\ufffd" for sign in text)
+    """Text without the control characters that no page may hold; spaces of any width stay."""
+
+    def known(sign: str) -> bool:
+        return sign.isprintable() or sign in "\n\t" or category(sign) == "Zs"
+
+    return "".join(sign if known(sign) else "\ufffd" for sign in text)
 
 
 FORMATS = ("svg", "png")
