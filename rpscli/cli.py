@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
@@ -41,6 +42,8 @@ class Program(LazyGroup):
         """Run, report what went wrong, and leave."""
         words = list(sys.argv[1:] if args is None else args)
         options["standalone_mode"] = False
+        if "COMP_WORDS" not in os.environ:  # nobody asks what may come next
+            options.setdefault("complete_var", "_RPS_COMPLETE_WITHOUT_WORDS")
         try:
             code = super().main(words, *rest, **options)
         except SystemExit as end:

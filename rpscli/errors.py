@@ -6,8 +6,10 @@ knows about terminals: the command line turns these into text and an exit status
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterable
+from numbers import Real
 from pathlib import PurePath
 from typing import TypeVar
 
@@ -154,3 +156,18 @@ def stem_of(path: PurePath) -> str:
     ('b', '...at2')
     """
     return path.stem if path.stem.strip(". ") else path.name
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is a finite real number.
+
+    >>> is_number(0.5), is_number("x"), is_number(math.nan), is_number(True)
+    (True, False, False, False)
+    """
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def require_kind(value: object, kinds: type | tuple[type, ...], what: str, remedy: str) -> None:
+    """Refuse what a function cannot take, in one sentence."""
+    if not isinstance(value, kinds):
+        raise UsageError(f"{what} was given as {type(value).__name__}; {remedy}")

@@ -32,10 +32,10 @@ from rpscli.case.rules.plausibility import doubts_of_many
 from rpscli.case.study.schema import StudyFile
 from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.case.study.study import parse_study, shared_out, study_of
-from rpscli.case.text.document import Document
+from rpscli.case.text.document import Document, text_of_values
 from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import CaseError, UsageError, hint
+from rpscli.errors import UsageError, hint
 from rpscli.frozen import frozen
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
@@ -102,24 +102,8 @@ def read_study(
     return Study(layout, StudyContext(layout.plan, layout.examined), tuple(overrides))
 
 
-def _as_in_a_file(value: object) -> object:
-    """What JSON does not know: arrays and numbers of numpy, and paths."""
-    if isinstance(value, Path):
-        return str(value)
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    raise TypeError(f"{value!r} is not a text, number, list or mapping")
-
-
 def _study_of(mapping: Mapping[str, Any], overrides: Sequence[str]) -> CheckedStudy:
-    # As a file would say it: arrays of numpy become lists, keys and values what YAML knows.
-    try:
-        text = json.dumps(mapping, default=_as_in_a_file)
-    except (TypeError, ValueError, RecursionError) as error:
-        raise CaseError(
-            f"<study>: cannot stand in a file: {str(error)[:200]}; use text, numbers, lists, arrays"
-            " and mappings"
-        ) from None
+    text = text_of_values(mapping, "<study>")
     own, of_base = shared_out(overrides, StudyFile)
     document = apply_overrides(Document("<study>", json.loads(text)), own, model=StudyFile)
     digest = sha256(text.encode()).hexdigest()

@@ -174,6 +174,18 @@ def si_value(text: str, unit: str) -> float:
     return float(number) * si_factor(written, unit)
 
 
+def bare_or_si(text: str, unit: str) -> float:
+    """A number in the SI unit, or one with its own unit.
+
+    >>> bare_or_si("2e3", "N"), bare_or_si("2 kN", "N")
+    (2000.0, 2000.0)
+    """
+    try:
+        return float(text)
+    except ValueError:
+        return si_value(text, unit)
+
+
 def si_factor(written: str, unit: str) -> float:
     """What a value in the unit `written` is multiplied by to be in the SI unit `unit`."""
     if written == "g" and unit == "m/s2":  # elsewhere a gram

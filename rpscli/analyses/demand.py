@@ -12,7 +12,7 @@ from rpscli.analyses.kernels.history import Request as HistoryRequest
 from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
 from rpscli.analyses.kernels.systems import longest_free_vibration, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
-from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.frozen import frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import LANES
@@ -77,7 +77,7 @@ def demand(
     vertical
         Vertical ground acceleration with the same time step, positive upwards.
     """
-    chosen = settings or TimeHistorySettings()
+    chosen = require_inputs(structure, record, settings)
     return demands([Request(structure, MotionComponents(record, vertical), chosen)])[0]
 
 

@@ -6,6 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from rpscli.errors import require_kind
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
+
 RULES = ("limit", "relative")
 """What floors keep at re-contact."""
 
@@ -59,7 +63,7 @@ class TimeHistorySettings:
             "recontact_rule": (self.recontact_rule in RULES, f"one of {', '.join(RULES)}"),
             "overturning_limit": (0.0 < self.overturning_limit < math.inf, "finite and > 0"),
             "accuracy": (0.0 < self.accuracy < math.inf, "finite and > 0"),
-            "max_events": (self.max_events >= 1, "at least 1"),
+            "max_events": (1 <= self.max_events <= 10**9, "from 1 to 1e9"),
             "initial_rotation": (math.isfinite(self.initial_rotation), "finite"),
         }
         for name, (holds, rule) in rules.items():
@@ -69,3 +73,21 @@ class TimeHistorySettings:
 
 LONGEST_FREE_VIBRATION = 120.0
 """Where free vibration `auto` gives up waiting for rest [s]."""
+
+
+def require_structure(structure: object) -> None:
+    """Refuse a case, a name or anything else in place of a structure."""
+    require_kind(structure, PodiumStructure, "the structure", "load_case(...).structure is one")
+
+
+def require_inputs(
+    structure: object, record: object, settings: TimeHistorySettings | None
+) -> TimeHistorySettings:
+    """Refuse inputs of other kinds, in one sentence; the settings, or the usual ones."""
+    require_structure(structure)
+    remedy = "load_record(...) reads one, GroundMotion(samples, dt) makes one"
+    require_kind(record, (GroundMotion, MotionComponents), "the record", remedy)
+    if settings is None:
+        return TimeHistorySettings()
+    require_kind(settings, TimeHistorySettings, "settings", "use TimeHistorySettings(...)")
+    return settings

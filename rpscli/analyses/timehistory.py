@@ -9,7 +9,7 @@ from rpscli.analyses.column_forces import axial_forces
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.analyses.trace import Trace, event_list, trace_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -49,7 +49,7 @@ def time_history(
     RecordError
         If the two components have different time steps.
     """
-    settings = settings or TimeHistorySettings()
+    settings = require_inputs(structure, record, settings)
     motion = MotionComponents(record) if isinstance(record, GroundMotion) else record
     if vertical is not None:
         motion = replace(motion, vertical=vertical)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -34,10 +35,10 @@ from rpscli.case.rules.superstructure import (
 from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.text.document import Document, is_design, is_study
+from rpscli.case.text.document import Document, is_design, is_study, text_of_values
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, stem_of
+from rpscli.errors import CaseError, require_kind, stem_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.shown import Shown
 
@@ -149,13 +150,14 @@ class Case(Shown):
         return content
 
 
-def load_case(source: str | Path, overrides: Overrides = ()) -> Case:
-    """Read a case from a file, or from the standard input (``-``).
+def load_case(source: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Case:
+    """A case from a file, the standard input (``-``), or values as a file would hold them.
 
     Parameters
     ----------
     source
-        Name of the file.
+        Name of the file, or a mapping, in which numbers and lists may be those of numpy; its
+        relative paths start in the working folder.
     overrides
         Texts ``key=value`` over the case's own values.
 
@@ -164,6 +166,11 @@ def load_case(source: str | Path, overrides: Overrides = ()) -> Case:
     CaseError
         If the file cannot be read, or is not a valid case: one line for each fault.
     """
+    if isinstance(source, Mapping):
+        text = text_of_values(source, "<case>")
+        case = case_from_mapping(json.loads(text), "<case>", None, overrides)
+        return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())
+    require_kind(source, (str, Path), "the case", "give the name of a file, or a mapping")
     text = read_text(source)
     if str(source) == STDIN:
         return parse_case(text, name="<stdin>", overrides=overrides)

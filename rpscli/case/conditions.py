@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.errors import UsageError, hint
+from rpscli.units import KINDS, bare_or_si
 
 if TYPE_CHECKING:
     from rpscli.case.schema.limits import LimitsSection
@@ -73,16 +74,18 @@ def parse_condition(text: str) -> Condition:
         known = [*EVENTS, *(f"{limited}=VALUE" for limited in LIMITS)]
         meant = hint(name, [*EVENTS, *LIMITS], f"known are {', '.join(known)}", 0.6)
         raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")
+    unit = LIMITS[name].unit if name in LIMITS else "-"
     try:
-        limit = float(value)
+        limit = float(value) if unit not in KINDS else bare_or_si(value, unit)
     except ValueError:
         limit = math.nan
     if name in EVENTS:
         if not 0.0 <= limit < 1.0:
             raise UsageError(f"--fail-on {text}: write {name}=SHARE from 0 to 1, as in {name}=0.1")
         return Condition(name, 0.0, "--fail-on", share=limit)
+    in_unit = f" or '0.5 {KINDS[unit][1][0]}'" if unit in KINDS else ""
     if not math.isfinite(limit):
-        raise UsageError(f"--fail-on {text}: write {name}=NUMBER, as in {name}=0.5")
+        raise UsageError(f"--fail-on {text}: write {name}=NUMBER, as in {name}=0.5{in_unit}")
     return Condition(name, limit, "--fail-on")
 
 

@@ -11,7 +11,7 @@ import click
 
 from rpscli.analyses import result_quantities
 from rpscli.analyses.result_quantities import ResultQuantity
-from rpscli.commands.shell.options import case_keys, terminal_options
+from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, nearest
 from rpscli.report.documents import heading
@@ -39,8 +39,12 @@ DRAWINGS = {"podium.bearing": BEARING}
 """Small drawings of what sections describe."""
 
 
+def _beginning_so(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+    return [word for word in _words() if word.startswith(begun)]
+
+
 @click.command("explain")
-@click.argument("word", metavar="KEY", shell_complete=case_keys)
+@click.argument("word", metavar="KEY", shell_complete=_beginning_so)
 @terminal_options
 def command(word: str, terminal: Terminal) -> None:
     """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.
@@ -145,18 +149,22 @@ def glossary() -> list[tuple[str, str]]:
     return [(name.replace("`", ""), meaning) for name, meaning in rows if name != "word"]
 
 
-def _names(entry: str) -> list[str]:
-    return [part.strip().lower() for part in re.split(r"[,()]", entry)]
-
-
-def _hint(word: str) -> str:
+def _words() -> list[str]:
+    """What may be asked for: keys, their ends, results, reports and words."""
     from rpscli.report.study.registry import REPORTS
 
     keys = [key.key for key in _formats()]
     names = [name for entry, _ in glossary() for name in _names(entry)]
     ends = [key.rsplit(".", 1)[-1] for key in keys]
-    results = [quantity.name for quantity in _results()]
-    close = nearest(word, [*keys, *ends, *results, *REPORTS.names(), *names])
+    return list(dict.fromkeys([*keys, *ends, *(q.name for q in _results()), *REPORTS, *names]))
+
+
+def _names(entry: str) -> list[str]:
+    return [part.strip().lower() for part in re.split(r"[,()]", entry)]
+
+
+def _hint(word: str) -> str:
+    close = nearest(word, _words())
     if close:
         return f"nothing is called so; did you mean {close}?"
     return "nothing is called so; `rps explain podium` and the like list the keys of a section"

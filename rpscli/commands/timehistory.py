@@ -17,10 +17,13 @@ from rpscli.commands.shell.options import (
     FILE,
     CaseRequest,
     OutputRequest,
+    completing,
     fail_on_option,
     history_film_options,
+    measures,
     result_options,
     several_cases_options,
+    sources,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, counted
@@ -45,6 +48,7 @@ from rpscli.report.figures.look import Look, drawn_with
     multiple=True,
     metavar="SRC",
     type=FILE,
+    shell_complete=sources,
     help="Ground motion in place of the case's own: file, folder, set, pulse; repeatable.",
 )
 @click.option(
@@ -54,6 +58,7 @@ from rpscli.report.figures.look import Look, drawn_with
 @click.option(
     "--scale-to",
     metavar="MEASURE=VALUE",
+    **completing(measures),
     help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', AvgSa, FIV3, PGD, Housner,"
     " CAV or Arias.",
 )

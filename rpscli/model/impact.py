@@ -40,6 +40,13 @@ class ImpactLaw:
     factor: float = 1.0
     loss: float = 1.0
 
+    def __post_init__(self) -> None:
+        """Refuse other words, and an e that the law does not take or lacks."""
+        if self.kind not in ("flexible", "rigid", "value"):
+            raise ValueError(f"impact law {self.kind!r} must be flexible, rigid or value")
+        if (self.kind == "value") != (self.restitution is not None):
+            raise ValueError("a restitution belongs to the impact law `value`, and to no other")
+
     @property
     def floors_jump(self) -> bool:
         """Whether the floors take part in the velocity jump of the cap beam."""
@@ -68,8 +75,7 @@ class ImpactLaw:
         law = {"rigid": rigid_restitution, "flexible": flexible_restitution}.get(self.kind)
         if law is not None:
             return self.factor * (1.0 - self.loss * (1.0 - law(bearing, gamma, eta)))
-        if self.restitution is None:
-            raise ValueError("the impact law `value` needs a restitution")
+        assert self.restitution is not None, "the law `value` has one"
         return self.factor * self.restitution
 
 

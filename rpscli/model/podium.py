@@ -7,12 +7,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Integral
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import is_number
 from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
@@ -22,6 +24,7 @@ from rpscli.shown import Shown, with_unit
 
 Array: TypeAlias = NDArray[np.float64]
 
+MOST_COLUMNS = 10**9
 MOST_DEVICES = 8
 """A structure has no more; equal devices are one with the sum of their forces and stiffnesses."""
 
@@ -79,14 +82,20 @@ class PodiumStructure(Shown):
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""
-        if not (self.columns_mass > 0.0 and self.cap_beam_mass >= 0.0 and self.gravity > 0.0):
-            raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0")
+        if not (
+            0.0 < self.columns_mass < math.inf
+            and 0.0 <= self.cap_beam_mass < math.inf
+            and 0.0 < self.gravity < math.inf
+        ):
+            raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0, all finite")
+        if self.friction is not None and not (is_number(self.friction) and self.friction >= 0.0):
+            raise ValueError(f"friction = {self.friction!r} must be a number >= 0, or None")
         if self.superstructure is not None and self.cap_beam_mass == 0.0:
             raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
         if self.rows and (len(self.rows) < 2 or max(self.rows) <= min(self.rows)):
             raise ValueError("rows must be at least two places that differ")
-        if self.columns < 1:
-            raise ValueError("columns must be >= 1")
+        if not (isinstance(self.columns, Integral) and 1 <= self.columns <= MOST_COLUMNS):
+            raise ValueError(f"columns = {self.columns!r} must be a whole number from 1 on")
         if len(self.devices) > MOST_DEVICES:
             raise ValueError(
                 f"{len(self.devices)} devices must be at most {MOST_DEVICES}; write equal ones as"

@@ -151,6 +151,8 @@ def profile_stiffnesses(
     1000.0
     """
     m = np.asarray(masses, dtype=float)
+    if not (np.isfinite(m) & (m > 0.0)).all() or not 0.0 < period < math.inf:
+        raise ValueError(f"masses {m} and period {period} must be finite and > 0")
     w1 = 2.0 * math.pi / period
     if profile == "uniform":
         first = shear_modes(m, np.ones_like(m))[0][0]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, is_number
 from rpscli.frozen import Frozen, frozen
 from rpscli.records.recording import UNKNOWN, Recording
 from rpscli.shown import Shown, with_unit
@@ -186,6 +186,8 @@ class GroundMotion(Shown):
 
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion times `factor`, with a description that says so."""
+        if not is_number(factor):
+            raise RecordError(f"{self.source}: the factor {factor!r} must be a finite number")
         note = f"scaled by {factor:g}"
         return replace(
             self,
@@ -234,8 +236,11 @@ class GroundMotion(Shown):
         if needs_period(measure) and period is None:
             text = f"{self.source}: {measure} is scaled to at a period; give period=... in s"
             raise RecordError(text)
-        if not value > 0.0:
-            raise RecordError(f"{self.source}: {measure} = {value} must be > 0 to scale to it")
+        if not (is_number(value) and value > 0.0):
+            text = (
+                f"{self.source}: {measure} = {value!r} must be a number > 0, in SI, to scale to it"
+            )
+            raise RecordError(text)
         unscaled = measured(self, measure, period, damping)
         return self.scaled(factor_to(value, unscaled, measure, self.source))
 

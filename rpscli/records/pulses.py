@@ -59,6 +59,8 @@ def mavroeidis_papageorgiou(
 
 
 SCHEME = "pulse"
+DOUBTFUL = 0.2
+"""Peaks of numbers without unit below this [g] are asked about."""
 
 _STEPS_PER_PERIOD = 2000
 _MAVROEIDIS = "mavroeidis_papageorgiou"
@@ -114,6 +116,10 @@ def load_pulse(rest: str, source: str) -> GroundMotion:
         pulse.periods / steps if pulse.fits else dt / period
     )
     peak = abs(amplitude) / STANDARD_GRAVITY
+    bare = query.values.get("amplitude", "g").strip().replace(".", "").isdigit() and peak < DOUBTFUL
+    doubt = (
+        f"{source}: an amplitude of {amplitude:g} m/s2 = {peak:.4g} g; was {amplitude:g}g meant?"
+    )
     return GroundMotion(
         amplitude * pulse.shape(tau),
         dt,
@@ -121,6 +127,7 @@ def load_pulse(rest: str, source: str) -> GroundMotion:
         source,
         "pulse",
         f"{name.replace('_', ' ')} pulse, period {period:g} s, peak {peak:.4g} g",
+        (doubt,) * bare,
     )
 
 

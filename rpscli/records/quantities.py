@@ -34,7 +34,7 @@ KNOWN_UNITS = ", ".join(_FACTORS)
 
 UNIT_PATTERN = (
     r"(?:[cm]?m|in|ft)\s*/\s*s(?:ec)?\s*(?:/\s*s(?:ec)?|\^\s*2|\*\*\s*2|2|²)(?![A-Za-z0-9])"
-    r"|gals?(?![A-Za-z0-9])"
+    r"|gals?(?![A-Za-z0-9])|gravity\b|g's(?![A-Za-z0-9])"
     r"|g(?![A-Za-z0-9/])"
 )
 """A regular expression (ignoring case) for the spellings of `canonical_unit` in running text."""
@@ -64,6 +64,8 @@ def numbers_in(line: str) -> list[float] | None:
 def why_no_numbers(line: str) -> str:
     """What keeps a line from being read as numbers, if that is its punctuation; else nothing."""
     if re.fullmatch(r"[-+.,0-9EeDd;\s]*[0-9][-+.,0-9EeDd;\s]*", line):
+        if re.search("[0-9],[0-9]", line) and ";" in line:
+            return " (decimal commas and semicolons: write points, and commas or blanks between)"
         if re.search("[0-9],[0-9]", line):
             return " (decimal commas: write points)"
         if ";" in line:
@@ -96,7 +98,7 @@ def canonical_unit(text: str) -> str | None:
     unit = re.sub(r"[\s()\[\]]", "", text.lower())
     unit = unit.replace("sec", "s").replace("²", "2").replace("**", "^").replace("^", "")
     unit = re.sub(r"/s/s$", "/s2", unit)
-    unit = "gal" if unit == "gals" else unit
+    unit = {"gals": "gal", "gravity": "g", "g's": "g"}.get(unit, unit)
     return unit if unit in _FACTORS else None
 
 
@@ -115,6 +117,16 @@ _UNITS = {
     "ratio": {"": 1.0, "%": 0.01},
 }
 
+
+EXAMPLES = {
+    "tl": "8 s",
+    "sds": "1 g",
+    "sd1": "0.6 g",
+    "ag": "0.2 g",
+    "amplitude": "0.3g",
+    "period": "0.8",
+}
+"""What options look like."""
 
 LIKENESS = 0.5
 """Of a name to the one that was meant: names of records are long, and made of parts."""
@@ -174,7 +186,9 @@ class Query:
     def _parts(self, key: str) -> tuple[str, str]:
         value = self.values.get(key)
         if value is None:
-            raise RecordError(f"{self.source}: {key} is missing; add {key}=...")
+            raise RecordError(
+                f"{self.source}: {key} is missing; add {key}={EXAMPLES.get(key, '...')}"
+            )
         match = _QUANTITY.fullmatch(value)
         if not match or not math.isfinite(to_float(match[1])):
             raise RecordError(

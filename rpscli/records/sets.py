@@ -34,6 +34,9 @@ _SETS = {
 PULSES = {"nearfield_pulse": True, "nearfield_no_pulse": False}
 """Whether records have a velocity pulse, where the set was made by that."""
 
+WHOLE = tuple(f"{name}/*" for name in _SETS)
+"""Patterns of whole sets."""
+
 COMPONENTS = tuple(
     f"{name}/{record}/{side}"
     for name, records in _SETS.items()

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, require_kind
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.shown import Shown
 
@@ -36,6 +36,10 @@ class ResponseSpectrum(Shown):
     """(2 pi/T)^2 times the displacement; the PGA at T = 0 [m/s2]."""
     total_acceleration: NDArray[np.float64]
     """Of the mass, in the inertial frame; the PGA at T = 0 [m/s2]."""
+
+
+SHORTEST = 1e-6
+"""Of periods [s]; 0 is the rigid oscillator."""
 
 
 def response_spectrum(
@@ -64,9 +68,16 @@ def response_spectrum(
     >>> round(float(spectrum.pseudo_acceleration[0]), 2)  # a sudden load counts twice
     2.0
     """
-    wanted = np.array(periods, dtype=np.float64)
-    if not (np.isfinite(wanted) & (wanted >= 0.0)).all():
-        raise RecordError(f"periods of a response spectrum must be finite and >= 0: {wanted}")
+    require_kind(motion, GroundMotion, "the motion", "load_record(...) reads one")
+    try:
+        wanted = np.array(periods, dtype=np.float64)
+    except (TypeError, ValueError):
+        wanted = np.array([np.nan])
+    if not (np.isfinite(wanted) & ((wanted == 0.0) | (wanted >= SHORTEST))).all():
+        raise RecordError(
+            f"periods of a response spectrum must be 0 or from {SHORTEST:g} s on:"
+            f" {str(periods)[:60]}"
+        )
     if not 0.0 <= damping < 1.0:
         raise RecordError(f"the damping of a response spectrum, {damping}, must be in [0, 1)")
     peaks = np.array([_peaks(motion, float(period), damping) for period in wanted]).reshape(-1, 2)

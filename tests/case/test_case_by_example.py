@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from rpscli.case.build import each_storey
 from rpscli.case.conditions import Condition, condition_text, parse_condition
 from rpscli.case.rules.plausibility import Doubt, doubts_of_many
@@ -12,6 +14,7 @@ from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.case.study.axes import _text
 from rpscli.case.study.observed import comparable
 from rpscli.case.text.document import dotted, shown
+from rpscli.errors import UsageError
 from rpscli.model.impact import ImpactLaw
 
 
@@ -61,7 +64,7 @@ def test_schema_keys() -> None:
 
 def test_schema_scale_to() -> None:
     assert (scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period) == (0.5, 0.6)
-    assert (scale_to_of("PGV(RotD100)=0.5").of, scale_to_of("Sa(0.6 s, geomean)=1").of) == (
+    assert (scale_to_of("PGV(RotD100)=0.5").of, scale_to_of("Sa(0.6 s, geomean)=1 g").of) == (
         "rotd100",
         "geomean",
     )
@@ -93,4 +96,7 @@ def test_text_document() -> None:
 
 
 def test_conditions_of_options() -> None:
+    assert parse_condition("max_base_shear=2 kN").limit == 2000.0
+    with pytest.raises(UsageError, match="or '0.5 kN'"):
+        parse_condition("max_base_shear=2 m")
     assert parse_condition("rotation_ratio=0.5") == Condition("rotation_ratio", 0.5, "--fail-on")

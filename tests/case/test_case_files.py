@@ -44,7 +44,7 @@ def test_a_folder_is_no_file(tmp_path: Path, building: str) -> None:
 def test_a_file_as_folder_is_refused(tmp_path: Path, building: str) -> None:
     (tmp_path / "one.yaml").write_text(building)
     assert "cannot be read" in refusal(tmp_path / "one.yaml" / "two.yaml")
-    assert "cannot be read" in refusal("with\0zero.yaml")
+    assert "do not show; rename the file" in refusal("with\0zero.yaml")
 
 
 def test_other_encodings_are_refused_with_the_place(tmp_path: Path) -> None:

@@ -116,6 +116,10 @@ def suggestion_for(model: type[BaseModel], path: Path) -> Path | None:
 def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]:
     """The fault of an unknown key, and the known key it was taken for."""
     suggestion = suggestion_for(model, path)
+    siblings = fields_of(section_at(model, path[:-1]) or model)
+    inside = [name for name in siblings if f"_{path[-1]}_" in f"_{name}_"]
+    if suggestion is None and inside:
+        suggestion = (*path[:-1], inside[0])
     text = f"{dotted(path)} is not a key of the format"
     if suggestion is None:
         section = section_at(model, path[:-1])

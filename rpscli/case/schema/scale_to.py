@@ -79,6 +79,8 @@ def scale_to_of(text: str) -> ScaleToSection:
             known_are = f"known are {', '.join(known)}"
             raise ValueError(f"{name} is not a measure; {hint(name, known, known_are, 0.6)}")
     given: dict[str, Any] = {"measure": measure, "value": _number(value)}
+    if MEASURES[measure].unit == "m/s2" and isinstance(given["value"], float):
+        raise ValueError(f"say the unit: {name}={value} g, or {name}={value} m/s2")
     for part in () if inside is None else map(str.strip, inside.split(",")):
         key, read = ("of", part.lower()) if part.lower() in OF else ("period", _number(part))
         if key in given:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import copy
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import PurePath
 from typing import Any
 
 from rpscli.errors import CaseError
@@ -178,3 +180,22 @@ def is_design(document: Document) -> bool:
 def is_case(document: Document) -> bool:
     """Whether a document is a case rather than a study."""
     return "superstructure" in document.content and "base" not in document.content
+
+
+def text_of_values(values: Mapping[str, Any], name: str) -> str:
+    """Values as a file would say them: arrays of numpy become lists, keys what YAML knows."""
+
+    def plain(value: object) -> object:
+        if isinstance(value, PurePath):
+            return str(value)
+        if hasattr(value, "tolist"):
+            return value.tolist()
+        raise TypeError(f"{value!r} is not a text, number, list or mapping")
+
+    try:
+        return json.dumps(values, default=plain)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise CaseError(
+            f"{name}: cannot stand in a file: {str(error)[:200]}; use text, numbers, lists, arrays"
+            " and mappings"
+        ) from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
@@ -18,7 +18,6 @@ from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint, listed
 from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
 from rpscli.report.figures.look import FIGURES, FORMATS, Look
-from rpscli.report.figures.style import drawable_style
 
 FILE = click.Path(allow_dash=True, readable=False)
 """A file, of which the command itself says what is wrong with it."""
@@ -55,6 +54,31 @@ def condition_names(
         for name, label in labels.items()
         if name.startswith(incomplete)
     ]
+
+
+def completing(known: Callable[[], Iterable[str]]) -> dict[str, Any]:
+    """For `click.option`: the words that a shell may complete a value with."""
+
+    def words(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+        return [word for word in known() if word.startswith(begun)]
+
+    return {"shell_complete": words}
+
+
+def sources(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem | str]:
+    """What `--record` may be: records of a set, once its name is written, else files."""
+    from rpscli.records import sets
+
+    known = [f"{sets.SCHEME}:{name}" for name in (*sets.COMPONENTS, *sets.WHOLE)]
+    found: list[CompletionItem | str] = [name for name in known if name.startswith(begun)]
+    return found if begun and found else [CompletionItem(begun, type="file")]
+
+
+def measures() -> list[str]:
+    """What `--scale-to` may begin with."""
+    from rpscli.records.measures import MEASURES
+
+    return [f"{name}=" for name in MEASURES.names()]
 
 
 Command = Callable[..., None]
@@ -143,6 +167,13 @@ OF_ONE_RESULT = ("modal", "pushover", "timehistory")
 """Commands whose results other packages may draw."""
 
 
+def _drawable(style_file: Path) -> dict[str, Any]:
+    # numpy is slow.
+    from rpscli.report.figures.style import drawable_style
+
+    return drawable_style(style_file)
+
+
 def _look(figures: str | None, columns: str | None, style_file: Path | None) -> Look:
     formats, added = (None, ()) if figures is None else _formats(figures)
     command = click.get_current_context().info_name
@@ -150,7 +181,7 @@ def _look(figures: str | None, columns: str | None, style_file: Path | None) -> 
         raise UsageError(
             f"--figures {figures}: {added[0]} is drawn by {listed(OF_ONE_RESULT)} alone"
         )
-    style = {} if style_file is None else drawable_style(style_file)
+    style = {} if style_file is None else _drawable(style_file)
     return Look(formats, None if columns is None else int(columns), style, added)
 
 
@@ -175,6 +206,7 @@ figure_options = _gathered(
     click.option(
         "--figures",
         metavar="FORMATS",
+        **completing(lambda: (*FORMATS, "svg,pdf", "none")),
         help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none; besides them"
         " figures that other packages add.",
     ),

@@ -53,12 +53,12 @@ _VALUE = re.compile(rf"\s*(?:{NUMBER_PATTERN}(?=[\s,+-]|$)|\*+|[+-]?(?:nan|inf))
 _OTHER_SERIES = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME\b", re.IGNORECASE)
 # What a title that mentions units in passing does not look like.
 _UNITS_DECLARED = re.compile(
-    rf"^\W*(?:ACCELERATION\b.*)?\bUNITS?\s*(?:OF\b|IN\b|[=:])[\s(\[]*({UNIT_PATTERN})",
+    rf"^\W*(?:ACCELERATION\b.*)?\bUNITS?\s*(?:OF\b|IN\b|ARE\b|[=:])[\s(\[]*({UNIT_PATTERN})",
     re.IGNORECASE,
 )
-_UNITS_LINE = re.compile(r"\bUNITS?\s*(?:OF\b|IN\b|[=:])", re.IGNORECASE)
+_UNITS_LINE = re.compile(r"\bUNITS?\s*(?:OF\b|IN\b|ARE\b|[=:])", re.IGNORECASE)
 _UNITS = re.compile(
-    rf"\b(?:UNITS?\s*(?:OF\b|IN\b|[=:])|ACCELERATION\b.*\bIN\b)[\s(\[]*({UNIT_PATTERN})",
+    rf"\b(?:UNITS?\s*(?:OF\b|IN\b|ARE\b|[=:])|ACCELERATION\b.*\bIN\b)[\s(\[]*({UNIT_PATTERN})",
     re.IGNORECASE,
 )
 

@@ -6,8 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -32,11 +30,11 @@ def restyle(
             if not hasattr(artist, f"set_{part}") or not hasattr(artist, f"get_{part}"):
                 continue
             rows = to_rgba_array(getattr(artist, f"get_{part}")())
-            new = [(*swap.get(tuple(row[:3]), row)[:3], row[3]) for row in rows.tolist()]
-            if not np.array_equal(new, rows):
+            new = [(*swap.get(tuple(row[:3]), tuple(row))[:3], row[3]) for row in rows.tolist()]
+            if new != [tuple(row) for row in rows.tolist()]:
                 getattr(artist, f"set_{part}")(new if len(new) > 1 else new[0])
         if hasattr(artist, "set_linewidth"):
-            artist.set_linewidth(wider * np.asarray(artist.get_linewidth()))
+            artist.set_linewidth(_times(wider, artist.get_linewidth()))
 
 
 def _artists(figure: Figure) -> Iterator[Any]:
@@ -50,3 +48,8 @@ def _artists(figure: Figure) -> Iterator[Any]:
     for legend in figure.findobj(Legend):
         assert isinstance(legend, Legend)
         yield from legend.legend_handles
+
+
+def _times(factor: float, widths: Any) -> Any:
+    """One width or several, times a factor."""
+    return factor * widths if isinstance(widths, float | int) else [factor * w for w in widths]

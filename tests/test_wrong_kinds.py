@@ -1,0 +1,138 @@
+"""Wrong kinds of inputs in Python and on the command line are answered in one sentence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from paper_structures import podium
+
+import rpscli
+from rpscli.cli import program
+from rpscli.errors import RecordError, UsageError
+from rpscli.records.formats.at2 import at2_text
+
+PULSE = "pulse:half_sine?amplitude=0.3g&period=0.6&dt=0.05"
+CASE = {
+    "rps": 1,
+    "superstructure": {"storeys": 0},
+    "podium": {
+        "bearing": {
+            "semi_diagonal": np.float64(1.5), "slenderness": 0.15, "wedge_slenderness": 0.3,
+            "curvature_ratio": 0.5,
+        },
+        "columns": 4, "column_mass": "2 t", "cap_beam_mass": "100 t",
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("call", "remedy"),
+    [
+        (lambda s, r: rpscli.time_history(s, "fema_p695:farfield/1/a"), "load_record"),
+        (lambda s, r: rpscli.time_history(s, r, {}), "TimeHistorySettings"),
+        (lambda s, r: rpscli.time_history(rpscli.Case, r), "load_case.*structure"),
+        (lambda s, r: rpscli.demand(s, np.zeros(9)), "GroundMotion.samples"),
+        (lambda s, r: rpscli.response_spectrum("x.at2", [0.1]), "load_record"),
+        (lambda s, r: rpscli.load_case(5), "name of a file, or a mapping"),
+    ],
+)
+def test_wrong_kinds(call: Callable[..., Any], remedy: str) -> None:
+    with pytest.raises(UsageError, match=remedy):
+        call(podium(0), rpscli.load_record(PULSE))
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda r: r.scaled_to("PGA", "0.4 g"),
+        lambda r: r.scaled("2"),
+        lambda r: rpscli.response_spectrum(r, [1e-300]),
+        lambda r: rpscli.response_spectrum(r, ["x"]),
+    ],
+)
+def test_wrong_values_of_motions(call: Callable[..., Any]) -> None:
+    with pytest.raises(RecordError):
+        call(rpscli.load_record(PULSE))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"friction": -1.0}, {"friction": math.nan}, {"friction": "x"}, {"columns": math.nan},
+        {"columns": 2.5}, {"columns": 1e300}, {"columns_mass": math.inf},
+    ],
+)  # fmt: skip
+def test_wrong_values_of_structures(given: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=f"{next(iter(given))}.* must be"):
+        replace(podium(0), **given)
+
+
+@pytest.mark.parametrize(
+    ("masses", "period"), [([1.0, 2.0], -1.0), ([-1.0, 2.0], 1.0), ([1.0], math.nan)]
+)
+def test_stiffnesses_of_nonsense(masses: list[float], period: float) -> None:
+    with pytest.raises(ValueError, match="finite and > 0"):
+        rpscli.profile_stiffnesses(masses, period)
+
+
+def test_a_case_is_what_a_mapping_says() -> None:
+    case = rpscli.load_case(CASE)
+    assert case.structure.bearing.semi_diagonal == 1.5
+    assert case.structure.columns_mass == 8000.0
+    assert case.digest
+    with pytest.raises(rpscli.RpsError, match="<case>: cannot stand in a file"):
+        rpscli.load_case({**CASE, "title": object()})
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "ACCELERATION TIME SERIES. The units are (g)", "UNITS: g's",
+        "ACCELERATION IN UNITS OF GRAVITY", "Units are g",
+    ],
+)  # fmt: skip
+def test_headers_state_units_in_other_words(tmp_path: Path, line: str) -> None:
+    lines = at2_text(rpscli.load_record(PULSE)).split("\n")
+    (tmp_path / "x.at2").write_text("\n".join([*lines[:2], line, *lines[3:]]))
+    assert rpscli.load_record(str(tmp_path / "x.at2")).pga == pytest.approx(0.3 * 9.80665)
+
+
+def test_numbers_without_a_unit_are_asked_about() -> None:
+    with pytest.raises(ValueError, match="say the unit: PGA=0.4 g"):
+        _scaled_to("PGA=0.4")
+    (doubt,) = rpscli.load_record("pulse:sine?amplitude=0.3&period=0.8").warnings
+    assert "0.03059 g; was 0.3g meant?" in doubt
+    assert not rpscli.load_record("pulse:sine?amplitude=0.3 m/s2&period=0.8").warnings
+
+
+def _scaled_to(text: str) -> object:
+    from rpscli.case.schema.scale_to import scale_to_of
+
+    return scale_to_of(text)
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        ("timehistory x.yaml --scale-to P", "PGA="),
+        ("timehistory x.yaml --figures s", "svg"),
+        ("timehistory x.yaml --record fema_p695:farfield/1/", "fema_p695:farfield/1/a"),
+        ("explain wed", "wedge_slenderness"),
+    ],
+)
+def test_shells_complete_values(words: str, found: str) -> None:
+    given = words.split()
+    asked = {
+        "_RPS_COMPLETE": "bash_complete",
+        "COMP_WORDS": f"rps {words}",
+        "COMP_CWORD": str(len(given)),
+    }
+    result = CliRunner().invoke(program, [], prog_name="rps", env=asked, standalone_mode=True)
+    assert f"plain,{found}" in result.stdout.splitlines()
