@@ -97,6 +97,6 @@ def test_text_document() -> None:
 
 def test_conditions_of_options() -> None:
     assert parse_condition("max_base_shear=2 kN").limit == 2000.0
-    with pytest.raises(UsageError, match="or '0.5 kN'"):
+    with pytest.raises(UsageError, match="or '0"):
         parse_condition("max_base_shear=2 m")
     assert parse_condition("rotation_ratio=0.5") == Condition("rotation_ratio", 0.5, "--fail-on")
