@@ -18,6 +18,7 @@ from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint, listed
 from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
 from rpscli.report.figures.look import FIGURES, FORMATS, Look
+from rpscli.report.figures.style import drawable_style
 
 FILE = click.Path(allow_dash=True, readable=False)
 """A file, of which the command itself says what is wrong with it."""
@@ -167,13 +168,6 @@ OF_ONE_RESULT = ("modal", "pushover", "timehistory")
 """Commands whose results other packages may draw."""
 
 
-def _drawable(style_file: Path) -> dict[str, Any]:
-    # numpy is slow.
-    from rpscli.report.figures.style import drawable_style
-
-    return drawable_style(style_file)
-
-
 def _look(figures: str | None, columns: str | None, style_file: Path | None) -> Look:
     formats, added = (None, ()) if figures is None else _formats(figures)
     command = click.get_current_context().info_name
@@ -181,7 +175,7 @@ def _look(figures: str | None, columns: str | None, style_file: Path | None) -> 
         raise UsageError(
             f"--figures {figures}: {added[0]} is drawn by {listed(OF_ONE_RESULT)} alone"
         )
-    style = {} if style_file is None else _drawable(style_file)
+    style = {} if style_file is None else drawable_style(style_file)
     return Look(formats, None if columns is None else int(columns), style, added)
 
 
