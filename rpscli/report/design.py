@@ -13,7 +13,7 @@ import numpy as np
 from rpscli.case.conditions import EVENTS, LIMITS, RATE
 from rpscli.case.design import DesignTask, Objective
 from rpscli.report.figures import style
-from rpscli.report.figures.look import Draw, in_force
+from rpscli.report.figures.look import Draw
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
 from rpscli.report.study.statistics import reached, verdict_document
@@ -203,9 +203,13 @@ SHARES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 """Of the resamples, between which the region that passes changes its colour."""
 
 BEST: dict[str, Any] = {
-    "ls": "", "marker": "*", "ms": 11.0, "color": style.ORANGE, "mec": style.BLACK, "mew": 0.6,
+    "ls": "", "marker": "*", "ms": 9.0, "color": style.ORANGE, "mec": style.BLACK, "mew": 0.6,
     "zorder": 5, "clip_on": False, "label": "best",
 }  # fmt: skip
+RINGED: dict[str, Any] = {
+    "marker": "D", "ms": 10.0, "mfc": "none", "mew": 1.2, "label": "recommended",
+}  # fmt: skip
+"""Around the best design where both are one."""
 
 
 def figures(answer: Answer, title: str) -> Mapping[str, Draw]:
@@ -236,7 +240,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
             low, high = _band(answer, row, requirement)
             axes.fill_between(key, low[order], high[order], color=style.SKY, alpha=0.3, lw=0.0,
                               label="95 % interval")  # fmt: skip
-            axes.plot(key, shown, "o-", ms=3.0, color=style.BLUE, label="designs")
+            axes.plot(key, shown, "o", ms=3.0, color=style.BLUE, label="designs")
             axes.axhline(requirement.bound, color=style.RED, ls="--", label="admissible")
             if answer.best != NONE:
                 axes.plot(answer.values[answer.best, 0], answer.judged.values[row, 0, answer.best],
@@ -248,16 +252,22 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
             top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
             name = requirement.condition.name
             most = max(10.0 * requirement.bound, 0.0 if name == RATE else 1.0)
-            axes.set_ylim(0.0, 1.05 * float(min(top, most)))
+            end = 1.05 * float(min(top, most))
+            axes.set_ylim(0.0, end)
+            if (off := np.nan_to_num(values, nan=0.0) > end).any():
+                axes.plot(key[off], np.full(off.sum(), end), "^", ms=4.0, color=style.RED,
+                          clip_on=False, label="off the scale, or overturned")  # fmt: skip
             words = LIMITS[name].label if name in LIMITS else name
             others = {RATE: "overturned [1/year]"}
             known = LIMITS[name].axis_label if name in LIMITS else "share of records"
             axes.set_ylabel(others.get(name, known))
             axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
         grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
-        style.legend_above(grid[0], 5) if len(requirements) == 1 else grid[0].legend()
+        named = style.entries(grid)
+        columns = 2 if style.narrow() else 4
+        figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=columns)
 
-    return style.picture(draw, 1.4 + 2.3 * len(requirements))
+    return style.picture(draw, 1.9 + 2.3 * len(requirements))
 
 
 def _draw_regions(axes: Axes, answer: Answer, row: int) -> None:
@@ -269,7 +279,7 @@ def _draw_regions(axes: Axes, answer: Answer, row: int) -> None:
     if answer.robust != NONE:
         judged, at = answer.judged_at(answer.robust)
         axes.plot(answer.values[answer.robust, 0], judged.values[row, 0, at],
-                  **BEST | {"marker": "D", "ms": 6.0, "label": "recommended"})  # fmt: skip
+                  **BEST | RINGED)  # fmt: skip
 
 
 def _band(answer: Answer, row: int, requirement: Requirement) -> tuple[Array, Array]:
@@ -288,11 +298,11 @@ def _band(answer: Answer, row: int, requirement: Requirement) -> tuple[Array, Ar
 def region_figure(answer: Answer, title: str) -> bytes:
     """Several unknowns: designs that pass and fail, for each pair of unknowns.
 
-    With two of them the colour between the designs is the share of the resamples that pass.
+    With two of them the colour of a design is the share of the resamples in which it passes.
     """
     pairs = list(itertools.combinations(range(len(answer.task.unknowns)), 2))
     shown = pairs[:MOST_PAIRS]
-    narrow = in_force().look.width(style.WIDTH) < style.WIDTH
+    narrow = style.narrow()
     columns = 1 if narrow else min(3, len(shown))
     rows = math.ceil(len(shown) / columns)
 
@@ -304,9 +314,13 @@ def region_figure(answer: Answer, title: str) -> bytes:
             axes.set_axis_off()
         for axes, (x, y) in zip(grid.flat, shown, strict=False):
             axes.locator_params(nbins=MOST_TICKS)
-            if len(pairs) == 1 and answer.resamples:
+            by_share = len(pairs) == 1 and bool(answer.resamples)
+            if by_share:
                 _draw_shares(figure, axes, answer)
-            _draw_designs(axes, answer, answer.values[:, [x, y]], MARKS, clip_on=False)
+            hollow = (
+                {"mfc": "none", "mew": 0.5, "ms": 4.6, "color": style.BLACK} if by_share else {}
+            )
+            _draw_designs(axes, answer, answer.values[:, [x, y]], MARKS, clip_on=False, **hollow)
             _mark(axes, answer, answer.values[:, [x, y]])
             axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
         handles = grid[0][0].get_legend_handles_labels()
@@ -316,15 +330,18 @@ def region_figure(answer: Answer, title: str) -> bytes:
 
 
 def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
-    """The share of the resamples in which a design passes, between the designs."""
-    from matplotlib.tri import Triangulation
+    """The share of the resamples in which each design passes; nothing is said of those between."""
+    from matplotlib import colormaps
+    from matplotlib.colors import BoundaryNorm
 
-    # Triangles of the unit square: ranges of different sizes would make needles of them.
-    triangles = Triangulation(*answer.places.T).triangles
-    between = Triangulation(answer.values[:, 0], answer.values[:, 1], triangles)
-    # A share of one at all corners of a triangle would be outside the last level.
-    shares = np.clip(answer.passing_share, 1e-6, 1.0 - 1e-6)
-    filled = axes.tricontourf(between, shares, levels=SHARES, cmap="YlGn", alpha=0.55)
+    colours = colormaps["viridis"]
+    for name, marker, _ in MARKS[1:]:
+        chosen = answer.valid & (answer.passes == (name == "passes"))
+        x, y = answer.values[chosen].T
+        filled = axes.scatter(
+            x, y, c=answer.passing_share[chosen], marker=marker, s=18.0,
+            cmap=colours, norm=BoundaryNorm(SHARES, colours.N), lw=0.0, clip_on=False,
+        )  # fmt: skip
     figure.colorbar(filled, ax=axes, label="share of resamples of the records that pass")
 
 
@@ -335,7 +352,14 @@ def _draw_designs(
     became = np.where(answer.passes, "passes", np.where(answer.valid, "fails", "no valid case"))
     for name, marker, colour in marks:
         if len(chosen := at[became == name]):
-            axes.plot(*chosen.T, ls="", ms=3.2, marker=marker, color=colour, label=name, **look)
+            points: dict[str, Any] = {
+                "ls": "",
+                "ms": 3.2,
+                "marker": marker,
+                "color": colour,
+                "label": name,
+            }
+            axes.plot(*chosen.T, **points | look)
 
 
 def front_figure(answer: Answer, title: str) -> bytes:
@@ -351,7 +375,8 @@ def front_figure(answer: Answer, title: str) -> bytes:
     def draw(figure: Figure) -> None:
         style.heading(figure, title, f"{len(answer.front)} designs on the Pareto front")
         axes = figure.subplots()
-        _draw_designs(axes, answer, objectives.T, MARKS[1:], alpha=0.6)
+        _draw_designs(axes, answer, objectives.T, MARKS[1:2], ms=2.2, alpha=0.35)
+        _draw_designs(axes, answer, objectives.T, MARKS[2:])
         front: dict[str, Any] = {"drawstyle": "steps-post", "label": "Pareto front"}
         axes.plot(*objectives[:, answer.front], color=style.BLACK, **front)
         _mark(axes, answer, objectives.T)
@@ -363,13 +388,12 @@ def front_figure(answer: Answer, title: str) -> bytes:
 
 def _mark(axes: Axes, answer: Answer, at: Array) -> None:
     """The best design, the recommended one and islands, at their rows of (designs, 2)."""
+    if answer.islands:
+        axes.plot(*at[answer.islands].T, **BEST | RINGED | {"marker": "s", "label": "islands"})
+    if answer.robust != NONE:
+        axes.plot(*at[answer.robust], **BEST | RINGED)
     if answer.best != NONE:
         axes.plot(*at[answer.best], **BEST)
-    small = BEST | {"marker": "D", "ms": 6.0}
-    if answer.robust != NONE:
-        axes.plot(*at[answer.robust], **small | {"label": "recommended"})
-    if answer.islands:
-        axes.plot(*at[answer.islands].T, **small | {"mfc": "none", "label": "islands"})
 
 
 def _counts(answer: Answer) -> str:

@@ -271,10 +271,16 @@ def test_base_shear_against_rotation(histories: Open) -> None:
             wanted = [numbers(series, name) for name in ("rotation_ratio", "base_shear_ratio")]
             same(curve(axes, name), wanted)
         x, y = (float(fit[f"saturation_{name}_ratio"]) for name in ("rotation", "base_shear"))
-        end = max(highest, x)
-        heights = (float(fit["base_shear_ratio_at_uplift"]), y, y + float(fit["k_s"]) * (end - x))
-        same(curve(axes, "bilinear fit"), ((0.0, x, end), heights))
+        # Nothing is drawn beyond the points that the curve goes through.
+        panel = [row for row in stood if row[ALPHA] == fit[ALPHA] and row["uplifts"] != "0"]
+        turned = numbers(panel, "rotation_ratio")
+        first, end = turned.min(), turned.max()
+        start, slope = (float(fit[name]) for name in ("base_shear_ratio_at_uplift", "slope_before"))
+        heights = (start + slope * first, y, y + float(fit["k_s"]) * (end - x))
+        same(curve(axes, "bilinear fit"), ((first, x, end), heights))
         (text,) = axes.texts
+        beyond = (turned > x * (1.0 + 1e-6)).sum()  # the break may be a point
+        assert text.get_text().endswith(f"beyond, from {beyond} of {len(turned)}")
         assert text.get_text().startswith(f"saturation at {x:.3f}, {y:.2f}\n")
         same(axes.get_xlim(), (0.0, 1.04 * highest))
         assert axes.get_ylim()[0] == 0.0

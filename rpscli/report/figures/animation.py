@@ -55,7 +55,7 @@ class Scene:
         self.sides = [axes.plot([], [], **look)[0] for _ in (-1, 1)] if self.floors else []
         base = float(self.levels[0])
         self.devices = SceneDevices(axes, structure.devices, self.feet, 0.5 * self.width, base)
-        self.clock = axes.set_title("", loc="right", fontsize=style.small())
+        self.clock = axes.set_title("", loc="right", fontweight="bold")
         axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
@@ -192,7 +192,7 @@ def history_film(
 
         return Motion(len(plan.samples), show, [*scene.moving, *end.moving, cursor])
 
-    return film(draw, 8.0, 5.2, wanted, progress)
+    return film(draw, 6.2, 4.4, wanted, progress)
 
 
 def modes_film(

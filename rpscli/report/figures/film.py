@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 RATES = {".gif": 20, ".mp4": 30}
 """Frames a second, by the ending of the file."""
-USUAL_SIZE = 720
+USUAL_SIZE = 900
 """Width [pixels]."""
 MOST_FRAMES = 3000
 ENCODER = "ffmpeg"

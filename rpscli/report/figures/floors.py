@@ -44,13 +44,9 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
             draw_one(axes, result)
             axes.set_xlabel(style.folded(figure, axes.get_xlabel()))
             axes.label_outer()
-        entries = {
-            name: handle
-            for axes in (panels[-1], panels[0])
-            for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
-        }
+        shown = style.entries((panels[-1], panels[0]))
         columns = 2 if style.narrow() else 4
-        figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=columns)
+        figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=columns)
 
     return style.picture(draw, 4.2)
 

@@ -240,13 +240,14 @@ def small() -> float:
 
 
 def heading(figure: Figure, *parts: str) -> None:
-    """What the figure belongs to and how to read it: a line, and at most two below it."""
+    """What the figure belongs to and how to read it: a line, and a few below it."""
     title, *others = [part for part in parts if part] or [""]
-    most = int(LETTERS_PER_INCH * inches(figure)[0] * 8.0 / small())
+    width = inches(figure)[0]
+    narrow, most = width < WIDTH, int(LETTERS_PER_INCH * width * 8.0 / small())
     lines = ["   |   ".join((title, *others))]
     if others and len(lines[0]) > most:
         remarks = "   |   ".join(others)
-        lines = [title, *wrap(remarks, most, max_lines=2, placeholder="...")]
+        lines = [title, *wrap(remarks, most, max_lines=6 if narrow else 2, placeholder="...")]
     cut = [line if len(line) <= most else f"{line[: most - 3]}..." for line in lines]
     # A dollar sign in a title begins no formula.
     figure.suptitle("\n".join(cut), fontsize=small(), color=GREY, parse_math=False)
@@ -265,6 +266,15 @@ def typeset(text: str) -> str:
 def in_rows(entries: Sequence[Entry], columns: int) -> list[Entry]:
     """Entries in the order in which a legend that fills column by column reads row by row."""
     return [entry for column in range(columns) for entry in entries[column::columns]]
+
+
+def entries(panels: Iterable[Axes]) -> dict[str, Any]:
+    """What the legends of several axes would show, by name, each once."""
+    found: dict[str, Any] = {}
+    for axes in panels:
+        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
+            found.setdefault(name, handle)
+    return found
 
 
 def legend_above(axes: Axes, columns: int) -> None:

@@ -123,7 +123,7 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
             axes.plot(x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value))
             axes.plot(
                 np.minimum(x[~stood], x_top), np.minimum(y[~stood], y_top), **look,
-                mfc="none", mew=0.7, clip_on=False, zorder=3,
+                mfc="none", mew=0.9, clip_on=False, zorder=3,
             )  # fmt: skip
         axes.plot([0.0, min(x_top, y_top)], [0.0, min(x_top, y_top)], "k--", lw=0.8)
 

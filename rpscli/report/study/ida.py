@@ -11,6 +11,7 @@ from pydantic import Field
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
 from rpscli.case.text.document import Document, Fault
+from rpscli.errors import listed
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import in_panels, left_out, over, remarks
@@ -73,12 +74,14 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
     edge = 1.15 * max((float(values.max()) for values in finite if len(values)), default=1.0)
     top = 1.04 * max(float(panel.heights.max()) for panel in panels)
 
+    numbers = sorted({str(len(panel.curves)) for panel in panels})
+
     def draw(axes: Axes, panel: Panel) -> None:
         levels = np.concatenate([[0.0], panel.heights])
         # Evenly through all of them: more would only blacken the panel.
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
             axes.plot(
-                *_run_out(curve, levels, edge), color=style.GREY, lw=0.6, alpha=0.8,
+                *_run_out(curve, levels, edge), color=style.GREY, lw=0.8,
                 label="single curves",
             )  # fmt: skip
         for fractile, (colour, line), share in zip(panel.fractiles, LINES, FRACTILES, strict=True):
@@ -97,6 +100,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
             y_label=f"{name} [{level_unit}]",
             limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
             note=remarks(
+                f"fractiles of {listed(numbers)} curves",
                 "level to the right: overturned at the next intensity" if found.overturned else "",
                 "back to the left: stronger motions turn the columns less",
                 over(found.pooled),

@@ -78,7 +78,7 @@ def panel_figure(
     shown = panels[:MOST_PANELS]
     narrow = 1 if len(shown) == 3 else 2  # three leave a hole
     columns = layout.columns if width >= style.WIDTH else min(narrow, layout.columns)
-    names = _wrapped(layout.names, columns)
+    names = _wrapped(layout.names, columns, min(width, style.WIDTH))
     rows = max(1, math.ceil(len(shown) / columns))
     if len(panels) > len(shown):
         note = f"{note}; " * bool(note) + f"the first {len(shown)} of {len(panels)} panels"
@@ -101,9 +101,10 @@ def panel_figure(
         lines = _legend_lines(figure, grid, "lower center")
         _arrange(figure, grid, lines, share_y=share == "both")
 
-    width = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
-    height = 3.8 if rows == 1 and columns == 1 else 1.0 + (2.6 if columns < 3 else 2.1) * rows
-    return style.picture(fill, height, width, None)
+    each = 2.6 if columns < 3 and width >= style.WIDTH else 2.1
+    height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
+    wide = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
+    return style.picture(fill, height, wide, None)
 
 
 def in_panels(
@@ -129,10 +130,7 @@ def _label_outside(grid: Any, panels: int, x_label: str, y_label: str) -> None:
 
 def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
     """One legend for all panels, below them; returns its number of lines."""
-    found: dict[str, Any] = {}
-    for axes in grid.flat:
-        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
-            found.setdefault(name, handle)
+    found = style.entries(grid.flat)
     if not found:
         return 0
     widest = max(len(name) for name in found)
@@ -177,10 +175,10 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> 
     )
 
 
-def _wrapped(names: Sequence[str], columns: int) -> list[str]:
+def _wrapped(names: Sequence[str], columns: int, width: float) -> list[str]:
     """Titles on two lines where panels are narrow: the last key below the others."""
     widest = max((len(name) for name in names), default=0)
-    if widest * columns <= style.WIDTH * LETTERS_AN_INCH * 0.7:
+    if widest * columns <= width * LETTERS_AN_INCH * 0.7:
         return list(names)
     return ["\n".join(name.rsplit(", ", 1)) for name in names]
 

@@ -117,11 +117,11 @@ def _scatter(
     def draw(axes: Axes, cloud: Cloud) -> None:
         for place, part in enumerate(cloud.shown.parts(series)):
             axes.plot(
-                x[part.points], y[part.points], ls="", marker=marker(place), ms=2.4, alpha=0.55,
+                x[part.points], y[part.points], ls="", marker=marker(place), ms=3.0, alpha=0.7,
                 mew=0.0, color=colour(place), label=labels(series_keys, part.values) or None,
             )  # fmt: skip
         if curved:
-            _draw_curve(axes, cloud.fit, highest, top, plain=plain)
+            _draw_curve(axes, cloud.fit, x[cloud.shown.points], (highest, top), plain=plain)
 
     def limits(axes: Axes) -> None:
         axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None))
@@ -154,28 +154,35 @@ def _scatter(
             x_label=quantities[x_name].axis_label,
             y_label=quantities[y_name].axis_label,
             limits=limits,
-            note=remarks(over(found.pooled), fallen, left_out(found.failed)),
+            note=remarks(
+                over(found.pooled),
+                "fits without bands" * any(cloud.fit for cloud in clouds),
+                fallen,
+                left_out(found.failed),
+            ),
         ),
         notes,
     )
 
 
 def _draw_curve(
-    axes: Axes, fit: Bilinear | None, highest: float, top: float, *, plain: bool
+    axes: Axes, fit: Bilinear | None, x: Array, room: tuple[float, float], *, plain: bool
 ) -> None:
-    """The curve with its numbers, where it leaves room for them."""
+    """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
+    highest, top = room
     apart, text, rising = break_if_narrow(), "no curve: too few points", False
     if fit is not None:
-        ends = np.array([0.0, fit.break_x, max(highest, fit.break_x)])
+        ends = np.array([x.min(), fit.break_x, x.max()])
         axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
+        beyond = f"beyond,{apart}from {int((x > fit.break_x).sum())} of {len(x)}"
         text = (
             f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
-            f"\nslope kₛ{apart}{fit.slope_after:.2f} beyond"
+            f"\nslope kₛ{apart}{fit.slope_after:.2f} {beyond}"
         )
         if plain:
             text = (
                 f"break at{apart}{fit.break_x:.3g}, {fit.break_y:.3g}"
-                f"\nslope{apart}{fit.slope_after:.3g} beyond"
+                f"\nslope{apart}{fit.slope_after:.3g} {beyond}"
             )
         # Where the curve runs through the lower right, the upper left is free.
         rising = bool(np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.25 * top)
