@@ -79,6 +79,14 @@ class OutputError(RpsError):
     """A result cannot be written: no permission, a full disk, a file where a folder should be."""
 
 
+def renamed(old: str, new: str) -> None:
+    """Tell the caller's caller that a Python name is an old one; the one way to do so."""
+    import warnings  # needed by those who use one only
+
+    text = f"{old} is the old name of {new}; the next version knows that alone"
+    warnings.warn(text, DeprecationWarning, stacklevel=3)
+
+
 def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
     """The known word that was probably meant; None if `likeness`, of letters in common, is less.
 

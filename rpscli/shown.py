@@ -34,6 +34,15 @@ class Shown(Frozen):
         return f"<table><caption>{type(self).__name__}</caption>{rows}</table>"
 
 
+def data_frame(columns: Mapping[str, Any]) -> Any:
+    """Columns as a table of pandas."""
+    try:
+        import pandas as pd  # not everybody has it
+    except ImportError:
+        raise ImportError("to_dataframe needs pandas: pip install pandas") from None
+    return pd.DataFrame(columns)
+
+
 def fact_text(value: object) -> str:
     """A value in a few letters.
 

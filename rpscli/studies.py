@@ -44,7 +44,7 @@ from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.report import Found
 from rpscli.report.study.statistics import summary_columns, verdict_columns
 from rpscli.report.table import Column
-from rpscli.shown import Shown
+from rpscli.shown import Shown, data_frame
 from rpscli.study_run import StudyRun, require_results
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.check import Watched
@@ -263,9 +263,7 @@ class StudyResult(Shown):
 
     def to_dataframe(self) -> Any:
         """The columns as a table of pandas, which must be installed."""
-        import pandas as pd  # not everybody has it
-
-        return pd.DataFrame(self.columns)
+        return data_frame(self.columns)
 
     def facts(self) -> dict[str, Any]:
         """Outcomes, and where they are stored."""

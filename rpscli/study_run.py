@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rpscli.case.conditions import Condition
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError
 from rpscli.report.figures.look import Look
-from rpscli.report.study.registry import REPORTS, lacking, requirement_faults
+from rpscli.report.study.registry import REPORTS, lacking, not_judged, requirement_faults
 from rpscli.report.study.report import add_notes
 from rpscli.report.study.statistics import (
     summary_columns,
@@ -87,8 +87,8 @@ def require_results(layout: StudyPoints, conditions: Iterable[Condition]) -> Non
     for condition in conditions:
         if layout.plan.analysis != "timehistory":
             raise UsageError(f"--fail-on {condition.name} needs analysis: timehistory")
-        if lacking(layout, condition.name):
-            raise UsageError(f"--fail-on: {needs_of(condition.name)}")
+        if lacking(layout, condition.name, all):
+            raise UsageError(f"--fail-on: {needs_of(condition.name, 'no')}")
 
 
 class StudyRun:
@@ -193,7 +193,8 @@ class StudyRun:
             if self.verdicts:
                 columns = verdict_columns(self.summary.keys, self.verdicts)
                 found.files["verdicts.csv"] = csv_text(columns)
-            notes = (*self.summary.notes, *scale_notes(self.table))
+            unjudged = not_judged(self.layout, self.conditions)
+            notes = (*self.summary.notes, *scale_notes(self.table), *unjudged)
             found.notes += [f"statistics: {note}" for note in notes]
         for request in self.layout.study.reports:
             try:

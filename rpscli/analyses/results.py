@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from rpscli.analyses.trace import Event, Trace
 from rpscli.frozen import frozen
 from rpscli.physics.planar import geometry, state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.shown import data_frame
 
 NEAR_CRITICAL = 0.8
 """Rotations above this part of the critical one are near it: a little more may overturn."""
@@ -101,6 +103,17 @@ class TimeHistoryResult(Demand):
     fixed_base: FixedBaseResponse | None
     motion: MotionComponents
     axial: AxialForces | None = None
+
+    def to_dataframe(self) -> Any:
+        """The samples as a table of pandas, which must be installed: columns of `timehistory.csv`.
+
+        SI units, which are its `attrs["units"]` by column.
+        """
+        # What stands in tables is decided above the analyses.
+        columns = import_module("rpscli.report.tables.analyses").history_columns(self)
+        table = data_frame({column.name: column.values for column in columns})
+        table.attrs["units"] = {column.name: column.unit for column in columns}
+        return table
 
     def facts(self) -> dict[str, Any]:
         """The record, and what it asked for."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import pytest
 
 import rpscli
@@ -11,6 +14,26 @@ import rpscli
 def test_every_public_name_exists(name: str) -> None:
     assert getattr(rpscli, name) is not None
     assert name in dir(rpscli)
+
+
+def test_old_names_are_told_for_one_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rpscli, "_RENAMED", {"push": "pushover"})
+    with pytest.warns(DeprecationWarning, match=r"rpscli\.push is the old name of") as told:
+        assert rpscli.push is rpscli.pushover
+    assert told[0].filename == __file__  # the line of the caller, not one of ours
+
+
+def test_samples_as_a_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = rpscli.load_case(Path(__file__).parents[2] / "cases" / "six_storey.yaml")
+    motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
+    result = rpscli.time_history(case.structure, motion, case.analysis)
+    table = result.to_dataframe()
+    assert table["rotation"].tolist() == result.trace.rotation.tolist()
+    assert table["storey_6_shear"].tolist() == result.trace.storey_shears[:, 5].tolist()
+    assert table.attrs["units"]["storey_6_shear"] == "N"
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match="needs pandas: pip install pandas"):
+        result.to_dataframe()
 
 
 def test_other_names_do_not() -> None:

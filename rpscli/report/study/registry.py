@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from rpscli.case.conditions import FRICTION
+from rpscli.case.conditions import FRICTION, Condition
 from rpscli.case.text.document import Fault
 from rpscli.registry import Registry
 from rpscli.report.study import (
@@ -57,9 +57,9 @@ def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:
         limit for system in layout.properties for limit in system.limits if limit.source != FRICTION
     )
     for name in dict.fromkeys(limit.name for limit in limits):
-        if lacking(layout, name):
+        if lacking(layout, name, all):
             path = ("limits", name) if own else ("base",)
-            yield Fault(path, f"limits.{needs_of(name)}", at_key=own)
+            yield Fault(path, f"limits.{needs_of(name, 'no')}", at_key=own)
     for request in layout.study.reports:
         report = REPORTS[request.kind]
         for name in dict.fromkeys(report.results(request.options)):
@@ -69,6 +69,16 @@ def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:
             yield Fault(request.path, f"the report {request.kind}: {text}")
 
 
-def lacking(layout: StudyPoints, name: str) -> bool:
-    """Whether some system of a study cannot have a result."""
-    return any(name in properties.lacking for properties in layout.properties)
+def lacking(layout: StudyPoints, name: str, which: Callable[[Iterable[bool]], bool] = any) -> bool:
+    """Whether any, or all, systems of a study cannot have a result."""
+    return which(name in properties.lacking for properties in layout.properties)
+
+
+def not_judged(layout: StudyPoints, conditions: Iterable[Condition] = ()) -> Iterator[str]:
+    """Limits that some systems are not judged by, since they cannot have the result."""
+    limits = (limit for system in layout.properties for limit in system.limits)
+    for name in dict.fromkeys(limit.name for limit in (*limits, *conditions)):
+        without = sum(name in system.lacking for system in layout.properties)
+        if without:
+            many = f"{without} of {len(layout.properties)} systems are not judged by it"
+            yield f"{needs_of(name)}: {many}, and have no statistics of it"

@@ -163,13 +163,13 @@ def lacking(study: Study, case: Case) -> frozenset[str]:
     )
 
 
-def needs_of(name: str) -> str:
+def needs_of(name: str, which: str = "not every") -> str:
     """What a study must have for a result, in words."""
     needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *SAMPLED)}[name]
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f", and in all systems {needs}" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"
-    return f"{name} needs {needs}, which not every system of the study has"
+    return f"{name} needs {needs}, which {which} system of the study has"
 
 
 def _device_with(result: str) -> Callable[[PodiumStructure], bool]:

@@ -80,6 +80,16 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
     """Of histories of a study, with storey shears on a fixed base as a reference."""
     found = grouping(table)
     known = _demands(table, {REDUCTION: shear_over_fixed_base(table, fixed)})
+    for quantity, values in known.items():
+        # What overturned exceeds any demand, but not one that its system cannot have.
+        lacks = np.array(
+            [
+                system.storeys == 0 if quantity is REDUCTION else quantity.name in system.lacking
+                for system in table.layout.properties
+            ]
+        )
+        known_of = np.isfinite(values).reshape(len(lacks), -1).any(axis=1)
+        values[np.repeat(lacks & ~known_of, table.layout.points_of_system)] = np.nan
     rows = (_row(table, known, each.points, each.failed, each.values) for each in found.groups)
     return Summary(found.keys, found.pooled, found.notes, tuple(known), tuple(rows))
 

@@ -186,7 +186,10 @@ def judged_records(
 
 
 def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ()) -> list[Verdict]:
-    """Of each row of a summary, on the limits of study and cases and on further conditions."""
+    """Of each row of a summary, on the limits of study and cases and on further conditions.
+
+    Systems that cannot have a result are not judged by it; `not_judged` tells of them.
+    """
     layout, further, found = table.layout, tuple(conditions), []
 
     def record_of(number: int) -> str:
@@ -195,6 +198,14 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
 
     for row in summary.rows:
         if len(row.points):
-            limits = layout.properties[int(row.points[0]) // layout.points_of_system].limits
-            found += verdicts(table, row.points, (*limits, *further), record_of, row.values)
+            systems = np.unique(row.points // layout.points_of_system)
+            own = [layout.properties[system] for system in systems]
+            lacking = frozenset[str]().union(*(properties.lacking for properties in own))
+            limits = [
+                each
+                for each in (*own[0].limits, *further)
+                if each.name not in lacking
+                or np.isfinite(table.columns[each.name][row.points]).any()
+            ]
+            found += verdicts(table, row.points, limits, record_of, row.values)
     return found
