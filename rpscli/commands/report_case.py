@@ -181,7 +181,7 @@ def case_page(
         return PageDone(case.title, "Structure", sections, concluded(document, None), None)
     # A place for the files, which are not written there.
     requests = history_requests([given], motions, OutputRequest(Path(), force=True))
-    announce_compilation(terminal, moving=True)
+    announce_compilation(terminal)
     if len(requests) > 1:
         quiet = replace(look, formats=())
         found = computed_set(requests, conditions, quiet, terminal, None, written=False)

@@ -96,7 +96,7 @@ def command(
         replace(history, floor_spectra=floor_spectra)
         for history in history_requests(cases, motions, output)
     ]
-    announce_compilation(terminal, moving=True)
+    announce_compilation(terminal)
     if len(histories) == 1:
         _one(histories[0], conditions, look, film, terminal)
         return

@@ -33,7 +33,7 @@ def command(terminal: Terminal) -> None:
     """
     from rpscli.analyses.verification import verification
 
-    announce_compilation(terminal, moving=True)
+    announce_compilation(terminal)
     found = list(verification())
     error = _mismatch(found)
     document = {

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from rpscli.analyses.kernels import compilation
+from rpscli.analyses.kernels.compilation import Listener
 from rpscli.case.schema.keys import unit
 from rpscli.commands.shell import waiting as sweep_progress
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import progress_line, progress_report
+from rpscli.commands.shell.waiting import announce_compilation, progress_line, progress_report
 from rpscli.report.study.labels import labels
 from rpscli.sweep.run.runner import Progress
 
@@ -52,6 +56,39 @@ def test_a_terminal_gets_a_bar(
     text = capsys.readouterr().err
     assert "60/100" in text
     assert "10 s left, 1 failed" in text
+
+
+def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_took(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (tmp_path / "compilation.json").write_text('{"kernel": 83}')
+    monkeypatch.setenv("RPS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(sweep_progress.sys.stderr, "isatty", lambda: True)  # type: ignore[attr-defined]
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "100")
+    listeners: list[Listener] = []
+    monkeypatch.setattr(compilation, "_listeners", listeners)
+    for quiet in (False, True):
+        announce_compilation(Terminal(quiet=quiet))
+        with (
+            progress_report(Terminal(quiet=quiet), 20, 100) as report,
+            listeners[0]("kernel"),
+        ):
+            report(progress(40, 1))
+        text = capsys.readouterr().err
+        for shown in (
+            "compiling the kernel, once for this version: 1 min 23 s the last time",
+            "compiling the kernel (1 min 23 s the last time)",
+            "60/100",
+        ):
+            assert (shown in text) != quiet
+    # What took no time was compiled before.
+    assert (tmp_path / "compilation.json").read_text() == '{"kernel": 83}'
+    (tmp_path / "compilation.json").write_text("[1]")
+    announce_compilation(Terminal())
+    with listeners[0]("kernel with devices"):
+        pass
+    assert "half a minute, some minutes on a busy machine" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 from threading import Lock
 
 Listener = Callable[[str], AbstractContextManager[None]]
-"""Called with the name of a kernel before it is compiled; open until it is."""
+"""Called with the name of a kernel before it is compiled; open while it is."""
 
 _listeners: list[Listener] = []
 _begun: set[str] = set()
@@ -38,20 +38,22 @@ def is_ready(*, equipped: bool = False) -> bool:
 @contextmanager
 def compiled(*, equipped: bool) -> Iterator[None]:
     """Around a call of the kernel: announce the compilation if there is one, and remember it."""
-    from rpscli.physics.core.compile import remember_compiled
+    from rpscli.physics.core.compile import cache_folder, remember_compiled
     from rpscli.physics.planar.prepare import compile_kernel
 
     name = KERNELS[equipped]
     if is_ready(equipped=equipped):
         yield
         return
+    with _lock:
+        first = name not in _begun
+        _begun.add(name)
     with ExitStack() as told:
-        with _lock:
-            first = name not in _begun
-            _begun.add(name)
         if first:
             for listener in _listeners:
                 told.enter_context(listener(name))
             compile_kernel(equipped=equipped)
+            if cache_folder() is not None:  # else the first call compiles
+                told.close()
         yield
     remember_compiled(name)

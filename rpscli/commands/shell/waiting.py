@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
+from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.user_cache import VARIABLE
+from rpscli.errors import OutputError
+from rpscli.report.files import write_whole
+from rpscli.user_cache import VARIABLE, user_cache
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -18,39 +23,54 @@ MANY = 5000
 """Of what takes a millisecond each."""
 LONG = 10.0
 """What is worth a word [s]."""
+USUALLY = "half a minute, some minutes on a busy machine"
 FIRST_LINE, GROWTH = 2.0, 1.6
 """Seconds until the first plain line; the next ones come after ever longer times."""
 
-_shown: list[str] = []
+TIMES_FILE = "compilation.json"
+"""How long each kernel took to compile when it was last done, of whatever version [s]."""
+
+_standing: list[Any] = []
+"""What stands on the terminal; what else takes time becomes a line of it."""
 
 
 def _looked_at(terminal: Terminal) -> bool:
     return not terminal.quiet and sys.stderr is not None and sys.stderr.isatty()
 
 
-def _bar(*columns: Any) -> Any:
+@contextmanager
+def _bar(*columns: Any) -> Iterator[Any]:
     """A line on the terminal that is gone when the work is done."""
     from rich.console import Console
     from rich.progress import Progress
 
-    return Progress(*columns, console=Console(stderr=True), transient=True)
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        _standing.append(bar)
+        try:
+            yield bar
+        finally:
+            _standing.remove(bar)
 
 
 @contextmanager
 def passing_time(what: str, terminal: Terminal) -> Iterator[None]:
-    """The time that has passed, where somebody looks and no other such line stands already."""
-    if _shown or not _looked_at(terminal):
+    """What takes time and how much has passed, where somebody looks."""
+    if not _looked_at(terminal):
         yield
         return
-    from rich.progress import SpinnerColumn, TimeElapsedColumn
+    from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    _shown.append(what)
-    try:
-        with _bar(SpinnerColumn(), what, TimeElapsedColumn()) as progress:
-            progress.add_task("", total=None)
+    with ExitStack() as opened:
+        if _standing:
+            bar = _standing[-1]
+        else:
+            columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+            bar = opened.enter_context(_bar(*columns))
+        task = bar.add_task(what, total=None)
+        try:
             yield
-    finally:
-        _shown.remove(what)
+        finally:
+            bar.remove_task(task)
 
 
 @contextmanager
@@ -93,8 +113,8 @@ def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContext
     return passing_time("computing", terminal)
 
 
-def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
-    """Say so if a kernel has to be compiled; `moving` where no bar shows that work goes on."""
+def announce_compilation(terminal: Terminal) -> None:
+    """Say so if a kernel has to be compiled, and how long that took the last time."""
     from rpscli.analyses.kernels.compilation import announce_to
 
     @contextmanager
@@ -103,11 +123,28 @@ def announce_compilation(terminal: Terminal, *, moving: bool = False) -> None:
 
         nowhere = f"each time: no folder that is yours alone can be written; name one in {VARIABLE}"
         often = "once for this version" if cache_folder() else nowhere
-        terminal.note(f"compiling the {kernel}, {often}: half a minute")
-        with passing_time("compiling", terminal) if moving else nullcontext():
+        times = _compilation_times()
+        takes = f"{duration(times[kernel])} the last time" if kernel in times else USUALLY
+        terminal.note(f"compiling the {kernel}, {often}: {takes}")
+        start = monotonic()
+        with passing_time(f"compiling the {kernel} ({takes})", terminal):
             yield
+        taken = round(monotonic() - start, 1)
+        if taken > 1.0 and (place := user_cache()):  # else nothing was compiled
+            times = _compilation_times() | {kernel: taken}
+            with suppress(OutputError):
+                write_whole({place / TIMES_FILE: json.dumps(times).encode()})
 
     announce_to(told)
+
+
+def _compilation_times() -> dict[str, float]:
+    """How long kernels took [s]; nothing is known where the file does not say so."""
+    try:
+        found = json.loads((user_cache() or Path()).joinpath(TIMES_FILE).read_bytes())
+        return {str(name): float(seconds) for name, seconds in found.items()}
+    except (OSError, ValueError, TypeError, AttributeError):
+        return {}
 
 
 @contextmanager
@@ -121,9 +158,10 @@ def progress_report(
     if not _looked_at(terminal):
         yield _lines(terminal)
         return
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 
-    with _bar(BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}")) as bar:
+    columns = BarColumn(20), MofNCompleteColumn(), TextColumn("{task.description}")
+    with _bar(*columns, TimeElapsedColumn()) as bar:
         task = bar.add_task("", total=total, completed=kept)
 
         def report(progress: Progress) -> None:
