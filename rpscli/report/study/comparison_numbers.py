@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -330,7 +330,7 @@ def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[st
     if options.fit is None or observed is None:
         return
     keys = _fit_keys(layout, observed, options.fit)
-    named = [key for key in observed.keys if _same_axis(layout, key, keys)]
+    named = [key for key in observed.keys if set(axis_keys(layout, key)) & set(keys)]
     if not keys or named:
         which = f"{listed(named, 'and')} tells what was observed" if named else "no key is left"
         yield f"fit: {which}, and cannot be chosen; vary another key, and name it in fit.keys"
@@ -344,8 +344,3 @@ def _fit_keys(layout: StudyPoints, observed: Observed, fit: FitSection | None) -
     if fit.keys is not None:
         return tuple(fit.keys)
     return tuple(key for key in own_keys(layout) if key not in (*observed.keys, INTENSITY))
-
-
-def _same_axis(layout: StudyPoints, key: str, keys: Iterable[str]) -> bool:
-    """Whether a key belongs to the axis of one of others."""
-    return bool(set(axis_keys(layout, key)) & set(keys))

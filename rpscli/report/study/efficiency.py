@@ -30,16 +30,16 @@ from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.errors import RecordError
 from rpscli.records.measures import needs_period
 from rpscli.report.study.fragility import (
+    LimitState,
     LimitStates,
-    limit_name,
+    limit_panels,
     limit_states,
     limited_results,
     measure_name,
-    side_by_side,
 )
 from rpscli.report.study.ida import height, single_intensity
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import Layout, colour, over, panel_figure, remarks
+from rpscli.report.study.panels import colour, over, panel_figure, remarks
 from rpscli.report.study.report import Found, Report
 from rpscli.sweep.fits.censored import censored_fit, chance
 from rpscli.sweep.points.layout import StudyPoints
@@ -137,10 +137,9 @@ def efficiency(study: StudyResults, options: EfficiencyOptions) -> Found:
         notes.append("magnitudes and distances of the records are not known, and left out")
     shown = dict.fromkeys((*found.keys, *(head for head in HEADS if head != "unit")), "")
     shown |= {"most_telling": "other", "p_most_telling": "p other"}
-    drawn = [(limit.label, limit_name(limit)) for limit in limits]
     return Found(
         tables,
-        lambda title: efficiency_figure(found.keys, rows, drawn, title, over(found.pooled)),
+        lambda title: efficiency_figure(found.keys, rows, limits, title, over(found.pooled)),
         notes,
         shown={"": shown},
         remark="median, beta: of the intensities at which records pass the limit; never: records"
@@ -179,7 +178,7 @@ def _passed(group: Histories, result: str, threshold: float) -> Passed:
 def efficiency_figure(
     keys: Sequence[str],
     rows: Sequence[Sequence[Any]],
-    limits: Sequence[tuple[str, str]],
+    limits: Sequence[LimitState],
     title: str,
     note: str,
 ) -> bytes:
@@ -187,17 +186,17 @@ def efficiency_figure(
     groups = [*{str(row[0]): row[0] for row in rows}.values()]
     measures = list(dict.fromkeys(str(row[2]) for row in rows))
 
-    def draw(axes: Axes, limit: tuple[str, str]) -> None:
+    def draw(axes: Axes, limit: LimitState) -> None:
         width = 0.8 / len(groups)
         for place, values in enumerate(groups):
-            betas = [row[6] for row in rows if row[0] == values and row[1] == limit[0]]
+            betas = [row[6] for row in rows if row[0] == values and row[1] == limit.label]
             at = np.arange(len(betas)) + width * (place - 0.5 * (len(groups) - 1))
             name = labels(keys, values)
             axes.barh(at, betas, width, color=colour(place, len(groups)), label=name or None)
         axes.set_yticks(range(len(measures)), measures)
 
     return panel_figure(
-        Layout([name for _, name in limits], side_by_side(len(limits))),
+        limit_panels(limits),
         limits,
         draw,
         title=title,

@@ -482,7 +482,7 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
         left_out(sum(c.failed for c in panels[0]) if panels else 0),
     ]
     return panel_figure(
-        Layout([limit_name(limit) for limit in limits], side_by_side(len(panels))),
+        limit_panels(limits),
         panels,
         draw,
         title=title,
@@ -510,9 +510,10 @@ def limit_name(limit: LimitState) -> str:
     return limit.label.replace(limit.result, known.label, 1) + unit
 
 
-def side_by_side(panels: int) -> int:
-    """How many panels of limit states stand in a row."""
-    return 2 if panels == 4 else max(1, min(3, panels))
+def limit_panels(limits: Sequence[LimitState]) -> Layout:
+    """A panel for each limit state, up to three in a row."""
+    in_row = 2 if len(limits) == 4 else max(1, min(3, len(limits)))
+    return Layout([limit_name(limit) for limit in limits], in_row)
 
 
 def measure_name(intensity: Intensity) -> str:

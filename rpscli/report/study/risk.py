@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -25,18 +25,16 @@ from rpscli.report.study.fragility import (
     LimitState,
     beyond_computed,
     fragilities,
-    limit_name,
+    limit_panels,
     limited_results,
     margins,
     measure_name,
-    side_by_side,
     told,
     what_bands_hold,
     wrong_intensities,
 )
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import (
-    Layout,
     break_if_narrow,
     colour,
     log_ticks,
@@ -101,6 +99,11 @@ class Risk:
     notes: tuple[str, ...]
 
     @property
+    def note(self) -> str | None:
+        """What is doubtful about the fragility and the rate."""
+        return "; ".join(filter(None, [self.fragility.fit.note, *self.notes])) or None
+
+    @property
     def beyond_hazard(self) -> float:
         """Share of the rate."""
         return float(self.rates[-1] / self.rate)
@@ -138,59 +141,41 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
     keys, measured, unit = found.systems.keys, found.intensity.name, found.intensity.unit
-    life = f"probability_in_{options.years:g}_years"
-    # Unit of each column, and what readers see above it, if they see it.
-    columns = {
-        "limit": ("-", "limit"),
-        "annual_rate": ("1/year", "annual rate"),
-        "return_period": ("year", "return period"),
-        "annual_rate_low": ("1/year", None),
-        "annual_rate_high": ("1/year", None),
-        life: ("-", f"P in {options.years:g} years"),
-        f"{life}_low": ("-", None),
-        f"{life}_high": ("-", None),
-        "median": (unit, "median"),
-        "beta": ("-", "beta"),
-        "beta_total": ("-", "beta total" if options.dispersion.given else None),
-        "confidence": ("-", None),
-        "annual_rate_of_records": (
-            "1/year", "rate of records alone" if options.dispersion.given else None
-        ),
-        "annual_rate_of_shares": ("1/year", "rate of shares"),
-        **{
-            f"annual_rate_of_hazard_{100 * s:g}": ("1/year", f"rate of hazard {100 * s:g} %")
-            for s in hazard.fractiles
-        },
-        f"half_from_{measured}_below": (unit, "half from below"),
-        "share_beyond_computed": ("-", "from beyond computed"),
-        "share_beyond_hazard": ("-", "from beyond hazard"),
-        "note": ("-", None),
-    }  # fmt: skip
-    heads = {name: of_unit for name, (of_unit, _) in columns.items()}
-    readers = {name: label for name, (_, label) in columns.items() if label}
-    rows = [
+    life, total = f"probability_in_{options.years:g}_years", bool(options.dispersion.given)
+    # Name, unit, what readers see above it, if they see it, and value of each column.
+    columns: list[tuple[str, str, str | None, Callable[[Risk], object]]] = [
+        ("limit", "-", "limit", lambda r: r.fragility.limit.label),
+        ("annual_rate", "1/year", "annual rate", lambda r: r.rate),
+        ("return_period", "year", "return period", lambda r: 1.0 / r.rate if r.rate else math.nan),
+        ("annual_rate_low", "1/year", None, lambda r: r.band[0]),
+        ("annual_rate_high", "1/year", None, lambda r: r.band[1]),
+        (life, "-", f"P in {options.years:g} years", lambda r: probability(r.rate, options.years)),
+        (f"{life}_low", "-", None, lambda r: probability(r.band[0], options.years)),
+        (f"{life}_high", "-", None, lambda r: probability(r.band[1], options.years)),
+        ("median", unit, "median", lambda r: r.fragility.fit.median),
+        ("beta", "-", "beta", lambda r: r.fragility.fit.beta),
+        ("beta_total", "-", "beta total" if total else None, lambda r: r.fragility.total),
+        ("confidence", "-", None, lambda _: options.confidence),
         (
-            each.fragility.values,
-            each.fragility.limit.label,
-            each.rate,
-            1.0 / each.rate if each.rate > 0.0 else math.nan,
-            *each.band,
-            *(probability(rate, options.years) for rate in (each.rate, *each.band)),
-            fit.median,
-            fit.beta,
-            each.fragility.total,
-            options.confidence,
-            each.of_records,
-            each.of_shares,
-            *each.of_hazard,
-            each.half,
-            each.beyond_computed,
-            each.beyond_hazard,
-            "; ".join(filter(None, [fit.note, *each.notes])) or None,
-        )
-        for each in risks
-        for fit in [each.fragility.fit]
-    ]
+            "annual_rate_of_records", "1/year", "rate of records alone" if total else None,
+            lambda r: r.of_records,
+        ),
+        ("annual_rate_of_shares", "1/year", "rate of shares", lambda r: r.of_shares),
+        *(
+            (
+                f"annual_rate_of_hazard_{100 * share:g}", "1/year",
+                f"rate of hazard {100 * share:g} %", lambda r, n=n: r.of_hazard[n],
+            )
+            for n, share in enumerate(hazard.fractiles)
+        ),
+        (f"half_from_{measured}_below", unit, "half from below", lambda r: r.half),
+        ("share_beyond_computed", "-", "from beyond computed", lambda r: r.beyond_computed),
+        ("share_beyond_hazard", "-", "from beyond hazard", lambda r: r.beyond_hazard),
+        ("note", "-", None, lambda r: r.note),
+    ]  # fmt: skip
+    heads = {name: of_unit for name, of_unit, *_ in columns}
+    readers = {name: label for name, _, label, _ in columns if label}
+    rows = [(each.fragility.values, *(value(each) for *_, value in columns)) for each in risks]
     part_heads = {
         "limit": "-", f"{measured}_from": unit, f"{measured}_to": unit, "annual_rate": "1/year",
         "share": "-",
@@ -322,7 +307,8 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
                 axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
             axes.axvline(each.half, ymax=1.0 - room, color=shade, lw=0.8, ls="--")
             if len(of_limit) <= MOST_BANDS:
-                words = _chance(each, years)
+                chances = (probability(rate, years) for rate in (each.rate, *each.band))
+                words = f"P = {with_band(*chances)}"
                 if line > 0.1:
                     words = words.replace(" (", "\n(")
                 axes.text(
@@ -338,7 +324,7 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
         axes.set_ylim(0.0, axes.get_ylim()[1] / (1.0 - room))
 
     return panel_figure(
-        Layout([limit_name(limit) for limit in limits], side_by_side(len(limits))),
+        limit_panels(limits),
         limits,
         draw,
         title=title,
@@ -365,11 +351,6 @@ def _shown(risks: Sequence[Risk]) -> tuple[float, float]:
         lows.append(float(each.edges[counting[0]]))
         highs += [min(float(each.edges[counting[-1] + 1]), 1.4 * last), each.half]
     return 0.9 * min(lows), 1.1 * max(highs)
-
-
-def _chance(risk: Risk, years: float) -> str:
-    """The probability within a life, with its band."""
-    return f"P = {with_band(*(probability(rate, years) for rate in (risk.rate, *risk.band)))}"
 
 
 REPORT = Report(RiskOptions, risk, requires=risk_faults, results=limited_results)

@@ -99,10 +99,6 @@ def selection_document(selection: Selection) -> dict[str, Any]:
     }
 
 
-def _flag(flag: object) -> str:
-    return "yes" if flag else ""
-
-
 def selection_columns(selection: Selection) -> list[Column]:
     """`selection.csv`: one row a motion, its peaks scaled."""
     chosen = selection.chosen
@@ -115,7 +111,9 @@ def selection_columns(selection: Selection) -> list[Column]:
             "second", "-", [(*one.motions, None)[1] and one.motions[1].source for one in chosen]
         ),
         Column("factor", "-", [one.factor for one in chosen], "factor", "{:.4g}".format),
-        Column("clamped", "-", [one.clamped for one in chosen], "at a bound", _flag),
+        Column(
+            "clamped", "-", [one.clamped for one in chosen], "at a bound", lambda held: "yes" * held
+        ),
         Column("event", "-", [one.event or one.name for one in chosen], "event"),
         Column("pga", "m/s2", [one.factor * one.pga for one in chosen]),
         Column("pgv", "m/s", pgv, "PGV [m/s]", three),
