@@ -331,10 +331,10 @@ def region_figure(answer: Answer, title: str) -> bytes:
 
 def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
     """The share of the resamples in which each design passes; nothing is said of those between."""
-    from matplotlib import colormaps
+    from matplotlib import colormaps, rcParams
     from matplotlib.colors import BoundaryNorm
 
-    colours = colormaps["viridis"]
+    colours = colormaps[rcParams["image.cmap"]]
     for name, marker, _ in MARKS[1:]:
         chosen = answer.valid & (answer.passes == (name == "passes"))
         x, y = answer.values[chosen].T

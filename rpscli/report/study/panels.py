@@ -36,9 +36,9 @@ def colour(place: int, count: int = 0) -> str:
     """A colour for each of so many series: distinct ones, or shades of a scale beyond eight."""
     if count <= len(COLOURS):
         return COLOURS[place % len(COLOURS)]
-    from matplotlib import colormaps, colors
+    from matplotlib import colormaps, colors, rcParams
 
-    return colors.to_hex(colormaps["viridis"](place / (count - 1)))
+    return colors.to_hex(colormaps[rcParams["image.cmap"]](place / (count - 1)))
 
 
 def marker(place: int) -> str:
