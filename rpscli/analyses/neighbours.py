@@ -34,7 +34,7 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
         return []
     structure, law = result.structure, result.structure.impact_law
     beside = [(structure, factor) for factor in FACTORS]
-    if law.kind != "value" and law.loss > OTHER_LOSS:
+    if structure.restitution < 1.0 and law.kind != "value" and law.loss > OTHER_LOSS:
         beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0))
     found = run_again(result, beside)
     return [

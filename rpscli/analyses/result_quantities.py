@@ -79,6 +79,7 @@ class ResultQuantity(NamedTuple):
 
 NEEDS = {
     "superstructure": "a superstructure",
+    "superstructure, flat part": "a superstructure on columns with a flat part, so that V_st > 0",
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "superstructure, devices": "a superstructure and podium.devices",
     "podium.friction": "podium.friction in the case",
@@ -130,7 +131,7 @@ HISTORY = (
     ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6", demand=True),
     ResultQuantity(
         "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
-        needs="superstructure", meaning="largest base shear over M_tot g tan(alpha)",
+        needs="superstructure, flat part", meaning="largest base shear over M_tot g tan(alpha)",
     ),
     ResultQuantity(
         "uplift_shear_ratio", "-", "base shear over uplift with devices", limit="2",

@@ -328,3 +328,50 @@ def test_a_mapping_in_memory_has_its_name_for_a_place() -> None:
     with pytest.raises(CaseError) as error:
         case_from_mapping({"rps": 1, "superstructure": {"storeys": 0}, "podium": {}}, "base of x")
     assert str(error.value).splitlines()[0].startswith("base of x: podium")
+
+
+SPHERES = [
+    ("slenderness: 0", {}, "", []),
+    ("slenderness: 0.01", {"curvature_ratio": 0.5}, "", []),
+    (
+        "slenderness: 0",
+        {"curvature_ratio": 0.5},
+        "curvature_ratio = 0.5",
+        ["must be > 0.5", "hold"],
+    ),
+    ("slenderness: 0", {"curvature_ratio": "critical"}, "curvature_ratio = 0.5", ["must be > 0.5"]),
+    ("slenderness: 0", {"curvature_ratio": 0}, "curvature_ratio = 0", ["must be > 0.5"]),
+]
+
+
+@pytest.mark.parametrize(("slenderness", "changes", "start", "parts"), SPHERES)
+def test_spherical_ends_stand_on_a_large_arc(
+    building: str, slenderness: str, changes: dict[str, object], start: str, parts: list[str]
+) -> None:
+    text = building.replace("slenderness: 0.15", slenderness, 1)
+    shape = {"curvature_ratio": 0.7} | changes
+    overrides = [f"podium.bearing.{key}={value}" for key, value in shape.items()]
+    if not start:
+        bearing = parse_case(text, name="c.yaml", overrides=overrides).structure.bearing
+        assert bearing.is_spherical == (slenderness == "slenderness: 0")
+        return
+    with pytest.raises(CaseError) as error:
+        parse_case(text, name="c.yaml", overrides=overrides)
+    assert all(part in str(error.value) for part in (f"podium.bearing.{start}", *parts))
+
+
+def test_spherical_ends_have_no_impact_and_no_tendons(building: str) -> None:
+    sphere = ["podium.bearing.slenderness=0", "podium.bearing.curvature_ratio=0.7"]
+    tendon = "podium.devices=[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
+    for more, said in (
+        (["podium.impact.factor=0.9"], "have no impact; take restitution and factor out"),
+        ([tendon, "podium.columns=4"], "podium.devices.0: tendons are not followed"),
+    ):
+        with pytest.raises(CaseError, match=said):
+            parse_case(building, name="c.yaml", overrides=[*sphere, *more])
+    dimensions = "{height: 3 m, width: 0, wedge_width: 0.9 m, radius: 1.4 m}"
+    text = building.replace("slenderness: 0.15", f"dimensions: {dimensions}", 1)
+    for key in ("semi_diagonal", "wedge_slenderness", "curvature_ratio"):
+        text = "\n".join(line for line in text.splitlines() if f" {key}:" not in line)
+    with pytest.raises(CaseError, match=r"radius = 1\.4 m must be > 1\.5 m, half the height"):
+        parse_case(text, name="c.yaml")

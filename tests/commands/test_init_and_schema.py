@@ -113,7 +113,7 @@ def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
 @pytest.mark.parametrize(
     ("word", "said"),
     [
-        ("podium.bearing.slenderness", ["tan(alpha) = B/H", "> 0", "section 1", "2H"]),
+        ("podium.bearing.slenderness", ["tan(alpha) = B/H", ">= 0", "section 1", "2H"]),
         ("rho", ["podium.bearing.curvature_ratio", "critical", ">= 0"]),
         ("storeys", ["number of storeys", "from 0 to 200"]),
         ("superstructure.stiffness", ["N/m"]),

@@ -26,7 +26,7 @@ from rpscli.report.study.panels import (
     over,
     remarks,
 )
-from rpscli.report.study.report import DemandName, Found, Report
+from rpscli.report.study.report import DemandName, Found, Report, without_uplift
 from rpscli.report.study.statistics import share_columns
 from rpscli.report.table import Column
 from rpscli.sweep.points.layout import described
@@ -341,7 +341,7 @@ def unknown_reference(
             yield Fault(path, f"{text}, which takes {listed(map(shown, values), 'and')}")
 
 
-ROTATION = Report(RotationOptions, rotation, check=unknown_reference)
+ROTATION = Report(RotationOptions, rotation, check=unknown_reference, requires=without_uplift)
 CONTRAST = Report(
     ContrastOptions, contrast, check=unknown_reference, results=lambda options: options.results
 )

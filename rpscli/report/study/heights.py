@@ -28,7 +28,7 @@ from rpscli.report.study.panels import (
     over,
     remarks,
 )
-from rpscli.report.study.report import Found, Report
+from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
 from rpscli.sweep.points.layout import StudyPoints
@@ -167,6 +167,7 @@ def profile_of(study: StudyResults, group: Histories) -> Profile | None:
 
 def unlike_buildings(layout: StudyPoints, options: StoreyShearOptions) -> Iterator[str]:
     """Panels whose systems differ in what their common profile would need."""
+    yield from without_uplift(layout, options)
     keys = own_keys(layout) if options.panels is None else options.panels
     for group in groups(layout, keys):
         systems = [layout.properties[i] for i in np.unique(group.points // layout.points_of_system)]

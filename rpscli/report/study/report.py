@@ -136,6 +136,12 @@ class Report(ReportKind[Options]):
     requires: Callable[[StudyPoints, Options], Iterable[str]] = lambda *_: ()
 
 
+def without_uplift(layout: StudyPoints, _: object) -> Iterable[str]:
+    """What is wrong where results are shown over alpha, g tan(alpha) or V_st."""
+    if any(properties.alpha == 0.0 for properties in layout.properties):
+        yield "it shows results over alpha, g tan(alpha) or V_st, which is 0 without a flat part"
+
+
 def preset(of: Report[Any], options: type[Options], **fixed: object) -> Report[Options]:
     """A kind whose options are some of those of another one; the others are fixed."""
     whole = of.options.model_construct

@@ -28,7 +28,7 @@ from rpscli.report.study.panels import (
     over,
     remarks,
 )
-from rpscli.report.study.report import DemandName, Found, Report
+from rpscli.report.study.report import DemandName, Found, Report, without_uplift
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation.points import RecordRequest
 from rpscli.sweep.evaluation.results import SCALARS
@@ -374,6 +374,7 @@ def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
 
 def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Iterator[str]:
     """Records of a study that have no place in a spectrum."""
+    yield from without_uplift(layout, options)
     requests = {properties.record for properties in layout.properties}
     wanted = [request or other for request in layout.records for other in requests]
     for request in dict.fromkeys(wanted):

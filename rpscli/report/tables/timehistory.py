@@ -82,6 +82,8 @@ def overturned_text(structure: PodiumStructure, settings: TimeHistorySettings) -
 def restitution_text(structure: PodiumStructure) -> str:
     """What impacts leave, by which law, and what half of its loss would leave."""
     law, e = structure.impact_law, structure.restitution
+    if structure.bearing.is_spherical:
+        return "no impacts: columns without a flat part roll through the upright position"
     text = f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"
     if law.kind == "value" or law.loss <= OTHER_LOSS:
         return text
@@ -161,7 +163,8 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     if demands is not None and demands.storey_drift_ratios is not None:
         rows.append(_row(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios))))
     e = result.structure.restitution
-    rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
+    if not result.structure.bearing.is_spherical:
+        rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
     rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
     friction = result.friction_ratio
     of_friction = "" if friction is None else f"{shown(friction)} of mu"

@@ -140,7 +140,7 @@ class System:
 
     def perturbed(self, restitution_change: float) -> PodiumStructure:
         """The structure with its restitution times a factor; the building is shared."""
-        if restitution_change == 1.0:
+        if restitution_change == 1.0 or self.structure.bearing.is_spherical:
             return self.structure
         law = self.structure.impact_law
         changed = replace(law, factor=law.factor * restitution_change)

@@ -181,6 +181,7 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     "superstructure.storey_height": lambda structure: (
         structure.superstructure is not None and structure.superstructure.storey_heights is not None
     ),
+    "superstructure, flat part": lambda structure: structure.static_base_shear > 0.0,
     "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
     "podium.friction": lambda structure: structure.friction is not None,
     "columns": lambda structure: not structure.left_out_of_columns,
@@ -213,7 +214,8 @@ def _placed(
 def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> None:
     """A perturbed impact must not gain energy by itself."""
     largest = max(change.restitution for change in members)
-    if (e := case.structure.restitution) * largest > 1.0:
+    e = case.structure.restitution
+    if e * largest > 1.0 and not case.structure.bearing.is_spherical:
         path: Path = ("perturb", "restitution")
         text = (
             f"perturb.restitution raises the restitution {e:.4g} of a system above 1; use less"
