@@ -138,3 +138,19 @@ def test_shells_complete_values(words: str, found: str) -> None:
     }
     result = CliRunner().invoke(program, [], prog_name="rps", env=asked, standalone_mode=True)
     assert f"plain,{found}" in result.stdout.splitlines()
+
+
+def test_what_is_said_once_is_said_so(tmp_path: Path) -> None:
+    result = CliRunner().invoke(program, ["explain", "share"])
+    assert result.stdout.count("share of the records that may exceed") == 1
+    assert "likewise" in result.stdout
+
+
+def test_an_angle_is_no_slenderness(tmp_path: Path) -> None:
+    text = Path(__file__).parents[1].joinpath("cases/six_storey.yaml")
+    result = CliRunner().invoke(
+        program, ["check", str(text), "--set", "podium.bearing.slenderness=8.5"]
+    )
+    assert "of 8.5 degrees 0.1495" in result.stderr
+    result = CliRunner().invoke(program, ["check", str(text), "--set", "limits.drift=0.01"])
+    assert "did you mean limits.drift_ratio?" in result.stderr

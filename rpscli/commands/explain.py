@@ -177,8 +177,15 @@ def _tables(
     reports: Iterable[tuple[str, str]],
     options: Iterable[KeyReference],
 ) -> Iterator[Part]:
+    alike: dict[tuple[object, ...], list[KeyReference]] = {}
     for key in keys:
+        alike.setdefault(tuple(key._replace(key="")), []).append(key)
+    for key, *others in alike.values():
+        also = ", ".join(other.key for other in others[:2])
+        more = f" and {len(others) - 2} more" if len(others) > 2 else ""
         yield Heading(key.key)
+        if others:
+            yield f"likewise {also}{more}"
         yield _lines(key)
         drawing = next((DRAWINGS[place] for place in DRAWINGS if key.key.startswith(place)), None)
         if drawing:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -138,6 +138,11 @@ class MotionRequest:
             raise UsageError("--scale and --scale-to both fix the factor; keep one of them")
         if self.scale is not None and not math.isfinite(self.scale):
             raise UsageError(f"--scale {self.scale}: must be a finite number")
+
+
+def repeated(records: Sequence[str]) -> list[str]:
+    """Sources that are given more than once."""
+    return [each for each in dict.fromkeys(records) if records.count(each) > 1]
 
 
 def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator[MotionRequest]:

@@ -11,7 +11,14 @@ import click
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
-from rpscli.commands.inputs import FACTOR, MotionRequest, read_case, single_motions, write
+from rpscli.commands.inputs import (
+    FACTOR,
+    MotionRequest,
+    read_case,
+    repeated,
+    single_motions,
+    write,
+)
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     FILE,
@@ -91,6 +98,7 @@ def command(
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
     motions = list(single_motions(records, MotionRequest(**motion)))
+    terminal.warn(f"--record {each}: given twice, taken once" for each in repeated(records))
     cases = all_made(lambda request: read_case(request, terminal), requests, CaseError)
     histories = [
         replace(history, floor_spectra=floor_spectra)

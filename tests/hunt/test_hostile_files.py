@@ -31,6 +31,12 @@ STUDY_TEXTS = [
 ]
 CASE_KEYS = [".".join(map(str, path)) for path in known_paths(CaseFile)]
 STUDY_KEYS = [".".join(map(str, path)) for path in known_paths(StudyFile)]
+KINDS = ("viscous", "friction", "stop", "tendon", "rolling_resistance", "{a: 1}", "[viscous]", "5")
+DEVICE_KEYS = (
+    "kind", "coefficient", "exponent", "force", "stiffness", "gap", "restitution", "prestress",
+    "area", "\\e[31m",
+)  # fmt: skip
+"""Below `podium.devices`, right and wrong."""
 VALUES = [
     "0", "1", "-1", "1e-300", "1e300", ".nan", ".inf", "x", "[]", "{}", "[1, 2]", "[[1]]", "{a: 1}",
     "true", "2 t", "3 mm", "4 kN/mm", "critical", "auto", "1000000000", "'2 parsec'", "[x, 1]",
@@ -87,6 +93,60 @@ def test_values_of_cases(long: bool) -> None:
         return judged("check", "case.yaml", *options, "--json", places=places, text=text)
 
     hunt("values of cases", trial, 60, 5000 if long else None)
+
+
+@shares
+def test_devices(long: bool) -> None:
+    def trial(random: Random) -> str:
+        Path("case.yaml").write_text(random.choice(CASE_TEXTS), encoding="utf-8")
+        devices = ", ".join(
+            "{kind: "
+            + random.choice(KINDS)
+            + "".join(
+                f", {key}: {random.choice(VALUES)}"
+                for key in random.sample(DEVICE_KEYS, random.randrange(4))
+            )
+            + "}"
+            for _ in range(random.choice([1, 1, 2]))
+        )
+        change = f"podium.devices=[{devices}]"
+        places = ("case.yaml", "--set")
+        return judged("check", "case.yaml", "--set", change, "--json", places=places)
+
+    hunt("devices", trial, 40, 3000 if long else None)
+
+
+NAMES = ["..", "a", "#", "?b=c", " ", "\x1b", "\n", "\u202e", "\udce4", ",", "'", "="]
+NAMES += ["&factor=2", "x:"]
+    "..",
+    "a",
+    "#",
+    "?b=c",
+    " ",
+    "\x1b",
+    "\n",
+    "\u202e",
+    "\udce4",
+    ",",
+    "'",
+    "=",
+    "&factor=2",
+    "x:",
+)
+
+
+@shares
+def test_names(long: bool) -> None:
+    def trial(random: Random) -> str:
+        folder = Path(f"f{random.randrange(10**9)}")
+        folder.mkdir()
+        name = "".join(random.choice(NAMES) for _ in range(random.randrange(1, 4))) + ".at2"
+        (folder / name).write_text(at2())
+        Path("case.yaml").write_text(CASE_TEXTS[0], encoding="utf-8")
+        source = random.choice([f"{folder}/{name}", str(folder), f"{folder}/*"])
+        return judged("record", "info", source, "--json", places=(str(folder),))
+
+    hunt("names", trial, 40, 1000 if long else None)
 
 
 @shares

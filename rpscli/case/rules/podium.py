@@ -118,7 +118,9 @@ def _narrow_wedge(case: PartialCase, shape: Shape) -> Fault:
         wedge, flat = shape.wedge_slenderness, shape.slenderness
     where = case.where((*path[:-1], limit))
     text = f"podium.bearing.{name} = {wedge} must be >= {limit} = {flat}{where}"
-    return Fault(path, f"{text}: the arcs lie outside the flat part")
+    angle = math.tan(math.radians(flat)) if limit == "slenderness" and 1.0 < flat < 45.0 else 0.0
+    degrees = f"; slenderness is tan(alpha), of {flat:g} degrees {angle:.4f}" if angle else ""
+    return Fault(path, f"{text}: the arcs lie outside the flat part{degrees}")
 
 
 def impact_rules(case: PartialCase) -> Iterator[Fault]:
