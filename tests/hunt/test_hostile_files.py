@@ -118,21 +118,6 @@ def test_devices(long: bool) -> None:
 
 NAMES = ["..", "a", "#", "?b=c", " ", "\x1b", "\n", "\u202e", "\udce4", ",", "'", "="]
 NAMES += ["&factor=2", "x:"]
-    "..",
-    "a",
-    "#",
-    "?b=c",
-    " ",
-    "\x1b",
-    "\n",
-    "\u202e",
-    "\udce4",
-    ",",
-    "'",
-    "=",
-    "&factor=2",
-    "x:",
-)
 
 
 @shares
