@@ -27,6 +27,7 @@ from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import Layout, colour, left_out, marker, over, panel_figure, remarks
 from rpscli.report.study.report import Found, Report
+from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.intensities import Intensity
@@ -381,7 +382,6 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     fits = [(*of, measure, *fit_cells(curve.fit), *counted(curve)) for of, curve in curves]
     counts = ("beta_total", "exceeded", "counted", "overturned_among_them", "failed", "note")
     fit_heads = {"limit": "-", "intensity": "-", **fit_units(unit), **dict.fromkeys(counts, "-")}
-    parts = attrgetter("of", "recordings", "number", "fraction", "low", "high")
     lines = [
         (*of, *numbers)
         for of, curve in curves
@@ -389,19 +389,21 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
         for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
     ]
     observed = [
-        (*of, level, *parts(shares))
+        ((*of, level), share)
         for of, curve in curves
-        for level, shares in zip(curve.observed.intensity, curve.observed.shares, strict=True)
+        for level, share in zip(curve.observed.intensity, curve.observed.shares, strict=True)
     ]
     line_heads = {"limit": "-", measure: unit, "probability": "-", "low": "-", "high": "-"}
-    by, ends = study.table.independent, ("exceeded_share", "exceeded_low", "exceeded_high")
-    of_shares = ("counted", by, "exceeded", *ends)
-    observed_heads = {"limit": "-", measure: unit, **dict.fromkeys(of_shares, "-")}
+    levels, shares = [row for row, _ in observed], [share for _, share in observed]
     tables = {
         "": keyed(keys, fit_heads, fits),
         **({"_at": margins(study, options, found)} if options.at else {}),
         "_curves": keyed(keys, line_heads, lines),
-        "_observed": keyed(keys, observed_heads, observed),
+        "_observed": [
+            *keyed(keys, {"limit": "-", measure: unit}, levels),
+            *counted_columns(shares),
+            *share_columns("exceeded", shares),
+        ],
     }
     drawable = any(curve.fit.fitted for curve in found.curves)
     main = dict.fromkeys((*keys, "limit", "median", "beta", *counts[:3]), "")
