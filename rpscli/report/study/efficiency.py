@@ -28,7 +28,7 @@ from rpscli.case.schema.fields import Several, Text
 from rpscli.case.schema.scale_to import ScaleToSection, scale_to_of
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.errors import RecordError
-from rpscli.records.measures import needs_period
+from rpscli.records.measures import MEASURES, needs_period
 from rpscli.report.study.fragility import (
     LimitState,
     LimitStates,
@@ -151,7 +151,9 @@ def efficiency(study: StudyResults, options: EfficiencyOptions) -> Found:
 
 def asked(text: str) -> ScaleToSection:
     """A measure with its period."""
-    return scale_to_of(f"{text}=1")
+    name = text.partition("(")[0].strip().lower()
+    unit = next((MEASURES[each].unit for each in MEASURES.names() if each.lower() == name), "")
+    return scale_to_of(f"{text}=1 {unit}")
 
 
 def _known_of_records(study: StudyResults) -> dict[str, Array]:
