@@ -276,6 +276,11 @@ class TimeHistoryResult(Demand):
                 " overturning moment takes more than its share of the weight; the model assumes"
                 " that all columns stand"
             )
+        elif self.axial and self.min_column_force < 0.0:
+            notes.append(
+                "the shock of impacts (and the overturning moment) exceeds the weight on a column,"
+                " whose axial force would be negative; the model assumes that all columns stand"
+            )
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
         if self.energy.created > 0.02 * supplied:
             share = self.energy.created / supplied

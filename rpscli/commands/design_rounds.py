@@ -290,12 +290,12 @@ def _requirements(document: dict[str, Any], answer: Answer) -> Table:
         _, word, requirement, result = verdict_texts(verdict)
         if verdict.condition.name in LIMITS and verdict.fractile is None:
             result = f"{shown(row['value'], DIGITS)}; {result}"
-        met_by = f"{row['designs_that_meet_it']} designs"
+        met_by = str(row["designs_that_meet_it"])
         if row["binds"]:
             unit = document["least"][0]["unit"]
-            met_by += f"; binds, without it {measured(row['aim_without_it'], unit)}"
+            met_by += f"; binds, else {measured(row['aim_without_it'], unit)}"
         rows.append((row["requirement"], word, requirement, result, met_by))
-    return Table.of_texts((*VERDICT, "met by"), rows, words=5)
+    return Table.of_texts((*VERDICT, "designs that meet it"), rows, words=5)
 
 
 def _name_of(design: dict[str, Any], document: dict[str, Any]) -> str:
@@ -319,7 +319,10 @@ def _region(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, str
     least, most = answer.values[region].min(axis=0), answer.values[region].max(axis=0)
     ends = zip(answer.task.keys, least.tolist(), most.tolist(), strict=True)
     where = ", ".join(f"{symbol(key)} {low:.6g} to {high:.6g}" for key, low, high in ends)
-    yield "its region", f"{len(region)} designs, {tolerated} of them with tolerances: {where}"
+    at = answer.places[region]
+    inside = at.shape[1] == 1 and at.min() > 0.0 and at.max() < 1.0
+    both = "; smaller and larger ones fail" if inside else ""
+    yield "its region", f"{len(region)} designs, {tolerated} of them with tolerances: {where}{both}"
     if islands := document["islands"]:
         names = "; ".join(_name_of(island, document) for island in islands[:RECORDS_SHOWN])
         more = f" and {len(islands) - RECORDS_SHOWN} more" * (len(islands) > RECORDS_SHOWN)
@@ -329,12 +332,10 @@ def _region(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, str
 def _records(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, str]]:
     """How sharp the least that passes is, and how it hangs on the choice of records."""
     records = document["records"]
-    for end, word in zip(document["bracket"] or (), ("smaller", "larger"), strict=False):
-        if end is not None:
-            key = answer.task.unknowns[0].key
-            unit = unit_of(key).removesuffix("-")
-            found = f"{end:.10g} {unit}".rstrip()
-            yield f"the next {word} value looked at that fails", found
+    if ends := [f"{end:.10g}" for end in document["bracket"] or () if end is not None]:
+        unit = unit_of(answer.task.unknowns[0].key).removesuffix("-")
+        found = f"{' and '.join(ends)} {unit}".rstrip()
+        yield "next to the least that passes fail", f"{found}, of those looked at"
     if not records["resamples"]:
         return
     share = 100.0 * records["passing_share_of_best"]

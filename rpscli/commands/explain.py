@@ -62,7 +62,14 @@ def command(word: str, terminal: Terminal) -> None:
     offers = [] if (keys or results or words) else list(_offers(word))
     report = (REPORTS.everything() if offers else REPORTS).get(word)
     reports = [] if report is None else [(word, (report.options.__doc__ or "").split("\n")[0])]
-    options = [] if report is None else list(key_references(report.options))
+    # Ranges of values of each limit are told at the limits of studies.
+    options = [
+        (f"option {key.key}", key)
+        for key in (() if report is None else key_references(report.options))
+        if not key.key.startswith("limits.")
+    ]
+    if not (keys or results or words or offers or report):
+        options = list(_options(word))
     if not (keys or results or words or options or offers or word == PLUGINS):
         raise UsageError(f"explain {word}: {_hint(word)}")
     document = {
@@ -73,7 +80,7 @@ def command(word: str, terminal: Terminal) -> None:
         "results": [{name: value for name, value in q._asdict().items() if value} for q in results],
         "words": [{"word": name, "meaning": meaning} for name, meaning in words],
         "reports": [{"report": name, "meaning": meaning} for name, meaning in reports],
-        "options": [key._asdict() for key in options],
+        "options": [key._asdict() for _, key in options],
         "plugins": [offer._asdict() for offer in offers],
     }
     parts = [*_tables(keys, results, words, reports, options), *_plugins(word, offers)]
@@ -132,6 +139,20 @@ def _keys(word: str) -> list[KeyReference]:
     return []
 
 
+def _options(word: str) -> Iterator[tuple[str, KeyReference]]:
+    """Options of reports that are called so, each once, with the reports that have it."""
+    from rpscli.case.schema.keys import key_references
+    from rpscli.report.study.registry import REPORTS
+
+    found: dict[KeyReference, list[str]] = {}
+    for report in REPORTS:
+        for key in key_references(REPORTS[report].options):
+            if f".{key.key}".endswith(f".{word}"):
+                found.setdefault(key, []).append(report)
+    for key, reports in found.items():
+        yield f"option {key.key} of the report{'s' * (len(reports) > 1)} {', '.join(reports)}", key
+
+
 def _results() -> list[ResultQuantity]:
     """Every quantity of the table of results, once."""
     known: dict[str, ResultQuantity] = {}
@@ -175,7 +196,7 @@ def _tables(
     results: Iterable[ResultQuantity],
     words: Iterable[tuple[str, str]],
     reports: Iterable[tuple[str, str]],
-    options: Iterable[KeyReference],
+    options: Iterable[tuple[str, KeyReference]],
 ) -> Iterator[Part]:
     alike: dict[tuple[object, ...], list[KeyReference]] = {}
     for key in keys:
@@ -205,8 +226,8 @@ def _tables(
     for name, meaning in (*words, *named):
         yield Heading(name)
         yield meaning
-    for option in options:
-        yield Heading(f"option {option.key}")
+    for title, option in options:
+        yield Heading(title)
         yield _lines(option)
 
 

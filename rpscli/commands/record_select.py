@@ -348,7 +348,8 @@ def _tables(
         "mean PGV, target's": f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s{by}",
         "mean PGD, target's": f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m",
         "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
-        "chosen among": f"{selection.candidates}; {selection.refused} beyond the factors",
+        "chosen among": f"{selection.candidates}"
+        + f"; {selection.refused} beyond the factors" * bool(selection.refused),
     }
     if errors is not None:
         text = "largest errors of mean and deviation of ln Sa"

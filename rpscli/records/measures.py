@@ -15,6 +15,10 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.spectrum import response_spectrum, spectral_acceleration
 from rpscli.registry import Registry
 
+Array = NDArray[np.float64]
+AVERAGED = {"AvgSa": np.linspace(0.2, 3.0, 10), "Housner": np.linspace(0.1, 2.5, 49)}
+"""Periods of spectra that measures average: over T1 the first, in seconds the second."""
+
 
 def velocity(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
     """Ground velocity at the samples, zero at the first one."""
@@ -98,10 +102,9 @@ def average_spectral_acceleration(
     give hazard curves of it. At T = 1 s they give 7 % less to 17 % more, 3 % more in the median,
     for the far-field records of FEMA P695.
     """
-    periods = period * np.linspace(0.2, 3.0, 10)
+    periods = period * AVERAGED["AvgSa"]
     spectrum = response_spectrum(motion, periods, damping).pseudo_acceleration
-    # A motion of zeros has no logarithm, and measures nothing.
-    return float(np.exp(np.mean(np.log(spectrum)))) if spectrum.all() else 0.0
+    return float(averaged(spectrum, "AvgSa", periods))
 
 
 def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
@@ -142,9 +145,17 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
 
     G. W. Housner, in Proc. Symposium on Earthquake and Blast Effects on Structures, 1952.
     """
-    periods = np.linspace(0.1, 2.5, 49)
+    periods = AVERAGED["Housner"]
     spectrum = response_spectrum(motion, periods, damping).pseudo_acceleration
-    return float(np.trapezoid(spectrum * periods / (2.0 * math.pi), periods))
+    return float(averaged(spectrum, "Housner", periods))
+
+
+def averaged(spectra: Array, measure: Measure, periods: Array) -> Array:
+    """AvgSa or Housner's intensity (...) of pseudo-accelerations (..., periods)."""
+    if measure == "Housner":
+        return np.asarray(np.trapezoid(spectra * periods / (2.0 * math.pi), periods, axis=-1))
+    with np.errstate(divide="ignore"):  # a motion of zeros has no logarithm, and measures nothing
+        return np.asarray(np.exp(np.mean(np.log(spectra), axis=-1)))
 
 
 Measure = str

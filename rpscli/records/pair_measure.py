@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import Measure, displacement, measured, velocity
+from rpscli.records.measures import AVERAGED, Measure, averaged, displacement, measured, velocity
 from rpscli.records.pair import rotated
 from rpscli.records.spectrum import pseudo_acceleration_history
 
@@ -72,6 +72,10 @@ def over_directions(
     x, y = (rotated(first, second, angle) for angle in (0.0, 90.0))  # of one length
     if measure in _LINEAR:
         return _peaks(*(_linear(each, measure, period, damping) for each in (x, y)))
+    if measure in AVERAGED:
+        periods = AVERAGED[measure] * (period or 1.0 if measure == "AvgSa" else 1.0)
+        spectra = spectra_over_directions(first, second, periods, damping)
+        return averaged(spectra, measure, periods)
     turned = (rotated(first, second, angle) for angle in DIRECTIONS.tolist())
     return np.array([measured(each, measure, period, damping) for each in turned])
 

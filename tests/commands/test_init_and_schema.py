@@ -185,3 +185,11 @@ COMP_WORDS=(rps check --set podium.bearing.sle); COMP_CWORD=3; _rps_completion r
 echo "${{COMPREPLY[@]}}"
 """
     assert shell(lines).stdout.strip() == "podium.bearing.slenderness"
+
+
+def test_options_inside_reports_are_explained(rps: Invoke, rps_json: InvokeJson) -> None:
+    (option,) = rps_json("explain", "modelling")["options"]
+    assert option["key"] == "dispersion.modelling"
+    assert "of the reports fragility, risk" in rps("explain", "dispersion").stdout
+    limits = [o for o in rps_json("explain", "risk")["options"] if o["key"].startswith("limits")]
+    assert [o["key"] for o in limits] == ["limits"]

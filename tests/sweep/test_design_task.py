@@ -294,7 +294,7 @@ def test_values_are_printed_as_they_were_judged(design: StudyPoints, workplace: 
         recommended, best = (f"{found[of]['values'][key]:.10g}" for of in ("robust", "best"))
         assert f" {recommended} {best} " in text
         assert len(recommended) <= 8
-    assert "the next smaller value looked at that fails" in text
+    assert "next to the least that passes fail" in text
 
 
 @needs_compiled_kernels

@@ -219,6 +219,10 @@ def test_margins_and_dispersions_are_those_of_fema_p695(
         below = -math.log(1.2 * cmr)
         assert margin["probability"] == pytest.approx(ndtr(below / row["beta_total"]))
         assert margin["probability_of_records"] == pytest.approx(ndtr(below / row["beta"]))
+        # Whose ACMR is that of 10 % has 10 %.
+        for share in (10, 20):
+            z = -math.log(margin[f"ACMR_{share}"]) / row["beta_total"]
+            assert ndtr(z) == pytest.approx(0.01 * share)
     assert "modelling 0.4" in found["remark"]
     monkeypatch.setenv("COLUMNS", "400")
     shown = sweep("study.yaml", "-o", "out").stdout

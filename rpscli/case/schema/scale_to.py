@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
+    BeforeValidator,
     PlainValidator,
     ValidationError,
     ValidationInfo,
@@ -18,10 +19,20 @@ from rpscli.errors import hint
 from rpscli.records.measures import MEASURES, Measure, needs_period
 from rpscli.records.pair_measure import OF, Of
 
-_TARGET = re.compile(r"\s*([A-Za-z]\w*)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
+_TARGET = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 
 
-MeasureName = Annotated[Measure, NameOf(MEASURES)]
+def _scalable(name: object) -> object:
+    """The name of a measure, unless it is one that no factor changes."""
+    if isinstance(name, str) and re.fullmatch(r"d5[-_ ](75|95)", name.lower()):
+        refuse(
+            f"({name}) is a duration, which no factor changes; choose records by it with"
+            " `rps record select --where 'd5_95=10..30'`"
+        )
+    return name
+
+
+MeasureName = Annotated[Measure, NameOf(MEASURES), BeforeValidator(_scalable)]
 
 
 def measured_value(value: object, info: ValidationInfo) -> float:
@@ -72,6 +83,7 @@ def scale_to_of(text: str) -> ScaleToSection:
     if found is None:
         raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")
     name, inside, value = found.groups()
+    _scalable(name)
     ours = {known.lower(): known for known in MEASURES}
     if (measure := ours.get(name.lower(), name)) not in MEASURES:
         known = MEASURES.names()

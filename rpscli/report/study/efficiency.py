@@ -135,7 +135,7 @@ def efficiency(study: StudyResults, options: EfficiencyOptions) -> Found:
     notes = list(found.notes)
     if not known:
         notes.append("magnitudes and distances of the records are not known, and left out")
-    shown = dict.fromkeys((*found.keys, *(head for head in HEADS if head != "unit")), "")
+    shown = dict.fromkeys((*found.keys, *HEADS), "")
     shown |= {"most_telling": "other", "p_most_telling": "p other"}
     return Found(
         tables,

@@ -347,8 +347,8 @@ def told(found: Fragilities, notes: Iterable[tuple[Fragility, str | None]]) -> I
 def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) -> list[Column]:
     """Collapse margin ratios and probabilities at the intensities that the report names."""
     # CMR is the median over the intensity, ACMR = SSF CMR, and P = Phi(-ln(ACMR)/beta_TOT): FEMA
-    # P695 (2009), chapter 7.
-    from scipy.special import ndtr
+    # P695 (2009), chapter 7; its table 7-3 has the ACMR of probabilities of 10 and 20 %.
+    from scipy.special import ndtr, ndtri
 
     factor, total = options.spectral_shape, options.dispersion.total
     rows = []
@@ -364,11 +364,14 @@ def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) 
             ends = band(probable[1:], options.confidence)
             of_records = ndtr(-math.log(acmr[0]) / fit.beta) if fit.fitted else math.nan
             rows.append((
-                curve.values, curve.limit.label, name, value, medians[0] / value, acmr[0], fit.beta,
+                curve.values, curve.limit.label, name, value, medians[0] / value, acmr[0],
+                *(math.exp(-ndtri(share) * curve.total) for share in (0.1, 0.2)), fit.beta,
                 curve.total, of_records, probable[0], *ends,
             ))  # fmt: skip
     heads = {"limit": "-", "name": "-", found.intensity.name: found.intensity.unit}
-    heads |= dict.fromkeys(("CMR", "ACMR", "beta", "beta_total", "probability_of_records"), "-")
+    heads |= dict.fromkeys(
+        ("CMR", "ACMR", "ACMR_10", "ACMR_20", "beta", "beta_total", "probability_of_records"), "-"
+    )
     heads |= dict.fromkeys(("probability", "probability_low", "probability_high"), "-")
     return keyed(found.systems.keys, heads, rows)
 

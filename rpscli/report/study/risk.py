@@ -231,7 +231,7 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
         of_shares=of_shares,
         of_hazard=tuple(annual_rate(curve, fit.median, total) for curve in curves),
         beyond_computed=float(above[-1] / rate),
-        notes=tuple(_notes(fragility, hazard, rate)),
+        notes=tuple(_notes(fragility, hazard, rate, of_shares)),
     )
 
 
@@ -246,9 +246,15 @@ def _half(hazard: Hazard, median: float, beta: float) -> float:
     return float(np.exp(low))
 
 
-def _notes(fragility: Fragility, hazard: Hazard, rate: float) -> Iterator[str]:
-    """What is doubtful about one rate."""
-    fit = fragility.fit
+def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) -> Iterator[str]:
+    """What is doubtful about one rate, and about that of the shares."""
+    fit, weakest = fragility.fit, fragility.observed.intensity[:1]
+    unseen = fragility.observed.share[0] * (hazard.rate[0] - exceeded(hazard, weakest)[0])
+    if unseen > CLEARLY * of_shares:
+        yield (
+            f"{100.0 * unseen / of_shares:.0f} % of the rate of shares come from below the weakest"
+            " intensity computed, where its share is taken to hold too; add weaker ones"
+        )
     first = math.log(hazard.intensity[0] / fit.median)
     probable = 0.5 * math.erfc(-first / fragility.total / math.sqrt(2.0))
     if hazard.rate[0] * probable / rate > CLEARLY:

@@ -178,8 +178,8 @@ def verdict_text(verdict: Verdict) -> str:
 
 
 def shown_by_text(verdict: Verdict) -> str:
-    """What would show that a limit is kept."""
-    return f"{verdict.shown_by} {verdict.beyond.by} with no more beyond would show it"
+    """How many recordings, or events, would show that a limit is kept: with no more beyond."""
+    return f"{verdict.shown_by} would show it"
 
 
 def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:

@@ -120,7 +120,8 @@ def _reached(found: Sequence[Neighbour]) -> str:
     if stood:
         ratios = [each.rotation_ratio for each in stood]
         shears = [1e-3 * each.max_base_shear for each in stood]
-        texts = [f"{_range(ratios)} theta_cr", f"base shear {_range(shears)} kN"]
+        texts = [f"{_range(ratios)} theta_cr"]
+        texts += [f"base shear {_range(shears)} kN"] * any(shears)
     for kind, word in (("overturned", "overturns"), ("failed", "fails")):
         if count := sum(each.outcome.startswith(kind) for each in found):
             texts.append(f"it {word}" + f" in {count} of {len(found)}" * (len(found) > 1))
@@ -190,6 +191,9 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
     names = ("max_column_shear", "max_column_force", "min_column_force")
     rows = [_row(result, name) for name in names]
     labels = ("total column shear", "axial force, all columns", "minimum axial force, all columns")
+    if result.overturning_ratio is not None:
+        outer = "axial force of an outer column, times columns"
+        labels = (labels[0], outer, f"minimum {outer}")
     if result.structure.columns == 1:
         rows = [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
     if result.overturning_ratio is not None:
