@@ -204,7 +204,7 @@ SHARES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 BEST: dict[str, Any] = {
     "ls": "", "marker": "*", "ms": 9.0, "color": style.ORANGE, "mec": style.BLACK, "mew": 0.6,
-    "zorder": 5, "clip_on": False, "label": "best",
+    "zorder": 5, "clip_on": False, "label": "least that passes",
 }  # fmt: skip
 RINGED: dict[str, Any] = {
     "marker": "D", "ms": 10.0, "mfc": "none", "mew": 1.2, "label": "recommended",
@@ -247,7 +247,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
                           **BEST)  # fmt: skip
                 if answer.resamples:
                     axes.axvspan(*answer.interval(0), ymax=0.03, color=style.ORANGE, lw=0.0,
-                                 label="best in 95 % of the resamples")  # fmt: skip
+                                 label="of 95 % of the resamples")  # fmt: skip
             _draw_regions(axes, answer, row)
             top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
             name = requirement.condition.name
