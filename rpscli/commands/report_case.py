@@ -10,8 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 from rpscli.analyses.result_quantities import plain
 from rpscli.commands.inputs import CaseInput, MotionRequest, case_heading
 from rpscli.commands.shell.failure import concluded
@@ -189,6 +187,8 @@ def case_page(
         document = all_document([found], error)
         terminal.warn(document["warnings"])
         stored = () if earlier is None else _stored(earlier, requests, set_document(found))
+        import numpy as np  # the help of the command does without
+
         # That of a history that failed is none, and counts as 0.
         turned = [np.nan_to_num(each.demands["rotation_ratio"]) for each in found.histories]
         worst = requests[int(np.argmax(turned))]
