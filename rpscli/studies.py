@@ -35,7 +35,7 @@ from rpscli.case.study.study import parse_study, shared_out, study_of
 from rpscli.case.text.document import Document, text_of_values
 from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import UsageError, hint
+from rpscli.errors import UsageError, hint, require_kind
 from rpscli.frozen import frozen
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
@@ -89,6 +89,7 @@ def read_study(
     if isinstance(source, Mapping):
         study = _study_of(source, overrides)
     else:
+        require_kind(source, (str, Path), "the study", "give the name of a file, or a mapping")
         piped = str(source) == "-"
         study = parse_study(
             read_text(source),

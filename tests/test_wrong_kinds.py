@@ -43,6 +43,10 @@ CASE = {
         (lambda s, _: api.demand(s, np.zeros(9)), "GroundMotion.samples"),
         (lambda *_: api.response_spectrum("x.at2", [0.1]), "load_record"),
         (lambda *_: api.load_case(5), "name of a file, or a mapping"),
+        (lambda *_: api.load_study(5), "name of a file, or a mapping"),
+        (lambda *_: api.load_record(5), "name as text"),
+        (lambda *_: api.modal(rpscli.load_case(CASE)), "load_case.*structure"),
+        (lambda *_: api.pushover(rpscli.load_case(CASE)), "load_case.*structure"),
     ],
 )
 def test_wrong_kinds(call: Callable[..., Any], remedy: str) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import FIXED_BASE_MODES, LINEAR, UPLIFTED, values_of
+from rpscli.analyses.settings import require_structure
 from rpscli.frozen import frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
@@ -164,6 +165,7 @@ def modal(structure: PodiumStructure) -> ModalResult:
 
     Exact where a state begins; the paper's first-order values are in `first_order` of each state.
     """
+    require_structure(structure)
     building, flat = structure.superstructure, structure.bearing.is_flat
     return ModalResult(
         structure=structure,

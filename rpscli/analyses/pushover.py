@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
+from rpscli.analyses.settings import require_structure
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.statics import friction_force, restoring_force
 from rpscli.model.superstructure import Superstructure
@@ -128,6 +129,7 @@ def pushover(
     F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the floors
     stand at 1 u_b + lambda K^-1 p (Theory, section 5; paper, Figure 1c).
     """
+    require_structure(structure)
     end, beta = structure.critical_rotation, structure.bearing.beta
     rotation = np.linspace(0.0, end, points)
     if 0.0 < beta < end:

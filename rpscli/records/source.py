@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rpscli.errors import RecordError, nearest, require_visible
+from rpscli.errors import RecordError, nearest, require_kind, require_visible
 from rpscli.records import pulses, sets, synthetic
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import angle_of, rotated
@@ -62,6 +62,7 @@ def load_record(
     RecordError
         If there is no such record, or it cannot be read without guessing.
     """
+    require_kind(source, str, "the record", "give its name as text")
     with _readable(source):
         plain, option = split_factor(source)
         motion = _loaded(plain, folder, dt, units)
