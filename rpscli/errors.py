@@ -151,6 +151,15 @@ def visible(text: str) -> str:
     return _UNSEEN.sub("\ufffd", text)
 
 
+def beginning(line: str) -> str:
+    """What may be told of a line: the file may be another than was meant, and a secret one.
+
+    >>> beginning("a line of a file that holds other things")
+    "'a line of a file tha'..."
+    """
+    return repr(line) if len(line) <= 20 else f"{line[:20]!r}..."
+
+
 def require_visible(name: str, fault: type[RpsError]) -> None:
     """Refuse names of files that hold line ends or what does not show."""
     if name != visible(name) or "\n" in name or "\t" in name:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rpscli.errors import RecordError, nearest, require_kind, require_visible
+from rpscli.errors import RecordError, beginning, nearest, require_kind, require_visible
 from rpscli.records import pulses, sets, synthetic
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import angle_of, rotated
@@ -219,11 +219,22 @@ def _listed(place: str, source: str, folder: Path | None) -> list[str]:
     except UnicodeDecodeError:
         raise RecordError(f"{source}: is not text; name a list with one source a line") from None
     found = []
-    for line in filter(None, (_without_remark(line, path.parent) for line in lines)):
-        scheme, _ = _split_scheme(split_factor(line)[0], path.parent)
+    for number, written in enumerate(lines, 1):
+        line, scheme = written, ""
+        try:
+            line = _without_remark(written, path.parent)
+            scheme, _ = _split_scheme(split_factor(line)[0], path.parent)
+            if line and scheme != LIST:
+                found += _expand(line if scheme else str(Path(place).parent / line), folder)
+        except RecordError:
+            if scheme:
+                raise
+            raise RecordError(
+                f"{source}:{number}: {beginning(line)} is neither there nor another source; name"
+                " files as seen from the folder of the list"
+            ) from None
         if scheme == LIST:
             raise RecordError(f"{source}: {line}: a list holds no lists; write its sources here")
-        found += _expand(line if scheme else str(Path(place).parent / line), folder)
     if not found:
         raise RecordError(f"{source}: holds no sources; write one a line")
     return found

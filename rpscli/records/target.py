@@ -13,7 +13,7 @@ from typing import cast, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError, stem_of
+from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.pair_measure import Of
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
 from rpscli.records.requirements import Component
@@ -151,7 +151,7 @@ def _acceleration_unit(head: list[str], path: Path) -> float:
     unit = canonical_unit(units[1]) if len(units) == 2 else None
     if unit is None or units[0].strip() != "s":
         raise RecordError(
-            f"{path}:1: {','.join(head)[:60]!r} should name two columns with units, as in"
+            f"{path}:1: {beginning(','.join(head))} should name two columns with units, as in"
             f" 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
         )
     return unit_factor(unit)

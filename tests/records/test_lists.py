@@ -61,7 +61,10 @@ def test_lists_that_are_refused(list_of: Path) -> None:
     for text, message in (
         ("# nothing", "holds no sources"),
         (f"list:{file}", "a list holds no lists"),
-        ("gone.txt", "there is no file"),
+        ("# one\ngone.txt", "selection.txt:2: 'gone.txt' is neither there"),
+        (f"a_password: {'x' * 30}", r"txt:1: 'a_password: xxxxxxxx'\.\.\. is neither"),
+        (f"pass_word:{'x' * 30}", r"txt:1: 'pass_word:xxxxxxxxxx'\.\.\. is neither"),
+        ("a\x00b", "is neither"),
     ):
         file.write_text(text, encoding="utf-8")
         with pytest.raises(RecordError, match=message):

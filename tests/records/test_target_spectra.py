@@ -164,6 +164,7 @@ def test_refuses(source: str, message: str) -> None:
         ("T [s],Sa [g]\n1,1\n0.5,1\n", "periods that grow"),
         ("T [s],Sa [g]\n1,1\n2,x\n", ":3: '2,x' must be"),
         ("", "should name two columns"),
+        (f"{'x' * 30}\n1,1\n", rf"1: '{'x' * 20}'\.\.\. should"),
     ],
 )
 def test_refuses_tables(tmp_path: Path, text: str, message: str) -> None:

@@ -187,6 +187,7 @@ def test_faults_of_the_file_have_their_line(study_of: Make, head: str, row: str,
     with pytest.raises(CaseError) as error:
         study_of(STUDY)
     assert told in str(error.value)
+    assert "title" not in str(error.value) or "record" in head  # another file: nothing of it
 
 
 def test_a_line_twice_and_a_missing_file_are_told(study_of: Make) -> None:

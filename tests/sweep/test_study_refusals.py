@@ -29,6 +29,7 @@ def sampled(distribution: str) -> tuple[str, str]:
             ("sample.ranges = 'text'", "keys with their ranges"),
         ),
         (BASE, "base: study.yaml", ("study.yaml:3:7", "is a study, and a base is a case")),
+        (BASE, "base: other.yaml", ("study.yaml:3:7", "has neither `rps` nor `superstructure`")),
         # vary
         ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary = 3 must be a list of axes")),
         ("  - podium.bearing.curv", "  - 3\n  - podium.bearing.curv", ("vary.1 = 3", "mapping")),
@@ -121,6 +122,7 @@ def sampled(distribution: str) -> tuple[str, str]:
 def test_a_mistake_is_refused(workplace: Path, old: str, new: str, parts: tuple[str, ...]) -> None:
     (workplace / "broken.yaml").write_text("rps: 1\nsemi_diagonal: [1\n", encoding="utf-8")
     assert old in STUDY
+    (workplace / "other.yaml").write_text("a_secret: 1\n", encoding="utf-8")
     (workplace / "study.yaml").write_text(STUDY.replace(old, new), encoding="utf-8")
     with pytest.raises(CaseError) as refused:
         study_file("study.yaml")

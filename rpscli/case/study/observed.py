@@ -111,6 +111,7 @@ def _title_faults(
     results = [OVERTURNED, *_UNITS]
     if RECORD not in names:
         yield _fault(name, line, "has no column `record`, which names the ground motion; add it")
+        return  # another file than was meant, of which nothing is told
     if not set(names) & set(results):
         yield _fault(
             name, line, f"has no column of what was observed; add one of {listed(results)}"

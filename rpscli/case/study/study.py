@@ -183,4 +183,6 @@ def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:
     base = read_yaml(text, str(path))
     if is_study(base):
         raise CaseError(f"{here} is a study, and a base is a case; name the case that it varies")
+    if "rps" not in base.content and not is_case(base):
+        raise CaseError(f"{here} has neither `rps` nor `superstructure`; name a case")
     return base, path

@@ -123,7 +123,7 @@ def read_yaml(text: str, name: str) -> Document:
     if not isinstance(content, dict):
         place = reader.place(root)
         raise CaseError(
-            f"{place}: the file holds {shown(content)}, not a mapping; it must begin with keys,"
+            f"{place}: the file holds {shown(content, 22)}, not a mapping; it must begin with keys,"
             " as in `rps: 1`"
         )
     return Document(name, content, reader.keys, reader.values, tuple(reader.faults))
