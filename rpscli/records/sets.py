@@ -62,6 +62,10 @@ class _Wanted(NamedTuple):
         return COMPONENTS if self.angle is None else PAIRS
 
     @property
+    def is_pattern(self) -> bool:
+        return bool({"*", "["} & set(self.place))
+
+    @property
     def word(self) -> str:
         return "component" if self.angle is None else "pair"
 
@@ -72,7 +76,9 @@ def expand_set(rest: str, source: str) -> list[str]:
     found = [place for place in wanted.known if fnmatchcase(place, wanted.place)]
     if not found:
         others = f"sets: {', '.join(_SETS)}"
-        remedy = others if "*" in wanted.place else hint(wanted.place, wanted.known)
+        remedy = others if wanted.is_pattern else hint(wanted.place, wanted.known)
+        if any(fnmatchcase(component, f"{wanted.place}/*") for component in wanted.known):
+            remedy = f"write {SCHEME}:{wanted.place}/*{wanted.options}"
         raise RecordError(
             f"{source}: no {wanted.word} of FEMA P695 fits {wanted.place[:60]!r}; {remedy}"
         )
@@ -83,7 +89,8 @@ def load_component(rest: str, source: str) -> GroundMotion:
     """Read one component, or a pair turned to a direction."""
     place, _, normalised, angle = wanted = _split(rest, source)
     if place not in wanted.known:
-        remedy = f"load one {wanted.word} at a time" if "*" in place else hint(place, wanted.known)
+        one = f"load one {wanted.word} at a time"
+        remedy = one if wanted.is_pattern else hint(place, wanted.known)
         if place in PAIRS:
             remedy = f"name {place}/a or {place}/b, or turn the pair: {place}?angle=30"
         elif place in COMPONENTS:

@@ -74,6 +74,11 @@ def test_a_usual_building_raises_no_doubt() -> None:
             "  impact: {law: value, restitution: 0.4}\n  cap_beam_mass_ratio",
             ["e = 0.4 is unusual: 0.5 to 1 is"],
         ),
+        (
+            "  damping",
+            "  vertical_period: 10 s\n  damping",
+            ["superstructure.vertical_period = 10 s is unusual: 0.01 to 1 s is"],
+        ),
         ("  cap_beam_mass_ratio", "  friction: 5\n  cap_beam_mass_ratio", ["friction = 5 is"]),
     ],
 )

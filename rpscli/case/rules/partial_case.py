@@ -15,6 +15,7 @@ from rpscli.case.schema.case_file import (
     BearingSection,
     CaseFile,
     DeviceSection,
+    PlanSection,
     PodiumMasses,
     SuperstructureSection,
 )
@@ -28,6 +29,7 @@ SUPERSTRUCTURE: Path = ("superstructure",)
 PODIUM: Path = ("podium",)
 BEARING: Path = ("podium", "bearing")
 IMPACT: Path = ("podium", "impact")
+PLAN: Path = ("podium", "plan")
 DEVICES: Path = ("podium", "devices")
 LIMITS: Path = ("limits",)
 
@@ -91,6 +93,11 @@ class PartialCase:
     def masses(self) -> PodiumMasses | None:
         """The masses of the section `podium`."""
         return self._section(PodiumMasses, PODIUM)
+
+    @cached_property
+    def plan(self) -> PlanSection | None:
+        """The section `podium.plan`."""
+        return self._section(PlanSection, PLAN) if self.is_mapping(PLAN) else None
 
     @cached_property
     def bearing(self) -> BearingSection | None:

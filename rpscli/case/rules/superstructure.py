@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.rules.partial_case import LIMITS, PODIUM, SUPERSTRUCTURE, PartialCase
+from rpscli.case.rules.partial_case import LIMITS, PLAN, PODIUM, SUPERSTRUCTURE, PartialCase
 from rpscli.case.text.document import MISSING, Fault, Path, shown
 from rpscli.errors import listed
 
@@ -94,12 +94,17 @@ def limits_rules(case: PartialCase) -> Iterator[Fault]:
 
 def column_rules(case: PartialCase) -> Iterator[Fault]:
     """Rows of columns are complete, and limits on the force of a column are on all of it."""
-    plan, height = (*PODIUM, "plan"), (*SUPERSTRUCTURE, "storey_height")
+    plan, height = PLAN, (*SUPERSTRUCTURE, "storey_height")
     if case.has(plan):
         given = case.present(plan, "length", "rows")
         if len(given) != 1:
             text = "give length, between two rows of columns, or the places of all rows"
             yield Fault(plan, f"podium.plan: {text}; not {'both' if given else 'neither'}")
+        rows = case.plan and case.plan.rows
+        if rows is not None and len(set(rows)) < 2:
+            written = shown(case.document.at((*plan, "rows")))
+            text = f"podium.plan.rows = {written} must be two places or more that differ"
+            yield Fault((*plan, "rows"), f"{text}, as in [0, 4 m, 8 m]")
         if case.storeys and not case.has(height):
             text = "podium.plan needs superstructure.storey_height: the moment has lever arms"
             yield Fault(plan, text, at_key=True, needs=(height,))
