@@ -95,8 +95,8 @@ def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
     [
         (("PGX", 1.0), "PGX is not a measure; there are PGA"),
         (("Sa", 1.0), "give period="),
-        (("PGA", 0.0), "must be > 0"),
-        (("PGA", float("nan")), "must be > 0"),
+        (("PGA", 0.0), "must be a number > 0"),
+        (("PGA", float("nan")), "must be a number > 0"),
     ],
 )
 def test_what_cannot_be_scaled_to_is_told(arguments: tuple[str, float], says: str) -> None:

@@ -91,7 +91,7 @@ def kernel(function: Function) -> Function:
         made = numba.njit(function, cache=folder is not None, **OPTIONS)
     finally:
         config.CACHE_DIR = before
-    if folder is not None:
+    if folder is not None and not config.DISABLE_JIT:
         _kept_if_there_is_room(made, folder)
     return cast("Function", made)
 

@@ -75,7 +75,7 @@ class Plan:
 
 
 SOLVING = (
-    *("constants.py", "units.py", "physics", "model", "records", "analyses", "case"),
+    *("constants.py", "units.py", "registry.py", "physics", "model", "records", "analyses", "case"),
     "sweep/evaluation",
 )
 """Files and folders of the package whose sources decide about what is stored under a key."""
