@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import hint, listed
@@ -43,6 +43,18 @@ PSI = POUND_FORCE / INCH**2
 LENGTH, MASS, TIME, ANGLE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
 VELOCITY, ACCELERATION, FREQUENCY = (1, 0, -1), (1, 0, -2), (0, 0, -1)
 FORCE, PRESSURE, ENERGY, POWER = (1, 1, -2), (-1, 1, -2), (2, 1, -2), (2, 1, -3)
+
+
+class Written(float):
+    """A number in SI that was given as a text with a unit, which is what readers are shown."""
+
+    text: str
+
+    def __new__(cls, value: float, text: str = "") -> Self:
+        """The number and its text."""
+        made = super().__new__(cls, value)
+        made.text = text.strip()
+        return made
 
 
 class Unit(NamedTuple):
@@ -222,9 +234,18 @@ def in_si(value: object, unit: str) -> object:
         return value
     try:
         # Twelve digits, so that 500 mm are 0.5 m.
-        return float(f"{si_value(value, unit):.12g}")
+        return Written(float(f"{si_value(value, unit):.12g}"), value)
     except ValueError:
         return value
+
+
+def as_written(value: float, unit: str) -> str:
+    """A number in SI as its file has it, with its unit.
+
+    >>> as_written(in_si("0.6 g", "m/s2"), "m/s2"), as_written(5.0, "m/s2"), as_written(2.0, "-")
+    ('0.6 g', '5 m/s2', '2')
+    """
+    return value.text if isinstance(value, Written) else f"{value:g} {unit}".removesuffix(" -")
 
 
 def _kind(dimension: tuple[int, ...]) -> str:

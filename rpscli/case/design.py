@@ -378,7 +378,7 @@ def parse_design(
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
     used, held_out = _used_and_held_out(document, file, study, confirming)
-    study = replace(study, document=document, sources=used, notes=(*notes, *more))
+    study = replace(study, document=document, sources=used, notes=(*notes, *more, *study.notes))
     return DesignTask(study, file, held_out)
 
 
@@ -491,7 +491,7 @@ def _confirming(document: Document, folder: Path) -> tuple[tuple[str, ...], list
     """Sources under `validate.records`, and what is wrong with them."""
     if not isinstance(document.content.get("validate"), dict):
         return (), []
-    sources, faults = sources_of(document.part("validate"), folder)
+    sources, faults, _ = sources_of(document.part("validate"), folder)
     return sources, [
         Fault(("validate", *fault.path), f"validate.{fault.text}", fault.at_key) for fault in faults
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,7 @@ from rpscli.errors import UsageError
 from rpscli.report.documents import heading
 from rpscli.report.files import OutputFolder, Run
 from rpscli.report.table import Part
+from rpscli.units import as_written
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -140,11 +141,6 @@ class MotionRequest:
             raise UsageError(f"--scale {self.scale}: must be a finite number")
 
 
-def repeated(records: Sequence[str]) -> list[str]:
-    """Sources that are given more than once."""
-    return [each for each in dict.fromkeys(records) if records.count(each) > 1]
-
-
 def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator[MotionRequest]:
     """One request for each motion that the sources stand for, sets and folders taken apart."""
     if not records:
@@ -247,7 +243,7 @@ def _scaled_to(
         unscaled = pair_measure(one, other, measure, of, period, target.damping)
     factor = factor_to(target.value, unscaled, measure, motion.horizontal.source)
     name = measure_label(measure, of, f"{period:g} s" if needs_period(measure) else "")
-    aim = f"{name} = {target.value:g} {MEASURES[measure].unit}"
+    aim = f"{name} = {as_written(target.value, MEASURES[measure].unit)}"
     return replace(motion.scaled(factor), scaled_to=aim)
 
 

@@ -245,17 +245,12 @@ def _of_systems(
     keys: int = 0,
 ) -> Table:
     """A table whose rows begin with a system and an intensity."""
-    from rpscli.report.study.labels import plain, symbol
-    from rpscli.sweep.intensities import unit_of
-    from rpscli.units import in_si
+    from rpscli.report.study.labels import key_cells, key_columns, symbol
 
-    units = [unit_of(key) for key in summary.keys]
-    named = zip(map(symbol, summary.keys), units, strict=True)
-    own = [name if unit == "-" else f"{name} {unit}" for name, unit in named]
-    rows = [
-        [*(plain(in_si(*cell)) for cell in zip(system, units, strict=True)), *others]
-        for system, others in zip(systems, cells, strict=True)
-    ]
+    columns = key_columns(summary.keys, list(systems))
+    named = [key_cells(column, symbol(column.name)) for column in columns]
+    rows = [[*(texts[place] for _, texts in named), *others] for place, others in enumerate(cells)]
+    own = [head for head, _ in named]
     return Table.of_texts([*own, *heads], rows, words=len(own) + words, keys=len(own) + keys)
 
 
@@ -271,4 +266,4 @@ def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
     ordered = sorted(verdicts, key=lambda verdict: (not verdict.exceeded, verdict.shown))
     ordered = ordered[:MOST_ROWS]
     systems = [verdict.values for verdict in ordered]
-    return _of_systems(summary, systems, VERDICT, map(verdict_texts, ordered), words=3, keys=1)
+    return _of_systems(summary, systems, VERDICT, map(verdict_texts, ordered), words=4, keys=1)

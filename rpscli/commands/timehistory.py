@@ -15,7 +15,6 @@ from rpscli.commands.inputs import (
     FACTOR,
     MotionRequest,
     read_case,
-    repeated,
     single_motions,
     write,
 )
@@ -97,8 +96,10 @@ def command(
     Overturning is a result, not an error: see --fail-on. The limits of the case count as well.
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
+    from rpscli.records.source import repeated
+
     motions = list(single_motions(records, MotionRequest(**motion)))
-    terminal.warn(f"--record {each}: given twice, taken once" for each in repeated(records))
+    terminal.warn(f"--record {text}" for text in repeated(records))
     cases = all_made(lambda request: read_case(request, terminal), requests, CaseError)
     histories = [
         replace(history, floor_spectra=floor_spectra)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import glob
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -146,6 +147,13 @@ def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> lis
     # Of a folder only files that are recognised as records count, not velocities or displacements.
     expanded = [single for source in sources for single in _expand(source, folder)]
     return list(dict.fromkeys(expanded))
+
+
+def repeated(sources: Sequence[str]) -> list[str]:
+    """What is to be said of sources that are given more than once, if there are any."""
+    again = [source for source, count in Counter(sources).items() if count > 1]
+    others = f" and {len(again) - 1} more" if len(again) > 1 else ""
+    return [f"{first}{others}: given more than once, taken once" for first in again[:1]]
 
 
 @contextmanager

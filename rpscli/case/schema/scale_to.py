@@ -18,6 +18,7 @@ from rpscli.case.schema.fields import DampingRatio, NameOf, Quantity, Section, r
 from rpscli.errors import hint
 from rpscli.records.measures import MEASURES, Measure, needs_period
 from rpscli.records.pair_measure import OF, Of
+from rpscli.units import Written
 
 _TARGET = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 
@@ -41,7 +42,7 @@ def measured_value(value: object, info: ValidationInfo) -> float:
     bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0) if measure else Quantity()
     found = bounds.number(value)
     assert isinstance(found, float), "there are no words in place of the number"
-    return found
+    return Written(found, value) if isinstance(value, str) else found
 
 
 MeasuredValue = Annotated[

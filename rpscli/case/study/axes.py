@@ -14,7 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 from rpscli.case.study.schema import Axes, RecordPattern, Source
 from rpscli.case.text.document import Document, Fault, Path, Place, dotted
 from rpscli.errors import RecordError
-from rpscli.records.source import expand_sources
+from rpscli.records.source import expand_sources, repeated
 
 Values = tuple[Any, ...]
 
@@ -79,8 +79,10 @@ def _axis(document: Document, path: Path, values: Mapping[str, Values]) -> Axis:
     )
 
 
-def sources_of(document: Document, folder: Folder) -> tuple[tuple[str, ...], list[Fault]]:
-    """Single sources of the list `records` that exist, in order, each once; and what is wrong."""
+def sources_of(
+    document: Document, folder: Folder
+) -> tuple[tuple[str, ...], list[Fault], list[str]]:
+    """Single sources of the list `records`, in order, each once; what is wrong, and notes."""
     written = document.content.get("records")
     sources: list[str] = []
     faults: list[Fault] = []
@@ -94,7 +96,8 @@ def sources_of(document: Document, folder: Folder) -> tuple[tuple[str, ...], lis
             continue  # told key by key
         except (RecordError, ValueError) as error:
             faults.append(Fault(path, str(error)))
-    return tuple(dict.fromkeys(sources)), faults
+    notes = [f"records: {text}" for text in repeated(sources)]
+    return tuple(dict.fromkeys(sources)), faults, notes
 
 
 def _product(pattern: RecordPattern, path: Path) -> list[str]:

@@ -83,8 +83,8 @@ def _scale_of_base(base: Document) -> MeasureScale | None:
         found = ScaleToSection.model_validate(target)
     except ValidationError:
         return None  # told with the other faults of the systems
-    given = found.model_dump(exclude={"value"})
-    return MeasureScale.model_validate(given | {"values": found.value})
+    given = found.model_dump(exclude={"value"}, exclude_unset=True)
+    return MeasureScale.model_validate(given | {"values": target["value"]})
 
 
 def parse_study(
@@ -125,7 +125,7 @@ def study_of(
     whole = written_out(document, asked)
     check = schema_check(format_with(asked), whole)
     axes, axis_faults = axes_of(document)
-    sources, source_faults = sources_of(document, folder)
+    sources, source_faults, notes = sources_of(document, folder)
     reports = requests_of(whole, asked)
     faults = [*check.faults, *axis_faults, *source_faults]
     faults += [*unknown_keys(document), *twice(document), *record_rules(document)]
@@ -155,6 +155,7 @@ def study_of(
         observed=observed,
         reports=reports,
         digest=digest,
+        notes=tuple(notes),
     )
 
 

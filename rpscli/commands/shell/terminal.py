@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, Literal, TextIO
 
 from rpscli.errors import OutputError, visible
 from rpscli.report.documents import json_text
@@ -24,6 +24,8 @@ PLAIN_WIDTH = 100
 """Columns where the output is no terminal and COLUMNS is not set."""
 LONGEST_WORD, LONGEST_HEAD, MOST_LINES = 30, 14, 9
 """Which is not broken, in cells and in heads."""
+ALL_FOLD = 0
+"""Lines of heads where numbers are broken as well, since one column beside the keys is too wide."""
 GAP = 3
 """Between two columns."""
 
@@ -73,7 +75,8 @@ def fitting(table: Table, console: Console) -> Iterator[RichTable]:
             # rich takes from all columns what is missing, and then gives numbers back what they
             # need: where that is too much, all of the room is to come from words, and heads of
             # numbers break into as few lines as do.
-            made = (_made(table, shown, lines) for lines in (None, 2, 3, MOST_LINES))
+            ways = (None, 2, 3, MOST_LINES, *[ALL_FOLD] * (count == 1))
+            made = (_made(table, shown, lines) for lines in ways)
             part = next((each for each in made if _width(each, console) <= console.width), None)
             if part is not None:
                 break
@@ -105,9 +108,12 @@ def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> Ric
         made = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     for index in columns:
         cells, head = [row[index] for row in rows], heads[index]
+        justify: Literal["left", "right"] = "left" if index < table.words else "right"
         in_head = min(max(map(len, head.split()), default=0), LONGEST_HEAD)
         if not any(heads):
             made.add_column(overflow="fold" if index else "ellipsis")
+        elif lines == ALL_FOLD:
+            made.add_column(head, justify=justify, overflow="fold")
         elif index < table.words:
             word = max((len(word) for cell in cells for word in cell.split()), default=0)
             least = max(min(word, LONGEST_WORD), in_head)
@@ -118,7 +124,7 @@ def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> Ric
             if lines is not None:
                 wide = range(least, max(least, len(head)) + 1)
                 width = next(w for w in wide if len(wrap(head, w)) <= lines or w == wide[-1])
-            made.add_column(head, justify="right", overflow="fold", width=width, min_width=least)
+            made.add_column(head, justify=justify, overflow="fold", width=width, min_width=least)
     for row in rows:
         made.add_row(*(row[index] for index in columns))
     return made

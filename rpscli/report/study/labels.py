@@ -8,7 +8,7 @@ from typing import Any
 
 from rpscli.report.table import Column, columns_of
 from rpscli.sweep.intensities import unit_of
-from rpscli.units import in_si
+from rpscli.units import Written, as_written, in_si
 
 SYMBOLS = {
     "superstructure.storeys": "n",
@@ -46,7 +46,7 @@ def label(key: str, value: object) -> str:
         return plain(value)
     if key == "floor":
         return f"floor {plain(value)}"
-    return f"{symbol(key)} = {plain(value)}{_unit_behind(key, value)}"
+    return f"{symbol(key)} = {_with_unit(key, value)}"
 
 
 def labels(keys: Iterable[str], values: Values) -> str:
@@ -57,7 +57,7 @@ def labels(keys: Iterable[str], values: Values) -> str:
 def plain(value: object) -> str:
     """A value as text: numbers short, devices by their kinds, lists as the study has them."""
     if isinstance(value, float):
-        return f"{value:g}"
+        return as_written(value, "-")
     if isinstance(value, list) and all(isinstance(item, dict) and "kind" in item for item in value):
         return ", ".join(_device(item) for item in value) or "none"
     return value if isinstance(value, str) else json.dumps(value)
@@ -66,16 +66,14 @@ def plain(value: object) -> str:
 def _device(device: dict[str, object]) -> str:
     """The kind of a device and the first of its values, with its unit."""
     values = [
-        f"{plain(value)}{_unit_behind(f'podium.devices.{key}', value)}"
-        for key, value in device.items()
-        if key != "kind"
+        _with_unit(f"podium.devices.{key}", value) for key, value in device.items() if key != "kind"
     ]
     return " ".join([str(device["kind"]).replace("_", " "), *values[:1]])
 
 
-def _unit_behind(key: str, value: object) -> str:
-    unit = unit_of(key) if isinstance(value, int | float) else "-"
-    return "" if unit == "-" else f" {unit}"
+def _with_unit(key: str, value: object) -> str:
+    bare = isinstance(value, int | float) and not isinstance(value, Written)
+    return f"{plain(value)} {unit_of(key) if bare else '-'}".removesuffix(" -")
 
 
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
@@ -84,6 +82,14 @@ def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
         Column(key, unit_of(key), [in_si(row[place], unit_of(key)) for row in rows])
         for place, key in enumerate(keys)
     ]
+
+
+def key_cells(column: Column, name: str) -> tuple[str, list[str]]:
+    """What stands above and in the column of a key: values as their file has them."""
+    values = list(column.values)
+    if any(isinstance(value, Written) for value in values):
+        return name, [_with_unit(column.name, value) for value in values]
+    return f"{name} {column.unit}".removesuffix(" -"), [plain(value) for value in values]
 
 
 def keyed(

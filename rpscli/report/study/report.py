@@ -13,10 +13,11 @@ from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.reports import Options, ReportKind
 from rpscli.report.figures.look import USUAL, Look, figure_files
 from rpscli.report.figures.style import Target, kept_figure
-from rpscli.report.study.labels import plain, symbol
-from rpscli.report.table import Column, Part, Table, csv_text, headed, percent, records, shown
+from rpscli.report.study.labels import key_cells, symbol
+from rpscli.report.table import Column, Part, Table, csv_text, percent, records, shown
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.study_results import StudyResults
+from rpscli.units import Written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -108,11 +109,14 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
         if name.endswith(ENDS) or (labels and name not in labels):
             continue
         own = labels.get(name) or symbol(name).replace("_", " ")
-        heads.append(headed(own, "-" if own.endswith(unit) else unit))
-        if any(isinstance(value, str | list) for value in values) or "." in name:
+        if any(isinstance(value, str | list | Written) for value in values) or "." in name:
+            head, texts = key_cells(column, own)
+            heads.append(head)
+            cells.append(texts)
             words = len(heads)
-            cells.append([plain(value) for value in values])
-        elif name + ENDS[0] in known:
+            continue
+        heads.append(own if own.endswith(unit) else f"{own} {unit}".removesuffix(" -"))
+        if name + ENDS[0] in known:
             rows = zip(values, *(known[name + end] for end in ENDS), strict=True)
             cells.append([with_band(*row) for row in rows])
         elif name.startswith("share_"):

@@ -27,6 +27,7 @@ from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_ve
 from rpscli.sweep.evaluation.results import Array, Indices
 from rpscli.sweep.points.check import SystemProperties, Watched, check_systems
 from rpscli.sweep.points.combinations import Change, Combinations, changes, combinations_of
+from rpscli.units import as_written
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,9 +161,10 @@ class StudyPoints:
         """What the records are scaled to, in words; empty if to nothing."""
         if (measure := self.plan.measure) is None:
             return ""
-        one, *others = measure.values
         name, unit = measure_label(measure.measure, self.of), MEASURES[measure.measure].unit
-        return f"{len(measure.values)} values of {name}" if others else f"{name} = {one:g} {unit}"
+        if (count := len(measure.values)) > 1:
+            return f"{count} values of {name}"
+        return f"{name} = {as_written(measure.values[0], unit)}"
 
     def period_of_measure(self, properties: SystemProperties) -> float | None:
         """Period at which the records of a system are scaled; None unless they are [s]."""
