@@ -292,6 +292,8 @@ def _kept(
 
 def _doubts(selection: Selection) -> Iterator[str]:
     """What a human should look at."""
+    from rpscli.records.requirements import NOT_VERIFIED
+
     asked = selection.requirements
     yield from (text for one in selection.chosen for m in one.motions for text in m.warnings)
     end = selection.periods[-1]
@@ -309,8 +311,11 @@ def _doubts(selection: Selection) -> Iterator[str]:
         wanted = getattr(selection.target, name)
         if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
             yield f"the mean {name.upper()} is {mean / wanted:.2g} times that of the target"
-    checks = selection.target.checked, "" if asked is None else f"{asked.clause}: {asked.checked}"
-    yield from (checked for checked in checks if "NOT VERIFIED" in checked)
+    checks = [selection.target.checked]
+    if asked is not None:
+        remedy = "take that from the clause (--periods), and give the spectrum as a CSV file"
+        checks.append(f"{asked.clause}: {asked.checked}; where it matters {remedy}")
+    yield from (checked for checked in checks if NOT_VERIFIED in checked)
 
 
 def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | None:
@@ -337,7 +342,7 @@ def _tables(
     of = COMPONENTS[selection.of] + ("" if target.of else "; the target does not say")
     by = f" ({target.pgv_by})" if target.pgv else ""
     rows = {
-        "target": target.name,
+        "target": ": ".join(filter(None, (target.name, target.parameters))),
         "edition": target.edition,
         "checked": target.checked,
         "spectra of": of,

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.quantities import hint, parse_query
 from rpscli.records.requirements import NOT_VERIFIED
@@ -43,6 +44,13 @@ EN1998_LONGEST = 4.0
 """Where clause 3.2.2.2 ends [s]."""
 
 
+def _told(*, seconds: dict[str, float], **accelerations: float) -> str:
+    """Parameters as readers see them."""
+    in_g = {name: f"{a / STANDARD_GRAVITY:.3g} g" for name, a in accelerations.items()}
+    all_of = in_g | {name: f"{time:.3g} s" for name, time in seconds.items()}
+    return ", ".join(f"{name} = {value}" for name, value in all_of.items())
+
+
 def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
     """Elastic spectrum of clause 3.2.2.2, expressions (3.2) to (3.6), `ag=0.3g&soil=B&type=1`.
 
@@ -68,7 +76,7 @@ def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
     S, T_B, T_C, T_D = (query.quantity(key, unit, value) for (key, unit), value in usual)
     if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= EN1998_LONGEST):
         raise RecordError(f"{source}: must have s > 0 and 0 < tb < tc < td <= {EN1998_LONGEST:g} s")
-    a_g, damping = query.acceleration("ag"), query.quantity("damping", "ratio", 0.05)
+    a_g, damping = query.acceleration("ag", bare=False), query.quantity("damping", "ratio", 0.05)
     if a_g <= 0.0 or not 0.0 <= damping < 1.0:
         raise RecordError(f"{source}: ag must be > 0 and damping in [0, 1); 5 % is 0.05")
     eta = max(0.55, math.sqrt(10.0 / (5.0 + 100.0 * damping)))
@@ -95,6 +103,7 @@ def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
         checked="tables and expressions compared with public implementations and with manuals of"
         " programs, not with the text",
         rules="en1998",
+        parameters=f"S = {S:.3g}, " + _told(a_g=a_g, seconds={"T_B": T_B, "T_C": T_C, "T_D": T_D}),
     )
 
 
@@ -114,7 +123,7 @@ def en1998_2024_spectrum(rest: str, source: str) -> TargetSpectrum:
     [4.0, 7.0, 10.0, 10.0, 4.0, 0.5]
     """
     query = parse_query(rest.lstrip("?"), source, ("s_alpha", "s_beta", "td"))
-    short, long = query.acceleration("s_alpha"), query.acceleration("s_beta")
+    short, long = (query.acceleration(key, bare=False) for key in ("s_alpha", "s_beta"))
     T_D = query.quantity("td", "time")
     if not (short > 0.0 and 0.05 < long / short < T_D <= 6.0):
         raise RecordError(
@@ -139,6 +148,7 @@ def en1998_2024_spectrum(rest: str, source: str) -> TargetSpectrum:
         checked="formulae compared with two public implementations (PEUSP-beta, and rshalib of the"
         " draft of 2019), not with the text",
         pgv_by="0.06 (S_alpha S_beta)^0.55 of the code",
+        parameters=_told(S_alpha=short, S_beta=long, seconds={"T_D": T_D}),
     )
 
 
@@ -165,7 +175,8 @@ def asce7_spectrum(rest: str, source: str) -> TargetSpectrum:
         raise RecordError(
             f"{source}: level = {level!r} is not known; {hint(level, [*ASCE7_LEVELS])}"
         )
-    short, long = (ASCE7_LEVELS[level] * query.acceleration(key) for key in ("sds", "sd1"))
+    S_DS, S_D1 = (query.acceleration(key, bare=False) for key in ("sds", "sd1"))
+    short, long = ASCE7_LEVELS[level] * S_DS, ASCE7_LEVELS[level] * S_D1
     T_L = query.quantity("tl", "time")
     if not (short > 0.0 and 0.0 < long / short < T_L):
         raise RecordError(f"{source}: sds and sd1 must be > 0, and sd1/sds, in s, below tl")
@@ -187,6 +198,8 @@ def asce7_spectrum(rest: str, source: str) -> TargetSpectrum:
         checked="equations compared with manuals of programs, not with the text",
         rules="asce7-ch16",
         of="rotd100",
+        parameters=_told(SDS=S_DS, SD1=S_D1, seconds={"TL": T_L})
+        + (", times 1.5" if level == "mcer" else ""),
         level="MCE_R" if level == "mcer" else "design",
     )
 
@@ -229,6 +242,7 @@ def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
         shape,
         velocity_of(shape),
         edition="SP 14.13330.2018 without its amendments, 5.5 and 5.6",
+        parameters=_told(A=A, seconds={}),
         checked=f"{NOT_VERIFIED}: from memory; give the spectrum as a CSV file where it matters",
     )
 

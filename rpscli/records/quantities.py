@@ -164,14 +164,18 @@ class Query:
             )
         return to_float(parts[0]) * factor
 
-    def acceleration(self, key: str) -> float:
-        """An acceleration [m/s2]: `0.4g`, `0.4 g`, `3.9 m/s2`, or a bare number in m/s2."""
+    def acceleration(self, key: str, *, bare: bool = True) -> float:
+        """An acceleration [m/s2]: `0.4g`, `3.9 m/s2`, or a number in m/s2 where it may be bare."""
         parts = self._parts(key)
+        if not (bare or parts[1]):
+            raise RecordError(
+                f"{self.source}: say the unit: {key}={parts[0]} g, or {key}={parts[0]} m/s2"
+            )
         unit = canonical_unit(parts[1] or "m/s2")
         if unit is None:
             raise RecordError(
                 f"{self.source}: {key} = {self.values[key]!r} should be an acceleration in "
-                f"{KNOWN_UNITS} (bare: m/s2)"
+                f"{KNOWN_UNITS}{' (bare: m/s2)' * bare}"
             )
         return to_float(parts[0]) * unit_factor(unit)
 

@@ -53,6 +53,8 @@ class TargetSpectrum:
     """What its code asks of a set of motions, a name of `requirements.RULES`."""
     of: Component | None = None
     """What its ordinates are of; None if it is not said."""
+    parameters: str = ""
+    """Those of a code, with their units."""
     level: str = ""
     """What the code calls its level of shaking."""
     pgv_by: str = CONVENTION

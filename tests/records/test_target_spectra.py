@@ -72,7 +72,7 @@ def test_peaks_of_the_ground() -> None:
     assert (damped.pgv, damped.pgd) == (target.pgv, target.pgd)
     assert load_target("asce7:?sds=1g&sd1=0.6g&tl=8").pgd is None
     # 0.06 (10 x 4)^0.55.
-    assert load_target("en1998-2024:?s_alpha=10&s_beta=4&td=2").pgv == pytest.approx(
+    assert load_target("en1998-2024:?s_alpha=10 m/s2&s_beta=4 m/s2&td=2").pgv == pytest.approx(
         0.45634, rel=1e-4
     )
 
@@ -91,6 +91,9 @@ def test_what_is_known_of_a_target() -> None:
         assert checked in target.checked
     assert load_target("asce7:?sds=1g&sd1=0.6g&tl=8&level=mcer").level == "MCE_R"
     assert load_target("asce7:?sds=1g&sd1=0.6g&tl=8").of == "rotd100"
+    # 1 m/s2 over 9.80665 m/s2.
+    target = load_target("asce7:?sds=1 m/s2&sd1=0.06 g&tl=8&level=mcer")
+    assert target.parameters == "SDS = 0.102 g, SD1 = 0.06 g, TL = 8 s, times 1.5"
 
 
 def test_a_table_with_scatter(tmp_path: Path) -> None:
@@ -136,6 +139,9 @@ def test_the_spectrum_of_a_record_is_a_table(tmp_path: Path) -> None:
         ("en1998:?ag=0.3g&soil=F", "soil = 'F' is not known; .*A"),
         ("en1998:?ag=0.3g&type=3", "type = '3' is not known"),
         ("en1998:?ag=-0.3g", "ag must be > 0"),
+        ("en1998:?ag=0.3", "say the unit: ag=0.3 g, or ag=0.3 m/s2"),
+        ("asce7:?sds=1.0&sd1=0.6g&tl=8", "say the unit: sds=1.0 g, or sds=1.0 m/s2"),
+        ("en1998-2024:?s_alpha=1g&s_beta=0.4&td=2", "say the unit: s_beta=0.4 g"),
         ("en1998:?ag=0.3 m", "should be an acceleration in g"),
         ("asce7:?sds=1g&sd1=0.6g", "tl is missing"),
         ("asce7:?sds=1g&sd1=0.6g&tl=0.5", "below tl"),

@@ -82,7 +82,8 @@ def selection_document(selection: Selection) -> dict[str, Any]:
     columns = picked(selection_columns(selection), *names)
     target, asked, errors = selection.target, selection.requirements, selection.errors
     of_target = (
-        "name", "source", "edition", "checked", "level", "damping", "pgv", "pgv_by", "pgd",
+        "name", "parameters", "source", "edition", "checked", "level", "damping", "pgv", "pgv_by",
+        "pgd",
     )  # fmt: skip
     numbers = ("candidates", "refused", "clamped", "misfit", "least_ratio", "mean_pgv", "mean_pgd")
     rules = [{**rule._asdict(), "verdict": rule.word} for rule in selection.rules]
