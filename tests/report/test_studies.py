@@ -315,6 +315,21 @@ def test_statistics_are_a_row_a_system_and_intensity(result: rpscli.StudyResult)
     assert statistics["rotation_ratio_largest"][-1] == result["rotation_ratio"][inside].max()
 
 
+def test_tables_of_many_values_draw_the_first_and_hold_all(tmp_path: Path) -> None:
+    values = [round(0.2 + 0.005 * k, 3) for k in range(112)]
+    vary = [{"superstructure.storey_mass": ["200 t"]}, {"podium.bearing.curvature_ratio": values}]
+    record = {"source": "synthetic:?pga=0.5g&duration=1&dt=0.02", "seed": [1]}
+    study = {"rps": 1, "title": "Many", "base": SMALL["base"], "vary": vary, "records": [record]}
+    found = rpscli.load_study(study | {"reports": ["overturning"]}).run(jobs=1)
+    target = Figure(figsize=(2.0, 2.0))  # names alone are wider
+    assert not found.failures
+    found.draw("overturning", target)
+    assert len(target.axes[0].get_xticks()) == 12
+    shares = [column for column in found.report("overturning").tables[""] if ";" not in column.name]
+    assert len(shares) == 1 + 112 + 2
+    assert str(tmp_path / "overturning.png") in found.write(tmp_path)
+
+
 def test_studies_without_histories_have_no_statistics() -> None:
     study = rpscli.load_study(
         {

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_ROWS = 60
+MOST_COLUMNS = 12
 SMALLER = 0.75
 """Second texts of cells, as a part of small letters."""
 
@@ -144,16 +145,20 @@ def _table(table: Table, options: OverturningOptions, shown: Shown) -> Found:
     written.append(Column("counted", "-", [len(row) for row in rows.groups]))
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
-    heads = [style.typeset("\n".join(map(label, column_keys, at)) or "all") for at in columns]
+    heads = [
+        style.typeset("\n".join(map(label, column_keys, values)) or "all")
+        for values in columns[:MOST_COLUMNS]
+    ]
     names = [style.typeset(labels(rows.keys, row.values)) for row in rows.groups[:MOST_ROWS]]
-    drawn = cells[:MOST_ROWS]
+    drawn = [row[:MOST_COLUMNS] for row in cells[:MOST_ROWS]]
     shades = [[shown.shade(cell) if cell else np.nan for cell in row] for row in drawn]
     texts = [[shown.texts(cell) if cell else ("-", "") for cell in row] for row in drawn]
-    width = min(style.WIDTH, 3.4 + 1.25 * len(columns))
+    width = min(style.WIDTH, 3.4 + 1.25 * len(heads))
 
     def picture(title: str) -> bytes:
         beside = 0.3 + max(map(len, names), default=0) / style.LETTERS_PER_INCH
-        letters = int(style.LETTERS_PER_INCH * (style.room(width) - beside) / len(columns))
+        # Names may be as wide as the figure.
+        letters = max(int(style.LETTERS_PER_INCH * (style.room(width) - beside) / len(heads)), 1)
         # What would run into the next column, or off the figure, goes on in further lines.
         above = ["\n".join(fill(line, letters) for line in head.split("\n")) for head in heads]
         below = [[fill(text, int(letters / SMALLER)) for _, text in row] for row in texts]
@@ -161,21 +166,21 @@ def _table(table: Table, options: OverturningOptions, shown: Shown) -> Found:
         height = 0.34 + 0.11 * further  # of a row
 
         def draw(figure: Figure) -> None:
-            notes = [left_out(rows.failed)]
-            if len(cells) > MOST_ROWS:
-                notes.append(f"the first {MOST_ROWS} of {len(cells)} rows")
+            counts = (("rows", len(drawn), len(cells)), ("columns", len(heads), len(columns)))
+            notes = [f"the first {n} of {all_} {name}" for name, n, all_ in counts if n < all_]
+            notes.insert(0, left_out(rows.failed))
             style.heading(figure, title, over(rows.pooled), shown.words, *notes)
             axes = figure.subplots()
             axes.imshow(shades, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto", alpha=0.75)
             small = style.small()
             inside: dict[str, Any] = {"ha": "center", "in_layout": False}
-            for y, x in np.ndindex(len(texts), len(columns)):
+            for y, x in np.ndindex(len(texts), len(heads)):
                 first, middle = texts[y][x][0], y - 0.055 * further / height
                 size = small * min(1.0 / SMALL, letters / len(first))
                 axes.text(x, middle, first, va="bottom", fontsize=size, **inside)
                 second = below[y][x]
                 axes.text(x, middle + 0.08, second, va="top", fontsize=SMALLER * small, **inside)
-            axes.set_xticks(range(len(columns)), above)
+            axes.set_xticks(range(len(heads)), above)
             axes.set_yticks(range(len(names)), names)
             axes.tick_params(length=0, labeltop=True, labelbottom=False)
             axes.grid(visible=False)
