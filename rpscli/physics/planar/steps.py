@@ -75,10 +75,10 @@ that steps are thousands of times shorter than elsewhere: tried anew they are ha
 
 @compiled
 def plan_next_step(s: Record, l: int) -> None:
-    """Plan on behind an accepted step of a lane with such a damper."""
+    """Plan on behind an accepted step; of a lane with such a damper little longer than that one."""
     longest = LONGER * s.step[l]
     plan_steps(s, l)
-    if s.step[l] > longest:
+    if s.nonsmooth_damper[l] > 0.0 and s.step[l] > longest:
         s.step[l], s.steps_left[l] = longest, 2.0
 
 
