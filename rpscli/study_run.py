@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.case.conditions import Condition
-from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError
+from rpscli.errors import LimitExceeded, Refused, RpsError, StudyIncomplete, UsageError
 from rpscli.report.figures.look import Look
 from rpscli.report.study.registry import REPORTS, lacking, not_judged, requirement_faults
 from rpscli.report.study.report import add_notes
@@ -149,6 +149,8 @@ class StudyRun:
     @contextmanager
     def reopened(self) -> Iterator[StudyResults]:
         """The results with the store open no longer than it is read: others may go on in it."""
+        if not self.store.path.is_file():
+            raise Refused(f"{self.store.path}: is not there any more; run the study again")
         with Store(self.store.path.parent) as store:
             self.results = replace(self.results, store=store)
             yield self.results

@@ -133,6 +133,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
     from rpscli.sweep.run.schedule import estimated_seconds
     from rpscli.sweep.run.threads import available_cores
 
+    terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
     layout, count = study.layout, len(study)
     jobs, histories = choices.jobs or available_cores(), layout.plan.analysis == "timehistory"
     first = range(min(POINTS_SHOWN, count))
@@ -166,7 +167,6 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         "estimate": {"seconds": seconds, "jobs": jobs, "source": source},
         "warnings": study.warnings,
     }
-    terminal.warn(document["warnings"])
     terminal.result(document, _dry_run_tables(document, points.values()))
 
 

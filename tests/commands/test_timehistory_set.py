@@ -204,7 +204,7 @@ def test_a_case_scales_its_record_too(rps_json: InvokeJson, rps: Invoke) -> None
         ("PGB=1", "did you mean PG"),
         ("PGA=0.4 m", "is a length"),
         ("PGV=-1", "must be > 0 m/s"),
-        ("PGA(0.5 s)=1", "belongs to the measures Sa"),
+        ("PGA(0.5 s)=1 g", "belongs to measures such as Sa"),
     ],
 )
 def test_a_target_that_cannot_be_meant(rps: Invoke, target: str, reason: str) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,7 @@ from report.small_results import curve
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.report import Found
+from rpscli.sweep.run import schedule
 from rpscli.sweep.store import Store
 
 ROOT = Path(__file__).parents[2]
@@ -232,6 +235,30 @@ def test_folders_of_others_are_left_alone(
         study.run("here")
     with pytest.raises(rpscli.RpsError, match="name a folder"):
         result.write()
+
+
+def test_a_store_that_is_gone_is_not_made_anew(tmp_path: Path) -> None:
+    result = rpscli.load_study(SMALL).run(tmp_path / "gone", jobs=1)
+    rmtree(tmp_path / "gone")
+    with pytest.raises(rpscli.RpsError, match="is not there any more; run the study again"):
+        _ = result.statistics
+    assert not (tmp_path / "gone").exists()
+
+
+def test_slow_points_are_tried_no_more_than_needed(
+    result: rpscli.StudyResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried: list[int] = []
+
+    def slow(_: object, points: Sequence[object]) -> float:
+        tried.append(len(points))
+        return 10.0
+
+    monkeypatch.setattr(schedule, "_seconds", slow)
+    layout = result.study.layout
+    assert schedule.estimated_seconds(layout, result.study.context, 2) == 10.0 * len(layout) / 2
+    # One of each batch for loading, and one that is measured.
+    assert tried == [1] * (1 + len([*schedule.batches(layout, range(len(layout)), 1)]))
 
 
 def test_a_temporary_store_ends_with_its_result() -> None:

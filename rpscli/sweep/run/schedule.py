@@ -93,7 +93,10 @@ def estimated_seconds(layout: StudyPoints, context: StudyContext, jobs: int) -> 
         _seconds(context, batch[:1])  # reads records, loads kernels
         if time.perf_counter() - began > LONGEST_PROBING:
             break
-    affordable = 1 + int(LONGEST_PROBING / _seconds(context, probes[0][:1]))
+    alone = _seconds(context, probes[0][:1])
+    if alone > LONGEST_PROBING:
+        return alone * count / min(jobs, count)
+    affordable = 1 + int(LONGEST_PROBING / alone)
     spent, points = 0.0, 0
     for batch in probes:
         spent += _seconds(context, batch[:affordable])
