@@ -25,10 +25,10 @@ from rpscli.commands.report_case import (
 )
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
-    FILE,
     CaseRequest,
     fail_on_option,
     overrides_option,
+    records_option,
     style_option,
     terminal_options,
 )
@@ -51,14 +51,7 @@ from rpscli.report.files import require_writable, write_whole
     help="The page; results/<name>/report.html by default.",
 )
 @overrides_option("Override a value of the case or study")
-@click.option(
-    "--record",
-    "records",
-    multiple=True,
-    metavar="SRC",
-    type=FILE,
-    help="Ground motion in place of the case's own, sets and folders too; repeatable.",
-)
+@records_option
 @click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
 @click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
 @click.option("--scale-to", metavar="MEASURE=VALUE", help="Scale to a measure, as PGA=0.4g.")

@@ -27,9 +27,9 @@ from rpscli.commands.shell.options import (
     fail_on_option,
     history_film_options,
     measures,
+    records_option,
     result_options,
     several_cases_options,
-    sources,
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, counted
@@ -48,15 +48,7 @@ from rpscli.report.figures.look import Look, drawn_with
 
 @click.command("timehistory")
 @several_cases_options
-@click.option(
-    "--record",
-    "records",
-    multiple=True,
-    metavar="SRC",
-    type=FILE,
-    shell_complete=sources,
-    help="Ground motion in place of the case's own: file, folder, set, pulse; repeatable.",
-)
+@records_option
 @click.option(
     "--vertical", metavar="SRC", type=FILE, help="Vertical component, with the same time step."
 )

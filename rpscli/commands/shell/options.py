@@ -133,6 +133,17 @@ terminal_options = _gathered(
 """--json and --quiet, as `terminal`."""
 
 
+records_option = click.option(
+    "--record",
+    "records",
+    multiple=True,
+    metavar="SRC",
+    type=FILE,
+    shell_complete=sources,
+    help="Ground motion in place of the case's own: file, folder, set, pulse; repeatable.",
+)
+
+
 def overrides_option(meaning: str) -> Decorator:
     """--set, with what it does for the command, as `overrides`."""
     return click.option(
