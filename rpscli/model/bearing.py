@@ -44,6 +44,9 @@ class Bearing:
         rho = r/(2H), r the radius of the arcs; 0 for flat ends (Housner's block).
     inertia_ratio
         I_o/(m_c R^2), I_o about an edge of the flat part; 4/3 for a rectangular block.
+    inertia_ratio_axial
+        I_3/(m_c R^2), I_3 about the axis of the column, which takes part where both horizontal
+        components act; left out: (B'/R)^2/2, a solid round column of half-width B'.
 
     Raises
     ------
@@ -67,9 +70,11 @@ class Bearing:
     wedge_slenderness: float
     curvature_ratio: float
     inertia_ratio: float = 4.0 / 3.0
+    inertia_ratio_axial: float = math.nan
 
     def __post_init__(self) -> None:
         """Refuse a shape that cannot be built."""
+        self._complete_inertia()
         for name in ("semi_diagonal", "inertia_ratio"):
             if not 0.0 < (value := getattr(self, name)) < math.inf:
                 raise ValueError(f"{name} = {value} must be > 0 and finite")
@@ -98,6 +103,15 @@ class Bearing:
                 f" {0.5 * (self.wedge_slenderness - self.slenderness):.6g} ="
                 " (tan alpha' - tan alpha)/2: a smaller arc does not reach the wedge's edge"
             )
+
+    def _complete_inertia(self) -> None:
+        axial = self.inertia_ratio_axial
+        if math.isnan(axial):
+            width = self.slenderness if self.is_flat else self.wedge_slenderness
+            solid = 0.5 * (math.cos(self.alpha) * width) ** 2
+            object.__setattr__(self, "inertia_ratio_axial", solid)
+        elif not 0.0 < axial < math.inf:
+            raise ValueError(f"inertia_ratio_axial = {axial} must be > 0 and finite")
 
     @property
     def is_flat(self) -> bool:

@@ -56,13 +56,17 @@ class PodiumStructure(Shown):
     rows
         Where rows of columns, with equally many each, stand along the motion [m]; none where that
         is not known.
+    superstructure_y
+        The same floors on the stiffnesses across the first direction, y, where they differ from
+        those along it, x; None if they do not.
 
     Raises
     ------
     ValueError
-        If a mass is not admissible, or the restitution is not in (0, 1]: with e <= 0 the columns
-        would not go over to the other edge (Theory, section 4), or there are too many devices; of
-        spherical ends, if the restitution is not 1 or there is a tendon.
+        If a mass is not admissible, the floors in y are others than in x, or the restitution is
+        not in (0, 1]: with e <= 0 the columns would not go over to the other edge (Theory,
+        section 4), or there are too many devices; of spherical ends, if the restitution is not 1
+        or there is a tendon.
 
     Notes
     -----
@@ -79,6 +83,7 @@ class PodiumStructure(Shown):
     columns: int = 1
     friction: float | None = None
     rows: tuple[float, ...] = ()
+    superstructure_y: Superstructure | None = None
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""
@@ -90,8 +95,7 @@ class PodiumStructure(Shown):
             raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0, all finite")
         if self.friction is not None and not (is_number(self.friction) and self.friction >= 0.0):
             raise ValueError(f"friction = {self.friction!r} must be a number >= 0, or None")
-        if self.superstructure is not None and self.cap_beam_mass == 0.0:
-            raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
+        self._refuse_buildings()
         if self.rows and (len(self.rows) < 2 or max(self.rows) <= min(self.rows)):
             raise ValueError("rows must be at least two places that differ")
         if not (isinstance(self.columns, Integral) and 1 <= self.columns <= MOST_COLUMNS):
@@ -116,6 +120,13 @@ class PodiumStructure(Shown):
                 " beam, a smaller loss (0.5), or give a measured value"
             )
 
+    def _refuse_buildings(self) -> None:
+        x, y = self.superstructure, self.superstructure_y
+        if x is not None and self.cap_beam_mass == 0.0:
+            raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
+        if y is not None and (x is None or not np.array_equal(x.masses, y.masses)):
+            raise ValueError("superstructure_y must have the floors of superstructure")
+
     def facts(self) -> dict[str, Any]:
         """Sizes, masses and what stands on the bearings."""
         return {
@@ -127,6 +138,24 @@ class PodiumStructure(Shown):
             "devices": [device.kind for device in self.devices],
             "bearing": self.bearing,
         }
+
+    @property
+    def planar_only(self) -> str:
+        """Why both horizontal components cannot act at once; empty if they can."""
+        kinds = {device.kind for device in self.devices}
+        if self.bearing.is_spherical:
+            return "columns without a flat part are followed in one plane only"
+        if self.impact_law.floors_jump and self.superstructure is not None:
+            return (
+                f"the impact law {self.impact_law.kind} lets floors jump, which has no form for a"
+                " pass that loses a part of an impact; use the law flexible, with loss or factor"
+            )
+        if {"friction", "rolling_resistance"} <= kinds:
+            return (
+                "a friction damper beside rolling resistance is not followed in two directions;"
+                " leave one of them out"
+            )
+        return ""
 
     @property
     def left_out_of_columns(self) -> tuple[str, ...]:

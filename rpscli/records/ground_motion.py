@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -249,8 +250,9 @@ class GroundMotion(Shown):
 class MotionComponents(Frozen):
     """The components of one ground motion: horizontal, and vertical where that is known.
 
-    The vertical one is positive upwards and has the same time step; it may be longer or shorter.
-    Both were multiplied by `scale` since they were read, which `scaled_to` may say the aim of.
+    With a second horizontal one, `y`, the first is along x. The vertical one is positive upwards.
+    All have the same time step; shorter ones go on as zero. All were multiplied by `scale` since
+    they were read, which `scaled_to` may say the aim of.
 
     >>> along = GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5, "x", "x.at2", "PEER AT2")
     >>> up = GroundMotion(np.array([1.0, 2.0]), 0.5, "z", "z.at2", "PEER AT2")
@@ -262,6 +264,7 @@ class MotionComponents(Frozen):
     vertical: GroundMotion | None = None
     scale: float = 1.0
     scaled_to: str = ""
+    y: GroundMotion | None = None
 
     def __post_init__(self) -> None:
         for name, motion in self.named.items():
@@ -270,7 +273,7 @@ class MotionComponents(Frozen):
     @property
     def named(self) -> dict[str, GroundMotion]:
         """Those that there are, by their names in documents, in the order of `samples`."""
-        every = {"horizontal": self.horizontal, "vertical": self.vertical}
+        every = {"horizontal": self.horizontal, "y": self.y, "vertical": self.vertical}
         return {name: motion for name, motion in every.items() if motion is not None}
 
     @property
@@ -308,24 +311,30 @@ class MotionComponents(Frozen):
     def digest(self) -> bytes:
         """Of the samples of all components."""
         parts = [self.horizontal.digest, self.vertical.digest if self.vertical else ""]
+        parts += [self.y.digest] if self.y else []
         return hashlib.sha256("|".join(parts).encode()).digest()
 
     def finer(self, parts: int) -> MotionComponents:
         """The same motion with that many even parts in each sampling interval."""
         if parts == 1:
             return self
-        named: dict[str, GroundMotion] = {}
-        for name, motion in self.named.items():
+
+        def parted(motion: GroundMotion) -> GroundMotion:
             at = np.arange((motion.npts - 1) * parts + 1) / parts
             values = np.interp(at, np.arange(motion.npts), motion.acceleration)
-            named[name] = replace(motion, acceleration=values, dt=motion.dt / parts)
-        return MotionComponents(named["horizontal"], named.get("vertical"))
+            return replace(motion, acceleration=values, dt=motion.dt / parts)
+
+        return self._each(parted, 1.0)
 
     def scaled(self, factor: float) -> MotionComponents:
         """All components times `factor`."""
-        named = {name: motion.scaled(factor) for name, motion in self.named.items()}
-        vertical = named.get("vertical")
-        return MotionComponents(named["horizontal"], vertical, self.scale * factor)
+        return self._each(lambda motion: motion.scaled(factor), self.scale * factor)
+
+    def _each(
+        self, change: Callable[[GroundMotion], GroundMotion], scale: float
+    ) -> MotionComponents:
+        made = {name: change(motion) for name, motion in self.named.items()}
+        return MotionComponents(made["horizontal"], made.get("vertical"), scale, y=made.get("y"))
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -134,3 +134,14 @@ def test_the_cap_beam_moves_on_until_the_model_ends(rho: float, slenderness: flo
     _, C, u, _ = geometry.path_along(bearing.rolling, bearing.rocking, bearing.beta, x)
     assert np.all(np.diff(u) > 0.0)
     assert end == math.pi or C[-1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_axial_inertia_is_that_of_a_solid_round_column() -> None:
+    """I_3 = m b^2/2 of a cylinder of half-width b, over m R^2."""
+    arc, flat = Bearing(1.5, 0.15, 0.30, 0.5), Bearing(1.5, 0.15, 0.30, 0.0)
+    half_width = arc.half_height * 0.30
+    assert arc.inertia_ratio_axial == pytest.approx(0.5 * (half_width / 1.5) ** 2, rel=1e-14)
+    assert flat.inertia_ratio_axial == pytest.approx(0.5 * math.sin(flat.alpha) ** 2, rel=1e-14)
+    assert Bearing(1.5, 0.15, 0.3, 0.5, inertia_ratio_axial=0.02).inertia_ratio_axial == 0.02
+    with pytest.raises(ValueError, match=r"inertia_ratio_axial = 0.0 must be > 0"):
+        Bearing(1.5, 0.15, 0.3, 0.5, inertia_ratio_axial=0.0)

@@ -131,6 +131,9 @@ def test_value_and_factor() -> None:
     for kind in ("Rigid", "mine", ["rigid"]):
         with pytest.raises(ValueError, match="must be flexible, rigid or value"):
             ImpactLaw(kind)  # type: ignore[arg-type]
+    for seconds in (-1e-6, 0.0201, math.nan):
+        with pytest.raises(ValueError, match=r"contact_time = .* must be within 0 and 0.02 s"):
+            ImpactLaw(contact_time=seconds)
 
 
 @pytest.mark.parametrize("restitution", [0.0, -0.2, 1.2, math.nan])

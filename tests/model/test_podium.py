@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from paper_structures import FLAT, building, podium
 from scipy.integrate import quad
 
 from rpscli.model.bearing import Bearing
+from rpscli.model.devices import FrictionDamper, RollingResistance
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 
 structures = st.builds(
@@ -122,3 +125,27 @@ def test_masses_outside_the_model_are_refused(columns: float, beam: float, gravi
 def test_a_building_needs_a_beam_to_stand_on() -> None:
     with pytest.raises(ValueError, match="the superstructure stands on it"):
         PodiumStructure(Bearing(1.5, 0.15, 0.3, 0.5), 2e4, 0.0, building(2))
+
+
+def test_what_is_followed_in_one_plane_only() -> None:
+    bearing = Bearing(1.5, 0.15, 0.3, 0.5)
+    frame = PodiumStructure(bearing, 2e4, 2e5, impact_law=ImpactLaw("rigid"))
+    under = PodiumStructure(bearing, 2e4, 2e5, building(2), ImpactLaw("value", 0.9))
+    both = (FrictionDamper(1e3), RollingResistance(1e-3))
+    damped = PodiumStructure(bearing, 2e4, 2e5, devices=both)
+    ball = PodiumStructure(Bearing(1.5, 0.0, 0.3, 0.8), 2e4, 2e5, impact_law=ImpactLaw(loss=0.0))
+    assert not frame.planar_only
+    assert not PodiumStructure(bearing, 2e4, 2e5, devices=both[:1]).planar_only
+    assert "use the law flexible" in under.planar_only
+    assert "leave one of them out" in damped.planar_only
+    assert "without a flat part" in ball.planar_only
+
+
+def test_the_floors_are_the_same_in_both_directions() -> None:
+    bearing, along = Bearing(1.5, 0.15, 0.3, 0.5), building(2)
+    across = replace(along, stiffnesses=2.0 * along.stiffnesses)
+    structure = PodiumStructure(bearing, 2e4, 2e5, along, superstructure_y=across)
+    assert structure.superstructure_y is across
+    for x, y in ((None, across), (along, building(3))):
+        with pytest.raises(ValueError, match="superstructure_y must have the floors"):
+            PodiumStructure(bearing, 2e4, 2e5, x, superstructure_y=y)

@@ -106,3 +106,21 @@ def test_components_are_scaled_together() -> None:
     assert scaled.vertical.acceleration.tolist() == [2.5, 3.0]
     alone = MotionComponents(along).scaled(3.0)
     assert (alone.vertical, alone.scale) == (None, 3.0)
+
+
+def test_a_second_horizontal_component() -> None:
+    x, y, up = motion([1.0, -2.0]), motion([5.0, 6.0, 7.0]), motion([1.0, 0.0])
+    pair = MotionComponents(x, up, y=y)
+    assert [*pair.named] == ["horizontal", "y", "vertical"]
+    assert pair.samples[pair.row("y")].tolist() == [5.0, 6.0, 7.0]
+    assert pair.samples[pair.row("horizontal")].tolist() == [1.0, -2.0, 0.0]  # goes on as zero
+    assert MotionComponents(x, up).row("y") is None
+    scaled, finer = pair.scaled(2.0), pair.finer(2)
+    assert scaled.y is not None
+    assert scaled.y.acceleration.tolist() == [10.0, 12.0, 14.0]
+    assert finer.y is not None
+    assert finer.y.acceleration.tolist() == [5.0, 5.5, 6.0, 6.5, 7.0]
+    digests = {MotionComponents(x, z, y=n).digest for z in (None, up) for n in (None, y, up)}
+    assert len(digests) == 6
+    with pytest.raises(RecordError, match=r"the y record has dt = 0.2 s"):
+        MotionComponents(x, y=motion([1.0, 2.0], 0.2))
