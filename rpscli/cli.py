@@ -29,6 +29,9 @@ COMMANDS = {
     "report": Member(
         "rpscli.commands.report", "one page to check, print and keep, from all of these"
     ),
+    "compare": Member(
+        "rpscli.commands.compare", "what differs between two cases, studies or folders of results"
+    ),
     "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
     "completion": Member("rpscli.commands.completion", "let your shell complete what you type"),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),

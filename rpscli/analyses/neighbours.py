@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from rpscli.analyses.convergence import run_again, steps_left
+from rpscli.analyses.result_quantities import HISTORY, values_of
 from rpscli.analyses.results import TimeHistoryResult
 
 FACTORS = (0.97, 0.98, 0.99, 1.01, 1.02, 1.03)
@@ -19,13 +20,17 @@ MOST_STEPS = 100_000
 
 
 class Neighbour(NamedTuple):
-    """One of them: factor on its motion, its restitution, and what came of it, SI units."""
+    """One of them: factor on its motion, its restitution, and what came of it, SI units.
+
+    `demands` has all results of a history that may be limited, by name.
+    """
 
     factor: float
     restitution: float
     outcome: str
     rotation_ratio: float
     max_base_shear: float
+    demands: dict[str, float | None]
 
 
 def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
@@ -37,7 +42,15 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
     if structure.restitution < 1.0 and law.kind != "value" and law.loss > OTHER_LOSS:
         beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0))
     found = run_again(result, beside)
+    limited = [quantity for quantity in HISTORY if quantity.limit]
     return [
-        Neighbour(factor, of.restitution, each.outcome, each.rotation_ratio, each.max_base_shear)
+        Neighbour(
+            factor,
+            of.restitution,
+            each.outcome,
+            each.rotation_ratio,
+            each.max_base_shear,
+            values_of(each, limited),
+        )
         for (of, factor), each in zip(beside, found, strict=True)
     ]

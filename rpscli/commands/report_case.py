@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -23,6 +23,7 @@ from rpscli.commands.timehistory_run import (
     look_beside,
 )
 from rpscli.errors import UsageError
+from rpscli.report.differences import as_text, results_of
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import RUN_FILE
@@ -266,22 +267,16 @@ def _stored(
     return found
 
 
-MADE_ANEW = frozenset(
-    ("files", "rps_version", "case", "verdicts", "passed", "exit_code", "command")
-)
-"""Keys that are no results."""
-
-
 def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
     """What became of the stored results: how many are the same, and those that are not."""
     try:
         stored = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-        before = dict(_leaves(stored))
+        before = results_of(stored)
     except (OSError, ValueError, AttributeError) as error:
         return [Notice(f"{folder / SUMMARY} cannot be read, so nothing was compared: {error}")]
-    now = dict(_leaves(plain(document)))
+    now = results_of(plain(document))
     names = [name for name in before if name in now]
-    differing = [(n, _text(before[n]), _text(now[n])) for n in names if before[n] != now[n]]
+    differing = [(n, as_text(before[n]), as_text(now[n])) for n in names if before[n] != now[n]]
     same = len(names) - len(differing)
     text = (
         f"The results in {folder} were computed anew from what {folder / 'run.json'} says:"
@@ -294,18 +289,3 @@ def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
         Notice(warning),
         Table.of_texts(("result", "stored", "computed anew"), differing, words=1),
     ]
-
-
-def _leaves(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    for name, value in document.items():
-        if not prefix and name in MADE_ANEW:
-            continue
-        if isinstance(value, dict):
-            yield from _leaves(value, f"{prefix}{name}.")
-        else:
-            yield prefix + name, value
-
-
-def _text(value: object) -> str:
-    text = json.dumps(value, ensure_ascii=False)
-    return text if len(text) < 60 else f"{text[:57]}..."

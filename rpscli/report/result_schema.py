@@ -132,6 +132,15 @@ DOCUMENTS: dict[str, Mapping[str, Any]] = {
         "study": _SUBJECT, "points": {"total": int, "failed": int}, "requirements": [dict],
         **_WARNED, "files": [str], **_END,
     },
+    "compare": {
+        "tolerance": float, **{key: {"source": str, "versions": dict, **_WARNED} for key in "ab"},
+        **{key: [{"name": str}] for key in ("inputs", "versions")}, "compared": int,
+        "only_a": [str], "only_b": [str], **_END,
+        "results": [
+            {"name": str, "unit": str, "at": str, "differing": int, "of": int, "largest": float,
+             "relative": float, "noise": float}
+        ],
+    },
     "report": {"files": [str], **_WARNED, **_END},
     "record info": _MOTION,
     **{f"record {verb}": {**_MOTION, "files": [str]} for verb in ("plot", "convert", "synth")},

@@ -1,0 +1,184 @@
+"""`rps compare`: what differs between two cases, studies or folders of results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rpscli.analyses.result_quantities import plain
+from rpscli.commands.inputs import RESULTS, MotionRequest, case_folder, read_case, single_motions
+from rpscli.commands.report_case import DESIGN, HISTORY, SUMMARY, SWEEP, kind_of
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.options import (
+    FILE,
+    CaseRequest,
+    OutputRequest,
+    records_option,
+    terminal_options,
+)
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import LimitExceeded, Refused, UsageError
+from rpscli.report.documents import heading, versions
+from rpscli.report.figures.look import Look
+from rpscli.report.files import RUN_FILE
+from rpscli.report.table import csv_text
+
+if TYPE_CHECKING:
+    from rpscli.report.differences import Side
+
+CHECKED = "check"
+STORED = "a folder"
+NOT_DRAWN = Look(formats=())
+
+
+@click.command("compare")
+@click.argument("a", metavar="A", type=FILE)
+@click.argument("b", metavar="B", type=FILE)
+@records_option
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(min=0.0),
+    metavar="SHARE",
+    help="End with exit code 10 if a result differs by more than this share of its largest value:"
+    " 0 wants the same to the last digit, 0.01 one percent.",
+)
+@terminal_options
+def command(
+    a: str, b: str, records: tuple[str, ...], tolerance: float | None, terminal: Terminal
+) -> None:
+    """What differs between A and B: each a case, a study, a folder of results or its run.json.
+
+    Inputs are compared with all defaults written out, then versions, then every result, beside what
+    1 % less or more of the motion does to it. Of a case the history is computed, or what `rps
+    check` says if neither names a record; of a study the points that are not stored yet, which is
+    all that is written.
+    """
+    from rpscli.report.differences import comparison_document, differences, tables
+
+    kinds = [STORED if _folder(source) else kind_of(source) for source in (a, b)]
+    made = []
+    for source, kind in zip((a, b), kinds, strict=True):
+        if kind == HISTORY:
+            made.append(_of_case(source, records, terminal, alone=STORED in kinds))
+        elif kind == DESIGN or records:
+            remedy = "run both by `rps design`, and compare the folders of their results"
+            if kind != DESIGN:
+                remedy = "leave --record out: studies and stored results have their own"
+            raise UsageError(f"{source}: is {kind if kind == STORED else f'a {kind}'}; {remedy}")
+        else:
+            made.append(_of_study(source, terminal) if kind == SWEEP else _of_folder(source))
+    (of_a, first), (of_b, second) = made
+    if of_a != of_b:
+        raise UsageError(
+            f"{a} is of `rps {of_a}`, {b} of `rps {of_b}`: compare two of one kind, cases under one"
+            " motion by --record"
+        )
+    for side in (first, second):
+        terminal.warn(f"{side.source}: {text}" for text in side.warnings)
+    found = differences(first, second)
+    error = None
+    if beyond := [each.name for each in found if each.exceeds(tolerance)]:
+        error = LimitExceeded(
+            f"{len(beyond)} results of {a} and {b} differ by more than {tolerance:g} of their"
+            f" largest value: {', '.join(beyond[:5])}{' ...' * (len(beyond) > 5)}"
+        )
+    document = {**heading(), "command": "compare", "tolerance": tolerance}
+    document |= comparison_document(first, second, found)
+    terminal.result(concluded(document, error), tables(first, second, found, tolerance))
+    leave(error)
+
+
+def _folder(source: str) -> Path | None:
+    """The folder of results that a source names, by itself or by a file that stands in each."""
+    path = Path(source)
+    if path.name in {RUN_FILE, SUMMARY}:
+        return path.parent
+    return path if path.is_dir() else None
+
+
+def _side(source: str, inputs: object, tables: Iterable[tuple[str, object]]) -> Side:
+    """What this version makes of a file."""
+    from rpscli.report.differences import Side, leaves
+
+    side = Side(source, versions(), dict(leaves(plain(inputs))))
+    for name, content in tables:
+        if name.endswith(".csv"):
+            side.add_table(name, str(content))
+    return side
+
+
+def _of_case(
+    source: str, records: tuple[str, ...], terminal: Terminal, *, alone: bool
+) -> tuple[str, Side]:
+    from rpscli.commands.shell.waiting import announce_compilation
+    from rpscli.commands.timehistory_run import compute, history_requests, look_beside
+    from rpscli.commands.timehistory_set import computed_set
+    from rpscli.report.study.statistics import demand_columns, records_columns
+    from rpscli.report.tables.derived import derived_quantities
+
+    given = read_case(CaseRequest(source, ()), terminal)
+    unwritten = OutputRequest(Path(), force=True)
+    if given.case.record is None and not records and not alone:
+        side = _side(source, case_folder(given, unwritten, CHECKED).run.inputs, ())
+        side.add_document(plain(derived_quantities(given.case.structure)))
+        return CHECKED, side
+    requests = history_requests([given], [*single_motions(records, MotionRequest())], unwritten)
+    announce_compilation(terminal)
+    if len(requests) == 1:
+        side = _side(source, requests[0].folder.run.inputs, ())
+        done, result = compute(requests[0], (), NOT_DRAWN, terminal)
+        look_beside(done, result)
+        side.add_document(plain(done.document))
+        return HISTORY, side
+    found = computed_set(requests, (), NOT_DRAWN, terminal, None, written=False)
+    rows = records_columns(found.labels, [history.document for history in found.histories])
+    tables = {"records.csv": rows, "statistics.csv": demand_columns(found.together)}
+    texts = ((name, csv_text(columns)) for name, columns in tables.items())
+    return HISTORY, _side(source, {"case": given.case.document}, texts)
+
+
+def _of_study(source: str, terminal: Terminal) -> tuple[str, Side]:
+    from rpscli.commands.study import begin, compute, read
+    from rpscli.report.study.folder import study_folder
+    from rpscli.sweep.store import Store
+
+    study = read(CaseRequest(source, ()), (), terminal)
+    place = RESULTS / study.layout.study.name / SWEEP
+    try:
+        folder = study_folder(study.layout, place, study.overrides)
+    except Refused as error:
+        raise Refused(f"{error}; or compare folders of `rps sweep {source} -o FOLDER`") from None
+    with Store(place) as store:
+        run = study.opened(store)
+        begin(run, terminal, report_only=False)
+        compute("compare", run, terminal)
+        found = run.collect(place, NOT_DRAWN)
+    side = _side(source, folder.run.inputs, found.files.items())
+    side.warnings = [*study.warnings, *found.notes]
+    return SWEEP, side
+
+
+def _of_folder(source: str) -> tuple[str, Side]:
+    from rpscli.report.differences import Side, leaves
+
+    folder, file = _folder(source) or Path(), RUN_FILE
+    try:
+        run = json.loads((folder / RUN_FILE).read_text(encoding="utf-8"))
+        side = Side(source, run["versions"], dict(leaves(run["inputs"])))
+        names = [name for name in run["files"] if name.endswith(".csv")]
+        if run["command"] == HISTORY and "records" not in run["inputs"]:
+            file, names = SUMMARY, []
+            side.add_document(json.loads((folder / file).read_text(encoding="utf-8")))
+        for file in names:
+            side.add_table(file, (folder / file).read_text(encoding="utf-8"))
+    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else f"it is damaged ({error!r})"
+        raise UsageError(
+            f"{folder / file}: cannot be compared: {reason}; name a folder with the results of one"
+            f" command of rps and its {RUN_FILE}"
+        ) from None
+    return str(run["command"]), side
