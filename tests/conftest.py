@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import os
+from collections.abc import Iterator
+from functools import wraps
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+# Before numpy is imported: the workers take all cores, and threads of linear algebra only wait for
+# each other, a thousand times as long as a matrix exponential of four rows takes.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from paper_structures import RecordLoader
 
+from rpscli.analyses.kernels.compilation import KERNELS
+from rpscli.physics.core.compile import cache_folder, is_compiled, remember_compiled
+from rpscli.physics.planar import prepare
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 
@@ -30,6 +41,36 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     """Windows has no forks and signals."""
     if os.name != "posix" and item.get_closest_marker("posix"):
         pytest.skip("needs a POSIX system")
+
+
+@contextlib.contextmanager
+def _alone() -> Iterator[None]:
+    """No other process that uses the same cache is here; Windows has no such lock."""
+    if os.name != "posix" or (folder := cache_folder()) is None:
+        yield
+        return
+    import fcntl
+
+    with (folder / "lock").open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _compile_once() -> Iterator[None]:
+    """Of workers that need the same kernel one compiles it, with two processes; the others wait."""
+    compile_kernel = prepare.compile_kernel
+
+    @wraps(compile_kernel)
+    def once(*, equipped: bool) -> None:
+        with _alone():
+            if not is_compiled(KERNELS[equipped]):
+                compile_kernel(equipped=equipped)
+                remember_compiled(KERNELS[equipped])
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(prepare, "compile_kernel", once)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,7 @@ import inspect
 import pickle
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,11 @@ STUDY = {
     "vary": [{"podium.bearing.wedge_slenderness": [0.2, 0.3]}],
     "records": ["pulse:sine?amplitude=0.2g&period=1.0"],
 }  # fmt: skip
-HISTORY = rpscli.time_history(STRUCTURE, RECORD)
+
+
+@cache
+def history() -> rpscli.TimeHistoryResult:
+    return rpscli.time_history(STRUCTURE, RECORD)
 
 
 def study() -> rpscli.StudyResult:
@@ -50,10 +54,10 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "Study": lambda: rpscli.load_study(STUDY),
     "StudyResult": study,
     "Superstructure": lambda: STRUCTURE.superstructure,
-    "TimeHistoryResult": lambda: HISTORY,
-    "TimeHistorySettings": lambda: HISTORY.settings,
-    "fixed_base_floor_spectra": lambda: rpscli.fixed_base_floor_spectra(HISTORY),
-    "isolated_floor_spectra": lambda: rpscli.isolated_floor_spectra(HISTORY),
+    "TimeHistoryResult": history,
+    "TimeHistorySettings": lambda: history().settings,
+    "fixed_base_floor_spectra": lambda: rpscli.fixed_base_floor_spectra(history()),
+    "isolated_floor_spectra": lambda: rpscli.isolated_floor_spectra(history()),
     "response_spectrum": lambda: rpscli.response_spectrum(RECORD, [0.5, 1.0]),
 }
 """Every class that is offered, and what functions without a class of theirs give."""
@@ -134,7 +138,7 @@ def test_a_result_cannot_be_changed_in_place() -> None:
 
 def test_periods_of_the_user_stay_the_users() -> None:
     periods = np.array([0.5, 1.0])
-    rpscli.isolated_floor_spectra(HISTORY, periods)
+    rpscli.isolated_floor_spectra(history(), periods)
     periods *= 2.0
     assert periods.tolist() == [1.0, 2.0]
 
