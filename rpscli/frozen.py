@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -17,9 +17,13 @@ def frozen(value: Value) -> Value:
     """
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
-    elif isinstance(value, tuple | dict):
-        for part in value.values() if isinstance(value, dict) else value:
+    elif isinstance(value, np.void):  # a record, as writable as the array that it is an entry of
+        return cast("Value", frozen(np.array(value))[()])
+    elif isinstance(value, tuple):
+        for part in value:
             frozen(part)
+    elif isinstance(value, dict):
+        value.update({name: frozen(part) for name, part in value.items()})
     return value
 
 

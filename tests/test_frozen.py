@@ -71,9 +71,9 @@ OTHER = {
 
 def parts(
     value: Any, name: str, seen: dict[int, Any]
-) -> Iterator[tuple[str, np.ndarray[Any, Any]]]:
+) -> Iterator[tuple[str, Any]]:
     """All arrays inside, by the way to them: fields, properties, what is cached."""
-    if isinstance(value, np.ndarray):
+    if isinstance(value, np.ndarray | np.void):
         yield name, value
         return
     if id(value) in seen or isinstance(value, str | bytes | Path | type):
@@ -129,6 +129,8 @@ def test_a_result_cannot_be_changed_in_place() -> None:
     with pytest.raises(ValueError, match="read-only"):
         above.shapes[0, 0] = 0.0
     assert rpscli.demand(STRUCTURE, RECORD).max_base_shear == before
+    with pytest.raises(ValueError, match="read-only"):
+        pickled(HISTORY).history["max_theta"] = 0.0
     digest = RECORD.digest
     again = pickled(RECORD)
     with pytest.raises(ValueError, match="read-only"):
