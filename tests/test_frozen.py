@@ -69,9 +69,7 @@ OTHER = {
 """They give objects of the classes above, texts, or an array that nobody else knows."""
 
 
-def parts(
-    value: Any, name: str, seen: dict[int, Any]
-) -> Iterator[tuple[str, Any]]:
+def parts(value: Any, name: str, seen: dict[int, Any]) -> Iterator[tuple[str, Any]]:
     """All arrays inside, by the way to them: fields, properties, what is cached."""
     if isinstance(value, np.ndarray | np.void):
         yield name, value

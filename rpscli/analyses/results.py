@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from rpscli.analyses.fixed_base import FixedBaseResponse, largest_of_cubics, lar
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.analyses.trace import Event, Trace
+from rpscli.analyses.trace import Event, Trace, sampled
 from rpscli.frozen import frozen
 from rpscli.physics.planar import geometry, state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -109,10 +108,9 @@ class TimeHistoryResult(Demand):
 
         SI units, which are its `attrs["units"]` by column.
         """
-        # What stands in tables is decided above the analyses.
-        columns = import_module("rpscli.report.tables.analyses").history_columns(self)
-        table = data_frame({column.name: column.values for column in columns})
-        table.attrs["units"] = {column.name: column.unit for column in columns}
+        columns = [*sampled(self.structure, self.trace)]
+        table = data_frame({name: values for name, _, values in columns})
+        table.attrs["units"] = {name: unit for name, unit, _ in columns}
         return table
 
     def facts(self) -> dict[str, Any]:

@@ -9,9 +9,9 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import Literal, TypeAlias, cast, get_args
+from typing import Any, Literal, TypeAlias, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -200,6 +200,43 @@ class Trace(Shown):
         values = {each.name: getattr(self, each.name) for each in fields(self)}
         devices = values.pop("devices").at(rows)
         return Trace(**{name: of[rows] for name, of in values.items()}, devices=devices)
+
+
+ENERGIES = ("energy_input", "energy_damped", "energy_impact", "energy_stored")
+
+
+def sampled(structure: PodiumStructure, t: Trace) -> Iterator[tuple[str, str, NDArray[Any]]]:
+    """Name, SI unit and samples of each quantity, for tables."""
+    # Largest results may lie between the rows. Displacements are relative to the ground, floor
+    # accelerations absolute. Forces are those of one column, F to the right and N upwards on what
+    # is above; of all columns together where the case does not give their number. Devices' energy
+    # is what they dissipated so far, of a damped stop that has let go as the cap beam moves back to
+    # the gap.
+    yield "time", "s", t.time
+    yield "ground_acceleration", "m/s2", t.ground_acceleration
+    yield "rotation", "rad", t.rotation
+    yield "rotation_rate", "rad/s", t.rotation_rate
+    yield "cap_beam_displacement", "m", t.cap_beam_displacement
+    yield "lift", "m", t.lift
+    for name, unit, values in (
+        ("floor_{}_displacement", "m", t.floor_displacements),
+        ("storey_{}_drift", "m", t.drifts),
+        ("storey_{}_shear", "N", t.storey_shears),
+        ("floor_{}_acceleration", "m/s2", t.floor_accelerations),
+    ):
+        yield from ((name.format(i), unit, column) for i, column in enumerate(values.T, start=1))
+    yield "driving_moment", "N m", t.driving_moment
+    yield "column_shear_top", "N", t.shear_top / structure.columns
+    yield "column_shear_bottom", "N", t.shear_bottom / structure.columns
+    yield "column_force_top", "N", t.normal_top / structure.columns
+    yield "column_force_bottom", "N", t.normal_bottom / structure.columns
+    yield from ((name, "J", getattr(t, name)) for name in ENERGIES)
+    for index, device in enumerate(structure.devices):
+        name = f"device_{index}_{device.kind}"
+        yield f"{name}_force", "N", t.devices.force[:, index]
+        yield f"{name}_displacement", "m", t.devices.displacement[:, index]
+        yield f"{name}_energy", "J", t.devices.energy[:, index]
+    yield "phase", "-", t.phase
 
 
 def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:

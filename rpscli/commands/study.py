@@ -13,7 +13,13 @@ from rpscli.case.conditions import Condition
 from rpscli.commands.shell.failure import INTERRUPTED
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import announce_compilation, duration, progress_report, watched
+from rpscli.commands.shell.waiting import (
+    announce_compilation,
+    duration,
+    passing_time,
+    progress_report,
+    watched,
+)
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
 from rpscli.report.table import Heading, Part, Table, headed, large, shown
@@ -149,7 +155,8 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         seconds = GUESSED_POINT_SECONDS * count / jobs
         source = "a guess, since the kernel is not compiled yet"
     else:
-        seconds = estimated_seconds(layout, study.context, jobs)
+        with passing_time("trying some of the points", terminal):
+            seconds = estimated_seconds(layout, study.context, jobs)
         source = "trying some of the points"
     document: dict[str, Any] = {
         **heading(),

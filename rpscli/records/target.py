@@ -168,7 +168,7 @@ def _cells(row: list[str], width: int, place: str) -> list[float]:
     if wrong or not (min(found) >= 0.0 and found[1] > 0.0):
         also = ", and a sigma_ln >= 0" if width > 2 else ""
         raise RecordError(
-            f"{place}: {','.join(row[:width])[:40]!r} must be a period >= 0 and an acceleration > 0"
-            f"{also}"
+            f"{place}: {beginning(','.join(row[:width]))} must be a period >= 0 and an"
+            f" acceleration > 0{also}"
         )
     return found

@@ -98,14 +98,22 @@ def test_many_values_are_refused_while_they_are_read() -> None:
 
 
 def test_of_many_faults_the_first_hundred_are_told() -> None:
-    lines = text_refusal("".join(f"key_{number}: 1\n" for number in range(3000))).splitlines()
+    lines = text_refusal(
+        "title: t\n" + "".join(f"key_{number}: 1\n" for number in range(3000))
+    ).splitlines()
     assert len(lines) == 101
     assert lines[-1].startswith("c.yaml: 29")
     assert lines[-1].endswith("more faults; correct these first")
 
 
 def test_long_keys_are_cut() -> None:
-    assert max(map(len, text_refusal("k" * 5000 + ": 1\n").splitlines())) < 300
+    assert max(map(len, text_refusal("title: t\n" + "k" * 5000 + ": 1\n").splitlines())) < 300
+
+
+def test_nothing_is_told_of_a_file_that_is_no_case() -> None:
+    message = text_refusal("key_of_somebody: 1\nsecret:\n")
+    assert "rps is missing" in message
+    assert not {"key_of_somebody", "secret"} & {*message.replace(":", " ").split()}
 
 
 @pytest.mark.parametrize("text", ["- " * 60, "\n".join(" " * n + "a:" for n in range(60))])

@@ -92,6 +92,22 @@ def test_it_is_a_schema_and_names_every_command() -> None:
     assert {*SCHEMA["$defs"]} - {*RUNS} == {"run.json"}
 
 
+def open_objects(schema: Any, key: str = "") -> Iterator[str]:
+    """Keys of objects of which nothing is declared."""
+    if isinstance(schema, list):
+        schema = dict(enumerate(schema))
+    if not isinstance(schema, dict):
+        return
+    if schema.get("type") == "object" and not {"properties", "additionalProperties"} & {*schema}:
+        yield key
+    for name, part in schema.items():
+        yield from open_objects(part, str(name))
+
+
+def test_only_what_the_file_of_a_user_names_is_left_open() -> None:
+    assert {*open_objects(SCHEMA)} == {"system", "limits", "reports", "inputs"}
+
+
 @pytest.mark.parametrize("name", RUNS)
 def test_documents_keep_it(
     name: str,

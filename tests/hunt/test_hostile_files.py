@@ -12,6 +12,7 @@ from small_records import cosmos, csmip, esm, geonet, knet, smc
 
 from hunt.mutation import mutated
 from hunt.trials import hunt, judged, shares
+from rpscli.case.schema.case_file import DEVICE_KEYS as NEEDED
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import known_paths
 from rpscli.case.study.schema import StudyFile
@@ -34,7 +35,7 @@ STUDY_KEYS = [".".join(map(str, path)) for path in known_paths(StudyFile)]
 KINDS = ("viscous", "friction", "stop", "tendon", "rolling_resistance", "{a: 1}", "[viscous]", "5")
 DEVICE_KEYS = (
     "kind", "coefficient", "exponent", "force", "stiffness", "gap", "restitution", "prestress",
-    "area", "\\e[31m",
+    "area", "yield_force", "lever", "damping", "\\e[31m",
 )  # fmt: skip
 """Below `podium.devices`, right and wrong."""
 VALUES = [
@@ -99,17 +100,14 @@ def test_values_of_cases(long: bool) -> None:
 def test_devices(long: bool) -> None:
     def trial(random: Random) -> str:
         Path("case.yaml").write_text(random.choice(CASE_TEXTS), encoding="utf-8")
-        devices = ", ".join(
-            "{kind: "
-            + random.choice(KINDS)
-            + "".join(
-                f", {key}: {random.choice(VALUES)}"
-                for key in random.sample(DEVICE_KEYS, random.randrange(4))
-            )
-            + "}"
-            for _ in range(random.choice([1, 1, 2]))
-        )
-        change = f"podium.devices=[{devices}]"
+        devices = []
+        for _ in range(random.choice([1, 1, 2])):
+            kind, values = random.choice(KINDS), [*VALUES, *["0.5", "0.1 m", "20 kN/mm"] * 8]
+            keys = set(random.sample(DEVICE_KEYS, random.choice([0, 0, 1, 3])))
+            keys |= {*NEEDED.get(kind, ((), ()))[0]}  # else hardly one is accepted
+            inside = "".join(f", {key}: {random.choice(values)}" for key in sorted(keys))
+            devices.append(f"{{kind: {kind}{inside}}}")
+        change = f"podium.devices=[{', '.join(devices)}]"
         places = ("case.yaml", "--set")
         return judged("check", "case.yaml", "--set", change, "--json", places=places)
 

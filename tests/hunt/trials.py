@@ -30,7 +30,7 @@ TABLE = os.environ.get("RPS_HUNT_TABLE")
 EACH = 250
 """Trials after which a row is written, so that a hunt that is stopped has not been for nothing."""
 
-PROMISED = {0, 3, 4, 5, 7, 10}
+PROMISED = frozenset({0, 3, 4, 5, 7, 10})
 """Exit codes that input may lead to; 1 is a fault of ours, 2 one of the command line."""
 
 LONGEST_LINE = 700
@@ -107,7 +107,9 @@ def time_limit(seconds: float) -> Iterator[None]:
             signal.signal(number, before[number])
 
 
-def judged(*arguments: str, places: tuple[str, ...] = (), text: str = "") -> str:
+def judged(
+    *arguments: str, places: tuple[str, ...] = (), text: str = "", codes: frozenset[int] = PROMISED
+) -> str:
     """Run `rps` and hold its exit code and its messages to what is promised.
 
     Parameters
@@ -118,10 +120,12 @@ def judged(*arguments: str, places: tuple[str, ...] = (), text: str = "") -> str
         One of these must stand in the first line of a refusal,
     text
         or this text must hold what the line begins with, such as the source of a record.
+    codes
+        That may be its end.
     """
     result = CliRunner().invoke(program, list(arguments))
     shown = f"{' '.join(arguments)[:300]}: {result.stderr[-600:]}"
-    assert result.exit_code in PROMISED, f"exit code {result.exit_code}: {shown}"
+    assert result.exit_code in codes, f"exit code {result.exit_code}: {shown}"
     if "--json" in arguments:
         document = json.loads(result.stdout, parse_constant=_no_json)
         assert document["schema_version"] == 1

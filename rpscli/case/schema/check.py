@@ -35,7 +35,7 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     check: SchemaCheck[Model] = SchemaCheck([*document.faults], set(), {}, None)
     for path in empty:
         if path not in announced:
-            _empty_value(check, model, path)
+            _empty_value(check, model, path, content)
     content = document.pruned(empty, elements=True)
     read, errors = _read(model, content)
     if not (errors or check.faults):
@@ -46,7 +46,7 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
         if error["type"] == "too_short" and document.at(path):
             continue  # its values are refused one by one
         if error["type"] == "extra_forbidden":
-            _unknown(check, model, path)
+            _unknown(check, model, path, content)
         elif any(path == inner[: len(path)] for inner in empty if path != inner):
             continue  # it may be faulty because of what it lacks, which is told
         elif error["type"] != "missing":
@@ -62,7 +62,11 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     return check._replace(faults=faults, sound=document.pruned(bad))
 
 
-def _unknown(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
+def _unknown(
+    check: SchemaCheck[Any], model: type[BaseModel], path: Path, content: dict[str, Any]
+) -> None:
+    if "rps" in (known := fields_of(model)) and content.keys().isdisjoint(known):
+        return  # another file than was meant, of which nothing is told
     # Beyond what is told at once there is no use in looking for what was meant.
     if len(check.faults) > MOST_FAULTS:
         check.faults.append(Fault(path, f"{dotted(path)} is not a key of the format", at_key=True))
@@ -73,7 +77,9 @@ def _unknown(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> Non
         check.suggested.add(suggestion)
 
 
-def _empty_value(check: SchemaCheck[Any], model: type[BaseModel], path: Path) -> None:
+def _empty_value(
+    check: SchemaCheck[Any], model: type[BaseModel], path: Path, content: dict[str, Any]
+) -> None:
     """A key with nothing behind it; its name may be wrong besides."""
     named = tuple(part for part in path if isinstance(part, str))
     known = [
@@ -83,7 +89,7 @@ def _empty_value(check: SchemaCheck[Any], model: type[BaseModel], path: Path) ->
         text = f"{dotted(path)} has no value; write one, or take the key out"
         check.faults.append(Fault(path, text, at_key=isinstance(path[-1], str)))
     elif all(known[:-1]):  # otherwise the unknown key further up is told of
-        _unknown(check, model, named)
+        _unknown(check, model, named, content)
 
 
 def _read(model: type[Model], content: dict[str, Any]) -> tuple[Model | None, list[ErrorDetails]]:

@@ -14,6 +14,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from rpscli.analyses.demand import Request
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.errors import RecordError
@@ -167,9 +168,17 @@ def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
     return RecordRequest(record.source, folder, record.vertical, record.dt, record.units, pair)
 
 
+def unjudged(given: Mapping[str, Any]) -> list[str]:
+    """Limits of the base that a system without its building is not judged by, as is said."""
+    if given.get("superstructure.storeys") != 0:
+        return []
+    return [f"limits.{q.name}" for q in LIMITED if "superstructure" in q.needs]
+
+
 def resolved(plan: Plan, values: Sequence[Any]) -> Case:
     """The case with values at the varied keys."""
     given = dict(zip(plan.keys, values, strict=True))
+    given |= dict.fromkeys(unjudged(given))
     return case_from_mapping(plan.base, plan.base_name, Path(plan.base_folder), given, label="vary")
 
 

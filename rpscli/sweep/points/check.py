@@ -27,6 +27,7 @@ from rpscli.sweep.evaluation.context import (
     record_request,
     resolved,
     system_of,
+    unjudged,
 )
 from rpscli.sweep.evaluation.points import Plan, RecordRequest
 from rpscli.sweep.points.combinations import Change, Combinations
@@ -204,6 +205,8 @@ def _placed(
 ) -> list[str]:
     """The lines of a message, at the places where the study wrote the values."""
     given = [Override(*item) for item in zip(plan.keys, values, places, strict=True)]
+    without = unjudged(dict(zip(plan.keys, values, strict=True)))
+    given += [Override(limit, None, places[-1]) for limit in without]
     try:
         case_from_mapping(study.base, plan.base_name, Folder(plan.base_folder), given)
     except CaseError as placed:

@@ -90,12 +90,12 @@ def estimated_seconds(layout: StudyPoints, context: StudyContext, jobs: int) -> 
     probes = list(batches(layout, numbers, jobs=1))
     began = time.perf_counter()
     for batch in probes:
-        _seconds(context, batch[:1])  # reads records, loads kernels
+        alone = _seconds(context, batch[:1])  # reads records, loads kernels
+        if alone > 2.0 * LONGEST_PROBING:  # of which loading is little
+            return alone * count / min(jobs, count)
         if time.perf_counter() - began > LONGEST_PROBING:
             break
     alone = _seconds(context, probes[0][:1])
-    if alone > LONGEST_PROBING:
-        return alone * count / min(jobs, count)
     affordable = 1 + int(LONGEST_PROBING / alone)
     spent, points = 0.0, 0
     for batch in probes:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.study.observed import Observed, comparable
+from rpscli.errors import beginning
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, clustered, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY
@@ -94,7 +95,8 @@ def unpaired(layout: StudyPoints) -> Iterator[str]:
     elif not len(observed_pairs(layout, observed).points):
         yield (
             f"no line of {observed.name} has a record and a system of the study, such as"
-            f" {observed.rows[0].record!r}; records go by their sources or the names of files"
+            f" {beginning(observed.rows[0].record)}; records go by their sources or the names of"
+            " files"
         )
 
 
