@@ -11,6 +11,7 @@ from rpscli.commands.report_case import Earlier, PageDone, subject_words
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
     begin,
     compute,
@@ -76,7 +77,8 @@ def study_page(
         # What is in a folder is shown, not added to.
         begin(run, terminal, report_only=place is not None)
         compute("report", run, terminal)
-        found = run.collect(folder, look)
+        with passing_time("making reports", terminal):
+            found = run.collect(folder, look)
     notes = [*study.warnings, *found.notes]
     error = run.error(found)
     document = {

@@ -21,6 +21,7 @@ from rpscli.commands.shell.options import (
     run_options,
 )
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
     SweepChoices,
     begin,
@@ -87,7 +88,8 @@ def command(
         run = given.opened(store, conditions=conditions, **chosen.of_run)
         begin(run, terminal, report_only=chosen.report_only)
         finish = compute("sweep", run, terminal)
-        found = run.collect(place, look)
+        with passing_time("making reports", terminal):
+            found = run.collect(place, look)
         error = run.error(found)
         folder.add_all(found.files.items())
         store.require()

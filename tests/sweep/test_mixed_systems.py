@@ -57,6 +57,18 @@ def test_what_a_system_does_not_have_is_empty_and_not_judged(mixed: dict[str, An
     ]
 
 
+def test_limits_of_the_base_are_for_systems_with_its_building(
+    mixed: dict[str, Any], workplace: Path
+) -> None:
+    base = (workplace / "base.yaml").read_text(encoding="utf-8")
+    limited = f"{base}limits: {{rotation_ratio: 0.5, drift_ratio: 0.004}}\n"
+    (workplace / "base.yaml").write_text(limited, encoding="utf-8")
+    result = load_study({key: mixed[key] for key in mixed if key != "limits"}).run()
+    judged = zip(result.verdicts["superstructure.storeys"], result.verdicts["limit"], strict=True)
+    assert sorted(set(judged)) == [(0, "rotation_ratio"), (3, "drift_ratio"), (3, "rotation_ratio")]
+    assert any("1 of 2 systems are not judged by it" in note for note in result.notes)
+
+
 def test_what_no_system_has_is_refused(mixed: dict[str, Any]) -> None:
     mixed = {**mixed, "vary": [{"superstructure.storeys": [0]}]}
     with pytest.raises(CaseError, match=r"drift_ratio needs .*, which no system of the study has"):
