@@ -118,7 +118,12 @@ def command(
     file = place or RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()
-    signed = {"project": project, "made by": author, "checked by": checker}
+    own = done.signed
+    signed = {
+        "project": project or own.project,
+        "made by": author or own.author,
+        "checked by": checker or own.checker,
+    }
     _write(file, name, done, signed, terminal)
     leave(done.error)
 

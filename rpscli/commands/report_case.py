@@ -33,6 +33,7 @@ from rpscli.report.table import Table
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.case.conditions import Condition
+    from rpscli.case.schema.case_file import DocumentSection
     from rpscli.errors import RpsError
 
 SUMMARY = "summary.json"
@@ -144,13 +145,14 @@ def _shortened(path: Path) -> Path:
 
 @dataclass(frozen=True)
 class PageDone:
-    """A page's title and sections, the document that says what was found, and its error."""
+    """A page's title and sections, what was found for JSON, its error, and who answers for it."""
 
     title: str
     subtitle: str
     sections: Sequence[Section]
     document: dict[str, Any]
     error: RpsError | None
+    signed: DocumentSection
 
 
 def case_page(
@@ -177,7 +179,8 @@ def case_page(
     if case.record is None and motions[0].record is None:
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
         sections = made(case.warnings)
-        return PageDone(case.title, "Structure", sections, concluded(document, None), None)
+        document = concluded(document, None)
+        return PageDone(case.title, "Structure", sections, document, None, case.file.document)
     # A place for the files, which are not written there.
     requests = history_requests([given], motions, OutputRequest(Path(), force=True))
     announce_compilation(terminal)
@@ -198,7 +201,8 @@ def case_page(
         grounds = [request.ground for request in requests]
         several = Several(grounds, found.verdicts, [*set_tables([found])][1:], history)
         title, warnings = f"Time histories under {len(requests)} records", document["warnings"]
-        return PageDone(case.title, title, made(warnings, several, stored), document, error)
+        sections = made(warnings, several, stored)
+        return PageDone(case.title, title, sections, document, error, case.file.document)
     (request,) = requests
     done, result = compute(request, conditions, page_look(look), terminal)
     beside = look_beside(done, result)
@@ -212,6 +216,7 @@ def case_page(
         made(warnings, history, stored),
         done.document,
         done.error,
+        case.file.document,
     )
 
 

@@ -58,4 +58,5 @@ def design_page(
         [f"Of {title}."],
     )
     subtitle = f"Design: {len(answer.places)} looked at"
-    return PageDone(study.title, subtitle, sections, done.document, done.error)
+    signed = answer.task.file.document
+    return PageDone(study.title, subtitle, sections, done.document, done.error, signed)

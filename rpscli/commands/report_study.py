@@ -95,6 +95,7 @@ def study_page(
         _sections(study, run, found, notes, folder, look),
         concluded(document, error),
         error,
+        layout.study.file.document,
     )
 
 

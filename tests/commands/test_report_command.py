@@ -244,6 +244,9 @@ def test_whoever_signs_is_named_or_signs_on_paper(rps: Invoke) -> None:
     text = text_of("out.html")
     assert "project 17 &lt;b&gt; made by date, signature: checked by C. Hecker" in text
     assert 'class="signed"' in Path("out.html").read_text(encoding="utf-8")
+    own = "document={project: '18', author: A. Uthor, checker: C}"
+    rps("report", "small.yaml", "-o", "own.html", "--set", own, "--checker", "D")
+    assert "project 18 made by A. Uthor date, signature: checked by D" in text_of("own.html")
     rps("report", "small.yaml", "-o", "bare.html")
     assert 'class="signed paper"' in Path("bare.html").read_text(encoding="utf-8")
 

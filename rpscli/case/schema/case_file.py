@@ -309,6 +309,17 @@ class AnalysisSection(Section):
     """uplifts, impacts and phase changes after which the analysis gives up"""
 
 
+class DocumentSection(Section):
+    """Who answers for the page of `rps report`, whose options come before these."""
+
+    project: Text | None = None
+    """name or number of the project"""
+    author: Text | None = None
+    """who made the page and signs it"""
+    checker: Text | None = None
+    """who checks the page and signs it"""
+
+
 class CaseFile(Section):
     """A case of rps: one structure, its ground motion, and how to analyse it."""
 
@@ -328,3 +339,5 @@ class CaseFile(Section):
     """how to compute"""
     limits: LimitsSection = LimitsSection()
     """exceeding one of them ends with exit code 10"""
+    document: DocumentSection = DocumentSection()
+    """who answers for the page of `rps report`"""

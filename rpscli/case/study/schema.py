@@ -24,7 +24,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema
 
-from rpscli.case.schema.case_file import FORMAT_VERSION, PositiveRatio, Time
+from rpscli.case.schema.case_file import FORMAT_VERSION, DocumentSection, PositiveRatio, Time
 from rpscli.case.schema.fields import (
     CHECKED_BY_ITSELF,
     DampingRatio,
@@ -283,6 +283,8 @@ class StudyParts(Section):
     """small perturbations around every point"""
     limits: LimitsSection | None = None
     """judge the study in place of those of its base; exceeded: exit code 10"""
+    document: DocumentSection = DocumentSection()
+    """who answers for the page of `rps report`"""
 
 
 class StudyFile(StudyParts):
