@@ -167,7 +167,7 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
         "confirmation": {f"{which}?": [_VERDICT] for which in ("best", "robust")},
     },
     "compare": {
-        "tolerance": float, "compared": int, "only_a": [str], "only_b": [str], **_TOLD, **_ENDED,
+        "tolerance": float, "compared": int, "only_a": [str], "only_b": [str], **_ENDED,
         **{key: {"source": str, "versions": dict[str, str | None], **_TOLD} for key in "ab"},
         "inputs": [{"name": str}], "versions": [{"name": str}],
         "results": [{
