@@ -128,7 +128,7 @@ def test_a_result_cannot_be_changed_in_place() -> None:
         above.shapes[0, 0] = 0.0
     assert rpscli.demand(STRUCTURE, RECORD).max_base_shear == before
     with pytest.raises(ValueError, match="read-only"):
-        pickled(HISTORY).history["max_theta"] = 0.0
+        pickled(history()).history["max_theta"] = 0.0
     digest = RECORD.digest
     again = pickled(RECORD)
     with pytest.raises(ValueError, match="read-only"):
