@@ -10,7 +10,7 @@ import numpy as np
 
 from rpscli.analyses.kernels.history import Request as HistoryRequest
 from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
-from rpscli.analyses.kernels.systems import longest_free_vibration, stacked_systems
+from rpscli.analyses.kernels.systems import longest_free_vibration, paired_systems, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.frozen import frozen
@@ -41,9 +41,10 @@ def histories(
 ) -> Iterator[tuple[list[int], Histories]]:
     """Numbers of the requests with one number of storeys, and their results; without the GIL."""
     # From `worth_lanes` on they run side by side; no result depends on the others, or on the order.
-    groups: dict[int, list[int]] = {}
+    groups: dict[tuple[int, bool], list[int]] = {}
     for i, request in enumerate(requests):
-        groups.setdefault(request.structure.storeys, []).append(i)
+        pair = request.motion.y is not None
+        groups.setdefault((request.structure.storeys, pair), []).append(i)
     for members in groups.values():
         yield members, _run([requests[i] for i in members], worth_lanes)
 
@@ -94,14 +95,15 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
             motion = _number(motions, tuple(map(id, r.motion.named.values())), r.motion)
             known[id(r.motion)] = motion
         given.append(HistoryRequest(system, motion, r.scale))
-    stacked = stacked_systems([system for _, system in systems.values()])
-    rates = stacked["uplifted_rate"].tolist()
+    pairs = requests[0].motion.y is not None
+    stacked = (paired_systems if pairs else stacked_systems)([s for _, s in systems.values()])
+    rates = stacked["uplifted_rate"].tolist()[:: 2 if pairs else 1]
     shaken = [motion for _, motion in motions.values()]
     durations = [motion.duration for motion in shaken]
     for r, history in zip(requests, given, strict=True):
         seconds = durations[history.motion] + longest_free_vibration(r.structure, r.settings)
         refuse_steps(seconds * rates[history.system], r.structure)
-    run = run_of(stacked, shaken, given)
+    run = run_of(stacked, shaken, given, pairs=pairs)
     follow(run, LANES if len(requests) >= worth_lanes else 1)
     return Histories([st for _, st in structures.values()], of_structure, frozen(run.results))
 

@@ -19,10 +19,17 @@ from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.core.records import Record, record_type
 from rpscli.physics.planar import geometry, state
+from rpscli.physics.spatial.state import RESULT_3D
 from rpscli.shown import Shown, with_unit
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
+
+
+def _plain(left: Record) -> np.dtype[Any]:
+    """The type of what histories left behind, of one component or of pairs."""
+    pairs = "azimuth" in (left.dtype.names or ())
+    return record_type(RESULT_3D if pairs else state.RESULT)
 
 
 class Histories:
@@ -35,14 +42,14 @@ class Histories:
         self, structures: Sequence[PodiumStructure], number: Sequence[int], left: Record
     ) -> None:
         # Fields by attribute, which records of the kernels have, take numpy ten times as long.
-        self.left = left.view(record_type(state.RESULT), np.ndarray)
+        self.left = left.view(_plain(left), np.ndarray)
         self.structures, self.number = structures, np.array(number)
         self.storeys = structures[0].storeys
 
     @classmethod
     def of_one(cls, structure: PodiumStructure, history: Record) -> Histories:
         """A batch of one history."""
-        return cls([structure], [0], np.array([history], dtype=record_type(state.RESULT)))
+        return cls([structure], [0], np.array([history], dtype=_plain(history)))
 
     @property
     def outcomes(self) -> NDArray[np.str_]:

@@ -42,6 +42,7 @@ EventKind = Literal[
     "tendon_yielding",
     "tendon_slack",
     "tendon_taut",
+    "pass",
 ]
 
 EVENT_NAMES: tuple[EventKind, ...] = get_args(EventKind)

@@ -17,6 +17,7 @@ from rpscli.analyses.kernels.systems import (
     longest_free_vibration,
     most_seconds,
     most_steps,
+    paired_systems,
     stacked_systems,
     steps_a_second,
 )
@@ -26,6 +27,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
 from rpscli.physics.planar.run import Output, Run
 from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
+from rpscli.physics.spatial.state import EVENT_3D, RESULT_3D, SAMPLE_3D
 from rpscli.records.ground_motion import MotionComponents
 
 MOST_NUMBERS = 1e9
@@ -54,11 +56,15 @@ def run_of(
     motions: Sequence[MotionComponents],
     requests: Sequence[Request],
     *,
+    pairs: bool = False,
     rows: int = 0,
     events: int = 0,
     finer: int = 1,
 ) -> Run:
-    """What the kernel needs, with room for results, and rows and events of the first history."""
+    """What the kernel needs, with room for results, and rows and events of the first history.
+
+    With `pairs` all motions have two horizontal components, and systems are `paired_systems`.
+    """
     first = systems.view(np.ndarray)
     n, devices = int(first["n"][0]), int(first["devices"].max())
     starts = [0, *accumulate(motion.samples.size for motion in motions)]
@@ -66,46 +72,64 @@ def run_of(
     for motion, start in zip(motions, starts, strict=False):
         up = motion.row("vertical")
         above = NO_RECORD if up is None else start + up * motion.npts
-        placed.append((start, above, motion.npts, motion.dt))
+        second = NO_RECORD if motion.y is None else start + motion.npts
+        placed.append((start, second, above, motion.npts, motion.dt))
     given = np.zeros(len(requests), record_type(REQUEST))
     for row, (system, number, scale) in zip(given, requests, strict=True):
         row["system"], row["scale"] = system, scale
-        row["record"], row["vertical"], row["npts"], row["dt"] = placed[number]
+        place = "record", "record_y", "vertical", "npts", "dt"
+        for name, value in zip(place, placed[number], strict=True):
+            row[name] = value
+    result = RESULT_3D if pairs else RESULT
     return Run(
         systems=systems,
         requests=given.view(np.recarray),
         acceleration=np.concatenate([motion.samples.ravel() for motion in motions]),
-        results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
-        output=_output(n, devices, rows, events, finer) if rows else _no_output(n, devices),
+        results=np.zeros(len(requests), record_type(result)).view(np.recarray),
+        output=_output(n, devices, rows, events, finer, pairs=pairs)
+        if rows
+        else _no_output(n, devices, pairs),
     )
 
 
-def _output(storeys: int, devices: int, rows: int, events: int, finer: int = 1) -> Output:
+def _output(
+    storeys: int, devices: int, rows: int, events: int, finer: int = 1, *, pairs: bool = False
+) -> Output:
     return Output(
-        samples=records(SAMPLE, count=rows),
-        floors=np.empty((rows, 2, storeys)),
-        log=records(EVENT, count=events),
+        samples=records(SAMPLE_3D if pairs else SAMPLE, count=rows),
+        floors=np.empty((rows, 2, 2 * storeys if pairs else storeys)),
+        log=records(EVENT_3D if pairs else EVENT, count=events),
         devices=np.empty((rows, 4, devices)),
         finer=finer,
     )
 
 
 @lru_cache
-def _no_output(storeys: int, devices: int) -> Output:
-    return _output(storeys, devices, 0, 0)
+def _no_output(storeys: int, devices: int, pairs: bool) -> Output:  # noqa: FBT001
+    return _output(storeys, devices, 0, 0, pairs=pairs)
 
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
-    """Follow every history of a run; writes `run.results`."""
-    from rpscli.physics.planar.driver import integrate
+    """Follow every history of a run, of one component or of pairs; writes `run.results`."""
+    equipped = bool(run.systems.view(np.ndarray)["devices"].any())
+    pairs = "azimuth" in (run.results.dtype.names or ())
+    with compiled(equipped=equipped, pairs=pairs):
+        if pairs:
+            from rpscli.physics.spatial.driver import integrate_pairs
 
-    with compiled(equipped=bool(run.systems.view(np.ndarray)["devices"].any())):
-        integrate(run, lanes, interruptible=interruptible)
+            integrate_pairs(run, lanes, interruptible=interruptible)
+        else:
+            from rpscli.physics.planar.driver import integrate
+
+            integrate(run, lanes, interruptible=interruptible)
 
 
 @dataclass(frozen=True, eq=False)
 class SampledHistory:
-    """A history with its samples and events, records of `physics.planar.state`."""
+    """A history with its samples and events, records of `physics.planar.state`.
+
+    Under two horizontal components all are records of `physics.spatial.state`.
+    """
 
     history: Record
     """A `state.RESULT`: what is left behind at the end."""
@@ -114,7 +138,8 @@ class SampledHistory:
     samples: Record
     """(intervals + 1,)."""
     floors: NDArray[np.float64]
-    """(intervals + 1, 2, n) displacements [m] and velocities [m/s] relative to the ground."""
+    """(intervals + 1, 2, n) displacements [m] and velocities [m/s] relative to the ground; of pairs
+    (intervals + 1, 2, 2 n), floors in x and behind them in y."""
     log: Record
     """(events,)."""
     devices: NDArray[np.float64]
@@ -186,13 +211,22 @@ def sampled_history(
     finer: int = 1,
 ) -> SampledHistory:
     """Run one history and keep everything, at so many even parts of each sampling interval."""
-    systems = stacked_systems([(structure, settings)])
+    pairs = motion.y is not None
+    systems = (paired_systems if pairs else stacked_systems)([(structure, settings)])
     refuse_endless(structure, settings, motion, finer)
     rows = longest_history(structure, settings, motion) * finer
     seconds = most_seconds(structure, settings, motion.duration)
     events = FIRST_LOG
     while True:
-        run = run_of(systems, [motion], [Request(0, 0)], rows=rows, events=events, finer=finer)
+        run = run_of(
+            systems,
+            [motion],
+            [Request(0, 0)],
+            pairs=pairs,
+            rows=rows,
+            events=events,
+            finer=finer,
+        )
         follow(run, lanes=1, interruptible=seconds > WORTH_A_THREAD)
         history = run.results[0]
         if (seen := int(history.events.sum())) <= events:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -38,6 +39,36 @@ def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings
     if len(systems) == 1:
         return _system(*systems[0])
     return _stacked(tuple(systems))
+
+
+def paired_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
+    """Of each structure the system in x and behind it that in y, (2 S,).
+
+    Raises
+    ------
+    ValueError
+        If a structure can be followed in one plane only.
+    """
+    both = []
+    for structure, settings in systems:
+        if why := structure.planar_only or (
+            "devices are not followed" if structure.devices else ""
+        ):
+            raise ValueError(f"both horizontal components: {why}")
+        both += [(structure, settings), (_across(structure), settings)]
+    pairs = _stacked(tuple(both))
+    rows = pairs.view(_PLAIN, np.ndarray)
+    for name in ("uplifted_rate", "contact_rate"):  # one length of step for both
+        rows[name] = np.repeat(rows[name].reshape(-1, 2).max(axis=1), 2)
+    return pairs
+
+
+@lru_cache(SYSTEMS_KEPT)
+def _across(structure: PodiumStructure) -> PodiumStructure:
+    """What vibrates in y."""
+    if structure.superstructure_y is None:
+        return structure
+    return replace(structure, superstructure=structure.superstructure_y, superstructure_y=None)
 
 
 @lru_cache(STACKS_KEPT)
@@ -88,6 +119,8 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["floors_mass"] = structure.superstructure_mass
     record["gravity"] = structure.gravity
     record["restitution"] = structure.restitution
+    record["inertia_axial"] = b.inertia_ratio_axial
+    record["contact_time"] = structure.impact_law.contact_time
     record["floors_jump"] = structure.impact_law.floors_jump
     fill_devices(record, structure)
 

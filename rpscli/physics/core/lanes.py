@@ -22,13 +22,13 @@ AHEAD = 16
 
 
 @compiled
-def ground_in(s: Record, l: int, acceleration: Floats, interval: int) -> Ground:
-    """How the ground moves in an interval of the lane's record."""
+def ground_in(s: Record, l: int, acceleration: Floats, interval: int, record: int) -> Ground:
+    """How the ground moves in an interval, along the direction of one of the lane's records."""
     gravity, scale = s.gravity[l], s.scale[l]
     if interval + 1 >= s.npts[l]:
         return Ground(0.0, 0.0, gravity, 0.0)
     rate = s.sampling_rate[l]
-    i = s.record[l] + interval
+    i = record + interval
     prefetch(acceleration, i + AHEAD)
     a_g, end = scale * acceleration[i], scale * acceleration[i + 1]
     slope = (end - a_g) * rate
@@ -43,7 +43,7 @@ def ground_in(s: Record, l: int, acceleration: Floats, interval: int) -> Ground:
 def set_ground(s: Record, l: int, acceleration: Floats) -> None:
     """Set the acceleration of the interval that begins."""
     interval = s.interval[l]
-    ground = ground_in(s, l, acceleration, interval)
+    ground = ground_in(s, l, acceleration, interval, s.record[l])
     s.interval_start[l], s.time[l] = interval * s.dt[l], 0.0
     s.a_g[l], s.a_g_slope[l] = ground.a_g, ground.a_g_slope
     s.g_up[l], s.g_up_slope[l] = ground.g_up, ground.g_up_slope
@@ -51,15 +51,22 @@ def set_ground(s: Record, l: int, acceleration: Floats) -> None:
 
 @compiled
 def set_ground_of_block(
-    s: Record, l: int, block: Record, acceleration: Floats, h: float, each: int, steps: int
+    s: Record,
+    l: int,
+    block: Record,
+    acceleration: Floats,
+    h: float,
+    each: int,
+    steps: int,
+    record: int,
 ) -> None:
-    """Write the ground's motion at the instants of a block of steps of length h [h s].
+    """Write the ground's motion, of one of the lane's records, at the instants of a block [h s].
 
     The last instant belongs to the step before it: the ground acceleration may jump there.
     """
     i = s.interval[l]
     if each == 1 and s.time[l] == 0.0 and i + 1 < s.npts[l]:
-        start = s.record[l] + i
+        start = record + i
         copy_samples(s, l, acceleration, block.a_g, block.a_g_slope, start, steps, 0.0)
         if s.vertical[l] == NO_RECORD:
             for k in range(INSTANTS):
@@ -70,7 +77,7 @@ def set_ground_of_block(
                 s, l, acceleration, block.g_up, block.g_up_slope, start, steps, s.gravity[l]
             )
     else:
-        divide_intervals(s, l, block, acceleration, h, each, steps)
+        divide_intervals(s, l, block, acceleration, h, each, steps, record)
 
 
 @compiled
@@ -98,16 +105,23 @@ def copy_samples(
 
 @compiled
 def divide_intervals(
-    s: Record, l: int, block: Record, acceleration: Floats, h: float, each: int, steps: int
+    s: Record,
+    l: int,
+    block: Record,
+    acceleration: Floats,
+    h: float,
+    each: int,
+    steps: int,
+    record: int,
 ) -> None:
     """The same where a step does not lead from sample to sample."""
     interval, time = s.interval[l], s.time[l]
-    ground = ground_in(s, l, acceleration, interval)
+    ground = ground_in(s, l, acceleration, interval, record)
     to_sample = each
     for k in range(INSTANTS):
         if to_sample == 0:
             interval, time, to_sample = interval + 1, 0.0, each
-            ground = ground_in(s, l, acceleration, interval)
+            ground = ground_in(s, l, acceleration, interval, record)
         block.a_g[k] = ground.a_g + ground.a_g_slope * time
         block.a_g_slope[k] = ground.a_g_slope
         block.g_up[k] = ground.g_up + ground.g_up_slope * time
@@ -139,8 +153,12 @@ def log_event(
     before: float,
     after: float,
     lost: float,
-) -> None:
-    """Count an event, and log it if there is room (the caller sees from the counts if not)."""
+) -> int:
+    """Count an event, and log it if there is room (the caller sees from the counts if not).
+
+    Returns its row in the log, or -1.
+    """
+    row = -1
     if log.shape[0] > 0:
         row = 0
         for i in range(s.events.shape[1]):
@@ -150,7 +168,10 @@ def log_event(
             entry.time, entry.kind, entry.theta = time, kind, theta
             entry.theta_dot_before, entry.theta_dot_after = before, after
             entry.energy_lost = lost
+        else:
+            row = -1
     s.events[l, kind] += 1
+    return row
 
 
 @compiled

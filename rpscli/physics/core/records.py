@@ -71,7 +71,9 @@ SIZES = {
     "lanes": LANES + PADDING,
     "modes": MOST_STOREYS + SPREAD,
     "floors": MOST_STOREYS + PADDING,
+    "rows": 2 * MOST_STOREYS + SPREAD,  # modes in x, then in y
     "terms": TERMS,
+    "positions": TERMS + 1,
     "instants": INSTANTS,
     "ahead": INSTANTS + PADDING,
 }
@@ -80,7 +82,7 @@ SIZES = {
 
 def _place(field: Field) -> tuple[bool, bool, int, str]:
     """Rows of lanes or instants first: each begins with a line of the cache."""
-    names = field.sizes.split()
+    names = field.sizes.replace("rows", "modes").split()
     return names in ([], ["modes"]), "modes" in names, len(names), field.sizes
 
 
@@ -120,14 +122,14 @@ def records(fields: tuple[Field, ...], count: int = 1) -> Record:
 _kept = local()
 
 
-def scratch(fields: tuple[Field, ...]) -> Record:
-    """An array of one record that this thread keeps, with whatever its last use left there.
+def scratch(fields: tuple[Field, ...], count: int = 1) -> Record:
+    """An array of records that this thread keeps, with whatever its last use left there.
 
     A state is 1.5 MB: made anew for each short history, it would take as long as the history.
     """
-    kept, table = vars(_kept), str(id(fields))  # tables live as long as the program
+    kept, table = vars(_kept), f"{id(fields)} {count}"  # tables live as long as the program
     if table not in kept:
-        kept[table] = records(fields)
+        kept[table] = records(fields, count)
     return kept[table]
 
 

@@ -10,6 +10,7 @@ does not depend on its neighbours.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from threading import Thread, current_thread, main_thread
 
 import numpy as np
@@ -75,10 +76,23 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
     block, storeys, plain = scratch(BLOCK), systems["n"][0], state.view(np.ndarray)
     plain["n"], plain["lanes"], plain["stop"] = storeys, lanes, 0
     block.view(np.ndarray)["n"] = storeys
+    run_interruptible(integrate_lanes, state, block, run, interruptible=interruptible)
+
+
+def run_interruptible(
+    lanes_of: Callable[[Record, Record, Run], None],
+    state: Record,
+    block: Record,
+    run: Run,
+    *,
+    interruptible: bool,
+) -> None:
+    """Call a kernel, in another thread if it is to hear Ctrl-C."""
     if not interruptible or current_thread() is not main_thread():
-        integrate_lanes(state, block, run)
+        lanes_of(state, block, run)
         return
-    worker = Thread(target=integrate_lanes, args=(state, block, run), daemon=True)
+    plain = state.view(np.ndarray)
+    worker = Thread(target=lanes_of, args=(state, block, run), daemon=True)
     worker.start()
     try:
         while worker.is_alive():
@@ -297,6 +311,13 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
         released = system.initial_rotation != 0.0 or s.max_theta[l] > 0.0
         moved = released or s.events[l, UPLIFT] > 0
         s.outcome[l] = SURVIVED if moved else AT_REST
+    leave_result(s, l, result)
+    leave_devices(s, l, result)
+
+
+@compiled
+def leave_result(s: Record, l: int, result: Record) -> None:
+    """Write what both kernels know of the end."""
     result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
     result.steps, result.creating_impacts = int(s.steps[l]), s.creating_impacts[l]
     result.time = s.interval_start[l] + s.time[l]
@@ -314,4 +335,3 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
         result.floor_acceleration[i] = s.floor_acceleration[l, i]
     for i in range(EVENT_KINDS):
         result.events[i] = s.events[l, i]
-    leave_devices(s, l, result)

@@ -348,10 +348,26 @@ def contact_measures(
     Where no mass stands on the columns their upper ends demand nothing: friction 0, normal force
     infinite.
     """
-    upper, lower = cap_beam + floors, cap_beam + floors + columns
     shear_top, shear_bottom, normal_top, normal_bottom = contact_forces(
         cap_beam, floors, columns, across, upwards, V, a_g, g_up, pull
     )
+    return measures_of(
+        cap_beam + floors, columns, gravity, shear_top, shear_bottom, normal_top, normal_bottom
+    )
+
+
+@compiled
+def measures_of(
+    upper: float,
+    columns: float,
+    gravity: float,
+    shear_top: float,
+    shear_bottom: float,
+    normal_top: float,
+    normal_bottom: float,
+) -> Measures:
+    """The same of forces [N], with the masses above the columns and of the columns [kg]."""
+    lower = upper + columns
     loaded, demand = upper > 0.0, friction(shear_top, normal_top)
     light_top = normal_top / (upper * gravity if loaded else 1.0)
     return (

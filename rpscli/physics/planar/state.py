@@ -51,8 +51,9 @@ FULL_CONTACT, ROLLING, ROCKING, STUCK = range(4)
     TENDON_YIELDING,
     TENDON_SLACK,
     TENDON_TAUT,
-) = range(14)
-EVENT_KINDS = 14
+    PASS,  # of the upright position, by columns that are free to tilt to any side
+) = range(15)
+EVENT_KINDS = 15
 NO_EVENT = -1
 
 # How a history ended; it has not while RUNNING.
@@ -94,6 +95,8 @@ SYSTEM = (
     Field("rolling", "5", "-", "p, q, c, u0, v0 of `geometry.Phase`"),
     Field("rocking", "5", "-", "the same beyond beta"),
     Field("Io", "", "-", "I_o/(m_c R^2)"),
+    Field("inertia_axial", "", "-", "I_3/(m_c R^2), about a column's own axis"),
+    Field("contact_time", "", "s", "t_c, what a pass near upright is compared with"),
     Field("gamma", "", "-", "m_b/(N m_c)"),
     Field("eta", "", "-", "M_tot/m_b"),
     Field("columns_mass", "", "kg", "N m_c"),
@@ -122,6 +125,7 @@ SYSTEM = (
     Field("bounces", "", "-", "what bounces left out add to the floors' velocity, over u_b'"),
     Field("max_events", "", WHOLE, "more of them are a failure"),
     Field("initial_rotation", "", "rad", "theta at the start, released from rest"),
+    Field("initial_turning", "", "rad/s", "rate of its azimuth then, for tests of free motion"),
     Field("free_vibration", "", "s", "time after the record, at most"),
     Field("until_rest", "", WHOLE, "1 if it may end earlier, with nothing new to come"),
     Field("columns", "", "-", "N"),
@@ -134,6 +138,7 @@ SYSTEM = (
 REQUEST = (
     Field("system", "", WHOLE, "number of the structure"),
     Field("record", "", WHOLE, "offset of the record among all"),
+    Field("record_y", "", WHOLE, "offset of the second horizontal record, or NO_RECORD"),
     Field("npts", "", WHOLE, "its samples"),
     Field("vertical", "", WHOLE, "offset of the vertical record, or NO_RECORD"),
     Field("scale", "", "-", "factor on both"),

@@ -238,7 +238,7 @@ def follow_full_contact(
     side, over, fine = 0.0, False, False
     while side == 0.0 and not over and s.stop == 0:
         plan = plan_block(s, l, system, block, FINE if fine else 1)
-        set_ground_of_block(s, l, block, acceleration, plan.h, plan.each, plan.steps)
+        set_ground_of_block(s, l, block, acceleration, plan.h, plan.each, plan.steps, s.record[l])
         follow_modes(block, system, plan.which)
         taken, fraction, side, alarm = search_block(block, margin, plan, 0.0 if fine else NEAR)
         observe_block(s, l, system, block, pull, plan.h, taken)

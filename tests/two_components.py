@@ -1,0 +1,151 @@
+"""Structures and histories under two horizontal components, for the tests of the kernel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from paper_structures import Array, ground
+
+from rpscli.analyses.kernels.history import Request, follow, longest_history, run_of
+from rpscli.analyses.kernels.systems import paired_systems
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.bearing import Bearing
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
+from rpscli.physics.core.records import Record
+from rpscli.physics.planar.state import PASS, RECONTACT
+from rpscli.records.ground_motion import MotionComponents
+
+COLUMNS_MASS = 1e4
+ROOM = 20_000
+"""Events that a log has room for."""
+
+
+def frame(
+    storeys: int = 0,
+    eta: float = 0.0,
+    period: float = 0.3,
+    *,
+    gamma: float = 10.0,
+    tan_alpha: float = 0.15,
+    tan_wedge: float = 0.0,
+    rho: float = 0.0,
+    contact_time: float = 0.0,
+    factor: float = 1.0,
+    axial: float = np.nan,
+    period_y: float = 0.0,
+    devices: tuple[Device, ...] = (),
+) -> PodiumStructure:
+    """R 1.5 m, equal floors on uniform storeys, 5 % in modes 1 and 2, the flexible law."""
+    bearing = Bearing(1.5, tan_alpha, max(tan_wedge, tan_alpha), rho, inertia_ratio_axial=axial)
+
+    def building(seconds: float) -> Superstructure:
+        masses = np.full(storeys, COLUMNS_MASS * gamma * eta / storeys)
+        stiffnesses = profile_stiffnesses(masses, seconds, "uniform")
+        return Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
+
+    return PodiumStructure(
+        bearing,
+        COLUMNS_MASS,
+        COLUMNS_MASS * gamma,
+        building(period) if storeys else None,
+        ImpactLaw("flexible", factor=factor, contact_time=contact_time),
+        superstructure_y=building(period_y) if period_y else None,
+        devices=devices,
+    )
+
+
+def pair(x: Array, y: Array, dt: float, up: Array | None = None) -> MotionComponents:
+    """Both horizontal components, and perhaps the vertical one [m/s2]."""
+    vertical = None if up is None else ground(up, dt)
+    return MotionComponents(ground(x, dt), vertical, y=ground(y, dt))
+
+
+def two_pulses(seconds: float = 6.0, dt: float = 0.01) -> Array:
+    """(2, samples) at right angles, which overlap [m/s2]."""
+    t = np.arange(0.0, seconds, dt)
+
+    def pulse(period: float, middle: float) -> Array:
+        z = (np.pi * (t - middle) / period) ** 2
+        return np.asarray((1.0 - 2.0 * z) * np.exp(-z))
+
+    return np.array([3.5 * pulse(1.0, 1.2), 2.8 * pulse(0.7, 1.5)])
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """What one history leaves: its result, samples, floors and events."""
+
+    left: Record
+    samples: Record
+    floors: Array
+    log: Record
+
+    @property
+    def tilt(self) -> Array:
+        """X + iY at the samples [rad]."""
+        return np.asarray(self.samples.theta * np.exp(1j * self.samples.azimuth))
+
+    @property
+    def residual(self) -> float:
+        """Energy left over, over the input."""
+        left = self.left
+        spent = left.energy_damped + left.energy_lost + left.energy_stored
+        spent += left.device_energy.sum() + left.device_stored.sum()
+        return float((left.energy_input - spent) / left.energy_input)
+
+    def of_kind(self, kind: int) -> Record:
+        """Events of a kind."""
+        return self.log[self.log.kind == kind]
+
+    @property
+    def passes(self) -> Record:
+        """The closest approaches."""
+        return self.of_kind(PASS)
+
+    @property
+    def recontacts(self) -> Record:
+        """When it came to rest."""
+        return self.of_kind(RECONTACT)
+
+
+def followed(
+    structure: PodiumStructure,
+    motion: MotionComponents,
+    settings: TimeHistorySettings | None = None,
+    turning: float = 0.0,
+    finer: int = 1,
+) -> History:
+    """A history alone, of its record unless the settings say more; perhaps turning at its start."""
+    settings = settings or TimeHistorySettings(free_vibration=0.0)
+    systems = paired_systems([(structure, settings)]).copy()
+    systems["initial_turning"] = turning
+    rows = longest_history(structure, settings, motion) * finer
+    run = run_of(
+        systems, [motion], [Request(0, 0)], pairs=True, rows=rows, events=ROOM, finer=finer
+    )
+    follow(run, lanes=1)
+    left, output = run.results[0], run.output
+    kept = int(left.intervals) * finer + 1
+    return History(
+        left, output.samples[:kept], output.floors[:kept], output.log[: left.events.sum()]
+    )
+
+
+def released(
+    structure: PodiumStructure,
+    tilt: float,
+    across: float,
+    seconds: float,
+    *,
+    accuracy: float = 1.0,
+    dt: float = 0.01,
+) -> History:
+    """Let go at (tilt, 0) with (X', Y') = (0, across), on a ground at rest."""
+    settings = TimeHistorySettings(
+        free_vibration=seconds - dt, accuracy=accuracy, initial_rotation=tilt
+    )
+    still = np.zeros(2)
+    return followed(structure, pair(still, still, dt), settings, across / tilt)
