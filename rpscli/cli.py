@@ -32,6 +32,7 @@ COMMANDS = {
     "compare": Member(
         "rpscli.commands.compare", "what differs between two cases, studies or folders of results"
     ),
+    "export": Member("rpscli.commands.export", "a model that mujoco or OpenSees runs"),
     "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
     "completion": Member("rpscli.commands.completion", "let your shell complete what you type"),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),

@@ -175,6 +175,7 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
             "relative": float, "noise": float,
         }],
     },
+    "export": {"case": _SUBJECT, "program": str, "limits": str, **_TOLD, **_FILES},
     "report": {**_TOLD, **_FILES, **_ENDED},
     "record info": _RECORD,
     **{f"record {verb}": {**_RECORD, **_FILES} for verb in ("plot", "convert", "synth")},

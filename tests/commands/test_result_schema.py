@@ -61,6 +61,7 @@ RUNS: dict[str, tuple[tuple[str, ...], int]] = {
     "design": (("design", "design.yaml", *NONE), 0),
     "compare": (("compare", "small.yaml", "small.yaml"), 0),
     "compare of two": (("compare", "small.yaml", "frame.yaml", "--record", PULSE), 0),
+    "export": (("export", "small.yaml", "opensees"), 0),
     "report": (("report", "small.yaml", "-o", "page.html"), 0),
     "report of a study": (("report", "study.yaml", "-o", "study.html"), 10),
     "record info": (("record", "info", PULSE), 0),

@@ -1,25 +1,28 @@
-"""The podium as rigid bodies in contact, in a physics engine that knows none of our equations.
+"""Bodies in contact in mujoco: the model that `rps export` writes, run here, and what tests add.
 
-mujoco moves bodies under gravity, springs and contacts. Each column slides along x and z and turns
-about y; an arc of radius r on its end is a sphere of that radius around (+-B, +-(H - r)), and flat
-ends are four tiny spheres at the corners. Spheres touch the ground, a plane, or the underside of
-the cap beam, a box that slides along x and z; it does not tilt, as floors stay level in the model.
-Floors slide on the beam, coupled by springs and dampers. The ground motion is horizontal gravity.
-
-Nothing says when the storey lifts, what happens at an impact, or which law floors obey: contacts
-push and never pull, rub without sliding (friction 3), and give back no energy when they close.
+The model is text that can be read by itself; nothing of it comes from the equations of the program.
 What it cannot do: a sphere goes on rolling where an arc would end, so tilts must stay below beta.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rpscli.report.export.multibody import (
+    STIFF_FRICTION,
+    THICKNESS,
+    TIME_STEP,
+    Added,
+    Bodies,
+    description,
+    half_sizes,
+)
 
 from .crossings import Array
 from .devices import OracleDevice, RollingResistance
@@ -33,32 +36,11 @@ from .multibody_devices import (
 )
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
-TIME_STEP = 2e-5
-"""Contacts close within some of these [s]: far below the periods of a building."""
-
-CLOSING_STEPS = 4
-"""Time constant of a contact in steps (`solref`); below 2 the engine is unstable."""
-
 STEPS_TOGETHER = 10
 """Steps under one value of the ground acceleration, that of their middle."""
 
-CORNER = 1e-4
-"""Radius of the spheres at the corners of flat ends [m]: H is ten thousand times as large."""
-
 SETTLING = 0.02
 """Time at rest before the ground moves [s], in which contacts take up the weight."""
-
-SPACING = 6.0
-"""Distance between columns [m]; without influence, as the beam stays level."""
-
-THICKNESS = 0.5
-"""Of the cap beam [m]; without influence."""
-
-OPTIONS = 'integrator="implicitfast" cone="elliptic" tolerance="1e-12" iterations="100"'
-
-STIFF_FRICTION = 100
-"""Over that of the normal direction (`impratio`), so that contacts do not creep; where they resist
-rolling it is 1, or columns that come down after the others stay behind for good."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,13 +83,12 @@ def simulate(
 
     upright = None if vertical_period is None else Upright(system, vertical_period)
     text = description(
-        system,
+        _bodies(system),
         columns,
-        time_step,
-        closing_damping,
+        time_step=time_step,
+        closing_damping=closing_damping,
         level=level,
-        devices=devices,
-        upright=upright,
+        added=_added(system, columns, time_step, devices, upright),
     )
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
@@ -177,109 +158,31 @@ class Upright:
         return float(force / self.weights[0])
 
 
-def description(
-    system: OracleSystem,
-    columns: int,
-    time_step: float,
-    damping: float,
-    *,
-    level: bool,
-    devices: Sequence[OracleDevice] = (),
-    upright: Upright | None = None,
-) -> str:
-    """The structure in the engine's language."""
-    bodies = [_column(system, c, columns) for c in range(columns)]
-    bodies += [anchors(c, _place_of(c, columns)) for c in range(columns)]
-    if system.cap_beam_mass:
-        joint = beam_joint(devices, time_step)
-        bodies.append(_cap_beam(system, columns, joint, level=level, upright=upright))
-    stiff = 1 if any(isinstance(d, RollingResistance) for d in devices) else STIFF_FRICTION
+def _bodies(system: OracleSystem) -> Bodies:
+    return Bodies(*(getattr(system, name) for name in Bodies._fields))
+
+
+def _added(
+    system: OracleSystem, columns: int, time_step: float, devices: Sequence[OracleDevice],
+    upright: Upright | None,
+) -> Added:  # fmt: skip
+    """Devices, and floors on vertical springs.
+
+    Where contacts resist rolling friction is as stiff as the normal direction, or columns that come
+    down after the others stay behind for good.
+    """
     above = [upright.spring(i) for i in range(1, len(system.masses))] if upright else []
-    tendons = [*_storeys(system), *above, *springs(devices, columns, _half_sizes(system)[0])]
-    return f"""
-    <mujoco>
-      <compiler angle="radian" inertiafromgeom="false"/>
-      <option timestep="{time_step}" gravity="0 0 {-system.gravity}"
-              impratio="{stiff}" {OPTIONS}/>
-      <default>
-        <geom solref="{CLOSING_STEPS * time_step} {damping}" solimp="0.999 0.999 0.001"
-              {contact_friction(devices)} mass="0"/>
-      </default>
-      <worldbody>
-        <geom type="plane" size="0 0 1" contype="0" conaffinity="1"/>
-        {"".join(bodies)}
-      </worldbody>
-      <tendon>{"".join(tendons)}</tendon>
-    </mujoco>"""
-
-
-def _half_sizes(system: OracleSystem) -> tuple[float, float, float]:
-    """H, B and r [m]."""
-    height = system.R / math.hypot(1.0, system.tan_alpha)
-    return height, height * system.tan_alpha, 2.0 * system.rho * height
-
-
-def _column(system: OracleSystem, number: int, columns: int) -> str:
-    H, B, r = _half_sizes(system)
-    r = r or CORNER
-    mass = system.columns_mass / columns
-    spin = (system.inertia_ratio - 1.0) * mass * system.R**2
-    # the lower spheres meet the ground (bit 1), the upper ones the beam (bit 2)
-    ends = "".join(
-        f'<geom type="sphere" size="{r}" pos="{side * B} 0 {end * (H - r)}"'
-        f' contype="{1 if end < 0 else 2}" conaffinity="0"/>'
-        for end in (-1, 1)
-        for side in (-1, 1)
+    rolling = any(isinstance(device, RollingResistance) for device in devices)
+    return Added(
+        beam_joint(devices, time_step),
+        contact_friction(devices),
+        1 if rolling else STIFF_FRICTION,
+        anchors,
+        ducts,
+        lambda column, place: holds(column, place, -0.5 * THICKNESS),
+        upright.joint if upright else lambda _: "",
+        [*above, *springs(devices, columns, half_sizes(_bodies(system))[0])],
     )
-    return f"""
-    <body pos="{_place_of(number, columns)} 0 {H}">
-      <inertial pos="0 0 0" mass="{mass}" diaginertia="{spin} {spin} {spin}"/>
-      <joint name="across {number}" type="slide" axis="1 0 0"/>
-      <joint name="up {number}" type="slide" axis="0 0 1"/>
-      <joint name="tilt {number}" type="hinge" axis="0 1 0"/>
-      {ends}{ducts(number, H)}
-    </body>"""
-
-
-def _place_of(number: int, columns: int) -> float:
-    return (number - 0.5 * (columns - 1)) * SPACING
-
-
-def _cap_beam(
-    system: OracleSystem, columns: int, joint: str, *, level: bool, upright: Upright | None = None
-) -> str:
-    H, half, reach = _half_sizes(system)[0], 0.5 * THICKNESS, 0.5 * columns * SPACING
-    spin = system.cap_beam_mass * (half**2 + reach**2) / 3.0
-    # Rayleigh damping: what is left of C after the storeys' dampers acts against the beam.
-    floors = "".join(
-        f'<body><inertial pos="0 0 0" mass="{mass}" diaginertia="1 1 1"/>'
-        f'<joint name="floor {i}" type="slide" axis="1 0 0" damping="{damping}"'
-        f' stiffness="{0.0 if i else system.stiffnesses[0]}"/>'
-        f"{upright.joint(i) if upright else ''}</body>"
-        for i, (mass, damping) in enumerate(
-            zip(system.masses, system.damping_matrix.sum(axis=1), strict=True)
-        )
-    )
-    return f"""
-    <body pos="0 0 {2.0 * H + half}">
-      <inertial pos="0 0 0" mass="{system.cap_beam_mass}" diaginertia="{spin} {spin} {spin}"/>
-      <joint name="beam across" type="slide" axis="1 0 0" {joint}/>
-      <joint name="beam up" type="slide" axis="0 0 1"/>
-      {"" if level else '<joint name="beam tilt" type="hinge" axis="0 1 0"/>'}
-      <geom type="box" size="{reach} 1 {half}" contype="0" conaffinity="2"/>
-      {"".join(holds(c, _place_of(c, columns), -half) for c in range(columns))}
-      {floors}
-    </body>"""
-
-
-def _storeys(system: OracleSystem) -> Iterator[str]:
-    """Springs and dampers between the floors; those of the first storey are in its joint."""
-    for i in range(1, len(system.masses)):
-        yield (
-            f'<fixed stiffness="{system.stiffnesses[i]}"'
-            f' damping="{-system.damping_matrix[i - 1, i]}">'
-            f'<joint joint="floor {i}" coef="1"/><joint joint="floor {i - 1}" coef="-1"/></fixed>'
-        )
 
 
 def _addresses(model: Any, names: list[str]) -> list[int]:

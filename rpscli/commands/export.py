@@ -1,0 +1,117 @@
+"""`rps export`: a case under its record as files that another program runs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from rpscli.commands.inputs import (
+    RESULTS,
+    MotionRequest,
+    case_folder,
+    conclude,
+    load_motion,
+    motion_inputs,
+    motion_source,
+    read_case,
+    single_motions,
+)
+from rpscli.commands.shell.options import (
+    CaseRequest,
+    OutputRequest,
+    case_options,
+    output_options,
+    records_option,
+    terminal_options,
+)
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.errors import AnalysisError, UsageError
+
+if TYPE_CHECKING:
+    from rpscli.analyses.results import TimeHistoryResult
+
+RERUN = "rerun.py"
+PROGRAMS = {"mujoco": "model.xml", "opensees": "model.py"}
+BODIES = """\
+Columns are rigid bodies in contact with ground and cap beam, which close within 0.1 ms and give
+nothing back: impacts take what comes of that, as the law `flexible` with a loss of 1, whatever the
+case says (e = {:.4g}). Columns do not slide. Arcs never end: tilts must stay below {:.4g} rad."""
+
+
+@click.command("export")
+@case_options
+@click.argument("program", metavar="|".join(PROGRAMS), type=click.Choice([*PROGRAMS]))
+@records_option
+@output_options
+@terminal_options
+def command(
+    request: CaseRequest,
+    program: str,
+    records: tuple[str, ...],
+    output: OutputRequest,
+    terminal: Terminal,
+) -> None:
+    """CASE under its record as a model that another program runs.
+
+    mujoco: rigid bodies in contact, which know no impact law. opensees: floors on a spring that
+    uplifts, impacts as a damper. Beside the model stand timehistory.csv, the record with the
+    history that rps finds, and rerun.py, which runs the model and draws both; it needs openseespy
+    or mujoco, and matplotlib, but no rps.
+    """
+    from importlib import resources
+
+    from rpscli.analyses.timehistory import time_history
+    from rpscli.commands.shell.waiting import announce_compilation
+    from rpscli.report.table import csv_lines
+    from rpscli.report.tables.analyses import history_columns
+
+    given = read_case(request, terminal)
+    motions = list(single_motions(records, MotionRequest()))
+    if len(motions) > 1:
+        raise UsageError(f"--record: a model has one motion, not {len(motions)}; name one of them")
+    ground = load_motion(given.case, motions[0])
+    structure = given.case.structure
+    kept = {"podium.devices": structure.devices, "record.vertical": ground.vertical,
+            "record.y": ground.y}  # fmt: skip
+    if left := [key for key, what in kept.items() if what]:
+        raise UsageError(
+            f"{given.case.source}: {left[0]} is not exported; take it out, by --set {left[0]}=null,"
+            " so that both programs compute the same"
+        )
+    place = OutputRequest(output.place or RESULTS / given.case.name / "export" / program,
+                          output.force)  # fmt: skip
+    folder = case_folder(
+        given,
+        place,
+        "export",
+        record_source=motion_source(given.case, motions[0]),
+        program=program,
+        record=motion_inputs(ground),
+    )
+    announce_compilation(terminal)
+    result = time_history(structure, ground, given.case.analysis)
+    if result.failure:
+        raise AnalysisError(result.failure)
+    text, limits = _model(program, result, given.case.title)
+    folder.add(PROGRAMS[program], text)
+    folder.add("timehistory.csv", csv_lines(history_columns(result)))
+    folder.add(RERUN, resources.files("rpscli.report.export").joinpath(RERUN).read_text("utf-8"))
+    document = {"program": program, "limits": limits}
+    conclude(given, folder, document, [limits, f"next: python {folder.folder / RERUN}"], terminal)
+
+
+def _model(program: str, result: TimeHistoryResult, title: str) -> tuple[str, str]:
+    """The text of the model, and its limits in words."""
+    structure = result.structure
+    if program == "opensees":
+        from rpscli.report.export.opensees import model_text
+
+        return model_text(structure, title, result.max_cap_beam_displacement)
+    from rpscli.report.export.multibody import bodies_of, description
+
+    bearing = structure.bearing
+    limits = BODIES.format(structure.restitution, bearing.beta or bearing.critical_rotation)
+    remark = f"{title}\n\n{limits}".replace("--", "- -")
+    columns = 2 if structure.cap_beam_mass else 1
+    return f"<!-- {remark} -->{description(bodies_of(structure), columns)}\n", limits

@@ -1,0 +1,107 @@
+"""The storey as a spring of OpenSees that stiffens until it uplifts, and a damper for impacts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rpscli.model.podium import PodiumStructure
+
+BEFORE_UPLIFT = 1e-4
+"""Displacement of the cap beam at which the spring uplifts, over the largest of the spring."""
+
+POINTS = 60
+"""Of the spring on each side."""
+
+_MODEL = '''"""{title}
+
+{limits}
+"""
+
+import openseespy.opensees as ops
+
+STOREYS = {storeys}
+BEAM = {beam}  # kg: cap beam, and what of the columns moves with it
+PUSHED = {pushed}  # kg: what the ground's acceleration pushes
+MASSES = {masses}  # kg, from the bottom
+DAMPERS = {dampers}  # N s/m, between floors i and j; 0 is the cap beam
+SPRINGS = {springs}  # N/m, of the storeys
+DISPLACEMENTS = {displacements}  # m, of the cap beam
+FORCES = {forces}  # N, that hold it there
+LOSS = {loss}  # N s/m, for impacts
+
+
+def build(ground, dt, released=0.0):
+    """Nodes 0 (ground), 1 (cap beam) and floors above it; ground accelerations [m/s2] every dt."""
+    ops.wipe()
+    ops.model("basic", "-ndm", 1, "-ndf", 1)
+    ops.node(0, 0.0)
+    ops.fix(0, 1)
+    for node, mass in enumerate([BEAM, *MASSES], 1):
+        ops.node(node, 0.0, "-mass", mass)
+    ops.uniaxialMaterial("ElasticMultiLinear", 1, "-strain", *DISPLACEMENTS, "-stress", *FORCES)
+    ops.element("zeroLength", 1, 0, 1, "-mat", 1, "-dir", 1)
+    springs = [(i, i + 1, stiffness, 0.0) for i, stiffness in enumerate(SPRINGS, 1)]
+    dashpots = [(i + 1, j + 1, 0.0, coefficient) for i, j, coefficient in DAMPERS]
+    for tag, (i, j, *law) in enumerate([(0, 1, 0.0, LOSS), *springs, *dashpots], 2):
+        ops.uniaxialMaterial("Elastic", tag, *law)
+        ops.element("zeroLength", tag, i, j, "-mat", tag, "-dir", 1)
+    for node in range(1, STOREYS + 2):
+        ops.setNodeDisp(node, 1, released, "-commit")
+    ops.timeSeries("Path", 1, "-dt", dt, "-values", *ground)
+    ops.pattern("UniformExcitation", 1, 1, "-accel", 1)
+    ops.pattern("Plain", 2, 1)
+    ops.load(1, BEAM - PUSHED)
+    ops.constraints("Plain")
+    ops.numberer("Plain")
+    ops.system("BandGeneral")
+    ops.test("NormUnbalance", 1e-6 * max(FORCES), 100)
+    ops.algorithm("NewtonLineSearch")
+    ops.integrator("Newmark", 0.5, 0.25)
+    ops.analysis("Transient")
+'''
+
+LIMITS = """\
+A spring between ground and cap beam follows the static force of the columns, linear up to
+{before:.2g} m, where it uplifts, out and back on the same path. It leaves out the inertia of what
+rises, of the order of tan(alpha)^2 = {square:.2g}, and overturning. Impacts, e = {e:.4g}, are a
+damper of {loss:.4g} N s/m, which takes as much in one swing from {amplitude:.4g} m, the largest of
+the history of rps, as an impact in its middle; of smaller swings it takes a smaller share."""
+
+
+def model_text(structure: PodiumStructure, title: str, largest: float) -> tuple[str, str]:
+    """The model, and its limits; the damper is that of a swing from a displacement [m]."""
+    bearing, above = structure.bearing, structure.superstructure
+    rotation = np.linspace(0.0, 1.2 * structure.critical_rotation, POINTS + 1)
+    force, beam, _ = structure.path(rotation)
+    before = BEFORE_UPLIFT * float(beam.max())
+    sides = np.concatenate(([before], beam[1:])), np.concatenate((force[:1], force[1:]))
+    displacements, forces = (np.concatenate((-x[::-1], [0.0], x)) for x in sides)
+    spin = (bearing.inertia_ratio - 1.0) * (1.0 + bearing.slenderness**2)
+    moving = 0.25 * structure.columns_mass * (spin + 1.0) + structure.cap_beam_mass
+    amplitude = max(largest, 10.0 * before)
+    # Of one swing through: the speed where the beam is, of the energy at its end.
+    u = np.linspace(0.0, amplitude, 2001)
+    held = np.interp(u, displacements, forces)
+    energy = np.concatenate(([0.0], np.cumsum(0.5 * (held[1:] + held[:-1]) * np.diff(u))))
+    total = moving + structure.superstructure_mass
+    speed = np.sqrt(2.0 * np.maximum(energy[-1] - energy, 0.0) / total)
+    jumping = moving if structure.impact_law.kind == "flexible" else total
+    lost = (1.0 - structure.restitution**2) * float(energy[-1]) * jumping / total
+    loss = 0.5 * lost / float(np.trapezoid(speed, u))
+    limits = LIMITS.format(
+        before=before, square=bearing.slenderness**2, e=structure.restitution, loss=loss,
+        amplitude=amplitude,
+    )  # fmt: skip
+    C = np.zeros((0, 0)) if above is None else above.damping_matrix
+    n = len(C)
+    dampers = [(0, i + 1, float(C[i].sum())) for i in range(n)]
+    dampers += [(i + 1, j + 1, -float(C[i, j])) for i in range(n) for j in range(i + 1, n)]
+    stiffnesses = [] if above is None else above.stiffnesses.tolist()
+    text = _MODEL.format(
+        title=title.replace('"', "'").replace("\\", "/"), limits=limits, storeys=structure.storeys,
+        beam=moving, pushed=0.5 * structure.columns_mass + structure.cap_beam_mass,
+        masses=[] if above is None else above.masses.tolist(), springs=stiffnesses,
+        dampers=[each for each in dampers if abs(each[2]) > 1e-9 * abs(C).max()],
+        displacements=displacements.tolist(), forces=forces.tolist(), loss=loss,
+    )  # fmt: skip
+    return text, limits

@@ -1,0 +1,132 @@
+"""`rps export`: other programs find what rps finds, within what their models leave out."""
+
+from __future__ import annotations
+
+import ast
+import csv
+import importlib.util
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from paper_structures import needs_compiled_kernels
+from scipy.integrate import solve_ivp
+
+from .conftest import SMALL_CASE, Invoke
+
+pytestmark = needs_compiled_kernels
+
+SLENDER = """\
+rps: 1
+superstructure:
+  storeys: 2
+  storey_mass: [60 t, 50 t]
+  period: 0.25
+  damping: {ratio: 0.05}
+podium:
+  bearing: {semi_diagonal: 2.0, slenderness: 0.06, wedge_slenderness: 0.2, curvature_ratio: 0.3}
+  cap_beam_mass_ratio: 10
+  superstructure_mass_ratio: 1
+  impact: {loss: 0}
+record: {source: "pulse:sine?amplitude=0.15g&period=0.8&dt=0.005"}
+analysis: {free_vibration: 3}
+"""
+
+
+def rerun(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Columns of both programs after the script has run."""
+    script = [sys.executable, str(folder / "rerun.py")]
+    done = subprocess.run(script, check=False, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert (folder / "rerun.png").stat().st_size > 10_000
+    both = []
+    for name in ("timehistory.csv", "rerun.csv"):
+        rows = list(csv.DictReader((folder / name).read_text(encoding="utf-8").splitlines()))
+        both.append({head: [row[head] for row in rows] for head in rows[0]})
+    return both[0], both[1]
+
+
+def gap(of: str, ours: dict[str, Any], theirs: dict[str, Any]) -> float:
+    """Largest difference at the samples of rps, over the largest value."""
+    mine = np.array(ours[of], dtype=float)
+    at = np.array(ours["time [s]"], dtype=float)
+    time, found = (np.array(theirs[name], dtype=float) for name in ("time [s]", of))
+    other = np.interp(at, time, found)
+    return float(np.abs(other - mine).max() / np.abs(mine).max())
+
+
+@pytest.mark.long
+def test_mujoco_finds_the_same(workplace: Path, rps: Invoke) -> None:
+    pytest.importorskip("mujoco", reason="pip install rpscli[contact]")
+    short = ("--set", "analysis.free_vibration=0.3")
+    assert rps("export", "small.yaml", "mujoco", "-o", "m", *short).exit_code == 0
+    ours, theirs = rerun(workplace / "m")
+    # contacts close within 0.1 ms, a part of a thousand of the period; the rest are its corners
+    assert gap("cap_beam_displacement [m]", ours, theirs) < 5e-3
+    assert gap("storey_1_drift [m]", ours, theirs) < 2e-2
+
+
+@pytest.mark.long
+def test_opensees_finds_the_same_where_impacts_take_nothing(workplace: Path, rps: Invoke) -> None:
+    if importlib.util.find_spec("openseespy") is None:
+        pytest.skip("pip install openseespy")
+    (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
+    assert rps("export", "slender.yaml", "opensees", "-o", "o").exit_code == 0
+    ours, theirs = rerun(workplace / "o")
+    # 0.8 % are of the spring, which is soft up to uplift (6 % if that is ten times as far), and
+    # 0.2 % of tan(alpha)^2 = 0.0036
+    assert gap("cap_beam_displacement [m]", ours, theirs) < 1.5e-2
+
+
+def test_the_damper_takes_as_much_as_an_impact(
+    workplace: Path, rps_json: Callable[..., Any]
+) -> None:
+    """Of a rigid building: a swing is integrated here, and its energy is lost as (1 - e^2)."""
+    case = SMALL_CASE.replace("podium:", "podium:\n  impact: {law: value, restitution: 0.99}")
+    (workplace / "stiff.yaml").write_text(case, encoding="utf-8")
+    rps_json("export", "stiff.yaml", "opensees", "-o", "o")
+    text = (workplace / "o" / "model.py").read_text(encoding="utf-8")
+    found = {
+        node.targets[0].id: ast.literal_eval(node.value)
+        for node in ast.parse(text).body
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
+    }
+    mass = found["BEAM"] + sum(found["MASSES"])
+    u, force = found["DISPLACEMENTS"], found["FORCES"]
+    history = (workplace / "o" / "timehistory.csv").read_text(encoding="utf-8").splitlines()
+    # between samples it may be a little more
+    released = max(abs(float(r["cap_beam_displacement [m]"])) for r in csv.DictReader(history))
+
+    def rates(_: float, y: Any) -> list[float]:
+        return [y[1], -(np.interp(y[0], u, force) + found["LOSS"] * y[1]) / mass]
+
+    def turns(_: float, y: Any) -> float:
+        return float(y[1])
+
+    turns.direction = 1.0  # type: ignore[attr-defined]
+    turns.terminal = True  # type: ignore[attr-defined]
+    swing = solve_ivp(rates, (0.0, 20.0), [released, -1e-9], events=turns, rtol=1e-8, max_step=0.01)
+    ends = [released, -float(swing.y[0, -1])]
+    at = np.linspace(0.0, 1.0, 4001)
+    before, after = (np.trapezoid(np.interp(at * end, u, force), at * end) for end in ends)
+    # the damper itself slows the swing: second order in what it takes, which is 2 %
+    assert 1.0 - after / before == pytest.approx(1.0 - 0.99**2, rel=0.02)
+    columns = found["PUSHED"] / 10.5  # of which half moves with a cap beam of ten times their mass
+    # half-way at the speed of a half, and turning, I_o/(m_c R^2) = 4/3, by du_b/(2 R cos(alpha))
+    moving = 10.0 + 0.25 + 0.25 * (4.0 / 3.0 - 1.0) * (1.0 + 0.15**2)
+    assert found["BEAM"] == pytest.approx(moving * columns, rel=1e-9)
+
+
+def test_what_a_model_lacks_is_refused(workplace: Path, rps: Invoke) -> None:
+    devices = "podium.devices=[{kind: viscous, coefficient: 1e5}]"
+    result = rps("export", "small.yaml", "mujoco", "--set", devices)
+    assert result.exit_code == 2
+    assert "--set podium.devices=null" in result.stderr
+    pulses = (f"pulse:sine?amplitude=0.1g&period={period}" for period in (1, 2))
+    two = [word for pulse in pulses for word in ("--record", pulse)]
+    assert rps("export", "small.yaml", "opensees", *two).exit_code == 2
+    assert not (workplace / "results").exists()
