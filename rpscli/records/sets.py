@@ -20,7 +20,7 @@ import numpy as np
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.pair import angle_of, rotated
+from rpscli.records.pair import angle_of, rotated, together
 from rpscli.records.quantities import hint, parse_query
 from rpscli.records.recording import Recording
 
@@ -50,16 +50,21 @@ PAIRS = tuple(component[:-2] for component in COMPONENTS[::2])
 
 
 class _Wanted(NamedTuple):
-    """A component or a pattern of them; of pairs, if there is an angle [deg]."""
+    """A component or a pattern of them; of pairs, if there is an angle [deg], or both act."""
 
     place: str
     options: str
     normalised: bool
     angle: float | None
+    both: bool
+
+    @property
+    def of_pairs(self) -> bool:
+        return self.both or self.angle is not None
 
     @property
     def known(self) -> tuple[str, ...]:
-        return COMPONENTS if self.angle is None else PAIRS
+        return PAIRS if self.of_pairs else COMPONENTS
 
     @property
     def is_pattern(self) -> bool:
@@ -67,7 +72,7 @@ class _Wanted(NamedTuple):
 
     @property
     def word(self) -> str:
-        return "component" if self.angle is None else "pair"
+        return "pair" if self.of_pairs else "component"
 
 
 def expand_set(rest: str, source: str) -> list[str]:
@@ -87,12 +92,15 @@ def expand_set(rest: str, source: str) -> list[str]:
 
 def load_component(rest: str, source: str) -> GroundMotion:
     """Read one component, or a pair turned to a direction."""
-    place, _, normalised, angle = wanted = _split(rest, source)
+    place, _, normalised, angle, _ = wanted = _split(rest, source)
     if place not in wanted.known:
         one = f"load one {wanted.word} at a time"
         remedy = one if wanted.is_pattern else hint(place, wanted.known)
         if place in PAIRS:
-            remedy = f"name {place}/a or {place}/b, or turn the pair: {place}?angle=30"
+            remedy = (
+                f"name {place}/a or {place}/b, or the pair: {place}?both for both components"
+                f" together, {place}?angle=30 for one direction"
+            )
         elif place in COMPONENTS:
             remedy = f"an angle turns a pair: {place[:-2]}?angle={angle:g}"
         raise RecordError(f"{source}: FEMA P695 has no {wanted.word} {place[:60]!r}; {remedy}")
@@ -108,17 +116,20 @@ def load_component(rest: str, source: str) -> GroundMotion:
 
 def _split(rest: str, source: str) -> _Wanted:
     place, _, written = rest.partition("?")
+    both = together(source) is not None
     options = [option.strip() for option in written.split("&") if option.strip()]
     flags = [option for option in options if option in {"normalised", "normalized"}]
-    others = [option for option in options if option not in flags]
-    if unknown := [o for o in others if not o.startswith("angle=")]:
+    others = [option for option in options if option not in (*flags, "both")]
+    if unknown := [o for o in others if not o.startswith(("angle=", "rotation="))]:
         raise RecordError(
-            f"{source}: option {unknown[0]!r} is not known; did you mean normalised or angle=30?"
+            f"{source}: option {unknown[0]!r} is not known; did you mean normalised, angle=30 or"
+            " both?"
         )
-    query = parse_query("&".join(others), source, ("angle",))
-    kept = ["normalised"] * bool(flags) + others
+    query = parse_query("&".join(others), source, ("angle", "rotation"))
+    kept = ["normalised"] * bool(flags) + ["both"] * both + others
     suffix = f"?{'&'.join(kept)}" if kept else ""
-    return _Wanted(place, suffix, bool(flags), angle_of(query) if query.values else None)
+    angle = angle_of(query) if "angle" in query.values else None
+    return _Wanted(place, suffix, bool(flags), angle, both)
 
 
 def _package_folder(source: str) -> Path:

@@ -8,19 +8,20 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
+from pathlib import Path, PurePath
+from typing import Any, NamedTuple
 
 from rpscli.errors import RecordError, beginning, nearest, require_kind, require_visible
 from rpscli.records import pulses, sets, synthetic
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
-from rpscli.records.pair import angle_of, rotated
+from rpscli.records.pair import angle_of, direction_of, rotated, together, turned
 from rpscli.records.quantities import (
     LIKENESS,
     Query,
     canonical_unit,
     hint,
     parse_query,
+    split_option,
     unit_factor,
 )
 
@@ -31,12 +32,12 @@ _MAKERS: dict[str, Callable[[str, str], GroundMotion]] = {
 }
 # Two letters at least: C: is a drive.
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9_.+-]+):(.*)", re.DOTALL)
-# A question mark may also stand in a glob or a file name: options are key=value.
-_FACTOR = re.compile(r"(?<=[?&])factor=[^&]*(?:&|$)")
 _REMARK = re.compile(r"(?:^|\s)#")
 LIST = "list"
 """Scheme of a text file with one source a line, seen from its folder."""
-_FILE_OPTIONS = re.compile(r"(.+?)\?([A-Za-z_]\w*=[^&?]*(?:&[A-Za-z_]\w*=[^&?]*)*)", re.DOTALL)
+# A question mark may also stand in a glob or a file name: options are key=value, or `both`.
+_OPTION = r"(?:[A-Za-z_]\w*=[^&?]*|both)"
+_FILE_OPTIONS = re.compile(rf"(.+?)\?({_OPTION}(?:&{_OPTION})*)", re.DOTALL)
 
 
 def load_record(
@@ -50,7 +51,8 @@ def load_record(
         A file, with options if it needs them (`rec.txt?dt=0.005&units=g`, `rec.V2?channel=1`), or
         `fema_p695:farfield/1/b`, `pulse:sine?...`, `synthetic:?...`. Two components at an angle
         from the first towards the second [deg]: `x.at2?second=y.at2&angle=30`,
-        `fema_p695:farfield/1?angle=30`. `factor=1.5` multiplies any of them.
+        `fema_p695:farfield/1?angle=30`. `factor=1.5` multiplies any of them. Both components
+        together, `fema_p695:farfield/1?both`, are read by `load_components`.
     folder : Path, optional
         Where relative paths start (the folder of the case file); else the working directory.
     dt : float, optional [s]
@@ -64,6 +66,11 @@ def load_record(
         If there is no such record, or it cannot be read without guessing.
     """
     require_kind(source, str, "the record", "give its name as text")
+    if together(source) is not None:
+        raise RecordError(
+            f"{source}: holds two components, and one is wanted here; name one of them, or a"
+            " direction between them by angle=30 in place of both"
+        )
     with _readable(source):
         plain, option = split_factor(source)
         motion = _loaded(plain, folder, dt, units)
@@ -77,19 +84,93 @@ def load_record(
         return replace(motion.scaled(factor), name=name, source=source, warnings=warnings)
 
 
-def load_components(source: str, vertical: str | None, **how: Any) -> MotionComponents:
-    """The components of a motion, read alike; `how` is that of `load_record`."""
-    along = load_record(source, **how)
-    return MotionComponents(along, None if vertical is None else load_record(vertical, **how))
+def load_components(
+    source: str,
+    vertical: str | None = None,
+    y: str | None = None,
+    rotation: float = 0.0,
+    **how: Any,
+) -> MotionComponents:
+    """The components of a motion, read alike: those of a pair if the source, or `y`, says so.
+
+    A pair is turned by `rotation` from x towards y [deg], in addition to what its source says.
+    `how` is that of `load_record`.
+    """
+    above = None if vertical is None else load_record(vertical, **how)
+    parts = parts_of(source)
+    if not parts.both:
+        along = load_record(source, **how)
+        if y is None:
+            return MotionComponents(along, above)
+        across = load_record(y, **how)
+    else:
+        _require_two(parts, source)
+        along, across = (load_record(one, **how) for one in parts.pair or ())
+    in_set = source.startswith(f"{sets.SCHEME}:") and parts.both
+    name = along.name.replace("_a", "_both", 1) if in_set else f"{along.name}_both"
+    motion = MotionComponents(replace(along, name=name, source=source), above, y=across)
+    return turned(motion, parts.rotation + rotation)
+
+
+class SourceParts(NamedTuple):
+    """A source taken apart: its place, the rest of its options, the second file, the factor.
+
+    It is `turned` by an angle, or `both` components act together, turned by a `rotation` [deg].
+    """
+
+    place: str
+    options: str
+    second: str | None
+    factor: str
+    turned: bool
+    both: bool
+    rotation: float
+
+    def component(self, place: str) -> str:
+        """One component, under the options and the factor of this source."""
+        options = "&".join(filter(None, (self.options, self.factor)))
+        return f"{place}?{options}" if options else place
+
+    @property
+    def pair(self) -> tuple[str, str] | None:
+        """Sources of both components that it names itself."""
+        places: tuple[str, str] | None = None
+        if self.place.startswith(f"{sets.SCHEME}:"):
+            pair = re.sub("/[ab]$", "", self.place)
+            places = f"{pair}/a", f"{pair}/b"
+        elif self.second is not None:
+            places = self.place, self.second
+        return places and (self.component(places[0]), self.component(places[1]))
+
+
+def _require_two(parts: SourceParts, source: str) -> None:
+    if parts.both and parts.pair is None:
+        raise RecordError(
+            f"{source}: both needs two components: a pair of a set, fema_p695:farfield/1?both, or"
+            " second=FILE, seen from the folder of the first one"
+        )
+
+
+def parts_of(source: str) -> SourceParts:
+    """A source taken apart."""
+    without, factor = split_factor(source)
+    angled, both = direction_of(without), together(without)
+    single = both or angled
+    text, second = split_option(single.pair if single else without, "second")
+    in_set = text.startswith(f"{sets.SCHEME}:")
+    place, options = text.partition("?")[::2] if in_set else split_options(text)
+    if second is not None:
+        second = str(PurePath(place).parent / second)
+    rotation = both.angle if both else 0.0
+    return SourceParts(
+        place, options, second, factor, angled is not None, both is not None, rotation
+    )
 
 
 def split_factor(source: str) -> tuple[str, str]:
     """A source without its factor, and that option; empty without one."""
-    match = _FACTOR.search(source)
-    if match is None:
-        return source, ""
-    plain = source[: match.start()] + source[match.end() :]
-    return plain.rstrip("?&"), match[0].rstrip("&")
+    plain, factor = split_option(source, "factor")
+    return plain, "" if factor is None else f"factor={factor}"
 
 
 def _loaded(source: str, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
@@ -179,6 +260,8 @@ def _expand(source: str, folder: Path | None) -> list[str]:
     with _readable(source):
         plain, factor = split_factor(source)
         found = _expanded(plain, folder)
+        for single in found:
+            _require_two(parts_of(single), single)
         if not factor:
             return found
         if plain.startswith(f"{LIST}:"):
