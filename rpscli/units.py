@@ -26,6 +26,7 @@ KINDS = {
     "m/s": ("a velocity", ("m/s", "cm/s", "ft/s")),
     "N": ("a force", ("N", "kN", "MN", "kip")),
     "rad": ("an angle", ("rad", "mrad", "deg")),
+    "deg": ("a direction", ("deg", "rad")),
 }
 """What each SI unit of the formats measures, and units it is usually written in."""
 
@@ -217,7 +218,7 @@ def si_factor(written: str, unit: str) -> float:
         raise ValueError(
             f"is {_kind(found.dimension)}, but must be {kind}: {listed(units)}{weight}"
         )
-    return found.factor
+    return found.factor / wanted.factor
 
 
 def in_si(value: object, unit: str) -> object:

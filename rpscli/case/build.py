@@ -87,11 +87,15 @@ def podium_of(file: CaseFile, shape: Shape) -> Podium:
     columns, cap_beam = podium_masses(file.podium, total)
     impact = file.podium.impact
     return Podium(
-        Bearing(*shape, inertia_ratio=file.podium.bearing.inertia_ratio),
+        Bearing(
+            *shape,
+            inertia_ratio=file.podium.bearing.inertia_ratio,
+            inertia_ratio_axial=file.podium.bearing.inertia_ratio_axial or math.nan,
+        ),
         columns,
         cap_beam,
         total,
-        ImpactLaw(impact.law, impact.restitution, impact.factor, impact.loss),
+        ImpactLaw(**impact.model_dump(exclude={"law"}), kind=impact.law),
     )
 
 
@@ -111,7 +115,15 @@ def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
         columns=file.podium.columns or 1,
         friction=file.podium.friction,
         rows=_rows(file.podium.plan),
+        superstructure_y=_across(file.superstructure),
     )
+
+
+def _across(section: SuperstructureSection) -> Superstructure | None:
+    """The building in y; None where it is that in x."""
+    if section.y is None:
+        return None
+    return building(section.model_copy(update=section.y.model_dump()))
 
 
 def _rows(plan: PlanSection | None) -> tuple[float, ...]:

@@ -18,7 +18,7 @@ from rpscli.commands.shell.options import (
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, show_dry_run, study_heading
-from rpscli.report.documents import ONE_DIRECTION, heading
+from rpscli.report.documents import direction_note, heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 from rpscli.report.table import Part, csv_text
@@ -135,7 +135,7 @@ def designed(
         **heading(),
         "command": "design",
         "study": study_heading(run.layout),
-        "note": ONE_DIRECTION,
+        "note": direction_note(run.layout.pairs) or None,
         "points": {"total": len(run.table), "failed": len(found.failures)},
         **answer_document(answer),
         "confirmed": keeps_limits(confirmations[judged]) if judged else None,

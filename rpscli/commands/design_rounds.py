@@ -16,7 +16,6 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, compute, of_first_system
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.design import requirement_label
-from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.study.labels import label, symbol
 from rpscli.report.study.statistics import VERDICT, verdict_lines, verdict_texts
 from rpscli.report.table import Heading, Part, Table, large, measured, shown
@@ -239,7 +238,7 @@ def answer_tables(
         (run, *_) = confirmations.values()
         behind = next((v.beyond.behind for v in run.verdicts), "")
         yield from validation_text(conditions, len(answer.task.confirming), behind)
-    yield ONE_DIRECTION
+    yield from filter(None, [document["note"]])
 
 
 def _values(document: dict[str, Any]) -> Table:

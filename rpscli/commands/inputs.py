@@ -12,7 +12,7 @@ import click
 
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import UsageError
+from rpscli.errors import CaseError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.files import OutputFolder, Run
 from rpscli.report.table import Part
@@ -166,6 +166,13 @@ def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
     return {"scale": motion.scale, "horizontal": None, "vertical": None, **sources}
 
 
+def _required(case: Case, motion: MotionComponents) -> MotionComponents:
+    """A motion that the structure can be followed under."""
+    if motion.y is not None and (why := case.structure.planar_only):
+        raise CaseError(f"{case.source}: both components of {motion.horizontal.source}: {why}")
+    return motion
+
+
 def motion_source(case: Case, request: MotionRequest) -> Path | str:
     """Which record a motion is, whatever its scale: a file, or a source that is none."""
     from rpscli.records.source import file_and_options
@@ -189,9 +196,11 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     else:
         own = given.vertical if request.vertical is None else None
         how = {"folder": case.folder, "dt": given.dt, "units": given.units}
-        motion = load_components(given.source, own, **how)
+        rotation = given.rotation or 0.0
+        motion = load_components(given.source, own, given.y, rotation, **how)
         if request.vertical is not None:
             motion = replace(motion, vertical=load_record(request.vertical))
+    motion = _required(case, motion)
     if (aim := _target(case, request)) is not None:
         return _scaled_to(case, request, motion, *aim, how)
     scale = request.scale
@@ -221,7 +230,6 @@ def _scaled_to(
     how: dict[str, Any],
 ) -> MotionComponents:
     """A motion by the factor that brings a measure of it, or of its pair, to a value."""
-    from rpscli.records.clusters import pairs
     from rpscli.records.measures import MEASURES, factor_to, measured, needs_period
     from rpscli.records.pair_measure import USUAL, measure_label, pair_measure
     from rpscli.records.source import load_record
@@ -234,7 +242,7 @@ def _scaled_to(
         period = float(building.periods[0])
     pair = request.pair
     if request.record is None and case.record is not None:
-        (pair,) = pairs([case.record.source], target.of)
+        pair = case.record.pair(target.of)
     if pair is None:
         unscaled, of = measured(motion.horizontal, measure, period, target.damping), None
     else:

@@ -174,9 +174,11 @@ def command(
     """
     from rpscli.records.codes import load_target
     from rpscli.records.filters import parse_filter
+    from rpscli.records.pair import together
+    from rpscli.records.pair_measure import USUAL
     from rpscli.records.requirements import RULES as KNOWN
     from rpscli.records.selection import SelectionRequest, select
-    from rpscli.records.source import expand_sources, load_record
+    from rpscli.records.source import expand_sources, load_components
     from rpscli.report.bundles import selection_files
     from rpscli.report.tables.motions import selection_document
 
@@ -189,11 +191,13 @@ def command(
     span, why = _range(structure, told, spectrum, isolated=asked is not None and asked.isolated)
     if periods is not None:
         span, why = periods, "as asked for"
-    of = component or (asked.of if asked and rules else None) or spectrum.of or "component"
+    single = expand_sources(sources)
+    usual: Component = USUAL if any(map(together, single)) else "component"
+    of = component or (asked.of if asked and rules else None) or spectrum.of or usual
     request = SelectionRequest(
         count, span, factors, per_event, wanted_pgv, of, rules or spectrum.rules, structure
     )
-    every = [load_record(source) for source in expand_sources(sources)]
+    every = [load_components(source).horizontal for source in single]
     motions, left_out = _kept(every, [parse_filter(text) for text in where])
     if not motions:
         counts = ", ".join(f"{text} {sum(out.values())}" for text, out in left_out.items())

@@ -131,7 +131,7 @@ def _earlier_motion(case: Case, given: Mapping[str, Any]) -> MotionRequest:
         None if given[name] is None else str(given[name]["source"])
         for name in ("horizontal", "vertical")
     )
-    if own is not None and own.source == horizontal:
+    if own is not None and own.source == horizontal and (own.y is None or "y" in given):
         horizontal, vertical = None, None if vertical == own.vertical else vertical
     return MotionRequest(horizontal, vertical, given["scale"])
 
@@ -256,7 +256,10 @@ def _stored(
     found: list[Block] = []
     file = earlier.file
     for request, record in zip(requests, earlier.records, strict=True):
-        if request.ground.horizontal.digest != record["horizontal"]["sha256"]:
+        named = request.ground.named
+        if any(
+            record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record.get(n)
+        ):
             text = f"The record {request.label} is not the one of the stored results any more."
             found.append(Notice(text))
     if file is not None:

@@ -33,7 +33,7 @@ from rpscli.commands.study import (
     summary_tables,
     verdict_table,
 )
-from rpscli.report.documents import ONE_DIRECTION, heading
+from rpscli.report.documents import direction_note, heading
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table
 
@@ -102,7 +102,7 @@ def command(
         **heading(),
         "command": "sweep",
         "study": study_heading(run.layout),
-        "note": ONE_DIRECTION if run.summary else None,
+        "note": _note(run) or None,
         "points": {
             "total": len(run.table),
             "computed": finish.computed,
@@ -142,5 +142,9 @@ def _tables(run: StudyRun, found: Collected) -> Iterator[Part]:
         yield Heading(stem)
         yield Table.listing(lines)
     yield from found.parts
-    if run.summary is not None:
-        yield ONE_DIRECTION
+    if note := _note(run):
+        yield note
+
+
+def _note(run: StudyRun) -> str:
+    return direction_note(run.layout.pairs) if run.summary else ""

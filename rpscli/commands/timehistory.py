@@ -41,7 +41,6 @@ from rpscli.commands.timehistory_run import (
     look_beside,
 )
 from rpscli.errors import CaseError, UsageError, all_made
-from rpscli.report.documents import ONE_DIRECTION
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 
@@ -133,5 +132,5 @@ def _one(
     scaled_to = request.ground.scaled_to
     tables = timehistory_tables(result, done.verdicts, title, scaled_to)
     single = neighbours_texts(result, beside)
-    terminal.result(done.document, [*tables, *single, ONE_DIRECTION])
+    terminal.result(done.document, [*tables, *single, *filter(None, [done.document["note"]])])
     leave(done.error)

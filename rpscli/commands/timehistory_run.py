@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.analyses.result_quantities import LIMITED, NEEDS
 from rpscli.case.conditions import EVENTS, LIMITS, Condition, case_conditions, with_friction
+from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands.inputs import (
     RESULTS,
     CaseInput,
@@ -25,7 +26,7 @@ from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
-from rpscli.report.documents import ONE_DIRECTION, heading, json_text, timehistory_document
+from rpscli.report.documents import direction_note, heading, json_text, timehistory_document
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 
@@ -185,10 +186,12 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
     document = {
         **heading(),
         "command": COMMAND,
-        "note": ONE_DIRECTION,
+        "note": direction_note([ground.y is not None]) or None,
         "case": case_heading(given),
         **timehistory_document(result),
     }
     document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
-    document["warnings"] = [*given.case.warnings, *document["warnings"], *ground.warnings]
+    doubts = doubts_of_directions(given.case.structure, both=ground.y is not None)
+    warnings = [*given.case.warnings, *map(str, doubts)]
+    document["warnings"] = [*warnings, *document["warnings"], *ground.warnings]
     return document

@@ -26,7 +26,7 @@ from rpscli.commands.timehistory_run import (
     compute,
 )
 from rpscli.errors import AnalysisError, LimitExceeded, RpsError
-from rpscli.report.documents import ONE_DIRECTION, heading, json_text
+from rpscli.report.documents import direction_note, heading, json_text
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 from rpscli.report.study.statistics import (
@@ -139,7 +139,8 @@ def _set_folder(
     if len(group) == 1:
         return None
     first = group[0]
-    motions = "".join(request.ground.horizontal.digest for request in group)
+    grounds = (request.ground.named for request in group)
+    motions = "".join(each[name].digest for each in grounds for name in each if name != "vertical")
     name = f"{len(group)}_records_{hashlib.sha256(motions.encode()).hexdigest()[:6]}"
     place = RESULTS / first.case_label / COMMAND / name
     if output.place is not None:
@@ -184,7 +185,7 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
     document = {
         **heading(),
         "command": COMMAND,
-        "note": ONE_DIRECTION,
+        "note": _note(computed) or None,
         "histories": [history.document for history in histories],
         "sets": [set_document(case) for case in computed],
         "warnings": warnings,
@@ -223,7 +224,13 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         yield restitution_text(own.structure)
     if any(case.verdicts for case in computed):
         yield _verdict_table(computed)
-    yield ONE_DIRECTION
+    if note := _note(computed):
+        yield note
+
+
+def _note(computed: Sequence[Computed]) -> str:
+    grounds = (history.request.ground for case in computed for history in case.histories)
+    return direction_note(ground.y is not None for ground in grounds)
 
 
 def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:

@@ -144,6 +144,19 @@ _NAME = re.compile(r"\s*([^,_\d]+?)(?:\s+EQ\b|-\d+\b|[,_]|\s+(?=\d))", re.IGNORE
 _YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
 
 
+ONE_FACTOR = (
+    "of: component would give every angle or component a factor of its own; a pair has one factor:"
+    " use rotd50, or x, which is that of the first component"
+)
+
+
+def pair_of(x: str, y: str, of: Of | None) -> Pair:
+    """Two sources as a pair, which has one factor."""
+    if of == "component":
+        raise RecordError(f"{x}: {ONE_FACTOR}")
+    return x, y
+
+
 def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ...]:
     """What each source is measured by: both components of its recording, or None for itself."""
     # Without `of` it is the pair where its recording stands in several directions among the
@@ -152,10 +165,7 @@ def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ..
     plain = [parts_of(source) for source in sources]
     if of == "component":
         for source in (s for s, p in zip(sources, plain, strict=True) if p.turned or p.both):
-            raise RecordError(
-                f"{source}: of: component would give every angle or component a factor of its own;"
-                " a pair has one factor: use rotd50, or x, which is that of the first component"
-            )
+            raise RecordError(f"{source}: {ONE_FACTOR}")
         return (None,) * len(sources)
     members: dict[int, dict[tuple[str, bool], SourceParts]] = {}
     numbers = _numbered(_families(sources))

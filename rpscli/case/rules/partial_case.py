@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from rpscli.case.build import Shape, shape_of
 from rpscli.case.schema.case_file import (
+    AcrossSection,
     BearingSection,
     CaseFile,
     DeviceSection,
@@ -88,6 +89,11 @@ class PartialCase:
     def superstructure(self) -> SuperstructureSection | None:
         """The section `superstructure`."""
         return self._section(SuperstructureSection, SUPERSTRUCTURE)
+
+    @cached_property
+    def across(self) -> AcrossSection | None:
+        """The section `superstructure.y`."""
+        return self._section(AcrossSection, (*SUPERSTRUCTURE, "y"))
 
     @cached_property
     def masses(self) -> PodiumMasses | None:

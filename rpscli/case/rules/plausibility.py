@@ -139,6 +139,24 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
             )
 
 
+def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[Doubt]:
+    """What both horizontal components bring in, or one alone leaves out."""
+    if not both:
+        if structure.superstructure_y is not None:
+            yield Doubt("superstructure.y has an effect only where both components act (`?both`)")
+        return
+    if structure.gamma == 0.0:
+        yield Doubt(
+            "free-standing columns (no cap beam) are taken to roll round their own ends and to keep"
+            " their place, which a torsion under their own weight hardly holds: they may roll away"
+        )
+    if structure.impact_law.contact_time == 0.0 and structure.restitution < 1.0:
+        yield Doubt(
+            "podium.impact.contact_time = 0: passes near upright lose nothing, however near they"
+            " are, and impacts do: results jump, and rounding decides them"
+        )
+
+
 def doubts_of_storeys(section: SuperstructureSection, document: Document) -> Iterator[Doubt]:
     """Neighbours that differ too much, and lists in which some numbers lack a unit."""
     for name in PER_STOREY:

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.rules.partial_case import LIMITS, PLAN, PODIUM, SUPERSTRUCTURE, PartialCase
-from rpscli.case.text.document import MISSING, Fault, Path, shown
-from rpscli.errors import listed
+from rpscli.case.text.document import MISSING, Fault, Path, dotted, shown
+from rpscli.errors import RecordError, listed
+from rpscli.records.source import parts_of
 
 STOREYS: Path = (*SUPERSTRUCTURE, "storeys")
+ACROSS: Path = (*SUPERSTRUCTURE, "y")
 VERTICAL_PERIOD: Path = (*SUPERSTRUCTURE, "vertical_period")
 BUILDING_KEYS = (
     "storey_mass",
@@ -19,6 +21,7 @@ BUILDING_KEYS = (
     "stiffness",
     "damping",
     "vertical_period",
+    "y",
 )
 
 
@@ -30,8 +33,10 @@ def superstructure_rules(case: PartialCase) -> Iterator[Fault]:
     yield from case.missing((*SUPERSTRUCTURE, "storey_mass"), meaning)
     meaning = "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every mode)"
     yield from case.missing((*SUPERSTRUCTURE, "damping"), meaning)
-    yield from _stiffness(case)
-    yield from _list_lengths(case)
+    for path in (SUPERSTRUCTURE, ACROSS):
+        if path == SUPERSTRUCTURE or case.is_mapping(path):
+            yield from _stiffness(case, path)
+            yield from _list_lengths(case, path)
     yield from _modes(case)
 
 
@@ -40,26 +45,27 @@ def ignored_keys(case: PartialCase) -> list[str]:
     return case.present(SUPERSTRUCTURE, *BUILDING_KEYS) if case.storeys == 0 else []
 
 
-def _stiffness(case: PartialCase) -> Iterator[Fault]:
-    period, profile, stiffness = ((*SUPERSTRUCTURE, n) for n in ("period", "profile", "stiffness"))
+def _stiffness(case: PartialCase, owner: Path) -> Iterator[Fault]:
+    whose = dotted(owner)
+    period, profile, stiffness = ((*owner, n) for n in ("period", "profile", "stiffness"))
     if not case.has(stiffness) and not case.has(period):
-        text = "superstructure has no stiffness: give period (with profile), or stiffness"
-        yield Fault(SUPERSTRUCTURE, text, at_key=True, needs=(period, stiffness))
+        text = f"{whose} has no stiffness: give period (with profile), or stiffness"
+        yield Fault(owner, text, at_key=True, needs=(period, stiffness))
     for path, name in ((period, "period"), (profile, "profile")):
         if case.document.has(stiffness) and case.document.has(path):
-            both = f"superstructure.stiffness and superstructure.{name}{case.where(path)}"
+            both = f"{whose}.stiffness and {whose}.{name}{case.where(path)}"
             text = f"{both} both fix the storey stiffnesses; keep one of them"
             yield Fault(stiffness, text, at_key=True)
 
 
-def _list_lengths(case: PartialCase) -> Iterator[Fault]:
-    section = case.superstructure
+def _list_lengths(case: PartialCase, owner: Path) -> Iterator[Fault]:
+    section = case.superstructure if owner == SUPERSTRUCTURE else case.across
     for name in ("storey_mass", "storey_height", "stiffness"):
-        values = getattr(section, name)
+        values = getattr(section, name, None)
         if isinstance(values, tuple) and len(values) != case.storeys:
             yield Fault(
-                (*SUPERSTRUCTURE, name),
-                f"superstructure.{name} has {len(values)} values, but superstructure.storeys ="
+                (*owner, name),
+                f"{dotted((*owner, name))} has {len(values)} values, but superstructure.storeys ="
                 f" {case.storeys}{case.where(STOREYS)}; give one value a storey from the bottom,"
                 " or a single value",
             )
@@ -218,11 +224,37 @@ def _frame(case: PartialCase) -> Iterator[Fault]:
 
 SCALE: Path = ("record", "scale")
 SCALE_TO: Path = ("record", "scale_to")
+SOURCE, X, Y, ROTATION = ((("record", name)) for name in ("source", "x", "y", "rotation"))
 
 
 def record_rules(case: PartialCase) -> Iterator[Fault]:
-    """A record has a factor, or a measure that fixes the factor."""
+    """A record has a factor, or a measure that fixes the factor; a pair is said in one way."""
+    yield from _pair_rules(case)
     written = case.document.at(SCALE)
     if case.document.has(SCALE_TO) and written is not MISSING and written != 1.0:
         text = f"record.scale_to and record.scale{case.where(SCALE)} both fix the factor"
         yield Fault(SCALE_TO, f"{text}; keep one of them", at_key=True)
+
+
+def _pair_rules(case: PartialCase) -> Iterator[Fault]:
+    """Two components have two sources, or one that says `both`; only they are rotated."""
+    if case.document.has(X):
+        if case.document.has(SOURCE):
+            text = f"record.x and record.source{case.where(SOURCE)} both name the first component"
+            yield Fault(X, f"{text}; keep one of them", at_key=True)
+        yield from case.missing(Y, "the second component beside x; one alone is a source")
+    first = X if case.document.has(X) else SOURCE
+    pair = case.document.has(Y)
+    for path in (first, Y):
+        try:
+            parts = parts_of(str(case.document.at(path)))
+        except RecordError as error:
+            yield Fault(path, f"{dotted(path)}: {error}")
+            continue
+        if case.document.has(Y) and (parts.both or parts.turned):
+            text = "names a pair or a direction between two components; name single components here"
+            yield Fault(path, f"{dotted(path)} {text}, or leave y out and write `?both`")
+        pair = pair or parts.both
+    if case.document.has(ROTATION) and not pair:
+        text = "record.rotation turns a pair: give y besides, or write `?both` behind the source"
+        yield Fault(ROTATION, f"{text}; angle= is one direction between two", at_key=True)

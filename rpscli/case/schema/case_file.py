@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import MISSING, fields
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from rpscli.case.schema.fields import (
     DampingRatio,
@@ -23,6 +23,10 @@ from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
 from rpscli.model.devices import DEVICES
+from rpscli.model.impact import CONTACT_TIME, LONGEST_CONTACT
+from rpscli.records.clusters import Pair, pair_of, pairs
+from rpscli.records.pair_measure import Of
+from rpscli.records.source import parts_of
 
 DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     kind: (
@@ -108,6 +112,17 @@ class DampingSection(Section):
     )
 
 
+class AcrossSection(Section):
+    """Stiffness of the building in y, in place of that along x."""
+
+    period: Time | None = None
+    """first period on a fixed base in y; scales the profile"""
+    profile: Profile | None = None
+    """as in x, for the period in y; sine if left out"""
+    stiffness: Stiffnesses | None = None
+    """storey stiffness in y in place of period and profile: one value, or a list"""
+
+
 class SuperstructureSection(Section):
     """The building on the cap beam: a shear building."""
 
@@ -131,6 +146,8 @@ class SuperstructureSection(Section):
     vertical_period: Time | None = None
     """first period of the vertical vibration on the cap beam; gives the shock of impacts in the
     forces of columns"""
+    y: AcrossSection | None = None
+    """another stiffness in the second horizontal direction; left out: the same as in the first"""
 
 
 class DimensionsSection(Section):
@@ -175,6 +192,11 @@ class BearingSection(Section):
         ),
     ] = 4.0 / 3.0
     """I_o/(m_c R^2), I_o about an edge of the flat part"""
+    inertia_ratio_axial: Annotated[
+        float | None, Quantity(symbol="I_3/(m_c R^2), I_3 about the axis", above=0)
+    ] = None
+    """I_3/(m_c R^2), I_3 about the column's axis, where both components act; left out: solid round
+    columns, (B'/R)^2/2"""
 
 
 class ImpactSection(Section):
@@ -198,6 +220,13 @@ class ImpactSection(Section):
     )
     factor: PositiveRatio = 1.0
     """multiplies the restitution of the law"""
+    contact_time: Annotated[
+        float, Quantity("s", symbol="t_c", at_least=0, at_most=LONGEST_CONTACT)
+    ] = Field(
+        CONTACT_TIME,
+        description="t_c, how long an impact takes, where both horizontal components act: the"
+        " nearer a pass to upright, the more of an impact's loss it has; 0 = passes lose nothing",
+    )
 
 
 def _law_alone(value: object) -> object:
@@ -257,13 +286,28 @@ class PodiumSection(PodiumMasses):
     """dampers, stops and tendons between ground and cap beam, at most 8"""
 
 
+def _record_schema(schema: dict[str, Any]) -> None:
+    """The first component has two names."""
+    del schema["required"]
+    schema["anyOf"] = [{"required": ["source"]}, {"required": ["x", "y"]}]
+
+
 class RecordSection(Section):
     """The ground motion."""
 
+    model_config = ConfigDict(json_schema_extra=_record_schema)
+
     source: Text
-    """a file, a member of a record set, or a pulse"""
+    """a file, a member of a record set, or a pulse; both components of a pair: `?both`"""
+    x: Text | None = Field(
+        None, exclude=True, description="in place of source where y is given: the first component"
+    )
+    y: Text | None = None
+    """second horizontal component, which acts together with the first one"""
+    rotation: Annotated[float | None, Quantity("deg")] = None
+    """of a pair, from x towards y: what acted along x then acts at this azimuth"""
     scale: Annotated[float, Quantity()] = 1.0
-    """factor on the horizontal and the vertical acceleration"""
+    """factor on all components"""
     scale_to: ScaleToSection | None = None
     """value of an intensity measure, in place of scale"""
     vertical: Text | None = None
@@ -272,6 +316,22 @@ class RecordSection(Section):
     """time step of a file that does not state it"""
     units: Text | None = None
     """unit of the values of a file that does not state it, such as g"""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _first_component(cls, value: object) -> object:
+        if isinstance(value, dict) and "x" in value and "source" not in value:
+            return {"source": value["x"], **value}
+        return value
+
+    @property
+    def is_pair(self) -> bool:
+        """Whether both horizontal components act."""
+        return self.y is not None or parts_of(self.source).both
+
+    def pair(self, of: Of | None) -> Pair | None:
+        """Both components that a measure is of; None if it is that of a single one."""
+        return pairs([self.source], of)[0] if self.y is None else pair_of(self.source, self.y, of)
 
 
 class AnalysisSection(Section):

@@ -11,7 +11,7 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.case.case import Case
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import intensity_measures
-from rpscli.report.documents import ONE_DIRECTION
+from rpscli.report.documents import direction_note
 from rpscli.report.figures.look import Look
 from rpscli.report.html.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.html.sections import (
@@ -74,7 +74,7 @@ class History(NamedTuple):
             yield "No limits were set."
         yield restitution_text(self.result.structure)
         yield from map(Notice, neighbours_texts(self.result, self.beside))
-        yield ONE_DIRECTION
+        yield from filter(None, [direction_note([self.ground.y is not None])])
 
     def sections(self, look: Look) -> list[Section]:
         """Motion and response."""

@@ -146,9 +146,7 @@ def selection_list(selection: Selection, folder: Path) -> str:
         "# in a study: records: ['list:selection.txt'], with the path as seen from the study",
     )
     lines = (
-        _line(motion.source, one.factor, folder)
-        for one in selection.chosen
-        for motion in one.motions
+        _line(source, one.factor, folder) for one in selection.chosen for source in one.sources
     )
     return "\n".join((*heads, *lines)) + "\n"
 

@@ -19,7 +19,6 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
-from rpscli.records.clusters import pairs
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import Measure, factor_to, measured
 from rpscli.records.pair_measure import Of, pair_measure
@@ -99,12 +98,14 @@ class RecordCache:
         def make() -> float:
             if both is None:
                 return measured(self.motion(request).horizontal, measure, period, damping)
-            parts = (request._replace(source=s, vertical=None, pair=None) for s in both)
+            alone = request._replace(vertical=None, pair=None, y=None, rotation=0.0)
+            parts = (alone._replace(source=source) for source in both)
             one, other = (self.motion(part).horizontal for part in parts)
             return pair_measure(one, other, measure, of, period, damping)
 
-        # All directions of a pair share its measure.
-        whose = request if both is None else (request._replace(source="", vertical=None), of)
+        # All directions of a pair share its measure, and both components together.
+        shared = request._replace(source="", vertical=None, y=None, rotation=0.0)
+        whose = request if both is None else (shared, of)
         return self._intensities.value((whose, measure, period, damping), make)
 
 
@@ -117,9 +118,10 @@ def _samples(found: MotionComponents | str) -> float:
 
 def _load(request: RecordRequest) -> MotionComponents | str:
     """The motion, or why there is none."""
-    source, folder, above, dt, units, _ = request
+    source, folder, above, dt, units, _, y, rotation = request
     try:
-        return load_components(source, above, folder=Path(folder), dt=dt, units=units)
+        how: dict[str, Any] = {"folder": Path(folder), "dt": dt, "units": units}
+        return load_components(source, above, y, rotation, **how)
     except (RecordError, OSError) as error:
         return str(error)
 
@@ -163,9 +165,9 @@ def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
     """The case's own record, to be measured as a scale asks for."""
     if (record := case.record) is None:
         return None
-    (pair,) = pairs([record.source], of)
-    folder = str(case.folder)
-    return RecordRequest(record.source, folder, record.vertical, record.dt, record.units, pair)
+    folder, rotation = str(case.folder), record.rotation or 0.0
+    what = record.vertical, record.dt, record.units, record.pair(of), record.y, rotation
+    return RecordRequest(record.source, folder, *what)
 
 
 def unjudged(given: Mapping[str, Any]) -> list[str]:

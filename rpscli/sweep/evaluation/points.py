@@ -12,12 +12,14 @@ from typing import Any, NamedTuple
 from rpscli.case.study.schema import Analysis, MeasureScale
 from rpscli.records.clusters import Pair
 from rpscli.records.pair_measure import USUAL, Of
+from rpscli.records.source import parts_of
 
 
 class RecordRequest(NamedTuple):
     """A ground motion to be loaded, and where its relative names start.
 
-    What is measured by a `pair` has both components of that.
+    What is measured by a `pair` has both components of that. A second component `y` acts together
+    with the source, as both of a source do that says so; they are turned by a rotation [deg].
     """
 
     source: str
@@ -26,6 +28,13 @@ class RecordRequest(NamedTuple):
     dt: float | None = None
     units: str | None = None
     pair: Pair | None = None
+    y: str | None = None
+    rotation: float = 0.0
+
+    @property
+    def is_pair(self) -> bool:
+        """Whether both horizontal components act."""
+        return self.y is not None or parts_of(self.source).both
 
 
 class Point(NamedTuple):

@@ -11,7 +11,7 @@ from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of, with_friction
 from rpscli.case.overrides import Override
-from rpscli.case.rules.plausibility import Doubt
+from rpscli.case.rules.plausibility import Doubt, doubts_of_directions
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.axes import Values
 from rpscli.case.study.schema import MeasureScale
@@ -21,6 +21,7 @@ from rpscli.errors import CaseError, RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.measures import needs_period
+from rpscli.records.source import parts_of
 from rpscli.sweep.evaluation.context import (
     SYSTEMS_KEPT,
     System,
@@ -83,17 +84,19 @@ def check_systems(
     examined: dict[int, System] = {}
     known: dict[RecordRequest, RecordRequest] = {}
     complaints: dict[str, None] = {}
-    faulty = 0
+    faulty, pairs = 0, any(parts_of(source).both for source in study.sources)
     for system in watched(range(len(combinations))):
         values = combinations.values(system)
         try:
             case = resolved(plan, values)
             found = system_of(case)
-            properties.append(_properties(study, values, case, found.digest, known))
+            both = pairs if case.record is None or study.sources else case.record.is_pair
+            properties.append(_properties(study, values, case, found.digest, known, both=both))
             if system < SYSTEMS_KEPT:
                 examined[system] = found
             _refuse_restitution(study, case, members)
             _refuse_missing(study, plan, case)
+            _refuse_pairs(plan, case, both=both)
         except CaseError as error:
             places = combinations.places(system)
             complaints |= dict.fromkeys(_placed(study, plan, values, places, error))
@@ -111,6 +114,8 @@ def _properties(
     case: Case,
     digest: bytes,
     known: dict[RecordRequest, RecordRequest],
+    *,
+    both: bool,
 ) -> SystemProperties:
     structure, building = case.structure, case.structure.superstructure
     request = None if study.sources else _request(study, case)
@@ -131,8 +136,14 @@ def _properties(
         scale=1.0 if case.record is None else case.record.scale,
         limits=_limits(study, case),
         lacking=lacking(study, case),
-        doubts=case.doubts,
+        doubts=(*case.doubts, *doubts_of_directions(structure, both=both)),
     )
+
+
+def _refuse_pairs(plan: Plan, case: Case, *, both: bool) -> None:
+    """What cannot be followed under both components of a record."""
+    if both and plan.analysis == "timehistory" and (why := case.structure.planar_only):
+        raise CaseError(f"both components together: {why}")
 
 
 def _request(study: Study, case: Case) -> RecordRequest | None:

@@ -74,10 +74,11 @@ def _normal_quantile(unit: Array) -> Array:
 
 
 class Change(NamedTuple):
-    """Factors on the record's scale and on the restitution."""
+    """Factors on the record's scale and on the restitution; a turn of pairs [deg]."""
 
     scale: float
     restitution: float
+    rotation: float = 0.0
 
 
 UNCHANGED = Change(1.0, 1.0)
@@ -89,7 +90,11 @@ def changes(section: PerturbSection | None) -> tuple[Change, ...]:
         return (UNCHANGED,)
     generator = np.random.default_rng(section.seed)
     drawn = generator.uniform(-1.0, 1.0, (section.members - 1, 2)).tolist()
-    others = (Change(1.0 + section.scale * a, 1.0 + section.restitution * b) for a, b in drawn)
+    turns = (section.rotation * generator.uniform(-1.0, 1.0, section.members - 1)).tolist()
+    others = (
+        Change(1.0 + section.scale * a, 1.0 + section.restitution * b, turn)
+        for (a, b), turn in zip(drawn, turns, strict=True)
+    )
     return (UNCHANGED, *others)
 
 

@@ -21,6 +21,7 @@ from rpscli.errors import RecordError, RpsError
 from rpscli.frozen import frozen
 from rpscli.records.clusters import By, clusters, pairs
 from rpscli.records.measures import MEASURES, needs_period
+from rpscli.records.pair import turned_source
 from rpscli.records.pair_measure import Of, measure_label
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
@@ -79,11 +80,15 @@ class StudyPoints:
         system, record = divmod(rest, records)
         properties, change = self.properties[system], self.members[member]
         given = self.scales[scale]
+        found = self.records[record] or properties.record
+        at = system if self.records == (None,) else record
+        if found is not None and change.rotation and self.pairs[at]:
+            found = found._replace(rotation=found.rotation + change.rotation)
         return Point(
             number=index,
             system=system,
             values=properties.values,
-            record=self.records[record] or properties.record,
+            record=found,
             scale=properties.scale if given is None else given,
             member=member,
             scale_change=change.scale,
@@ -116,13 +121,13 @@ class StudyPoints:
         if len(self.members) > 1:
             columns["member"] = 3, range(len(self.members))
             columns["restitution_change"] = 3, [change.restitution for change in self.members]
+            if any(self.pairs):
+                columns["rotation_change"] = 3, [change.rotation for change in self.members]
         if self.plan.measure is not None:
             columns[measure_label(self.plan.measure.measure, self.of)] = 2, self.scales
         if self.plan.analysis == "timehistory":
-            own, records = self.records == (None,), self.records
-            if own:
-                records = tuple(properties.record for properties in self.properties)
-            columns["record"] = 0 if own else 1, [record.source for record in records if record]
+            own = self.records == (None,)
+            columns["record"] = 0 if own else 1, [record.source for record in self._requests]
         return columns
 
     @cached_property
@@ -149,12 +154,21 @@ class StudyPoints:
         return self.study.file.independent
 
     @cached_property
+    def pairs(self) -> tuple[bool, ...]:
+        """Of each record whether both horizontal components act."""
+        return tuple(record.is_pair for record in self._requests)
+
+    @property
+    def _requests(self) -> list[RecordRequest]:
+        """The records, those of the cases where the study has none of its own."""
+        own = self.records == (None,)
+        found = (each.record for each in self.properties) if own else self.records
+        return [record for record in found if record]
+
+    @cached_property
     def of(self) -> Of | None:
         """What measures of pairs are of; None where no record is measured as a pair."""
-        records = self.records
-        if records == (None,):
-            records = tuple(properties.record for properties in self.properties)
-        return self.plan.of if any(r and r.pair for r in records) else None
+        return self.plan.of if any(record.pair for record in self._requests) else None
 
     @property
     def scaled_to(self) -> str:
@@ -240,8 +254,11 @@ def reproduction(layout: StudyPoints, context: StudyContext, point: Point, base_
     for text in (*_overrides(layout, point), *_restitution(layout, point)):
         words += ["--set", text]
     if point.record is not None and layout.plan.analysis == "timehistory":
-        words += ["--record", _source(point.record)]
-        if point.record.vertical:
+        if point.record.y is None:
+            words += ["--record", _source(point.record)]
+        elif point.record.rotation:
+            words += ["--set", f"record.rotation={point.record.rotation!r}"]
+        if point.record.vertical and point.record.y is None:
             words += ["--vertical", _source(point.record._replace(source=point.record.vertical))]
         words += ["--scale", repr(_factor(context, point))]
     return shlex.join(words)
@@ -270,10 +287,11 @@ def _factor(context: StudyContext, point: Point) -> float:
 
 def _source(request: RecordRequest) -> str:
     """The source as seen from the working folder."""
-    place, mark, options = request.source.partition("?")
+    source = turned_source(request.source, request.rotation)
+    place, mark, options = source.partition("?")
     file = Path(request.folder) / place
     if not file.exists():
-        return request.source
+        return source
     stated = [options] if mark else []
     stated += [f"dt={request.dt!r}"] if request.dt is not None else []
     stated += [f"units={request.units}"] if request.units is not None else []
