@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.case.conditions import Condition, condition_text, conditions_of
+from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands.inputs import (
     CaseInput,
     MotionRequest,
@@ -26,11 +27,11 @@ from rpscli.commands.shell.options import (
     result_options,
 )
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import RecordError, UsageError
+from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.table import Heading, Part, Table, large, shown
-from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
+from rpscli.report.tables.derived import BOTH, DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -94,25 +95,28 @@ def _drawn(given: CaseInput, output: OutputRequest, look: Look, terminal: Termin
     return folder.files
 
 
-def _record(case: Case) -> tuple[dict[str, Any] | None, RecordError | None]:
+def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     """The case's own record, or why it cannot be read; nothing if the case names none."""
     if case.record is None:
         return None, None
     try:
         motion = load_motion(case, MotionRequest())
-    except RecordError as error:
+    except (RecordError, CaseError) as error:
         return None, error
     found = motion.horizontal
     warnings = [*found.warnings, *motion.warnings]
-    known = {name: getattr(found, name) for name in RECORD}
-    return {**known, "scale": motion.scale, "warnings": warnings}, None
+    doubts = map(str, doubts_of_directions(case.structure, both=motion.y is not None))
+    known, y = {name: getattr(found, name) for name in RECORD}, motion.y
+    across = y and {name: getattr(y, name) for name in RECORD}
+    return {**known, "y": across, "scale": motion.scale, "warnings": [*warnings, *doubts]}, None
 
 
 def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> Iterator[Part]:
     """Geometry; masses, statics and periods; the record; the limits."""
     heads = ("", "symbol", "value", "unit")
     yield Heading(document["case"]["title"])
-    for rows in (GEOMETRY, (*DYNAMICS, FIRST_PERIOD)):
+    pair = document["record"] and document["record"]["y"]
+    for rows in (GEOMETRY, (*DYNAMICS, FIRST_PERIOD), BOTH)[: 3 if pair else 2]:
         texts = []
         for row in rows:
             if row.name == "rolling_period" and document[row.name] is None:
@@ -127,6 +131,7 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
             ("format", record["format"]),
             ("samples", f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s"),
             ("peak acceleration", f"{shown(record['pga'])} m/s2"),
+            *([("in y", f"{y['name']}, {shown(y['pga'])} m/s2")] if (y := record["y"]) else []),
             ("scale", f"{record['scale']:g}"),
         ]
         yield Table.listing(lines)

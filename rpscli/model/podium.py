@@ -243,6 +243,22 @@ class PodiumStructure(Shown):
         return self.weight * slope / (2.0 * self.bearing.semi_diagonal * C**3)
 
     @property
+    def turning_inertia(self) -> float:
+        """K(0) = lim J/theta^2 at theta = 0, over N m_c R^2: inertia against turns of the azimuth."""
+        cosine = math.cos(self.bearing.alpha)
+        return self.bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * self.gamma) * cosine**2
+
+    @property
+    def pass_turn(self) -> float:
+        """Delta phi = pi sqrt(A(0)/K(0)): turn of the azimuth in a pass near upright [rad].
+
+        A(0) - K(0) = (1 + 4 gamma (1 + eta)) sin^2(alpha): falling moves masses up and down, going
+        round does not, so the turn exceeds pi however near the pass is.
+        """
+        sine, K = math.sin(self.bearing.alpha), self.turning_inertia
+        return math.pi * math.sqrt(1.0 + (1.0 + 4.0 * self.gamma_total) * sine**2 / K)
+
+    @property
     def rolling_period(self) -> float | None:
         """T of small rolling under a rigid building [s]; None where a flat part makes it jump.
 

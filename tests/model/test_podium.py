@@ -149,3 +149,25 @@ def test_the_floors_are_the_same_in_both_directions() -> None:
     for x, y in ((None, across), (along, building(3))):
         with pytest.raises(ValueError, match="superstructure_y must have the floors"):
             PodiumStructure(bearing, 2e4, 2e5, x, superstructure_y=y)
+
+
+@pytest.mark.parametrize(("storeys", "tan_alpha"), [(0, 0.15), (3, 0.15), (3, 0.25)])
+def test_the_turn_of_a_pass_by_the_kinetic_energy_of_a_cone(storeys: int, tan_alpha: float) -> None:
+    """A straight way over the cone A dr^2 + K r^2 dphi^2, from energies of masses that move."""
+    s = podium(storeys, tan_alpha, 0.5)
+    b, small = s.bearing, 1e-5
+    _, u, v = s.path(np.array([small, 2.0 * small]))
+    across, up = u[0] / small, float(np.diff(v)[0]) / small  # what du_b and dv_b are to dtheta
+    unit = s.columns_mass * b.semi_diagonal**2
+    carried = s.cap_beam_mass * np.array([across**2 + up**2, across**2])
+    carried[0] += s.superstructure_mass * up**2
+    # Of the column, about its edge, and round it: its middle moves by half of u_b.
+    columns = [b.inertia_ratio * unit, (b.inertia_ratio - 1.0) * unit]
+    columns[1] += s.columns_mass * (0.5 * across) ** 2
+    falling, turning = (carried + columns) / unit
+    assert s.turning_inertia == pytest.approx(turning, rel=1e-4)
+    # The speed is kept and so is K r^2 phi': from afar to the nearest point 1 and away again.
+    way = quad(lambda r: 1.0 / (r * math.sqrt(r**2 - 1.0)), 1.0, 2.0)[0]
+    way += quad(lambda r: 1.0 / (r * math.sqrt(r**2 - 1.0)), 2.0, math.inf)[0]
+    assert s.pass_turn == pytest.approx(2.0 * math.sqrt(falling / turning) * way, rel=1e-4)
+    assert s.pass_turn > math.pi

@@ -117,7 +117,7 @@ def test_components_of_different_length() -> None:
 
 @pytest.fixture
 def station(tmp_path: Path) -> Path:
-    for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "-3\n2\n2\n4\n")):
+    for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "0.3\n-1.5\n0.2\n2.5\n")):
         (tmp_path / name).write_text(values, encoding="utf-8")
     return tmp_path
 
@@ -129,7 +129,7 @@ def test_two_files_together(station: Path) -> None:
     assert expand_sources([TOGETHER], folder=station) == [TOGETHER]
     pair = load_components(TOGETHER, folder=station)
     assert pair.y is not None
-    assert pair.samples.tolist() == [[1.0, 0.0, 2.0, 0.0], [-3.0, 2.0, 2.0, 4.0]]
+    assert pair.samples.tolist() == [[1.0, 0.0, 2.0, 0.0], [0.3, -1.5, 0.2, 2.5]]
     assert (pair.horizontal.name, pair.horizontal.source) == ("x_both", TOGETHER)
     assert (pair.y.name, pair.y.source) == ("y", "y.txt?dt=0.01&units=m/s2")
     named = load_components("x.txt", None, "y.txt", folder=station, dt=0.01, units="m/s2")

@@ -91,6 +91,18 @@ DYNAMICS = (
 )  # fmt: skip
 """Masses and statics."""
 
+BOTH = (
+    Derived("pass_turn", "turn in a pass near upright", "Delta phi", "rad", lambda s: s.pass_turn),
+    Derived(
+        "turning_inertia", "inertia of turning, upright", "K(0)", "-", lambda s: s.turning_inertia
+    ),
+    Derived(
+        "contact_time", "contact time of an impact", "t_c", "s",
+        lambda s: s.impact_law.contact_time,
+    ),
+)  # fmt: skip
+"""Where both horizontal components act."""
+
 FIRST_PERIOD = Derived(
     "T1", "first period on a fixed base", "T1", "s",
     lambda s: float(s.superstructure.periods[0]) if s.superstructure else None,
@@ -102,7 +114,7 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
     building = structure.superstructure
     lists = ("periods", "damping_ratios", "stiffnesses")
     return {
-        **{row.name: row.value(structure) for row in (*GEOMETRY, *DYNAMICS)},
+        **{row.name: row.value(structure) for row in (*GEOMETRY, *DYNAMICS, *BOTH)},
         "storeys": structure.storeys,
         FIRST_PERIOD.name: FIRST_PERIOD.value(structure),
         **{name: getattr(building, name) if building else [] for name in lists},

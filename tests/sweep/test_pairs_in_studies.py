@@ -1,0 +1,109 @@
+"""Both components of a pair are one record of a study."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.case.case import load_case
+from rpscli.commands.inputs import MotionRequest, load_motion
+from rpscli.errors import CaseError
+from rpscli.records.formats.at2 import at2_text
+from rpscli.records.pair_measure import pair_measure
+from rpscli.records.source import load_components, load_record
+from rpscli.sweep.evaluation.context import StudyContext
+from rpscli.sweep.points.layout import StudyPoints, lay_out, reproduction
+from sweep.small_studies import BASE, STUDY, Make
+
+Lay = Callable[..., StudyPoints]
+HEAD = STUDY[: STUDY.index("vary:")]
+BOTH = "one.at2?second=other.at2&both"
+
+
+@pytest.fixture
+def lay(study_of: Make, workplace: Path) -> Lay:
+    """The points of a study with lines of its own, beside two files of one recording."""
+    for seed, name in ((1, "one"), (2, "other")):
+        motion = load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}")
+        (workplace / f"{name}.at2").write_text(at2_text(motion), encoding="utf-8")
+
+    def laid_out(lines: str, base: str = BASE) -> StudyPoints:
+        (workplace / "base.yaml").write_text(base, encoding="utf-8")
+        return lay_out(study_of(HEAD + lines))
+
+    return laid_out
+
+
+def motions(layout: StudyPoints, context: StudyContext) -> list[np.ndarray]:
+    return [context.history(point).motion.samples for point in layout]
+
+
+def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
+    layout = lay(
+        f"records: [{{source: '{BOTH}', rotation: {{low: 0, high: 90, count: 3}}}}, '{BOTH}']\n"
+        "scale: {measure: PGV, values: [0.3], of: rotd100}\n"
+    )
+    context = StudyContext(layout.plan)
+    a, b = load_record("one.at2"), load_record("other.at2")
+    factor = 0.3 / pair_measure(a, b, "PGV", "rotd100")
+    assert [context.factor(point) for point in layout] == pytest.approx([factor] * 4, rel=1e-12)
+    assert layout.of == "rotd100"
+    assert layout.pairs == (True,) * 4
+    assert set(layout.clusters.tolist()) == {0} or layout.alone
+    straight, half, quarter, plain = motions(layout, context)
+    np.testing.assert_array_equal(straight, plain)
+    np.testing.assert_array_equal(quarter, [-plain[1], plain[0]])
+    np.testing.assert_allclose(half[0], (plain[0] - plain[1]) * np.sqrt(0.5), atol=1e-14)
+
+
+def test_members_turn_pairs_alone(lay: Lay) -> None:
+    layout = lay(f"records: ['{BOTH}', one.at2]\nperturb: {{members: 3, rotation: 2 deg}}\n")
+    context = StudyContext(layout.plan)
+    (x, y), first, second, *alone = motions(layout, context)
+    changes = layout.identifying["rotation_change"][1]
+    assert changes[0] == 0.0
+    assert all(0.0 < abs(change) <= 2.0 for change in changes[1:])
+    for found, turn in zip((first, second), changes[1:], strict=True):
+        z = (x + 1j * y) * np.exp(1j * np.radians(turn))
+        np.testing.assert_allclose(found, [z.real, z.imag], atol=1e-14)
+    assert all(np.array_equal(each, alone[0]) for each in alone)
+    # Other changes are what they were without a turn.
+    assert [c[:2] for c in layout.members][1] == pytest.approx((1.00901, 1.00901), abs=0.02)
+    for point in (layout[1], layout[4]):
+        words = shlex.split(reproduction(layout, context, point, Path("base.yaml")))
+        request = MotionRequest(words[words.index("--record") + 1])
+        again = load_motion(load_case("base.yaml"), request)
+        np.testing.assert_array_equal(again.samples, context.history(point).motion.samples)
+
+
+def test_the_pair_of_the_case(lay: Lay) -> None:
+    record = "record: {x: one.at2, y: other.at2, rotation: 30}\n"
+    layout = lay("perturb: {members: 2}\n", BASE + record)
+    context = StudyContext(layout.plan)
+    wanted = load_components(f"{BOTH}&rotation=30").samples
+    np.testing.assert_array_equal(motions(layout, context)[0], wanted)
+    words = shlex.split(reproduction(layout, context, layout[1], Path("base.yaml")))
+    assert "--record" not in words
+    override = next(word for word in words if word.startswith("record.rotation="))
+    again = load_motion(load_case("base.yaml", [override]), MotionRequest())
+    np.testing.assert_array_equal(again.samples, context.history(layout[1]).motion.samples)
+
+
+def test_what_is_followed_in_one_plane_only(lay: Lay) -> None:
+    law = "vary:\n- podium.impact.law: [flexible, rigid]\n"
+    with pytest.raises(CaseError, match="both components together: the impact law rigid"):
+        lay(f"{law}records: ['{BOTH}']\n")
+    lay(f"{law}records: [one.at2]\n")
+
+
+def test_one_component_is_no_measure_of_both(lay: Lay) -> None:
+    scale = "scale: {measure: PGV, values: [0.3], of: component}\n"
+    with pytest.raises(CaseError, match=r"scale.of: .*a pair has one factor"):
+        lay(f"records: ['{BOTH}']\n{scale}")
+    record = "record: {x: one.at2, y: other.at2}\n"
+    with pytest.raises(CaseError, match="a pair has one factor"):
+        lay(scale, BASE + record)
