@@ -244,7 +244,7 @@ class PodiumStructure(Shown):
 
     @property
     def turning_inertia(self) -> float:
-        """K(0) = lim J/theta^2 at theta = 0, over N m_c R^2: inertia against turns of the azimuth."""
+        """K(0), the limit of J/theta^2 over N m_c R^2: inertia against turns of the azimuth."""
         cosine = math.cos(self.bearing.alpha)
         return self.bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * self.gamma) * cosine**2
 

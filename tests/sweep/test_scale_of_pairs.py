@@ -93,7 +93,7 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
 @pytest.mark.parametrize(
     ("records", "of", "reason"),
     [
-        (TURNED, "component", "all angles of a pair have one factor"),
+        (TURNED, "component", "a pair has one factor"),
         ('"pulse:sine?amplitude=0.2g&period=1"', "rotd50", "has no second component"),
         (TURNED, "rotd30", "must be"),
     ],
