@@ -45,3 +45,28 @@ def pulse(peak: float, period: float, dt: float) -> Array:
     return np.asarray(
         peak * np.sin(2.0 * math.pi * np.arange(round(period / dt) + 1) * dt / period)
     )
+
+
+def uniform_podium(
+    storeys: int, tan_alpha: float, rho: float, period: float, damping: float = 0.05
+) -> OracleSystem:
+    """`podium` with floors on equal springs; one storey is damped in proportion to stiffness."""
+    between = np.eye(storeys) - np.eye(storeys, k=-1)
+    stiffness_matrix = between.T @ between
+    spring = 1.0
+    damping_matrix = np.zeros((storeys, storeys))
+    if storeys > 0:
+        rates = np.sqrt(np.linalg.eigvalsh(stiffness_matrix))
+        spring = (2.0 * math.pi / (period * rates[0])) ** 2
+        rates = rates[:2] * math.sqrt(spring)
+        damping_matrix = 2.0 * damping / rates[0] * spring * stiffness_matrix
+        if storeys > 1:
+            mass_part = rates[0] * rates[1] * np.eye(storeys)
+            damping_matrix = (
+                2.0 * damping / (rates[0] + rates[1]) * (mass_part + spring * stiffness_matrix)
+            )
+    wedge = 2.0 * tan_alpha if rho else tan_alpha
+    ones = np.ones(storeys)
+    return OracleSystem(
+        1.5, tan_alpha, wedge, rho, 4 / 3, 0.1, 1.0, ones, spring * ones, damping_matrix
+    )
