@@ -32,11 +32,11 @@ RECORDS = ("seed: [1, 2, 3]", "seed: {low: 1, high: 16, count: 16}")
 
 @pytest.fixture(scope="module")
 def scheduler() -> Iterator[str]:
-    """Address of a cluster of three worker processes, which are replaced when they die."""
+    """Address of a cluster of two worker processes, which are replaced when they die."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # sockets of the worker that is killed
         with distributed.LocalCluster(
-            n_workers=3, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
         ) as cluster:
             yield cluster.scheduler_address
 
