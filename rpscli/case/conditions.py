@@ -22,7 +22,7 @@ FRICTION = "podium.friction"
 """Source of the condition that the columns do not slide."""
 
 RATE = "annual_rate"
-"""Condition on how often a year the structure overturns [1/year]: of designs alone."""
+"""Condition on how often a year the structure overturns [1/year], over all intensities."""
 
 LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Results that conditions may limit, in SI units."""
@@ -95,6 +95,8 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
     for name, given in limits.model_dump(exclude_none=True).items():
         if name in EVENTS:
             found.append(Condition(name, 0.0, source, given))
+        elif name == "probability_in_50_years":  # of a Poisson process
+            found.append(Condition(RATE, -math.log1p(-given) / 50.0, source))
         elif isinstance(given, dict):
             share, fractile = given.get("share", 0.0), given.get("fractile")
             limit = given["at_least" if LIMITS[name].from_below else "at_most"]

@@ -28,10 +28,10 @@ from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
 from rpscli.case.schema.fields import LARGEST, Quantity, Section, Whole, is_finite, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
-from rpscli.case.schema.limits import Fractile, LimitsSection
+from rpscli.case.schema.limits import Fractile
 from rpscli.case.study.axes import Axis, sources_of
 from rpscli.case.study.rules import fixed_faults, record_rules, twice, unknown_keys, varied_paths
-from rpscli.case.study.schema import HazardSection, Seed, Share, Sources, StudyParts
+from rpscli.case.study.schema import Seed, Share, Sources, StudyParts
 from rpscli.case.study.study import Study, shared_out, study_of
 from rpscli.case.text.document import Document, Fault, is_case, is_design
 from rpscli.case.text.document import Path as KeyPath
@@ -188,34 +188,6 @@ Tolerance = Annotated[
 """One share of the values, or one of each key."""
 
 
-class DesignLimits(LimitsSection):
-    """Limits of designs, which may be on the reliability as well; it needs a `hazard`."""
-
-    annual_rate: Annotated[float | None, Quantity(symbol="1/year", above=0)] = None
-    """how often a year the structure may overturn, from the shares at all intensities"""
-    probability_in_50_years: Annotated[
-        float | None, Quantity(above=0, below=1, remedy="1 % is 0.01")
-    ] = None
-    """probability of overturning in 50 years, in place of the annual rate"""
-
-    @model_validator(mode="after")
-    def _one_of_both(self) -> Self:
-        if self.annual_rate is not None and self.probability_in_50_years is not None:
-            refuse("must have annual_rate or probability_in_50_years, not both")
-        return self
-
-    @property
-    def rate(self) -> float | None:
-        """The annual rate, of Poisson's process if the probability is given [1/year]."""
-        if self.probability_in_50_years is None:
-            return self.annual_rate
-        return -math.log1p(-self.probability_in_50_years) / 50.0
-
-
-RELIABILITY = {"annual_rate", "probability_in_50_years"}
-"""Limits that studies do not have."""
-
-
 class ValidateSection(Section):
     """Motions that the search does not see."""
 
@@ -247,10 +219,6 @@ class DesignFile(StudyParts):
     validation: ValidateSection | None = Field(
         None, alias="validate", description="motions to validate the design with"
     )
-    limits: DesignLimits | None = None
-    """what is required, in place of the limits of the base"""
-    hazard: HazardSection | None = None
-    """hazard curve for a limit on the reliability"""
     tolerance: Tolerance = TOLERANCE
     """by how much what is built may differ, as a share of the values, or {key: share}: 1 %"""
     search: SearchSection = SearchSection()
@@ -367,9 +335,6 @@ def parse_design(
     assert file is not None, "without faults the file is read"
     document.refuse(_name_faults(file))
     shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
-    if file.limits is not None:
-        given = document.content["limits"].items()
-        shared["limits"] = {key: value for key, value in given if key not in RELIABILITY}
     study = study_of(
         replace(document, content=shared),
         of_base,
@@ -460,9 +425,6 @@ def _fixed_properties(document: Document) -> Iterator[Fault]:
 def _name_faults(file: DesignFile) -> Iterator[Fault]:
     """Names that are not keys that change, or in what is minimised not results either."""
     known, keys = [*file.variables, PLUS], [*file.variables, *file.linked]
-    if (file.limits is not None and file.limits.rate is not None) != (file.hazard is not None):
-        text = "limits.annual_rate, or probability_in_50_years, and hazard need each other"
-        yield Fault(("limits" if file.hazard is None else "hazard",), f"{text}; give both")
     for name in file.tolerance if isinstance(file.tolerance, dict) else ():
         if name not in file.variables:
             text = f"tolerance.{name} is not under variables; use {listed([*file.variables])}"

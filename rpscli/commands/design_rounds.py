@@ -93,7 +93,6 @@ class Rounds:
                 study = self._laid_out(task.study_of(answer.values[[place]], task.confirming))
                 self.terminal.note(f"confirmation of the {name} design")
                 run = self._computed(study, store)
-                run.verdicts.extend(self.search.rate_verdicts(run.table, run.summary))
                 yield name, run
 
     def with_other_loss(self, answer: Answer, store: Store) -> StudyRun | None:
@@ -104,9 +103,7 @@ class Rounds:
             return None
         base = apply_overrides(checked.base, [f"podium.impact.loss={OTHER_LOSS:g}"])
         self.terminal.note(f"the same design with podium.impact.loss {OTHER_LOSS:g}")
-        run = self._computed(self._laid_out(replace(checked, base=base)), store)
-        run.verdicts.extend(self.search.rate_verdicts(run.table, run.summary))
-        return run
+        return self._computed(self._laid_out(replace(checked, base=base)), store)
 
     def everything(self, answer: Answer, first: Study, store: Store) -> tuple[Study, StudyRun]:
         """All valid designs as one study, whose points are in the store."""

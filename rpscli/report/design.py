@@ -16,7 +16,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw
 from rpscli.report.study.labels import key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
-from rpscli.report.study.statistics import reached, verdict_document
+from rpscli.report.study.statistics import limit_unit, reached, verdict_document
 from rpscli.report.table import Column
 from rpscli.sweep.design.answer import NONE, Answer, Requirement
 from rpscli.sweep.intensities import unit_of
@@ -189,8 +189,7 @@ def design_columns(answer: Answer, places: Indices | Sequence[int]) -> list[Colu
         )
     for row, requirement in enumerate(judged.requirements):
         name, of = requirement_label(requirement), requirement.condition.name
-        unit = LIMITS[of].unit if of in LIMITS else "1/year" if of == RATE else "-"
-        columns.append(column(name, unit, judged.values[row, 0]))
+        columns.append(column(name, limit_unit(of), judged.values[row, 0]))
         columns.append(column(f"{name}: records too many", "-", judged.excess[row]))
     return columns
 

@@ -401,7 +401,7 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         ),
         ("limits: {uplift: 0.3}\n", "", "", "limits is missing"),
         (MINIMISED, "", "", "minimise is missing"),
-        ("limits: {", "limits: {annual_rate: 1e-4, ", "18:", "and hazard need each other"),
+        ("limits: {", "limits: {annual_rate: 1e-4, ", "18:", "needs a hazard curve"),
         ("search:", "tolerance: {a: 0.1}\nsearch:", "20:", "tolerance.a is not under variables"),
         ("search:", "tolerance: 5\nsearch:", "20:", "1 % is 0.01"),
         ("search: {first: 8", "search: {first: 2", "20:", "must be a whole number from 4 to"),

@@ -25,7 +25,11 @@ from rpscli.sweep.fits.hazard import (
     rates_above,
     read_hazard,
 )
-from sweep.small_studies import STUDY
+from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.statistics.summary import summary
+from rpscli.sweep.statistics.verdicts import judged
+from sweep.made_up import stored, tabulate
+from sweep.small_studies import STUDY, Make
 
 KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5]))
 HEADER = "PGV [cm/s],rate [1/year]\n"
@@ -96,6 +100,30 @@ def test_a_rate_straight_from_shares_is_what_quadrature_gives() -> None:
     flat = Hazard(np.array([0.1, 0.5, 1.0]), np.array([1e-2, 1e-2, 1e-3]))
     step = rate_of_shares(flat, np.array([0.1, 0.5]), np.array([0.0, 1.0]))
     assert step == pytest.approx(1e-2)  # up to 0.5 no motion is counted, from there on all
+
+
+def test_a_study_judges_the_annual_rate_of_each_system(study_of: Make, tmp_path: Path) -> None:
+    """None, one and all of three records overturn at 0.3, 0.6 and 1.2 m/s; H = 1e-3 / PGV.
+
+    Between levels the mean of H over ln(PGV) is its difference over ln 2.
+    """
+    (tmp_path / "hazard.csv").write_text("PGV [m/s],rate [1/year]\n0.1,1e-2\n10,1e-4\n")
+    scale = "scale: {measure: PGV, values: [1.2, 0.3, 0.6]}\nhazard: {file: hazard.csv,"
+    scale += " measure: PGV}\nlimits: {annual_rate: 1.5e-3}"
+    layout = lay_out(study_of(STUDY, ("scale: [0.5, 1.0]", scale)))
+    rows = [
+        stored("overturned_rocking")
+        if point.scale > (0.5, 1.0, 1.0)[layout.places[1][n]] and layout.places[0][n]
+        else stored()
+        for n, point in enumerate(layout)
+    ]
+    table = tabulate(layout, rows)
+    first, *others = judged(table, summary(table, {}))
+    exact = (1e-3 / 0.3 - 1e-3 / 0.6) / 3.0 + 2.0 * (1e-3 / 0.6 - 1e-3 / 1.2) / 3.0
+    assert (first.value, first.word) == (0.0, "met, not shown")  # three records show little
+    assert [verdict.value for verdict in others] == pytest.approx([exact / math.log(2.0)] * 5)
+    assert [verdict.word for verdict in others] == ["EXCEEDED"] * 5
+    assert others[0].values == (0.10, 0.5, "all")
 
 
 def test_rates_of_the_motion_are_those_of_the_curve() -> None:

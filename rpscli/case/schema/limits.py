@@ -83,3 +83,20 @@ class LimitsSection(
     uplift: Admissible | None = Field(
         None, description="share of the records that may uplift; 0 = none"
     )
+
+
+class StudyLimits(LimitsSection):
+    """Limits of studies and designs, which may be on the reliability; it needs a `hazard`."""
+
+    annual_rate: Annotated[float | None, Quantity(symbol="1/year", above=0)] = None
+    """how often a year the structure may overturn, from the shares at all intensities"""
+    probability_in_50_years: Annotated[
+        float | None, Quantity(above=0, below=1, remedy="1 % is 0.01")
+    ] = None
+    """probability of overturning in 50 years, in place of the annual rate"""
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        if self.annual_rate is not None and self.probability_in_50_years is not None:
+            refuse("must have annual_rate or probability_in_50_years, not both")
+        return self

@@ -13,8 +13,11 @@ from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import listed
 
-OF_HISTORIES = ("records", "scale", "perturb", "observed")
+OF_HISTORIES = ("records", "scale", "perturb", "observed", "hazard")
 """Keys of a study that only time histories have."""
+
+RELIABILITY = ("annual_rate", "probability_in_50_years")
+"""Limits on all intensities at once."""
 
 OF_POINTS = ("record", "scale")
 """Axes of the product that are no case keys; reports may name them."""
@@ -101,6 +104,14 @@ def record_rules(document: Document) -> Iterator[Fault]:
             where = document.where((owner,))
             text = f"{key} must not vary beside {owner}{where}; take one of them out"
             yield Fault(path, text, at_key=True)
+
+
+def reliability_rules(document: Document) -> Iterator[Fault]:
+    """A limit on a rate needs to know how often motions come."""
+    for key in RELIABILITY:
+        if document.has(("limits", key)) and not document.has(("hazard",)):
+            text = f"limits.{key} needs a hazard curve; add `hazard: {{file: FILE, measure: PGV}}`"
+            yield Fault(("limits", key), text, at_key=True)
 
 
 def report_rules(

@@ -37,7 +37,7 @@ from rpscli.case.schema.fields import (
     must_be,
     refuse,
 )
-from rpscli.case.schema.limits import LimitsSection
+from rpscli.case.schema.limits import StudyLimits
 from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
 from rpscli.case.text.document import shown
 from rpscli.records.clusters import By
@@ -283,8 +283,10 @@ class StudyParts(Section):
     )
     perturb: PerturbSection | None = None
     """small perturbations around every point"""
-    limits: LimitsSection | None = None
-    """judge the study in place of those of its base; exceeded: exit code 10"""
+    limits: StudyLimits | None = None
+    """what is required, in place of the limits of the base; exceeded: exit code 10"""
+    hazard: HazardSection | None = None
+    """hazard curve for a limit on the reliability, and for the report risk"""
     document: DocumentSection = DocumentSection()
     """who answers for the page of `rps report`"""
 

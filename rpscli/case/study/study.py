@@ -27,6 +27,7 @@ from rpscli.case.study.rules import (
     analysis_rules,
     fixed_faults,
     record_rules,
+    reliability_rules,
     report_rules,
     size_faults,
     twice,
@@ -129,7 +130,7 @@ def study_of(
     reports = requests_of(whole, asked)
     faults = [*check.faults, *axis_faults, *source_faults]
     faults += [*unknown_keys(document), *twice(document), *record_rules(document)]
-    faults += analysis_rules(document, reports, asked)
+    faults += [*reliability_rules(document), *analysis_rules(document, reports, asked)]
     observed = None
     if not axis_faults and (axes or not document.content.get("vary")):
         observed, observed_faults = observed_of(document, folder, axes)

@@ -3,9 +3,10 @@
 An incremental dynamic analysis, read across: the intensity at which a record first passes a limit
 lies between two of its levels, by any measure. A measure is *efficient* if these intensities
 scatter little from record to record (their beta), and *sufficient* if they do not depend on what
-else is known of the record: magnitude, distance, other measures. Residuals are those of intensities
-at a response, not of responses at an intensity, so that overturned histories count: they have no
-response that a regression could take.
+else is known of the record: magnitude, distance, durations, other measures. Residuals are those of
+intensities at a response, so that overturned histories count in full. Those of responses at an
+intensity (sigma; of overturning, of rotations) are about a power law near the median at the limit;
+an overturned history is known to have gone at least as far as where it was left.
 
 References
 ----------
@@ -24,11 +25,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from rpscli.case.conditions import LIMITS
 from rpscli.case.schema.fields import Several, Text
 from rpscli.case.schema.scale_to import ScaleToSection, scale_to_of
 from rpscli.case.study.reports import ReportOptions, VariedKeys
-from rpscli.errors import RecordError
-from rpscli.records.measures import MEASURES, needs_period
+from rpscli.errors import RecordError, listed
+from rpscli.records.measures import MEASURES, intensity_measures, needs_period
 from rpscli.report.study.fragility import (
     LimitState,
     LimitStates,
@@ -51,11 +53,39 @@ from rpscli.sweep.table import Array, Indices
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-KNOWN = ("magnitude", "ln distance")
-HEADS = (
-    "limit", "measure", "unit", "most_telling", "median", "beta", "records", "never",
-    "p_magnitude", "p_distance", "p_most_telling",
-)  # fmt: skip
+BITS = 1e-3
+"""Half of the width in ln within which a response that is known is taken to lie."""
+
+
+class Row(NamedTuple):
+    """One measure at one limit of one group of systems; NaN where nothing determines a number."""
+
+    values: tuple[object, ...]
+    limit: str
+    measure: str
+    unit: str
+    most_telling: str | None
+    median: float
+    beta: float
+    sigma: float
+    records: int
+    never: int
+    p_magnitude: float
+    p_distance: float
+    p_d5_75: float
+    p_d5_95: float
+    p_most_telling: float
+
+
+KNOWN = {
+    "magnitude": "magnitude", "distance": "ln distance", "d5_75": "ln D5-75", "d5_95": "ln D5-95",
+}  # fmt: skip
+"""What intensities at limits may depend on, besides other measures."""
+
+NEAR = 2.0
+"""Times the median intensity at a limit, or as many parts of it, between which responses count."""
+
+RESPONSES = {"overturning": "rotation_ratio"}
 
 Measures = Annotated[tuple[Text, ...], Several(Text, spaced=False)]
 
@@ -122,31 +152,59 @@ def efficiency(study: StudyResults, options: EfficiencyOptions) -> Found:
             telling = {p_of[f"{o}/{name}"]: o for o in logs if f"{o}/{name}" in p_of}
             least = min(telling, default=math.nan)
             of = (group.values, limit.label, name)
-            spread = (math.exp(alone.mean), alone.sigma) if alone else (math.nan, math.nan)
-            counts = (len(last), int(np.isinf(between[1]).sum()))
-            chances = (*(p_of.get(each, math.nan) for each in KNOWN), least)
-            rows.append((*of, measured[name].unit, telling.get(least), *spread, *counts, *chances))
             further += [(*of, *test) for test in tests]
-    of_further = dict.fromkeys((*HEADS[:2], *Dependence._fields), "-")
+            chances: Any = {f"p_{key}": p_of.get(words, math.nan) for key, words in KNOWN.items()}
+            rows.append(
+                Row(
+                    *of,
+                    unit=measured[name].unit,
+                    most_telling=telling.get(least),
+                    median=math.exp(alone.mean) if alone else math.nan,
+                    beta=alone.sigma if alone else math.nan,
+                    sigma=_scatter_of_responses(group, limit, values, alone.mean)
+                    if alone
+                    else math.nan,
+                    records=len(last),
+                    never=int(np.isinf(between[1]).sum()),
+                    p_most_telling=least,
+                    **chances,
+                )
+            )
+    heads = dict.fromkeys(Row._fields[1:], "-")
+    of_further = dict.fromkeys(("limit", "measure", *Dependence._fields), "-")
     tables = {
-        "": keyed(found.keys, dict.fromkeys(HEADS, "-"), rows),
+        "": keyed(found.keys, heads, rows),
         "_sufficiency": keyed(found.keys, of_further, further),
     }
     notes = list(found.notes)
-    if not known:
-        notes.append("magnitudes and distances of the records are not known, and left out")
-    shown = dict.fromkeys((*found.keys, *HEADS), "")
+    if unknown := [words for words in KNOWN.values() if words not in known]:
+        notes.append(f"not known of all records, and left out: {listed(unknown, 'and')}")
+    shown = dict.fromkeys((*found.keys, *heads), "")
     shown |= {"most_telling": "other", "p_most_telling": "p other"}
     return Found(
         tables,
         lambda title: efficiency_figure(found.keys, rows, limits, title, over(found.pooled)),
         notes,
         shown={"": shown},
-        remark="median, beta: of the intensities at which records pass the limit; never: records"
-        " that do not; p: that these intensities depend on magnitude, ln distance and the ratio to"
+        remark="median, beta: of the intensities at which records pass the limit; sigma: of ln"
+        f" response about a power law of the intensity, from 1/{NEAR:g} to {NEAR:g} times that"
+        " median, overturned histories having gone so far at least; never: records that do not; p:"
+        " that these intensities depend on magnitude, ln distance, ln durations and the ratio to"
         " another measure by chance, components of one recording counting once; other: the"
         " measure with the least of these, all are in _sufficiency.csv",
     )
+
+
+def _scatter_of_responses(group: Histories, limit: LimitState, logs: Array, middle: float) -> float:
+    """Standard deviation of ln response about a line in ln intensity (points,), near a middle."""
+    table, quantity = group.table, LIMITS[RESPONSES.get(limit.result, limit.result)]
+    response, near = table.columns[quantity.name], np.abs(logs - middle) <= math.log(NEAR)
+    kept = group.points[(near & (response > 0.0))[group.points]]
+    at = np.log(response[kept])
+    # An overturned one went at least so far.
+    high = np.where(table.overturned[kept], np.inf, at + BITS)
+    fit = None if quantity.from_below else censored_fit(at - BITS, high, logs[kept][:, None])
+    return fit.sigma if fit else math.nan
 
 
 def asked(text: str) -> ScaleToSection:
@@ -157,16 +215,27 @@ def asked(text: str) -> ScaleToSection:
 
 
 def _known_of_records(study: StudyResults) -> dict[str, Array]:
-    """(points,) magnitude and logarithm of the distance; none where one is not known."""
+    """(points,) of each of `KNOWN` that is known of all records."""
     layout, cache = study.table.layout, study.context.records
     try:
-        about = [cache.motion(each).horizontal.recording for each in layout.records if each]
+        motions = [cache.motion(each).horizontal for each in layout.records if each]
     except RecordError:
         return {}
-    if not about or any(None in (each.magnitude, each.distance) for each in about):
-        return {}
-    of = np.array([(each.magnitude, math.log(each.distance or 1.0)) for each in about])
-    return dict(zip(KNOWN, of[layout.places[1]].T, strict=True))
+    durations = [intensity_measures(motion) for motion in motions]
+    of_each: dict[str, list[float | None]] = {
+        "magnitude": [motion.recording.magnitude for motion in motions],
+        "distance": [motion.recording.distance for motion in motions],
+        "d5_75": [each.d5_75 for each in durations],
+        "d5_95": [each.d5_95 for each in durations],
+    }
+    found = {}
+    for key, values in of_each.items():
+        if values and all(values):  # none is unknown, or 0
+            numbers = np.array(values, dtype=float)
+            found[KNOWN[key]] = (numbers if key == "magnitude" else np.log(numbers))[
+                layout.places[1]
+            ]
+    return found
 
 
 def _passed(group: Histories, result: str, threshold: float) -> Passed:
@@ -179,19 +248,20 @@ def _passed(group: Histories, result: str, threshold: float) -> Passed:
 
 def efficiency_figure(
     keys: Sequence[str],
-    rows: Sequence[Sequence[Any]],
+    rows: Sequence[Row],
     limits: Sequence[LimitState],
     title: str,
     note: str,
 ) -> bytes:
     """One panel a limit state: the scatter by each measure."""
-    groups = [*{str(row[0]): row[0] for row in rows}.values()]
-    measures = list(dict.fromkeys(str(row[2]) for row in rows))
+    groups = [*{str(row.values): row.values for row in rows}.values()]
+    measures = list(dict.fromkeys(row.measure for row in rows))
 
     def draw(axes: Axes, limit: LimitState) -> None:
         width = 0.8 / len(groups)
         for place, values in enumerate(groups):
-            betas = [row[6] for row in rows if row[0] == values and row[1] == limit.label]
+            own = [row for row in rows if row.values == values and row.limit == limit.label]
+            betas = [row.beta for row in own]
             at = np.arange(len(betas)) + width * (place - 0.5 * (len(groups) - 1))
             name = labels(keys, values)
             axes.barh(at, betas, width, color=colour(place, len(groups)), label=name or None)

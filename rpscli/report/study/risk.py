@@ -68,7 +68,9 @@ CLEARLY = 0.05
 class RiskOptions(FragilityOptions):
     """Annual rates of limit states, from their fragilities and a hazard curve."""
 
-    hazard: HazardSection = Field(description="the hazard curve")
+    hazard: HazardSection | None = Field(
+        None, description="the hazard curve; that of the study by default"
+    )
     years: Annotated[float, Quantity(above=0)] = Field(
         50.0, description="the life for which a probability is given"
     )
@@ -116,27 +118,33 @@ def probability(rate: float, years: float) -> float:
 
 def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
     """What keeps a study from having a risk: its hazard curve, above all."""
-    measure = options.hazard.measure
+    section = options.hazard or layout.study.file.hazard
+    if section is None:
+        yield "hazard is missing; name its curve, `hazard: {file: FILE, measure: PGV}`"
+        return
+    measure = section.measure
     if options.measure not in (None, measure):
         yield f"measure: {options.measure} is not hazard.measure: {measure}; take the first out"
     if needs_period(measure) and options.period is None:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
     yield from wrong_intensities(layout, options.model_copy(update={"measure": measure}))
     try:
-        hazard_of(layout, options)
+        hazard_of(layout, section)
     except CaseError as error:
         yield str(error)
 
 
-def hazard_of(layout: StudyPoints, options: RiskOptions) -> Hazard:
-    """The hazard curve that a report names."""
-    return read_hazard(layout.study.folder / options.hazard.file, options.hazard.measure)
+def hazard_of(layout: StudyPoints, section: HazardSection) -> Hazard:
+    """The hazard curve of a report or a study."""
+    return read_hazard(layout.study.folder / section.file, section.measure)
 
 
 def risk(study: StudyResults, options: RiskOptions) -> Found:
     """Fit the fragilities and integrate them over the hazard."""
-    hazard = hazard_of(study.table.layout, options)
-    options = options.model_copy(update={"measure": options.hazard.measure})
+    section = options.hazard or study.table.layout.study.file.hazard
+    assert section is not None, "asked before"
+    hazard = hazard_of(study.table.layout, section)
+    options = options.model_copy(update={"measure": section.measure})
     found = fragilities(study, options)
     risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
@@ -191,7 +199,7 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     return Found(
         tables,
         (lambda title: risk_figure(found, known, options.years, title)) if known else None,
-        [*_report_notes(found, known, options.hazard.component), *found.notes],
+        [*_report_notes(found, known, section.component), *found.notes],
         shown={"": dict.fromkeys(keys, "") | readers} | ({"_at": {}} if options.at else {}),
         remark=f"{what_bands_hold(study.table.layout, options)}; rate of shares: of the observed"
         " ones, no lognormal",

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.analyses.result_quantities import HISTORY
-from rpscli.case.conditions import LIMITS, condition_text
+from rpscli.case.conditions import LIMITS, RATE, condition_text
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.table import Column, shown
 from rpscli.sweep.statistics.fractiles import Share
@@ -99,7 +99,7 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
     return [
         *key_columns(keys, [verdict.values for verdict in verdicts]),
         Column("limit", "-", [condition.name for condition in conditions]),
-        Column("unit", "-", [LIMITS[c.name].unit if c.name in LIMITS else "-" for c in conditions]),
+        Column("unit", "-", [limit_unit(c.name) for c in conditions]),
         Column("at_most", "SI", [None if c.from_below else c.limit for c in conditions]),
         Column("at_least", "SI", [c.limit if c.from_below else None for c in conditions]),
         Column(
@@ -115,6 +115,11 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         Column("shown_by_recordings", "-", [verdict.shown_by for verdict in verdicts]),
         Column("source", "-", [condition.source for condition in conditions]),
     ]
+
+
+def limit_unit(name: str) -> str:
+    """SI unit of what is limited."""
+    return LIMITS[name].unit if name in LIMITS else "1/year" if name == RATE else "-"
 
 
 def summary_document(summary: Summary) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@ from rpscli.case.conditions import EVENTS, Condition
 from rpscli.case.design import DesignTask, Objective
 from rpscli.sweep.design.regions import regions
 from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, clustered, fractiles
-from rpscli.sweep.statistics.verdicts import RateVerdict, Verdict, decisive, judge, worse
+from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, rate_verdict, worse
 from rpscli.sweep.table import Array, Indices, Table
 
 Demands = Mapping[str, Array]
@@ -169,18 +169,6 @@ NONE = -1
 """Place of a design that does not exist."""
 
 
-def rate_verdict(
-    requirement: Requirement, shares: Sequence[Share], values: tuple[object, ...] = ()
-) -> RateVerdict:
-    """On an annual rate, from the shares that overturned at each intensity."""
-    assert requirement.rates is not None, "it is a requirement on a rate"
-    ends = np.array([(share.fraction or 0.0, share.low, share.high) for share in shares])
-    rate, low, high = (np.array(requirement.rates) @ ends).tolist()
-    condition, largest = requirement.condition, shares[-1]
-    exceeded = not rate <= condition.limit
-    return RateVerdict(condition, values, largest, 0, rate, "", None, exceeded, (low, high))
-
-
 class Tolerated(NamedTuple):
     """(designs,) verdicts, shares of the resamples and objectives."""
 
@@ -327,7 +315,7 @@ class Answer:
                 common = condition, (), shares[0], 0, value, "", fractile
                 found.append(Verdict(*common, exceeded=bool(exceeded)))
             else:
-                found.append(rate_verdict(requirement, shares))
+                found.append(rate_verdict(condition, np.array(requirement.rates), shares))
         return found
 
     def share_beyond(self, beyond: Array) -> Share:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.case import case_from_mapping
-from rpscli.case.conditions import EVENTS, RATE, Condition
+from rpscli.case.conditions import EVENTS, RATE
 from rpscli.case.design import DesignTask
 from rpscli.case.study.schema import SampleSection
 from rpscli.case.text.document import Fault
@@ -21,18 +21,14 @@ from rpscli.sweep.design.answer import (
     Requirement,
     demands_of,
     judged_designs,
-    rate_verdict,
     weights_of,
 )
 from rpscli.sweep.design.regions import neighbours
-from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.combinations import unit_cube
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
-from rpscli.sweep.statistics.summary import Summary
-from rpscli.sweep.statistics.verdicts import RateVerdict
+from rpscli.sweep.statistics.verdicts import rates_of_levels
 from rpscli.sweep.table import Array, Table
 
 Flags = NDArray[np.bool_]
@@ -231,12 +227,17 @@ class Search:
         (measure,) = shown_keys(layout, (INTENSITY,))
         self._within_record = len(layout.scales), len(layout.members)
         several = len(layout.scales) > 1
-        self.requirements = tuple(
-            Requirement(condition, place, measure, level if several else None)
-            for condition in layout.properties[0].limits
-            for place, level in enumerate(layout.scales)
-        )
-        self.requirements += tuple(self._reliability(layout))
+        found: list[Requirement] = []
+        for condition in layout.properties[0].limits:
+            if condition.name == RATE:
+                rates, self.beyond = rates_of_levels(layout)
+                found.append(Requirement(condition, 0, rates=tuple(rates.tolist())))
+                continue
+            found += (
+                Requirement(condition, place, measure, level if several else None)
+                for place, level in enumerate(layout.scales)
+            )
+        self.requirements = tuple(found)
         if not self.requirements:
             text = "limits is missing: say what is required, here or in the case at the base"
             document.refuse([Fault((), f"{text}, as in `limits: {{overturning: 0.05}}`")])
@@ -284,37 +285,6 @@ class Search:
             if table is not None:
                 found[valid] = demands_of(table, name)
             yield name, found
-
-    def _reliability(self, layout: StudyPoints) -> Iterator[Requirement]:
-        """The requirement on the annual rate, if there is one."""
-        task = self.task
-        if task.file.limits is None or task.file.limits.rate is None or task.file.hazard is None:
-            return
-        section, measure = task.file.hazard, layout.plan.measure
-        hazard = read_hazard(task.study.folder / section.file, section.measure)
-        levels = np.array(layout.scales, dtype=float)
-        if measure is None or measure.measure != section.measure or len(levels) < 2:
-            text = f"hazard: shares at two and more values of {section.measure} are needed; write"
-            text += f" `scale: {{measure: {section.measure}, values: [...]}}`"
-            task.study.document.refuse([Fault(("hazard",), text)])
-        order = np.argsort(levels)
-        rates = np.zeros(len(levels))
-        for place, share in zip(order, np.eye(len(levels)), strict=True):  # it is linear in them
-            rates[place] = rate_of_shares(hazard, levels[order], share)
-        self.beyond = float(exceeded(hazard, levels[order[-1:]])[0])
-        condition = Condition(RATE, task.file.limits.rate, "limits of the design")
-        yield Requirement(condition, 0, rates=tuple(rates.tolist()))
-
-    def rate_verdicts(self, table: Table, rows: Summary | None) -> Iterator[RateVerdict]:
-        """On the annual rate of the one design of a study, if it is limited."""
-        for requirement in self.requirements:
-            if requirement.rates is not None and rows is not None:
-                at = [
-                    np.flatnonzero((table.layout.places[2] == place) & ~table.failed)
-                    for place in range(len(requirement.rates))
-                ]
-                shares = [share_of(table, points, table.overturned[points]) for points in at]
-                yield rate_verdict(requirement, shares, (*rows.rows[0].values[:-1], "all"))
 
     def answer(self) -> Answer:
         """What is known so far."""

@@ -9,7 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.case.conditions import EVENTS, Condition
+from rpscli.case.conditions import EVENTS, RATE, Condition
+from rpscli.case.text.document import Fault
+from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
+from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, share_of, shown_by
 from rpscli.sweep.statistics.summary import Records, Summary
 from rpscli.sweep.table import Array, Indices, Table
@@ -75,6 +78,38 @@ class RateVerdict(Verdict):
     def shown_by(self) -> int | None:
         """No number of records is told."""
         return None
+
+
+def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
+    """(levels,) annual rate of what happens at one intensity alone; that of stronger motions.
+
+    The rate of any shares (levels,) is their product with these: it is linear in them.
+    """
+    section, measure = layout.study.file.hazard, layout.plan.measure
+    assert section is not None, "a limit on a rate has a hazard"
+    if measure is None or measure.measure != section.measure or len(layout.scales) < 2:
+        text = f"hazard: shares at two and more values of {section.measure} are needed; write"
+        text += f" `scale: {{measure: {section.measure}, values: [...]}}`"
+        layout.study.document.refuse([Fault(("hazard",), text)])
+    hazard = read_hazard(layout.study.folder / section.file, section.measure)
+    levels = np.array(layout.scales, dtype=float)
+    order, rates = np.argsort(levels), np.zeros(len(levels))
+    for place, alone in zip(order, np.eye(len(levels)), strict=True):
+        rates[place] = rate_of_shares(hazard, levels[order], alone)
+    return rates, float(exceeded(hazard, levels[order[-1:]])[0])
+
+
+def rate_verdict(
+    condition: Condition,
+    rates: Array,
+    shares: Sequence[Share],
+    values: tuple[object, ...] = (),
+) -> RateVerdict:
+    """From the shares (levels,) that overturned, with the rates of these levels."""
+    ends = np.array([(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares])
+    rate, low, high = (rates @ ends).tolist()
+    exceeded = not rate <= condition.limit
+    return RateVerdict(condition, values, shares[-1], 0, rate, "", None, exceeded, (low, high))
 
 
 class Judgement(NamedTuple):
@@ -190,7 +225,8 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
 
     Systems that cannot have a result are not judged by it; `not_judged` tells of them.
     """
-    layout, further, found = table.layout, tuple(conditions), []
+    layout, further, found = table.layout, tuple(conditions), list[Verdict]()
+    on_rates = [limit for limit in layout.properties[0].limits if limit.name == RATE]  # the study's
 
     def record_of(number: int) -> str:
         record = layout[number].record
@@ -204,8 +240,18 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
             limits = [
                 each
                 for each in (*own[0].limits, *further)
-                if each.name not in lacking
-                or np.isfinite(table.columns[each.name][row.points]).any()
+                if each not in on_rates
+                and (
+                    each.name not in lacking
+                    or np.isfinite(table.columns[each.name][row.points]).any()
+                )
             ]
             found += verdicts(table, row.points, limits, record_of, row.values)
+    for condition in on_rates:
+        rates, _ = rates_of_levels(layout)
+        shares = [row.overturned for row in summary.rows]
+        for first in range(0, len(shares), len(rates)):  # intensities follow each other
+            values = (*summary.rows[first].values[:-1], "all")
+            of_levels = shares[first : first + len(rates)]
+            found.append(rate_verdict(condition, rates, of_levels, values))
     return found
