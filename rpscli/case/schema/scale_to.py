@@ -25,9 +25,9 @@ _TARGET = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 
 def _scalable(name: object) -> object:
     """The name of a measure, unless it is one that no factor changes."""
-    if isinstance(name, str) and re.fullmatch(r"d5[-_ ](75|95)", name.lower()):
+    if isinstance(name, str) and re.fullmatch(r"ds?5[-_ ]?(75|95)", name.lower()):
         refuse(
-            f"({name}) is a duration, which no factor changes; choose records by it with"
+            "must not be a duration, which no factor changes; choose records by it with"
             " `rps record select --where 'd5_95=10..30'`"
         )
     return name
