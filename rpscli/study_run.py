@@ -244,8 +244,8 @@ class StudyRun:
             lines += _and_more(failures, "failed.csv")
             errors.append(StudyIncomplete("\n".join(lines)))
         if limits and (lines := verdict_lines(self.keys_of_rows, self.verdicts)):
-            told = [f"limit exceeded: {line}" for line in lines[:FAILURES_SHOWN]]
-            errors.append(LimitExceeded("\n".join([*told, *_and_more(lines, "verdicts.csv")])))
+            told = [*lines[:FAILURES_SHOWN], *_and_more(lines, "verdicts.csv")]
+            errors.append(LimitExceeded("\n".join(told)))
         return type(errors[0])("\n".join(map(str, errors))) if errors else None
 
     def documents(self) -> dict[str, Any]:

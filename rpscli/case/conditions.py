@@ -24,6 +24,9 @@ FRICTION = "podium.friction"
 RATE = "annual_rate"
 """Condition on how often a year the structure overturns [1/year], over all intensities."""
 
+NOT_SHOWN = "not-shown"
+"""Of `--fail-on`: no limit, but that limits which are met and not shown to be kept count too."""
+
 LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Results that conditions may limit, in SI units."""
 
@@ -68,10 +71,10 @@ class Condition:
 def parse_condition(text: str) -> Condition:
     """A condition of `--fail-on`: ``overturning``, with a share ``=0.1``, or ``NAME=VALUE``."""
     name, sign, value = (part.strip() for part in text.partition("="))
-    if name in EVENTS and not sign:
+    if (name in EVENTS or name == NOT_SHOWN) and not sign:
         return Condition(name, 0.0, "--fail-on")
     if name not in LIMITS and name not in EVENTS:
-        known = [*EVENTS, *(f"{limited}=VALUE" for limited in LIMITS)]
+        known = [*EVENTS, NOT_SHOWN, *(f"{limited}=VALUE" for limited in LIMITS)]
         meant = hint(name, [*EVENTS, *LIMITS], f"known are {', '.join(known)}", 0.6)
         raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")
     unit = LIMITS[name].unit if name in LIMITS else "-"

@@ -161,8 +161,8 @@ def unconfirmed(runs: Mapping[str, StudyRun]) -> RpsError | None:
     name = headline_of(runs)
     if name is None or keeps_limits(runs[name]):
         return None
-    told = verdict_lines(runs[name].keys_of_rows, runs[name].verdicts)
-    return LimitExceeded("\n".join(f"validation of the {WORDS[name]}: {line}" for line in told))
+    of = f"validation of the {WORDS[name]}: "
+    return LimitExceeded("\n".join(verdict_lines(runs[name].keys_of_rows, runs[name].verdicts, of)))
 
 
 def headline_of(runs: Mapping[str, StudyRun]) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -21,6 +22,7 @@ from rpscli.commands.shell.options import (
     terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import watched
 from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
@@ -197,12 +199,15 @@ def command(
     request = SelectionRequest(
         count, span, factors, per_event, wanted_pgv, of, rules or spectrum.rules, structure
     )
-    every = [load_components(source).horizontal for source in single]
+    numbers = watched("records read", terminal, range(len(single)), many=100)
+    every = [load_components(single[number]).horizontal for number in numbers]
     motions, left_out = _kept(every, [parse_filter(text) for text in where])
     if not motions:
         counts = ", ".join(f"{text} {sum(out.values())}" for text, out in left_out.items())
         raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
-    selection = select(motions, spectrum, request)
+    selection = select(
+        motions, spectrum, request, partial(watched, "candidates", terminal, many=100)
+    )
     place = output.place or RESULTS / "selection" / "record_select"
     folder = OutputFolder(
         place,

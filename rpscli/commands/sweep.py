@@ -55,7 +55,8 @@ OF_A_REPORT = 12
 @fail_on_option(
     "End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
     " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
-    " units); repeatable. The limits of study and case count as well."
+    " units), or not-shown if too few records show that a limit is kept; repeatable. The limits of"
+    " study and case count as well."
 )
 @click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
 @result_options

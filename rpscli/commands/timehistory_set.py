@@ -165,9 +165,9 @@ def set_error(computed: Sequence[Computed]) -> RpsError | None:
     if lines:
         return AnalysisError("\n".join(lines))
     lines = [
-        f"limit exceeded: {case.first.case_label}: {line}"
+        line
         for case in computed
-        for line in verdict_lines((), case.verdicts)
+        for line in verdict_lines((), case.verdicts, f"{case.first.case_label}: ")
     ]
     return LimitExceeded("\n".join(lines)) if lines else None
 

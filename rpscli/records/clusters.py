@@ -8,8 +8,8 @@ numbers sources so that those that hang together have one number, by their *reco
 * both components of a pair: those of a set (`fema_p695:farfield/1/a` and `/b`), a file and its
   `second`, all channels of one file, and files of one folder whose names differ in the component
   alone: `RSN953_NORTHR_MUL009.AT2` and `RSN953_NORTHR_MUL279.AT2` (number of the PEER flatfile),
-  `MUL009.AT2` and `MUL279.AT2` (two such files, 90 deg apart), `AOM001.EW` and `AOM001.NS` (K-NET),
-  `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc` (channel codes, as ESM has them);
+  `MUL009.AT2` and `MUL279.AT2`, `TCU045-E.AT2` and `TCU045-N.AT2` (two such files, 90 deg apart),
+  `AOM001.EW` and `AOM001.NS` (K-NET), `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc` (codes of ESM);
 * synthetic motions of one seed.
 
 Any other source is a recording of its own. Of one event are recordings whose files name an
@@ -42,7 +42,8 @@ _OTHER_SCHEME = re.compile(r"[A-Za-z][\w.+-]+:")  # two letters at least: C: is 
 _PEER_NUMBER = re.compile(r"(RSN\d+)_.*", re.IGNORECASE)
 _CHANNEL_CODE = re.compile(r"(?<=[._])([A-Z]{2})[ENXY12](?=[._])")
 _KNET = re.compile(r"\.(?:EW|NS)([12]?)$", re.IGNORECASE)
-_AZIMUTH = re.compile(r"(.*\D)(\d{3})(\.at2)", re.IGNORECASE)
+_AZIMUTH = re.compile(r"(.*\D)(\d{3}|(?<=-)[NESW])(\.at2)", re.IGNORECASE)
+_COMPASS = {"N": 0, "E": 90, "S": 180, "W": 270}
 _VERTICAL = re.compile(r".*(?:UP|UD|DWN|VER|V|Z)(?:\.\w+)?", re.IGNORECASE)
 
 
@@ -52,7 +53,8 @@ def _families(sources: Sequence[str]) -> list[set[str]]:
     files = {name for p in plain for name in (p.place, p.second) if name}
     by_azimuth: dict[str, list[int]] = {}
     for match in filter(None, map(_AZIMUTH.fullmatch, sorted(files))):
-        by_azimuth.setdefault(match[1], []).append(int(match[2]))
+        azimuth = _COMPASS.get(match[2].upper())
+        by_azimuth.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
     pairs = {
         stem for stem, at in by_azimuth.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90
     }

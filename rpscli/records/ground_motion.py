@@ -18,6 +18,7 @@ from rpscli.shown import Shown, with_unit
 
 if TYPE_CHECKING:
     from rpscli.records.measures import Measure
+    from rpscli.records.pair_measure import Of
 
 LEAST, MOST = 0.25, 4.0
 """Factors between these are usual."""
@@ -197,9 +198,16 @@ class GroundMotion(Shown):
         )
 
     def scaled_to(
-        self, measure: Measure, value: float, *, period: float | None = None, damping: float = 0.05
+        self,
+        measure: Measure,
+        value: float,
+        *,
+        period: float | None = None,
+        damping: float = 0.05,
+        second: GroundMotion | None = None,
+        of: Of = "rotd50",
     ) -> GroundMotion:
-        """The same motion, scaled so that a measure of it has a value.
+        """The same motion, scaled so that a measure of it, or of its pair, has a value.
 
         Parameters
         ----------
@@ -212,6 +220,11 @@ class GroundMotion(Shown):
             Of Sa, AvgSa and FIV3, which need it.
         damping : float
             Of Sa, AvgSa and Housner, a share of critical damping.
+        second : GroundMotion, optional
+            The other horizontal component: the measure is that of the pair, and the factor, which
+            `second.scaled_to(..., second=first)` has as well.
+        of : str
+            What of a pair: ``rotd50``, ``rotd100``, ``geomean``, or ``larger``.
 
         Raises
         ------
@@ -242,7 +255,12 @@ class GroundMotion(Shown):
                 f"{self.source}: {measure} = {value!r} must be a number > 0, in SI, to scale to it"
             )
             raise RecordError(text)
-        unscaled = measured(self, measure, period, damping)
+        if second is None:
+            unscaled = measured(self, measure, period, damping)
+        else:
+            from rpscli.records.pair_measure import pair_measure  # which measures motions too
+
+            unscaled = pair_measure(self, second, measure, of, period, damping)
         return self.scaled(factor_to(value, unscaled, measure, self.source))
 
 

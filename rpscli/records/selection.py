@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -164,7 +164,10 @@ class SelectionRequest:
 
 
 def select(
-    motions: Iterable[GroundMotion], target: TargetSpectrum, request: SelectionRequest
+    motions: Iterable[GroundMotion],
+    target: TargetSpectrum,
+    request: SelectionRequest,
+    watched: Callable[[range], Iterable[int]] = iter,
 ) -> Selection:
     """The motions and factors whose mean spectrum is nearest to the target.
 
@@ -179,12 +182,14 @@ def select(
     goes by the moments themselves. Each motion is scaled to the target at the period at which
     that does not scatter; without such a period, to one of several levels of it.
 
-    Of one recording one component, or the pair, is chosen at most.
+    Of one recording one component, or the pair, is chosen at most. `watched` goes through the
+    numbers of candidates while their spectra are computed, and may show how far that is.
     """
     asked = None if target.deviation else RULES.get(request.rules or target.rules)
     periods, goal = _goal(target, request, asked, PERIODS)
     sources = _sources([*motions], request.of)
-    every = [_measured(both, target.damping, periods, request.of) for both in sources]
+    numbers = watched(range(len(sources)))
+    every = [_measured(sources[n], target.damping, periods, request.of) for n in numbers]
     fits = [_scaled(one, target, periods, goal.wanted[1:], request) for one in every]
     fitting = [one for scaled in fits for one in scaled]
     recordings = np.repeat(_recordings(every), [len(scaled) for scaled in fits])

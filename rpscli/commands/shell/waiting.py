@@ -87,9 +87,9 @@ def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
-def watched(what: str, terminal: Terminal, numbers: range) -> Iterator[int]:
+def watched(what: str, terminal: Terminal, numbers: range, *, many: int = MANY) -> Iterator[int]:
     """The numbers; how many are done is shown where they are many."""
-    if len(numbers) < MANY:
+    if len(numbers) < many:
         yield from numbers
         return
     with counted(f"{len(numbers)} {what}", terminal) as tell:

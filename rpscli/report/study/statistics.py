@@ -205,13 +205,16 @@ def verdict_texts(verdict: Verdict) -> tuple[str, str, str, str]:
     return condition.name, verdict.word, condition_text(condition), verdict_text(verdict)
 
 
-def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[str]:
-    """Each exceeded limit in a line."""
+def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = "") -> list[str]:
+    """Each limit that fails in a line."""
     lines = []
     for verdict in verdicts:
-        if verdict.exceeded:
+        if verdict.fails:
+            what = "limit exceeded" if verdict.exceeded else "limit not shown to be kept"
             system = labels(keys, verdict.values)
             asked = f"{verdict.condition.name}: {condition_text(verdict.condition)}"
             where = f" ({system})" if system else ""
-            lines.append(f"{asked}; {verdict_text(verdict)}{where}, {verdict.condition.source}")
+            lines.append(
+                f"{what}: {of}{asked}; {verdict_text(verdict)}{where}, {verdict.condition.source}"
+            )
     return lines

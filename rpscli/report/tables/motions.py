@@ -11,8 +11,9 @@ from typing import Any
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
+from rpscli.records.quantities import parse_query
 from rpscli.records.selection import Selection
-from rpscli.records.source import file_and_options
+from rpscli.records.source import file_and_options, split_factor
 from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.table import Column, Table, picked, records, shown
 
@@ -152,7 +153,10 @@ def selection_list(selection: Selection, folder: Path) -> str:
 
 
 def _line(source: str, factor: float, folder: Path) -> str:
-    place, options = file_and_options(source)
+    plain, own = split_factor(source)
+    if own:
+        factor *= parse_query(own, source, ("factor",)).quantity("factor", "ratio")
+    place, options = file_and_options(plain)
     if Path(place).expanduser().is_file() and not Path(place).expanduser().is_absolute():
         place = Path(os.path.relpath(place, folder)).as_posix()
     return f"{place}?{options}{'&' * bool(options)}factor={factor:g}"

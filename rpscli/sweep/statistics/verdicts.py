@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.case.conditions import EVENTS, RATE, Condition
+from rpscli.case.conditions import EVENTS, NOT_SHOWN, RATE, Condition
 from rpscli.case.text.document import Fault
 from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.points.layout import StudyPoints
@@ -29,6 +29,7 @@ class Verdict:
 
     A limit that a share of the records may exceed is *shown* to be kept if the interval of the
     probability ends below that share. One for every record says something of these records alone.
+    It `fails` where it is exceeded or, if judged so `strictly`, not shown to be kept.
     """
 
     condition: Condition
@@ -39,11 +40,17 @@ class Verdict:
     record: str
     fractile: float | None
     exceeded: bool
+    strictly: bool = field(default=False, kw_only=True)
 
     @property
     def word(self) -> str:
         """As tables say it."""
         return "EXCEEDED" if self.exceeded else "met" if self.shown else "met, not shown"
+
+    @property
+    def fails(self) -> bool:
+        """Whether it counts for the exit code."""
+        return self.exceeded or (self.strictly and not self.shown)
 
     @property
     def shown(self) -> bool:
@@ -188,8 +195,9 @@ def verdicts(
     values: tuple[object, ...] = (),
 ) -> list[Verdict]:
     """On histories that did not fail, by their points; `record_of` names the record of a point."""
-    found = []
-    for condition in conditions:
+    found, asked = [], tuple(conditions)
+    strictly = any(condition.name == NOT_SHOWN for condition in asked)
+    for condition in (each for each in asked if each.name != NOT_SHOWN):
         demands = worse(table, condition.name)[points]
         every = np.ones((1, len(points)))
         counted = judge(demands[None], every, condition)
@@ -207,6 +215,7 @@ def verdicts(
                 record=record_of(int(points[worst])),
                 fractile=at,
                 exceeded=not counted.met[0, 0],
+                strictly=strictly,
             )
         )
     return found
@@ -226,6 +235,7 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
     Systems that cannot have a result are not judged by it; `not_judged` tells of them.
     """
     layout, further, found = table.layout, tuple(conditions), list[Verdict]()
+    strictly = any(condition.name == NOT_SHOWN for condition in further)
     on_rates = [limit for limit in layout.properties[0].limits if limit.name == RATE]  # the study's
 
     def record_of(number: int) -> str:
@@ -253,5 +263,7 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
         for first in range(0, len(shares), len(rates)):  # intensities follow each other
             values = (*summary.rows[first].values[:-1], "all")
             of_levels = shares[first : first + len(rates)]
-            found.append(rate_verdict(condition, rates, of_levels, values))
+            found.append(
+                replace(rate_verdict(condition, rates, of_levels, values), strictly=strictly)
+            )
     return found
