@@ -6,6 +6,7 @@ import importlib.util
 
 import numpy as np
 import pytest
+from scipy.stats import binom
 
 from rpscli.case.conditions import Condition
 from rpscli.case.design import parse_design
@@ -15,7 +16,7 @@ from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.statistics.fractiles import clustered, share
 from rpscli.sweep.statistics.grouping import grouping
 from rpscli.sweep.statistics.summary import Records
-from rpscli.sweep.statistics.verdicts import judged_records
+from rpscli.sweep.statistics.verdicts import judge, judged_records
 from sweep.made_up import stored, tabulate
 from sweep.small_studies import STUDY, Make
 
@@ -110,6 +111,16 @@ def test_resamples_draw_and_leave_out_whole_recordings() -> None:
     assert (found.rows[:, 3:] == found.rows[:, 3:4]).all()
     assert (found.rows[1:51, [0, 2, 3]].sum(axis=1) == 3).all()
     assert found.rows[51:].tolist() == [[0, 0, 1, 1, 1, 1], [1, 1, 0, 1, 1, 1], [1, 1, 1, 0, 0, 0]]
+
+
+@pytest.mark.parametrize(("beyond", "share"), [(1, 0.05), (0, 0.05), (3, 0.1)])
+def test_as_many_records_are_drawn_as_the_rule_is_about(beyond: int, share: float) -> None:
+    """Of 20 records 5 % are one, of 19 none: the share that passes is that of 20 new ones."""
+    demands = np.array([[1.0] * beyond + [0.0] * (20 - beyond)])
+    drawn = weights_of(range(20), 4000, 1).rows[1:4001]
+    passes = judge(demands, drawn, Condition("overturning", 0.0, "", share)).met.mean()
+    exact = binom.cdf(round(20 * share), 20, beyond / 20)
+    assert passes == pytest.approx(exact, abs=4.0 * (exact * (1.0 - exact) / 4000) ** 0.5)
 
 
 @installed
