@@ -126,9 +126,9 @@ def test_a_study_judges_the_annual_rate_of_each_system(study_of: Make, tmp_path:
     assert [verdict.value for verdict in others] == pytest.approx([exact / math.log(2.0)] * 5)
     assert [verdict.word for verdict in others] == ["EXCEEDED"] * 5
     assert others[0].values == (0.10, 0.5, "all")
-    assert len(verdict_lines((), [first, *others])) == 5
+    assert len(verdict_lines(summary(table, {}).keys, [first, *others])) == 5
     strictly = judged(table, summary(table, {}), [parse_condition("not-shown")])
-    line, *_ = lines = verdict_lines((), strictly)
+    line, *_ = lines = verdict_lines(summary(table, {}).keys, strictly)
     assert (line[:34], len(lines)) == ("limit not shown to be kept: annual", 6)
 
 
