@@ -92,8 +92,7 @@ class Rounds:
             if task.confirming and place != NONE:
                 study = self._laid_out(task.study_of(answer.values[[place]], task.confirming))
                 self.terminal.note(f"confirmation of the {name} design")
-                run = self._computed(study, store)
-                yield name, run
+                yield name, self._judged(study, store)
 
     def with_other_loss(self, answer: Answer, store: Store) -> StudyRun | None:
         """The recommended design where impacts take half: only if they take much by their law."""
@@ -103,7 +102,7 @@ class Rounds:
             return None
         base = apply_overrides(checked.base, [f"podium.impact.loss={OTHER_LOSS:g}"])
         self.terminal.note(f"the same design with podium.impact.loss {OTHER_LOSS:g}")
-        return self._computed(self._laid_out(replace(checked, base=base)), store)
+        return self._judged(self._laid_out(replace(checked, base=base)), store)
 
     def everything(self, answer: Answer, first: Study, store: Store) -> tuple[Study, StudyRun]:
         """All valid designs as one study, whose points are in the store."""
@@ -144,6 +143,12 @@ class Rounds:
         if earlier is not None:
             context.records = earlier.context.records
         return Study(layout, context, self.overrides)
+
+    def _judged(self, study: Study, store: Store) -> StudyRun:
+        """With its verdicts, which need the store as long as it is open."""
+        run = self._computed(study, store)
+        _ = run.verdicts
+        return run
 
     def _computed(self, study: Study, store: Store) -> StudyRun:
         """Compute what is not stored; leave if the user interrupts."""
