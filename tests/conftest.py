@@ -6,7 +6,6 @@ import contextlib
 import importlib.util
 import os
 from collections.abc import Iterator
-from functools import wraps
 from pathlib import Path
 
 import pytest
@@ -18,9 +17,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from paper_structures import RecordLoader
 
-from rpscli.analyses.kernels.compilation import KERNELS
-from rpscli.physics.core.compile import cache_folder, is_compiled, remember_compiled
-from rpscli.physics.planar import prepare
+from rpscli.analyses.kernels.compilation import compiled, is_ready
+from rpscli.physics.core.compile import cache_folder
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 
@@ -56,20 +54,17 @@ def _alone() -> Iterator[None]:
         yield
 
 
+@contextlib.contextmanager
+def _compiled_once(**kind: bool) -> Iterator[None]:
+    with contextlib.nullcontext() if is_ready(**kind) else _alone(), compiled(**kind):
+        yield
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _compile_once() -> Iterator[None]:
     """Of workers that need the same kernel one compiles it, with two processes; the others wait."""
-    compile_kernel = prepare.compile_kernel
-
-    @wraps(compile_kernel)
-    def once(*, equipped: bool) -> None:
-        with _alone():
-            if not is_compiled(KERNELS[equipped]):
-                compile_kernel(equipped=equipped)
-                remember_compiled(KERNELS[equipped])
-
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(prepare, "compile_kernel", once)
+        patch.setattr("rpscli.analyses.kernels.history.compiled", _compiled_once)
         yield
 
 
