@@ -52,8 +52,10 @@ class SpatialSimulation:
         limit: float = 2.0,
         tip: float = TIP,
         integrated_spin: bool = False,
+        begins_at: float | None = None,
     ) -> None:
-        along_y = along_y or along_x
+        """`begins_at`: uplifts start at rest at this tilt, not with the cube of the time."""
+        along_y, self.begins_at = along_y or along_x, begins_at
         if axial is None:  # a solid round column as wide as its arcs
             axial = 0.5 * along_x.tan_alpha_wedge**2 / (1.0 + along_x.tan_alpha**2)
         self.motion = SpatialLagrangian(along_x, along_y, axial, integrated_spin=integrated_spin)
@@ -164,13 +166,14 @@ class SpatialSimulation:
             tau = min(tau, math.sqrt(2.0 * _BEGINNING / excess))
         tau = min(tau, 0.5 * left)
         self.uplifts.append((self.end - left, math.atan2(push_y[0], push_x[0])))
+        tau *= self.begins_at is None
         self.stay(ground, slope, tau)
         push_x, push_y, _ = self.margin(ground + slope * tau, slope, 1.0)
         outwards = np.array([push_x[0], push_y[0]]) / math.hypot(push_x[0], push_y[0])
-        tilt = excess * tau**2 / 2.0 + growth * tau**3 / 6.0
-        self.y[:2] = tilt * outwards
-        self.y[self.half : self.half + 2] = (excess * tau + growth * tau**2 / 2.0) * outwards
-        self.standing, self.rolling, self.step = False, self.plane.beta > 0.0, 0.1 * tau
+        tilt = self.begins_at or excess * tau**2 / 2.0 + growth * tau**3 / 6.0
+        rate = 0.0 if self.begins_at else excess * tau + growth * tau**2 / 2.0
+        self.y[:2], self.y[self.half : self.half + 2] = tilt * outwards, rate * outwards
+        self.standing, self.rolling, self.step = False, self.plane.beta > 0.0, 0.1 * tau or 1e-6
         return tau
 
     # tilted

@@ -246,23 +246,28 @@ def test_recorded_pairs_of_another_program(k: int) -> None:
     system = uniform_podium(row["n"], 0.15, row["rho"], 0.1 * row["n"])
     ground, dt = recorded_pair(row)
     run = SpatialSimulation(
-        system, contact_time=row["t_c"], locking="relative", rtol=1e-10, integrated_spin=True
+        system,
+        contact_time=row["t_c"],
+        locking="relative",
+        rtol=1e-10,
+        integrated_spin=True,
+        begins_at=1e-9,  # as there: where passes follow at once it moves the last row by 1e-5
     )
     states = simulate_pair(run, ground, dt, row["T"])
     given = np.array(row["X_Y"])
     ours = np.array([states[round(t / dt), :2] for t in given[:, 0]])
-    assert ours == pytest.approx(given[:, 1:], abs=1e-6)
+    assert ours == pytest.approx(given[:, 1:], abs=5.5e-8)  # seven decimals are given
+    assert run.max_tilt == pytest.approx(row["max"], abs=5e-7)  # the other was less accurate
     if row["uplift"]:
         assert run.uplifts[0] == pytest.approx(row["uplift"], abs=1e-9)
-    if row["max"] > 0.002:  # 83 passes at 1e-3 rad without loss: .0011946 here, .0011753 there
-        assert run.max_tilt == pytest.approx(row["max"], abs=1e-6)
     if row["passes"]:
-        assert len(run.passes) == row["passes"]
+        # at rest p begins with rounding: some uplifts count as passes
+        assert sum(passed.tilt > 1.01e-9 for passed in run.passes) == row["passes"]
     if row["recontact"]:
-        assert run.rests[0] == pytest.approx(row["recontact"], abs=1e-6)
-    if row["lost"] and not row["recontact"]:
+        assert run.rests[0] == pytest.approx(row["recontact"], abs=1e-8)
+    if row["lost"]:
         lost = sum(passed.lost for passed in run.passes) / system.columns_mass
-        assert lost == pytest.approx(row["lost"], rel=1e-2)
+        assert lost == pytest.approx(row["lost"], rel=1e-5)
 
 
 @pytest.mark.long
