@@ -84,6 +84,9 @@ def expand_set(rest: str, source: str) -> list[str]:
         remedy = others if wanted.is_pattern else hint(wanted.place, wanted.known)
         if any(fnmatchcase(component, f"{wanted.place}/*") for component in wanted.known):
             remedy = f"write {SCHEME}:{wanted.place}/*{wanted.options}"
+        elif any(fnmatchcase(f"{pair}/a", wanted.place) for pair in wanted.known):
+            pairs = wanted.place.rpartition("/")[0]
+            remedy = f"a pair has no components; write {SCHEME}:{pairs}{wanted.options}"
         raise RecordError(
             f"{source}: no {wanted.word} of FEMA P695 fits {wanted.place[:60]!r}; {remedy}"
         )

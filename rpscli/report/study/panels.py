@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rpscli.report.figures import style
@@ -83,7 +84,7 @@ def panel_figure(
     if len(panels) > len(shown):
         note = f"{note}; " * bool(note) + f"the first {len(shown)} of {len(panels)} panels"
 
-    def fill(figure: Figure) -> None:
+    def draw_all(figure: Figure) -> None:
         style.heading(figure, title, note)
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
         for axes, panel, name in zip(grid.flat, shown, names, strict=False):
@@ -104,7 +105,7 @@ def panel_figure(
     each = 2.6 if columns < 3 and width >= style.WIDTH else 2.1
     height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
     wide = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
-    return style.picture(fill, height, wide, None)
+    return style.picture(draw_all, height, wide, None)
 
 
 def in_panels(
@@ -122,7 +123,8 @@ def _label_outside(grid: Any, panels: int, x_label: str, y_label: str) -> None:
             axes.set_axis_off()
             continue
         if place + columns >= panels:
-            axes.set_xlabel(style.typeset(x_label))
+            letters = LETTERS_AN_INCH * (style.inches(axes.figure)[0] - 0.7) / columns
+            axes.set_xlabel(fill(style.typeset(x_label), int(letters)))
             axes.tick_params(labelbottom=True)
         if place % columns == 0:
             axes.set_ylabel(style.typeset(y_label))
@@ -151,12 +153,15 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> 
     titles = [axes.get_title() for axes in grid.flat]
     title_lines = max(title.count("\n") for title in titles) + any(titles)
     further_lines = figure.get_suptitle().count("\n")
+    label_lines = max(axes.get_xlabel().count("\n") for axes in grid.flat)
     width, height = style.inches(figure)
     if style.given() is None:  # else it is somebody's figure, or a part of one
-        height += LINE * (max(legend_lines - 1, 0) + further_lines)
+        height += LINE * (max(legend_lines - 1, 0) + further_lines + label_lines)
         figure.set_size_inches(width, height)
-    left, right = 0.62, 0.14
-    bottom = 0.52 + LINE * legend_lines + (0.06 if legend_lines else 0.0)
+    # Words in the place of numbers take more room.
+    words = [getattr(axes.yaxis.get_major_formatter(), "seq", ()) for axes in grid[:, 0]]
+    left, right = max(0.62, *(0.2 + len(each) / 14.0 for some in words for each in some), 0.0), 0.14
+    bottom = 0.52 + LINE * (legend_lines + label_lines) + (0.06 if legend_lines else 0.0)
     top = 0.32 + LINE * (title_lines + further_lines)
     # Where axes are shared, room for half of the last number of one and of the first of the next.
     across = 0.32 if share_y else 0.36
