@@ -149,6 +149,8 @@ def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
 
 def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> None:
     """Place the axes by hand: the automatic layout would take longer than the drawing."""
+    from matplotlib.ticker import FixedLocator
+
     rows, columns = grid.shape
     titles = [axes.get_title() for axes in grid.flat]
     title_lines = max(title.count("\n") for title in titles) + any(titles)
@@ -159,8 +161,9 @@ def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> 
         height += LINE * (max(legend_lines - 1, 0) + further_lines + label_lines)
         figure.set_size_inches(width, height)
     # Words in the place of numbers take more room.
-    words = [getattr(axes.yaxis.get_major_formatter(), "seq", ()) for axes in grid[:, 0]]
-    left, right = max(0.62, *(0.2 + len(each) / 14.0 for some in words for each in some), 0.0), 0.14
+    named = (a for a in grid[:, 0] if isinstance(a.yaxis.get_major_locator(), FixedLocator))
+    words = [label.get_text() for axes in named for label in axes.get_yticklabels()]
+    left, right = max(0.62, *(0.2 + len(word) / 14.0 for word in words), 0.0), 0.14
     bottom = 0.52 + LINE * (legend_lines + label_lines) + (0.06 if legend_lines else 0.0)
     top = 0.32 + LINE * (title_lines + further_lines)
     # Where axes are shared, room for half of the last number of one and of the first of the next.
