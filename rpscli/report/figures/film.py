@@ -102,14 +102,16 @@ def film(
 
         figure = Figure(figsize=(width, height), dpi=wanted.size / width, layout="constrained")
         canvas: Any = FigureCanvasAgg(figure)
-        frames = _frames(canvas, draw(figure), progress)
+        motion = draw(figure)
+        motion.show(0)
+        style.restyle(figure)
+        frames = _frames(canvas, motion, progress)
         return _mp4(frames, wanted.rate) if wanted.ending == ".mp4" else _gif(frames, wanted.rate)
 
 
 def _frames(canvas: Any, motion: Motion, progress: Progress) -> Iterator[Image]:
     from PIL import Image as Pillow
 
-    motion.show(0)
     for each in motion.moving:
         each.set_animated(True)  # left out of what is drawn once
     canvas.draw()
@@ -143,7 +145,7 @@ def _palette() -> Image:
     from matplotlib.colors import to_rgb
     from PIL import Image as Pillow
 
-    inks = np.array([to_rgb(ink) for ink in (style.BLACK, style.BLUE, style.RED)])
+    inks = np.array([to_rgb(ink) for ink in (style.BLACK, *style.own_colours()[:2])])
     steps = np.linspace(0.0, 1.0, 32)[:, None, None]
     colours = np.rint(255.0 * (inks + steps * (1.0 - inks))).astype(int)
     image = Pillow.new("P", (1, 1))
