@@ -8,6 +8,7 @@ import warnings
 from pathlib import Path
 
 import pytest
+from cycler import cycler
 from matplotlib.colors import to_hex, to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
@@ -15,6 +16,8 @@ from PIL import Image
 from report.small_results import KINDS
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
+from rpscli.report.figures.animation import history_film
+from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.history import energy_figure, moment_figure, rotation_figure
 from rpscli.report.figures.look import Look, figure_files, put_in_force, read_style
 
@@ -161,3 +164,15 @@ def test_letters_that_the_font_lacks_make_no_noise(capfd: pytest.CaptureFixture[
         warnings.simplefilter("error")
         assert drawn_as("png", title="地震 \x07 six storeys")
     assert capfd.readouterr() == ("", "")
+
+
+def test_films_have_the_colours_of_the_file_too() -> None:
+    look = Look(style={"axes.prop_cycle": cycler(color=["#AA0000", "#00AA00"])})
+    request = FilmRequest(Path("a.gif"), size=200, speed=4.0)
+    with (
+        put_in_force(look, "gif"),
+        Image.open(io.BytesIO(history_film(KINDS["rolls"](), "", request))) as film,
+    ):
+        shown = {colour for _, colour in film.convert("RGB").getcolors(1 << 16) or ()}
+    assert (0xAA, 0, 0) in shown
+    assert (0x00, 0x72, 0xB2) not in shown

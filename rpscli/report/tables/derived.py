@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -10,43 +11,44 @@ if TYPE_CHECKING:
 
 
 class Derived(NamedTuple):
-    """One quantity: its name in JSON, words, symbol, SI unit, and value for a structure."""
+    """One quantity: its name in JSON, words, symbol, SI unit, and where a structure has it."""
 
     name: str
     label: str
     symbol: str
     unit: str
-    value: Callable[[PodiumStructure], Any]
+    of: str | Callable[[PodiumStructure], Any] = ""
+
+    def value(self, structure: PodiumStructure) -> Any:
+        """Of a structure: the attribute of the name where nothing else is said."""
+        if callable(self.of):
+            return self.of(structure)
+        return attrgetter(self.of or self.name)(structure)
 
 
 GEOMETRY = (
-    Derived("semi_diagonal", "semi-diagonal", "R", "m", lambda s: s.bearing.semi_diagonal),
+    Derived("semi_diagonal", "semi-diagonal", "R", "m", "bearing.semi_diagonal"),
     Derived("column_height", "column height", "2H", "m", lambda s: 2.0 * s.bearing.half_height),
+    Derived("flat_width", "width of the flat part", "2B", "m", lambda s: 2 * s.bearing.half_width),
+    Derived("arc_radius", "radius of the arcs", "r", "m", "bearing.radius"),
+    Derived("alpha", "slenderness angle", "alpha", "rad", "bearing.alpha"),
     Derived(
-        "flat_width", "width of the flat part", "2B", "m", lambda s: 2.0 * s.bearing.half_width
+        "alpha_wedge", "slenderness angle of the wedge", "alpha'", "rad", "bearing.alpha_wedge"
     ),
-    Derived("arc_radius", "radius of the arcs", "r", "m", lambda s: s.bearing.radius),
-    Derived("alpha", "slenderness angle", "alpha", "rad", lambda s: s.bearing.alpha),
-    Derived(
-        "alpha_wedge", "slenderness angle of the wedge", "alpha'", "rad",
-        lambda s: s.bearing.alpha_wedge,
-    ),
-    Derived("beta", "rolling ends at", "beta", "rad", lambda s: s.bearing.beta),
-    Derived("curvature_ratio", "curvature ratio", "rho", "-", lambda s: s.bearing.curvature_ratio),
+    Derived("beta", "rolling ends at", "beta", "rad", "bearing.beta"),
+    Derived("curvature_ratio", "curvature ratio", "rho", "-", "bearing.curvature_ratio"),
     Derived(
         "rho_cr_paper", "critical curvature ratio, first order", "rho_cr", "-",
-        lambda s: s.bearing.critical_curvature_ratio_of_paper,
+        "bearing.critical_curvature_ratio_of_paper",
     ),
     Derived(
         "rho_cr_exact", "critical curvature ratio, exact", "rho_cr", "-",
-        lambda s: s.bearing.critical_curvature_ratio,
+        "bearing.critical_curvature_ratio",
     ),
-    Derived(
-        "critical_rotation", "critical rotation", "theta_cr", "rad", lambda s: s.critical_rotation
-    ),
+    Derived("critical_rotation", "critical rotation", "theta_cr", "rad"),
     Derived(
         "critical_rotation_paper", "critical rotation, first order", "theta_cr", "rad",
-        lambda s: s.bearing.critical_rotation_of_paper,
+        "bearing.critical_rotation_of_paper",
     ),
     Derived(
         "overturns", "overturning", "", "-",
@@ -57,36 +59,21 @@ GEOMETRY = (
 curvature ratio at which theta_cr = beta (Theory, section 9)."""
 
 DYNAMICS = (
-    Derived("columns_mass", "all columns", "N m_c", "kg", lambda s: s.columns_mass),
-    Derived("cap_beam_mass", "cap beam", "m_b", "kg", lambda s: s.cap_beam_mass),
-    Derived(
-        "superstructure_mass", "superstructure", "M_tot", "kg", lambda s: s.superstructure_mass
-    ),
-    Derived("gamma", "cap beam over columns", "gamma", "-", lambda s: s.gamma),
-    Derived("eta", "superstructure over cap beam", "eta", "-", lambda s: s.eta),
-    Derived("gamma_total", "total mass ratio", "gamma (1 + eta)", "-", lambda s: s.gamma_total),
-    Derived("restitution", "restitution at impact", "e", "-", lambda s: s.restitution),
-    Derived(
-        "uplift_acceleration", "uplift acceleration, quasi-static", "g tan(alpha)", "m/s2",
-        lambda s: s.uplift_acceleration,
-    ),
-    Derived(
-        "uplift_force", "uplift force at the cap beam", "W tan(alpha)", "N",
-        lambda s: s.uplift_force,
-    ),
-    Derived(
-        "static_base_shear", "base shear at uplift", "V_st", "N", lambda s: s.static_base_shear
-    ),
-    Derived(
-        "initial_stiffness", "stiffness after uplift", "", "N/m", lambda s: s.initial_stiffness
-    ),
-    Derived(
-        "rolling_period", "period of rolling, rigid building", "T", "s",
-        lambda s: s.rolling_period,
-    ),
+    Derived("columns_mass", "all columns", "N m_c", "kg"),
+    Derived("cap_beam_mass", "cap beam", "m_b", "kg"),
+    Derived("superstructure_mass", "superstructure", "M_tot", "kg"),
+    Derived("gamma", "cap beam over columns", "gamma", "-"),
+    Derived("eta", "superstructure over cap beam", "eta", "-"),
+    Derived("gamma_total", "total mass ratio", "gamma (1 + eta)", "-"),
+    Derived("restitution", "restitution at impact", "e", "-"),
+    Derived("uplift_acceleration", "uplift acceleration, quasi-static", "g tan(alpha)", "m/s2"),
+    Derived("uplift_force", "uplift force at the cap beam", "W tan(alpha)", "N"),
+    Derived("static_base_shear", "base shear at uplift", "V_st", "N"),
+    Derived("initial_stiffness", "stiffness after uplift", "", "N/m"),
+    Derived("rolling_period", "period of rolling, rigid building", "T", "s"),
     Derived(
         "p_hat", "frequency parameter, rigid estimate", "p_hat", "rad/s",
-        lambda s: s.rigid_frequency_parameter,
+        "rigid_frequency_parameter",
     ),
 )  # fmt: skip
 """Masses and statics."""
