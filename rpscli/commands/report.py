@@ -93,7 +93,7 @@ def command(
     name: str
     make: Callable[[], PageDone]
     if kind == DESIGN:
-        from rpscli.commands.report_design import design_page
+        from rpscli.commands.report_study import design_page
 
         if conditions:
             raise UsageError(f"{subject}: a design has limits of its own; leave --fail-on out")

@@ -1,4 +1,4 @@
-"""The page of a study: its systems, records, statistics, verdicts and reports."""
+"""Pages of a study and of a design: systems, records, statistics, verdicts, figures."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rpscli.commands.design import designed
 from rpscli.commands.inputs import RESULTS
 from rpscli.commands.report_case import Earlier, PageDone, subject_words
 from rpscli.commands.shell.failure import concluded
-from rpscli.commands.shell.options import CaseRequest
+from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
+    SweepChoices,
     begin,
     compute,
     of_first_system,
@@ -24,8 +26,7 @@ from rpscli.commands.study import (
 from rpscli.errors import RecordError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
-from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
-from rpscli.report.html.sections import (
+from rpscli.report.html.case_page import (
     input_table,
     motions_section,
     notices,
@@ -33,9 +34,11 @@ from rpscli.report.html.sections import (
     programs,
     repeated,
 )
+from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.study.labels import label
-from rpscli.report.table import Table
+from rpscli.report.table import Heading, Table
 from rpscli.sweep.evaluation.context import resolved
+from rpscli.sweep.points.layout import lay_out
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -191,3 +194,49 @@ def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     yield input_table(checked.document.content)
     yield f"{which}, as it is written and in SI units, with all defaults:"
     yield input_table(first.document, first.written)
+
+
+def design_page(
+    source: str,
+    overrides: tuple[str, ...],
+    earlier: Earlier | None,
+    look: Look,
+    terminal: Terminal,
+) -> PageDone:
+    """Search, or go on from the points that are stored, and put all in order."""
+    request = CaseRequest(source, overrides) if earlier is None else earlier.subject
+    folder = None if earlier is None else earlier.folder
+    output, look = OutputRequest(folder, force=folder is not None), page_look(look)
+    done = designed(
+        request.source, request.overrides, SweepChoices(), output, look, terminal, written=False
+    )
+    assert done is not None, "it is no dry run"
+    answer, study, notes = done.answer, done.study, done.document["warnings"]
+    terminal.warn(notes)
+    at = lay_out(answer.task.study_of(answer.values[[answer.headline]]))
+    case = resolved(at.plan, at[0].values)
+    named = {path.name: content for path, content in done.folder.contents.items()}
+    drawn = [
+        Picture(each, f"{stem.replace('_', ' ').capitalize()}.")
+        for stem, each in pictures(named.items())
+    ]
+    short = [
+        part for part in done.tables if not (isinstance(part, Heading) and part == study.title)
+    ]
+    results = [motions_section(*motions_of(study), study.title, look), Section("Figures", drawn)]
+    words = subject_words(source, overrides)
+    stored = f"Every point is stored in {done.folder.folder}."
+    title = "the recommended design" if done.document["robust"] else "the design shown"
+    sections = page_sections(
+        case,
+        study.title,
+        look,
+        [*short, *notices(notes)],
+        study_input(study, case, f"The case of {title}"),
+        results,
+        [*repeated(["rps", "design", *words], ["rps", "report", *words]), stored],
+        [f"Of {title}."],
+    )
+    subtitle = f"Design: {len(answer.places)} looked at"
+    signed = answer.task.file.document
+    return PageDone(study.title, subtitle, sections, done.document, done.error, signed)

@@ -15,6 +15,12 @@ from PIL import Image
 from report.small_results import KINDS, history, structure
 from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures.look import USUAL
+from rpscli.report.html.case_page import (
+    derived_blocks,
+    hidden_table,
+    motion_pictures,
+    structure_blocks,
+)
 from rpscli.report.html.page import (
     MOST_BYTES,
     Block,
@@ -29,12 +35,6 @@ from rpscli.report.html.page import (
     pictures,
     printable,
     written,
-)
-from rpscli.report.html.sections import (
-    derived_blocks,
-    hidden_table,
-    motion_pictures,
-    structure_blocks,
 )
 from rpscli.report.table import Table
 

@@ -1,30 +1,41 @@
-"""The page of a case: what it is, and the history that was computed."""
+"""Sections of pages: what a case is, its ground motions, and the history that was computed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import json
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from importlib import resources
 from itertools import chain
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from rpscli.analyses.neighbours import Neighbour
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.case.case import Case
+from rpscli.case.schema.keys import unit
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import intensity_measures
-from rpscli.report.documents import direction_note
-from rpscli.report.figures.look import Look
-from rpscli.report.html.page import Block, Notice, Picture, Section, pictures
-from rpscli.report.html.sections import (
-    input_table,
-    motion_pictures,
-    motions_section,
-    notices,
-    page_sections,
-    programs,
-    repeated,
+from rpscli.records.spectrum import ResponseSpectrum, response_spectrum
+from rpscli.report.bundles import bearing_files
+from rpscli.report.documents import direction_note, versions
+from rpscli.report.figures import style
+from rpscli.report.figures.look import Draw, Look, figure_files
+from rpscli.report.figures.motions import record_figure, spectra_figure
+from rpscli.report.figures.structure import structure_figure
+from rpscli.report.html.page import (
+    Block,
+    Code,
+    Notice,
+    Picture,
+    Section,
+    page_look,
+    pictures,
 )
 from rpscli.report.study.statistics import verdicts_in_short
-from rpscli.report.table import Table
+from rpscli.report.table import Column, Table
+from rpscli.report.tables.derivation import derivations, first_shape
 from rpscli.report.tables.motions import record_table
 from rpscli.report.tables.timehistory import (
     limits_table,
@@ -36,7 +47,85 @@ from rpscli.report.tables.timehistory import (
 )
 from rpscli.sweep.statistics.verdicts import Verdict
 
+if TYPE_CHECKING:
+    from rpscli.case.case import Case
+    from rpscli.model.podium import PodiumStructure
+    from rpscli.model.superstructure import Superstructure
+    from rpscli.records.ground_motion import GroundMotion
+
+
+DAMPING = 0.05
+MOST_ROWS = 100
+MOST_SPECTRA = 200
+
+
+def motion_pictures(
+    motion: GroundMotion, look: Look, building: Superstructure | None = None
+) -> Picture:
+    """Acceleration, velocity, displacement and response spectrum of a motion, with T1."""
+    period = None if building is None else float(building.periods[0])
+    return _picture(
+        lambda: record_figure(motion, _spectrum(motion), period),
+        look,
+        f"{motion.name}: acceleration, velocity and displacement of the ground, and the response"
+        f" spectrum at {style.percent(DAMPING)} of critical damping.",
+    )
+
+
+def _picture(draw: Draw, look: Look, caption: str) -> Picture:
+    ((_, files),) = pictures(figure_files({"figure": draw}, page_look(look)).items())
+    return Picture(files, caption)
+
+
+def motions_section(
+    motions: Sequence[GroundMotion],
+    unreadable: Sequence[str],
+    title: str,
+    look: Look,
+    which: str = "before they are scaled",
+) -> Section:
+    """Records of a study, or of several histories: peaks, digests and spectra."""
+    blocks: list[Block] = [*unreadable]
+    if motions:
+        blocks.append(_table(motions[:MOST_ROWS]))
+        shown = motions[:MOST_SPECTRA]
+        blocks.append(
+            _picture(
+                lambda: spectra_figure([_spectrum(each) for each in shown], title),
+                look,
+                f"Response spectra of {len(shown)} records {which}, at"
+                f" {style.percent(DAMPING)} of critical damping, with their median.",
+            )
+        )
+    if len(motions) > MOST_ROWS:
+        blocks.append(f"The table shows the first {MOST_ROWS} of {len(motions)} records.")
+    return Section("Ground motions", blocks)
+
+
+def _table(motions: Sequence[GroundMotion]) -> Table:
+    rows = [
+        (each.source, each.digest[:16], *map("{:.4g}".format, numbers))
+        for each in motions
+        for of in [intensity_measures(each)]
+        for numbers in [(each.duration, of.pga, of.pgv, of.d5_95)]
+    ]
+    heads = (
+        "record", "SHA-256 begins with", "duration [s]", "PGA [m/s2]", "PGV [m/s]", "5-95 % [s]"
+    )  # fmt: skip
+    return Table.of_texts(heads, rows, words=2)
+
+
+def _spectrum(motion: GroundMotion) -> ResponseSpectrum:
+    periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
+    return response_spectrum(motion, periods, DAMPING)
+
+
 CAPTIONS = {
+    "s": "The structure at rest.",
+    "bearing": "A column at rest, where rolling ends and at the critical rotation, to one scale;"
+    " one of its ends enlarged; and the horizontal force at the cap beam that holds it there."
+    " R runs from the middle of the column to the edge of the flat part of its end; dots are"
+    " contacts.",
     "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
     " the events.",
     "displacements": "Displacements to the ground against time.",
@@ -46,6 +135,146 @@ CAPTIONS = {
     "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
     "devices": "Force against displacement of each device between ground and cap beam.",
 }
+
+DIGITS = 6
+THEORY = "THEORY.md"
+HIDDEN = "| assumed |"
+"""Begins the table of the theory that says what the model cannot tell."""
+
+
+def page_sections(
+    case: Case,
+    title: str,
+    look: Look,
+    short: Iterable[Block],
+    inputs: Iterable[Block],
+    results: Iterable[Section],
+    repeat: Iterable[Block],
+    which: Sequence[Block] = (),
+) -> list[Section]:
+    """All of a page in its order; `which` says of which system structure and formulas are."""
+    structure, podium = case.structure, case.document["podium"]
+    return [
+        Section("In short", [*short]),
+        Section("The structure", [*which, *structure_blocks(structure, title, look)]),
+        Section("Input", [*inputs]),
+        Section("Derived quantities", [*which, *derived_blocks(structure, podium)]),
+        *results,
+        Section("What the model leaves out", [hidden_table()]),
+        Section("How to repeat it", [*repeat]),
+    ]
+
+
+def notices(texts: Iterable[str]) -> Iterator[Block]:
+    """What must be read before the numbers are used."""
+    return (Notice(f"Warning: {text}") for text in texts)
+
+
+def programs() -> str:
+    """What made the numbers, with versions."""
+    return ", ".join(f"{name} {version}" for name, version in versions().items() if version)
+
+
+def repeated(*commands: Sequence[str]) -> Iterator[Block]:
+    """Commands that make the same again."""
+    yield "From the folder in which this page was made, with the same versions:"
+    yield Code("\n".join(map(shlex.join, commands)))
+
+
+def structure_blocks(structure: PodiumStructure, title: str, look: Look) -> list[Block]:
+    """The drawings, and the storeys."""
+    made = figure_files({"s": lambda: structure_figure(structure, title)}, page_look(look))
+    files = [*made.items(), *bearing_files(structure, title, page_look(look))]
+    blocks: list[Block] = [Picture(each, CAPTIONS[stem]) for stem, each in pictures(files)]
+    if structure.superstructure is not None:
+        blocks += ["Storeys, the roof on top:", _storeys(structure)]
+    return blocks
+
+
+def _storeys(structure: PodiumStructure) -> Table:
+    building = structure.superstructure
+    assert building is not None, "there are storeys"
+    shape, heights = first_shape(building), building.storey_heights
+    count = building.storeys
+    columns = {
+        "storey": np.arange(count) + 1,
+        "height [m]": [None] * count if heights is None else heights,
+        "mass m_i [t]": building.masses * 1e-3,
+        "stiffness k_i [kN/m]": building.stiffnesses * 1e-3,
+        "first mode φ_i": shape,
+    }
+    return Table([Column(name, "-", each[::-1], name, _number) for name, each in columns.items()])
+
+
+def input_table(content: Mapping[str, Any], written: Mapping[str, Any] | None = None) -> Table:
+    """Every key of a case in SI units, defaults written out, beside what the user wrote."""
+    rows = [(key, _plain(value), unit(key).removeprefix("-")) for key, value in _leaves(content)]
+    if not written:
+        return Table.of_texts(("key", "value", "unit"), rows, words=3)
+    own = {key: _as_typed(value) for key, value in _leaves(written)}
+    beside = [(key, own.get(key, ""), *rest) for key, *rest in rows]
+    return Table.of_texts(("key", "as written", "value in SI", "unit"), beside, words=4)
+
+
+def _as_typed(value: object) -> str:
+    """A value of the file, lists of texts without their quotes."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_as_typed, value))}]"
+    return _plain(value)
+
+
+def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> list[Block]:
+    """Derived quantities with formulas, and with the numbers put in."""
+    rows = [
+        (
+            row.label,
+            row.symbol,
+            row.formula or "from the case",
+            row.numbers,
+            _number(row.value),
+            "" if row.unit == "-" else row.unit,
+        )
+        for row in derivations(structure, podium)
+    ]
+    text = (
+        "Angles are in radians, everything else in SI units. The numbers put in are rounded to"
+        f" {DIGITS} digits; the values follow from unrounded ones. The formulas are derived in"
+        f" {THEORY}, sections 1 to 7. f, κ and e_given are factor, loss and restitution of"
+        " podium.impact, I is podium.bearing.inertia_ratio."
+    )
+    heads = ("quantity", "symbol", "formula", "with numbers", "value", "unit")
+    return [text, Table.of_texts(heads, rows, words=4)]
+
+
+def hidden_table() -> Table:
+    """What the model leaves out, in the words of the theory."""
+    text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
+    lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
+    head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    bare = [[cell.replace("`", "") for cell in row] for row in rows]
+    return Table.of_texts(head, bare, words=2)
+
+
+def _leaves(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values; lists of sections are numbered from 0, as --set has them."""
+    for name, value in content.items():
+        key = f"{prefix}{name}"
+        if isinstance(value, dict) and value:
+            yield from _leaves(value, f"{key}.")
+        elif isinstance(value, list) and any(isinstance(part, dict) for part in value):
+            yield from _leaves({str(n): part for n, part in enumerate(value)}, f"{key}.")
+        else:
+            yield key, value
+
+
+def _plain(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.{DIGITS}g}"
 
 
 class History(NamedTuple):
