@@ -25,6 +25,7 @@ from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.report.tables.timehistory import outcome_text
 
 H, RADIUS, HALF_WEDGE, INERTIA = 1.5, 2.0, 0.45, 4.0 / 3.0
 COLUMNS, BEAM, G = 2e4, 2e5, 9.80665
@@ -312,3 +313,10 @@ def test_what_does_not_stand_or_strike_is_refused() -> None:
     assert {
         law: on_spheres(2, law=ImpactLaw(law)).restitution for law in ("rigid", "flexible")
     } == {"rigid": 1.0, "flexible": 1.0}
+
+
+def test_the_outcome_speaks_of_rolling_where_nothing_uplifts() -> None:
+    result = time_history(on_spheres(1), waves(0.3, 0.02, 4.0, seed=3))
+    assert outcome_text(result).startswith("rolls and comes back")
+    flat = time_history(on_spheres(1, flat=0.02), waves(3.0, 0.02, 4.0, seed=3))
+    assert outcome_text(flat).startswith(("uplifts and", "overturns"))

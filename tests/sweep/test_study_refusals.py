@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from rpscli import load_study
 from rpscli.errors import CaseError
 from sweep.small_studies import STUDY, study_file
 
@@ -128,3 +129,29 @@ def test_a_mistake_is_refused(workplace: Path, old: str, new: str, parts: tuple[
         study_file("study.yaml")
     for part in parts:
         assert part in str(refused.value), refused.value
+
+
+SPHERES = {
+    "rps": 1,
+    "superstructure": {"storeys": 2, "storey_mass": 2e5, "period": 0.3, "damping": {"ratio": 0}},
+    "podium": {
+        "bearing": {"dimensions": {"height": 3, "width": 0, "wedge_width": 0.9, "radius": 2}},
+        "cap_beam_mass": "200 t", "cap_beam_mass_ratio": 10,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "report", ["storey_shear", "rotation", "overturning_spectrum", "fragility"]
+)
+def test_what_is_over_the_uplift_is_refused_without_a_flat_part(report: object) -> None:
+    study = {
+        "rps": 1, "base": SPHERES, "records": ["pulse:sine?amplitude=0.1g&period=0.8"],
+        "scale": {"measure": "PGA", "values": [1.0, 2.0]}, "reports": [report],
+        "vary": [{"podium.bearing.dimensions.radius": [2, 2.5]}],
+    }  # fmt: skip
+    if report == "fragility":
+        load_study({**study, "reports": [{"fragility": {"limits": {"max_lift": 0.01}}}]})
+        return
+    with pytest.raises(CaseError, match="which is 0 without a flat part"):
+        load_study(study)

@@ -116,7 +116,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
         uplift = max(c.roof_displacement_at_uplift for c in result.capacity)
         close.set_xlim(0.0, 3.0 * uplift or 0.1 * whole.get_xlim()[1])
         close.locator_params(axis="x", nbins=5)
-        close.set(ylabel="", title="near uplift")
+        close.set(ylabel="", title="near uplift" if uplift else "where rolling begins")
         for axes in (whole, close):
             axes.set_xlabel(style.folded(figure, "roof displacement [m]"))
         columns = 5 if style.inches(figure)[0] >= style.WIDTH else 2
@@ -144,7 +144,8 @@ def draw_capacity(axes: Axes, result: PushoverResult) -> None:
             curve.roof_displacement_at_uplift, factor * result.uplift_force, "o",
             color=colour, ms=4.5, clip_on=False,
         )  # fmt: skip
-    axes.plot([], [], "o", color=style.GREY, ms=4.5, label="uplift")
+    begins = "uplift" if result.uplift_force else "rolling begins"
+    axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
     axes.set_xlim(left=0.0)
     axes.set_ylim(
         bottom=min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))

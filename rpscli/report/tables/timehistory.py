@@ -55,6 +55,8 @@ def timehistory_tables(
 def outcome_text(result: TimeHistoryResult) -> str:
     """How the history ended, how near to overturning, and whether the columns slide."""
     parts, passed = [OUTCOMES[result.outcome]], result.critical_passage_time
+    if result.structure.bearing.is_spherical:
+        parts = [parts[0].replace("uplifts", "rolls")]
     if result.outcome.startswith("overturned"):
         parts.append(overturned_text(result.structure, result.settings))
     if result.is_near_critical and passed is not None:
