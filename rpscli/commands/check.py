@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.case.conditions import Condition, condition_text, conditions_of
-from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands.inputs import (
     CaseInput,
     MotionRequest,
@@ -97,6 +96,8 @@ def _drawn(given: CaseInput, output: OutputRequest, look: Look, terminal: Termin
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     """The case's own record, or why it cannot be read; nothing if the case names none."""
+    from rpscli.case.rules.plausibility import doubts_of_directions  # numpy is slow
+
     if case.record is None:
         return None, None
     try:
