@@ -11,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rpscli.case.conditions import RATE, Condition
+from rpscli.case.conditions import Condition
 from rpscli.errors import LimitExceeded, Refused, RpsError, StudyIncomplete, UsageError
 from rpscli.report.figures.look import Look
 from rpscli.report.study.registry import REPORTS, lacking, not_judged, requirement_faults
@@ -33,7 +33,7 @@ from rpscli.sweep.run.resume import all_keys, remember, resume
 from rpscli.sweep.run.runner import Finish, Progress, run
 from rpscli.sweep.run.threads import Threads, available_cores
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
-from rpscli.sweep.statistics.verdicts import Verdict, judged, rates_of_levels
+from rpscli.sweep.statistics.verdicts import Verdict, judged, rate_notes
 from rpscli.sweep.store import Store
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Table, tabulate
@@ -84,8 +84,7 @@ class Collected:
 def require_results(layout: StudyPoints, conditions: Iterable[Condition]) -> None:
     """Refuse limits on results that systems do not have, and reports that cannot be drawn."""
     layout.study.document.refuse(requirement_faults(layout))
-    if any(limit.name == RATE for limit in layout.properties[0].limits):
-        rates_of_levels(layout)
+    _ = [*rate_notes(layout)]
     for condition in conditions:
         if layout.plan.analysis != "timehistory":
             raise UsageError(f"--fail-on {condition.name} needs analysis: timehistory")
@@ -198,7 +197,8 @@ class StudyRun:
                 columns = verdict_columns(self.summary.keys, self.verdicts)
                 found.files["verdicts.csv"] = csv_text(columns)
             unjudged = not_judged(self.layout, self.conditions)
-            notes = (*self.summary.notes, *scale_notes(self.table), *unjudged)
+            notes = [*self.summary.notes, *scale_notes(self.table), *unjudged]
+            notes += rate_notes(self.layout)
             found.notes += [f"statistics: {note}" for note in notes]
         for request in self.layout.study.reports:
             try:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rpscli.analyses.neighbours import OTHER_LOSS
-from rpscli.case.conditions import EVENTS, LIMITS, RATE, Condition, condition_text
+from rpscli.case.conditions import EVENTS, LIMITS, Condition, condition_text
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.rules.plausibility import RESTITUTION
 from rpscli.case.study.study import Study as CheckedStudy
@@ -127,11 +127,6 @@ class Rounds:
             )
         if len(self.search.checked) >= self.search.most:
             yield "search.most ended the search before all of the recommended region was examined"
-        if self.search.beyond:
-            yield (
-                f"{RATE}: motions beyond the largest intensity come {self.search.beyond:.2g} times"
-                " a year; they are taken to overturn the share that the largest does"
-            )
         for name, run in confirmations.items():
             if not keeps_limits(run):
                 yield f"the {WORDS[name]} does not keep its limits under the other motions"

@@ -13,7 +13,7 @@ from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.table import Column, shown
 from rpscli.sweep.statistics.fractiles import Share
 from rpscli.sweep.statistics.summary import Summary
-from rpscli.sweep.statistics.verdicts import RateVerdict, Verdict
+from rpscli.sweep.statistics.verdicts import Verdict
 
 SPREAD = {"median": "median", "84": "high", "largest": "largest"}
 """What follows the name of a quantity in a column, and the attribute of its spread."""
@@ -165,13 +165,13 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
         "exceeded": verdict.exceeded,
         "shown": verdict.shown,
         "shown_by_recordings": verdict.shown_by,
-        **({"interval": verdict.interval} if isinstance(verdict, RateVerdict) else {}),
+        **({"interval": verdict.interval} if verdict.interval else {}),
     }
 
 
 def verdict_text(verdict: Verdict) -> str:
     """What a verdict rests on, in words."""
-    if isinstance(verdict, RateVerdict):
+    if verdict.interval:
         low, high = verdict.interval
         return f"{verdict.value:.3g} a year ({low:.2g} to {high:.2g})"
     needed = f"; {shown_by_text(verdict)}" if verdict.shown_by else ""

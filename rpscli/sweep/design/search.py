@@ -122,8 +122,6 @@ class Search:
         self.faults: dict[str, None] = {}
         self.checked: list[int] = []
         self._within_record = 1, 1
-        self.beyond = 0.0
-        """How often a year motions are stronger than those of the study, for a limit on a rate."""
         self._demands: dict[str, Array] = {}
         self._within: dict[str, Array] = {}
 
@@ -230,8 +228,8 @@ class Search:
         found: list[Requirement] = []
         for condition in layout.properties[0].limits:
             if condition.name == RATE:
-                rates, self.beyond = rates_of_levels(layout)
-                found.append(Requirement(condition, 0, rates=tuple(rates.tolist())))
+                rates = tuple(rates_of_levels(layout)[0].tolist())
+                found.append(Requirement(condition, 0, rates=rates))
                 continue
             found += (
                 Requirement(condition, place, measure, level if several else None)

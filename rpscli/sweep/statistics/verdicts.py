@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +30,9 @@ class Verdict:
     A limit that a share of the records may exceed is *shown* to be kept if the interval of the
     probability ends below that share. One for every record says something of these records alone.
     It `fails` where it is exceeded or, if judged so `strictly`, not shown to be kept.
+
+    On an annual rate `interval` is that of the rate [1/year], from those of the shares at all
+    intensities at once, which is too wide; `beyond` is the share at the last one.
     """
 
     condition: Condition
@@ -40,7 +43,8 @@ class Verdict:
     record: str
     fractile: float | None
     exceeded: bool
-    strictly: bool = field(default=False, kw_only=True)
+    strictly: bool = False
+    interval: tuple[float, float] | None = None
 
     @property
     def word(self) -> str:
@@ -55,6 +59,8 @@ class Verdict:
     @property
     def shown(self) -> bool:
         """Whether it is met, and the records are enough to say so of the probability."""
+        if self.interval is not None:
+            return not self.exceeded and self.interval[1] <= self.condition.limit
         admissible, several = self.condition.admissible, self.beyond.of > 1
         unsure = several and admissible > 0.0 and self.beyond.high > admissible
         return not (self.exceeded or unsure)
@@ -62,29 +68,9 @@ class Verdict:
     @property
     def shown_by(self) -> int | None:
         """How many recordings would show it if no more were beyond; None where it is shown."""
-        if self.exceeded or self.shown:
+        if self.exceeded or self.shown or self.interval is not None:
             return None
         return shown_by(self.beyond, self.condition.admissible)
-
-
-@dataclass(frozen=True)
-class RateVerdict(Verdict):
-    """On the annual rate of overturning, of which `interval` is known [1/year].
-
-    The interval is that of the shares at all intensities at once, which is too wide.
-    """
-
-    interval: tuple[float, float]
-
-    @property
-    def shown(self) -> bool:
-        """Whether it is met, with all of its interval."""
-        return not self.exceeded and self.interval[1] <= self.condition.limit
-
-    @property
-    def shown_by(self) -> int | None:
-        """No number of records is told."""
-        return None
 
 
 def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
@@ -106,17 +92,29 @@ def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
     return rates, float(exceeded(hazard, levels[order[-1:]])[0])
 
 
+def rate_notes(layout: StudyPoints) -> Iterator[str]:
+    """What a limit on a rate takes for granted; refuse one that the study cannot tell of."""
+    if any(limit.name == RATE for limit in layout.properties[0].limits):
+        _, beyond = rates_of_levels(layout)
+        yield (
+            f"{RATE}: motions beyond the largest intensity come {beyond:.2g} times a year; they are"
+            " taken to overturn the share that the largest does, and those below the least the"
+            " share that the least does"
+        )
+
+
 def rate_verdict(
     condition: Condition,
     rates: Array,
     shares: Sequence[Share],
     values: tuple[object, ...] = (),
-) -> RateVerdict:
+) -> Verdict:
     """From the shares (levels,) that overturned, with the rates of these levels."""
     ends = np.array([(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares])
     rate, low, high = (rates @ ends).tolist()
     exceeded = not rate <= condition.limit
-    return RateVerdict(condition, values, shares[-1], 0, rate, "", None, exceeded, (low, high))
+    common = condition, values, shares[-1], 0, rate, "", None
+    return Verdict(*common, exceeded=exceeded, interval=(low, high))
 
 
 class Judgement(NamedTuple):
