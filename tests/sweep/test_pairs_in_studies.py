@@ -52,6 +52,9 @@ def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
     factor = 0.3 / pair_measure(a, b, "PGV", "rotd100")
     assert [context.factor(point) for point in layout] == pytest.approx([factor] * 4, rel=1e-12)
     assert layout.of == "rotd100"
+    peaks = context.intensities([*layout], np.full(4, factor))
+    assert peaks["pgv"] == pytest.approx([0.3] * 4, rel=1e-12)
+    assert peaks["pga"] == pytest.approx([factor * pair_measure(a, b, "PGA", "rotd100")] * 4)
     assert layout.pairs == (True,) * 4
     assert set(layout.clusters.tolist()) == {0} or layout.alone
     straight, half, quarter, plain = motions(layout, context)

@@ -237,6 +237,9 @@ class StudyContext:
     def intensities(self, points: Sequence[Point], factors: Array) -> dict[str, Array]:
         """Peaks of the scaled motions of some points, (points,)."""
         requests = [point.record for point in points]
-        peaks = {r: [self.records.intensity(r, m) for m in PEAKS] for r in set(requests) if r}
+        of: dict[RecordRequest, Of] = {
+            r: self.plan.of if r.is_pair else "component" for r in set(requests) if r
+        }
+        peaks = {r: [self.records.intensity(r, m, of=of[r]) for m in PEAKS] for r in of}
         found = np.array([peaks[r] for r in requests if r]).reshape(-1, len(PEAKS))
         return {m.lower(): np.abs(factors) * found[:, i] for i, m in enumerate(PEAKS)}
