@@ -88,12 +88,13 @@ class LimitsSection(
 class StudyLimits(LimitsSection):
     """Limits of studies and designs, which may be on the reliability; it needs a `hazard`."""
 
-    annual_rate: Annotated[float | None, Quantity(symbol="1/year", above=0)] = None
-    """how often a year the structure may overturn, from the shares at all intensities"""
-    probability_in_50_years: Annotated[
-        float | None, Quantity(above=0, below=1, remedy="1 % is 0.01")
-    ] = None
-    """probability of overturning in 50 years, in place of the annual rate"""
+    annual_rate: Annotated[float, Quantity(symbol="1/year", above=0)] | None = Field(
+        None,
+        description="how often a year the structure may overturn, from shares at all intensities",
+    )
+    probability_in_50_years: (
+        Annotated[float, Quantity(above=0, below=1, remedy="1 % is 0.01")] | None
+    ) = Field(None, description="probability of overturning in 50 years, in place of the rate")
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Self:
