@@ -265,20 +265,17 @@ _UNKNOWN = ("sprk", "sp_rk", "ntprk", "ntp_rk")
 def load_target(source: str) -> TargetSpectrum:
     """A spectrum of a code by its parameters, or from a CSV file."""
     scheme, colon, rest = source.partition(":")
-    if colon and scheme in CODES:
-        return CODES[scheme](rest, source)
     if colon and scheme.lower() in _UNKNOWN:
         raise RecordError(
             f"{source}: the spectra of SP RK 2.03-30-2017 and NTP RK 08-01 could not be verified"
             " and are not those of sp14; give the spectrum as a CSV file"
         )
     place, _, options = source.partition("?")
-    path = Path(place)
-    if path.is_file():
-        return table_spectrum(path, options, source)
-    known = CODES.names()
+    path, known = Path(place), CODES.names()
     if colon and scheme in known:
         return CODES[scheme](rest, source)
+    if path.is_file():
+        return table_spectrum(path, options, source)
     if colon and len(scheme) > 1:
         raise RecordError(
             f"{source}: {scheme!r} is not a known code; {hint(scheme, known)}, or a file"
