@@ -33,6 +33,9 @@ COMMANDS = {
         "rpscli.commands.compare", "what differs between two cases, studies or folders of results"
     ),
     "export": Member("rpscli.commands.export", "a model that mujoco or OpenSees runs"),
+    "identify": Member(
+        "rpscli.commands.identify", "what a test of the standing building says about its case"
+    ),
     "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
     "completion": Member("rpscli.commands.completion", "let your shell complete what you type"),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),

@@ -176,6 +176,12 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
         }],
     },
     "export": {"case": _SUBJECT, "program": str, "limits": str, **_TOLD, **_FILES},
+    "identify": {
+        "case": _SUBJECT, "test": str, "level": float, "misfit": float, "ensembles": bool,
+        "estimates": [{"name": str, "unit": str, **dict.fromkeys(("value", "low", "high"), float)}],
+        "residuals": [{"time": float, "amplitude": float, "model_amplitude": float}],
+        "keys": dict[str, str], **_TOLD, **_FILES,
+    },
     "report": {**_TOLD, **_FILES, **_ENDED},
     "record info": _RECORD,
     **{f"record {verb}": {**_RECORD, **_FILES} for verb in ("plot", "convert", "synth")},

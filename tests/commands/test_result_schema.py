@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -62,6 +63,7 @@ RUNS: dict[str, tuple[tuple[str, ...], int]] = {
     "compare": (("compare", "small.yaml", "small.yaml"), 0),
     "compare of two": (("compare", "small.yaml", "frame.yaml", "--record", PULSE), 0),
     "export": (("export", "small.yaml", "opensees"), 0),
+    "identify": (("identify", "small.yaml", "floor.csv", "release"), 0),
     "report": (("report", "small.yaml", "-o", "page.html"), 0),
     "report of a study": (("report", "study.yaml", "-o", "study.html"), 10),
     "record info": (("record", "info", PULSE), 0),
@@ -124,6 +126,8 @@ def test_documents_keep_it(
         "design.yaml": DESIGN,
         "modes.yaml": STUDY.replace("limits: {rotation_ratio: 1.0e-3}\n", "analysis: modal\n")
         .replace("reports: [overturning]\n", ""),
+        "floor.csv": "time [s],floor_acceleration [g]\n"
+        + "".join(f"{i / 50},{math.exp(-i / 50) * math.cos(i / 2.4)}\n" for i in range(300)),
         "target.csv": "period [s],acceleration [g]\n0.1,0.3\n3,0.1\n",
     }  # fmt: skip
     for file, text in files.items():

@@ -1,0 +1,1 @@
+"""What measurements on a standing structure say about it."""

@@ -1,0 +1,244 @@
+"""Restitution and rolling resistance from free rocking, by times and amplitudes of its swings.
+
+The model is read as the measurement is, so that what the reading does to a swing does not count.
+Where releases within the error of measurement part ways, as under buildings that vibrate, means of
+ensembles are fitted, and what swings scatter about them, together, counts as error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from rpscli.analyses.identification.estimate import Estimate, estimate
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.errors import AnalysisError
+from rpscli.model.devices import RollingResistance
+from rpscli.model.podium import Array, PodiumStructure
+from rpscli.records.ground_motion import GroundMotion
+
+MOST_SWINGS = 12
+SEEN = 20.0
+"""Least amplitude of a swing that is used, over the noise of a sample."""
+NEAR_TOP = 0.7
+"""Part of a swing's amplitude above which its samples are taken for its top."""
+ENSEMBLE = 9
+"""Releases within three standard errors of the amplitude."""
+WIDE = 2.0
+"""Steps of differences of ensembles, over the standard errors."""
+PARTING = 0.3
+"""Scatter of an ensemble over the error of measurement from which it counts."""
+
+
+class Swing(NamedTuple):
+    """Top of an excursion to one side: time [s], |theta| [rad], and their standard errors."""
+
+    time: float
+    amplitude: float
+    time_error: float
+    amplitude_error: float
+
+
+class Rocking(NamedTuple):
+    """What free rocking says.
+
+    `loss` is kappa of the impact law (None of the law `value`), `lever` f of rolling resistance in
+    metres (None where the structure has none). `model` are times and amplitudes of the fitted
+    motion at `swings`, `misfit` their distance over the errors, `ensembles` whether means of many
+    motions were fitted.
+    """
+
+    restitution: Estimate
+    loss: Estimate | None
+    lever: Estimate | None
+    swings: list[Swing]
+    model: Array
+    misfit: float
+    ensembles: bool
+
+
+@dataclass(frozen=True)
+class _Release:
+    """A structure that is let go; q is its rotation, a delay, its loss or e, and its lever."""
+
+    structure: PodiumStructure
+    dt: float
+    span: float
+    noise: float
+    side: float
+    swings: list[Swing]
+
+    @property
+    def measured(self) -> Array:
+        return np.array([value for swing in self.swings for value in swing[:2]])
+
+    @property
+    def place(self) -> int | None:
+        devices = enumerate(self.structure.devices)
+        return next((i for i, each in devices if isinstance(each, RollingResistance)), None)
+
+    def changed(self, q: Array) -> PodiumStructure:
+        """With what is looked for."""
+        law = self.structure.impact_law
+        value = float(q[2])
+        changed = (
+            replace(law, restitution=value) if law.kind == "value" else replace(law, loss=value)
+        )
+        made = replace(self.structure, impact_law=changed)
+        if self.place is None:
+            return made
+        devices = [*made.devices]
+        devices[self.place] = RollingResistance(float(q[3]))
+        return replace(made, devices=tuple(devices))
+
+    def tops(self, q: Array, release: float = 1.0) -> Array:
+        """Times and amplitudes of the swings; those that do not come have none."""
+        start = self.side * float(q[0]) * release
+        settings = TimeHistorySettings(free_vibration=self.span, initial_rotation=start)
+        still = GroundMotion(np.zeros(2), self.dt, "still", "still", "")
+        trace = time_history(self.changed(q), still, settings, with_fixed_base=False).trace
+        found = swings_of(trace.time, trace.rotation, self.noise, 0.25 * SEEN * self.noise)[1:]
+        values = self.measured
+        values[1::2] = 0.0
+        for i, swing in enumerate(found[: len(self.swings)]):
+            values[2 * i : 2 * i + 2] = swing.time + q[1], swing.amplitude
+        return values
+
+
+def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking:
+    """Restitution and lever from free rocking after a release from rest, the building unstrained.
+
+    Parameters
+    ----------
+    structure
+        As it is designed; its impact law and rolling resistance are what is looked for.
+    time, rotation
+        (n,) uniform samples [s] and theta [rad], from the release on.
+
+    Raises
+    ------
+    AnalysisError
+        If fewer than four swings stand out of the noise, or no such structure rocks like this.
+    """
+    time = time - time[0]
+    # Third differences of a smooth motion are small against those of noise, 20 sigma^2.
+    rough = float(np.median(np.abs(np.diff(rotation, 3)))) / 0.6745 / math.sqrt(20.0)
+    noise = max(rough, 1e-6 * float(np.abs(rotation).max()))
+    every = swings_of(time, rotation, noise, SEEN * noise)
+    if len(every) < 4:
+        raise AnalysisError(
+            f"{len(every)} swings stand out of the noise of {noise:.2g} rad, and four are needed:"
+            " release it from a larger rotation, or choose a part of the motion by --from and --to"
+        )
+    first, *swings = every[: MOST_SWINGS + 1]
+    dt, side = float(time[1] - time[0]), math.copysign(1.0, rotation[np.argmax(time >= first.time)])
+    of = _Release(structure, dt, float(time[-1]), noise, side, swings)
+    errors = np.array([value for swing in swings for value in swing[2:]])
+    q, steps, bounds = _start(of, first)
+    try:
+        q, covariance, misfit = _fitted(
+            of.tops, q, steps, bounds, of.measured, np.diag(1.0 / errors)
+        )
+        reach = 3.0 * math.sqrt(covariance[0, 0]) / q[0]
+        releases = 1.0 + reach * np.linspace(-1.0, 1.0, ENSEMBLE)
+
+        def means(q: Array) -> tuple[Array, Array]:
+            """Of the ensemble, and what the size of the release does not explain."""
+            many = np.array([of.tops(q, release) for release in releases])
+            away = (releases - 1.0)[:, None]
+            left = many - many.mean(axis=0) - away * ((away * many).sum(axis=0) / (away**2).sum())
+            return many.mean(axis=0), left
+
+        left = means(q)[1]
+        scatter = left.T @ left / (ENSEMBLE - 2)
+        ensembles = bool(np.any(np.sqrt(np.diag(scatter)) > PARTING * errors))
+        if ensembles:
+            # Swings that part ways do so together.
+            whiten = np.linalg.inv(np.linalg.cholesky(np.diag(errors**2) + scatter))
+            steps = WIDE * np.sqrt(np.diag(covariance))
+            q, covariance, misfit = _fitted(
+                lambda q: means(q)[0], q, steps, bounds, of.measured, whiten
+            )
+    except (ValueError, np.linalg.LinAlgError) as error:
+        raise AnalysisError(f"no structure like this one rocks so: {error}") from None
+    spread = np.sqrt(np.diag(covariance))
+    found = [estimate(*each, 2 * len(swings) - len(q)) for each in zip(q, spread, strict=True)]
+    kappa = None if structure.impact_law.kind == "value" else found[2]
+    ratios = sorted(of.changed(np.array([*q[:2], k, *q[3:]])).restitution for k in
+                    np.clip(found[2], *bounds[:, 2]))  # fmt: skip
+    e = Estimate(of.changed(q).restitution, ratios[0], ratios[-1])
+    lever = None if of.place is None else found[3]
+    return Rocking(e, kappa, lever, swings, of.tops(q).reshape(-1, 2), misfit, ensembles)
+
+
+def _start(of: _Release, first: Swing) -> tuple[Array, Array, Array]:
+    """First values, steps of differences, and least and largest values."""
+    law, b, s = of.structure.impact_law, of.structure.bearing, of.structure
+    lifts = s.path(np.array([swing.amplitude for swing in of.swings]))[2]
+    lost = 1.0 - min(float(np.median(np.sqrt(lifts[1:] / lifts[:-1]))), 0.999)
+    if law.kind == "value":
+        rows = [(1.0 - lost, 2e-3, 0.01, 1.0)]
+    else:
+        full = max(1.0 - replace(law, loss=1.0).ratio(b, s.gamma, s.eta), 1e-6)
+        rows = [(lost / full, 5e-3, 1e-6, 0.98 / full)]
+    if of.place is not None:  # it takes a part of what is lost
+        rows[0] = (0.7 * rows[0][0] + 0.3 * (law.kind == "value"), *rows[0][1:])
+        rows.append((2e-3 * b.half_width, 1e-3 * b.half_width, 1e-9, 0.2 * b.half_width))
+    late = of.swings[0].time
+    first_rows = [(first.amplitude, 2e-3 * first.amplitude, 0.0, s.critical_rotation),
+                  (0.0, 1e-3 * late, -late, late)]  # fmt: skip
+    q, steps, low, high = np.array([*first_rows, *rows]).T
+    return q, steps, np.array([low, high])
+
+
+def swings_of(time: Array, rotation: Array, noise: float, least: float) -> list[Swing]:
+    """Excursions above a least amplitude: a parabola through what is near the top of each."""
+    places = np.flatnonzero(np.abs(rotation) > max(0.25 * least, 4.0 * noise))
+    turns = np.flatnonzero(np.diff(np.sign(rotation[places]))) + 1
+    found: list[Swing] = []
+    for run in np.split(places, turns):
+        if not len(run) or np.abs(rotation[run]).max() < least:
+            break
+        x = np.abs(rotation[run[0] : run[-1] + 1])
+        top = run[0] + np.flatnonzero(x > NEAR_TOP * x.max())
+        if len(top) < 5:
+            break
+        middle, half = 0.5 * (time[top[0]] + time[top[-1]]), 0.5 * (time[top[-1]] - time[top[0]])
+        powers = np.vander((time[top] - middle) / half, 3, increasing=True)
+        c = np.linalg.lstsq(powers, np.abs(rotation[top]), rcond=None)[0]
+        at = -0.5 * c[1] / c[2]
+        spread = noise**2 * np.linalg.inv(powers.T @ powers)
+        of_time = half * np.array([0.0, -0.5 / c[2], 0.5 * c[1] / c[2] ** 2])
+        of_amplitude = np.array([1.0, at, at**2])
+        errors = (math.sqrt(g @ spread @ g) for g in (of_time, of_amplitude))
+        found.append(Swing(float(middle + half * at), float(of_amplitude @ c), *errors))
+    return found
+
+
+def _fitted(
+    model: Callable[[Array], Array], q: Array, steps: Array, bounds: Array, measured: Array,
+    whiten: Array,
+) -> tuple[Array, Array, float]:  # fmt: skip
+    """Least squares by Gauss and Newton with wide differences: covariance with the misfit in it."""
+
+    def misses(q: Array) -> Array:
+        return np.asarray(whiten @ (measured - model(np.clip(q, *bounds))))
+
+    for _ in range(12):
+        r = misses(q)
+        sides = [(misses(q - step), misses(q + step)) for step in np.diag(steps)]
+        J = np.column_stack([(a - b) / (2.0 * h) for (a, b), h in zip(sides, steps, strict=True)])
+        move = np.linalg.lstsq(J * steps, r, rcond=None)[0] * steps
+        parts = ((part, np.clip(q + part * move, *bounds)) for part in (1.0, 0.5, 0.25, 0.1))
+        better = (each for each in parts if np.sum(misses(each[1]) ** 2) < np.sum(r**2))
+        part, tried = next(better, (0.0, q))
+        q = tried
+        if np.all(np.abs(part * move) < 1e-3 * steps):
+            break
+    variance = float(np.sum(misses(q) ** 2)) / (len(measured) - len(q))
+    return q, variance * np.linalg.inv(J.T @ J), math.sqrt(variance)

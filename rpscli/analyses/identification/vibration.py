@@ -1,0 +1,139 @@
+"""First period and damping before uplift, from accelerations of a floor."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.identification.estimate import Estimate, estimate
+from rpscli.errors import AnalysisError
+
+Array = NDArray[np.float64]
+BAND = (0.6, 1.5)
+"""Frequencies about the first one that are looked at, over it."""
+
+
+class Vibration(NamedTuple):
+    """First period [s] and damping ratio.
+
+    `misfit` is the scatter of the periodogram over its spectrum, 1 where the model holds; or the
+    part of the motion in the band that is not fitted.
+    """
+
+    period: Estimate
+    damping: Estimate
+    misfit: float
+
+
+def vibration(
+    expected: float, dt: float, floor: Array, ground: Array | None = None, *, free: bool = False
+) -> Vibration:
+    """First period and damping before uplift from a floor's acceleration.
+
+    Parameters
+    ----------
+    expected
+        First period on a fixed base [s]; the measured one is looked for from 0.85 to 3 times it.
+    dt
+        Sampling interval [s].
+    floor, ground
+        (n,) accelerations, in any unit but the same one. With the ground's the floor's answer to it
+        is fitted (an earthquake); else a free decay if `free`, else the spectrum (ambient).
+
+    Raises
+    ------
+    AnalysisError
+        If the record holds fewer than ten periods, or no peak is found.
+
+    Notes
+    -----
+    Ambient: Whittle's likelihood of the periodogram, S = a f^c/((f^2 - f1^2)^2 + (2 zeta f1 f)^2) +
+    b, P. Whittle, Ark. Mat. 2, 1953; intervals from Fisher's information. Else least squares of the
+    transform in the band, linear in all but period and damping.
+    """
+    n = len(floor)
+    if n * dt < 10.0 * expected:
+        raise AnalysisError(
+            f"{n * dt:.3g} s are fewer than ten periods of {expected:.3g} s; a longer record is"
+            " needed"
+        )
+    f = np.fft.rfftfreq(n, dt)
+    Y = np.fft.rfft(floor - floor.mean())
+    X = None if ground is None else np.fft.rfft(ground)
+    power = np.abs(Y) ** 2
+    if X is not None:
+        power /= np.abs(X) ** 2 + np.median(np.abs(X) ** 2)
+    width = max(3, round(0.05 * n * dt / expected))
+    smooth = np.convolve(power, np.ones(width) / width, "same")
+    looked = (f > 1.0 / (3.0 * expected)) & (f < 1.0 / (0.85 * expected))
+    peak = float(f[looked][np.argmax(smooth[looked])])
+    inside = (f > BAND[0] * peak) & (f < BAND[1] * peak)
+    f, Y = f[inside], Y[inside]
+    if len(f) < 12:
+        raise AnalysisError(f"{len(f)} frequencies about {peak:.3g} Hz; a longer record is needed")
+    if X is None and not free:
+        return _ambient(f, np.abs(Y) ** 2 / n, peak)
+    time = np.arange(n) * dt
+
+    def columns(q: Array) -> Array:
+        """What period and damping make of unit amplitudes."""
+        w, zeta = np.exp(q)
+        decay = np.exp((-zeta + 1j * math.sqrt(1.0 - min(zeta, 0.9) ** 2)) * w * time)
+        made = [np.fft.rfft(part)[inside] for part in (decay.real, decay.imag)]
+        # Higher modes are slow and smooth here: what begins in them, and what the ground does.
+        s = 2j * np.pi * f / w
+        made += [np.ones_like(s), s]
+        if X is not None:
+            parts = (1.0, s**2, s**2 / (s**2 + 2.0 * zeta * s + 1.0))
+            made += [X[inside] * part for part in parts]
+        return np.column_stack(made)
+
+    def misses(q: Array) -> Array:
+        C = columns(q)
+        stacked, y = np.concatenate([C.real, C.imag]), np.concatenate([Y.real, Y.imag])
+        return np.asarray(y - stacked @ np.linalg.lstsq(stacked, y, rcond=None)[0])
+
+    from scipy.optimize import least_squares
+
+    best = least_squares(misses, [math.log(2.0 * math.pi * peak), math.log(0.03)], x_scale=0.01)
+    freedoms = 2 * len(f) - (6 if X is None else 9)
+    variance = 2.0 * float(best.cost) / freedoms
+    J = np.asarray(best.jac)
+    errors = np.sqrt(np.diag(variance * np.linalg.inv(J.T @ J)))
+    share = 2.0 * float(best.cost) / float(np.sum(np.abs(Y) ** 2))
+    return _of_logarithms(best.x, errors, freedoms, math.sqrt(share))
+
+
+def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float) -> Vibration:
+    """From the periodogram, whose values are exponential about the spectrum."""
+
+    def spectrum(p: Array) -> Array:
+        first, zeta, a, b, c = np.exp(p[0]), np.exp(p[1]), np.exp(p[2]), np.exp(p[3]), p[4]
+        x = f / first
+        return np.asarray(a * x**c / ((x**2 - 1.0) ** 2 + (2.0 * zeta * x) ** 2) + b)
+
+    def unlikely(p: Array) -> float:
+        S = spectrum(p)
+        return float(np.sum(np.log(S) + power / S))
+
+    from scipy.optimize import minimize
+
+    sizes = peak, 0.03, 4e-3 * power.max(), power.min() + 1e-3 * power.mean()
+    options: Any = {"maxiter": 4000, "xatol": 1e-6, "fatol": 1e-6}
+    start = np.array([*map(math.log, sizes), 0.0])
+    p = np.asarray(minimize(unlikely, start, method="Nelder-Mead", options=options).x)
+    S, h = spectrum(p), 1e-5
+    J = np.array([(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)])
+    errors = np.sqrt(np.diag(np.linalg.pinv(J @ J.T)))
+    q = np.array([p[0] + math.log(2.0 * math.pi), p[1]])
+    return _of_logarithms(q, errors[:2], len(f) - 5, float((power / S).std()))
+
+
+def _of_logarithms(q: Array, errors: Array, freedoms: int, misfit: float) -> Vibration:
+    """Period and damping from the logarithms of circular frequency and damping."""
+    w, zeta = (estimate(value, error, freedoms) for value, error in zip(q, errors, strict=False))
+    period = Estimate(*(2.0 * math.pi * math.exp(-value) for value in (w.value, w.high, w.low)))
+    return Vibration(period, Estimate(*(math.exp(value) for value in zeta)), misfit)

@@ -1,0 +1,224 @@
+"""`rps identify`: what measurements on a standing building say about its case."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rpscli.commands.inputs import case_heading, read_case
+from rpscli.commands.shell.options import FILE, CaseRequest, case_options, terminal_options
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import announce_compilation, passing_time
+from rpscli.errors import AnalysisError, RecordError, Refused, UsageError, listed
+from rpscli.report.documents import heading
+from rpscli.report.files import encoded, write_whole
+from rpscli.report.table import Heading, Part, Table, shown
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rpscli.analyses.identification.estimate import Estimate
+    from rpscli.model.podium import PodiumStructure
+
+    Columns = dict[str, NDArray[Any]]
+
+TESTS = ("rocking", "ambient", "release", "earthquake")
+
+
+@click.command("identify")
+@case_options
+@click.argument("data", metavar="DATA.csv", type=FILE)
+@click.argument("test", metavar="|".join(TESTS), type=click.Choice(TESTS))
+@click.option("--from", "first", type=float, metavar="S", help="Leave out what is before.")
+@click.option("--to", "last", type=float, metavar="S", help="Leave out what comes after.")
+@click.option("-o", "--output", "place", type=click.Path(path_type=Path), metavar="FILE.yaml",
+              help="A copy of CASE with what was found, comments and all.")  # fmt: skip
+@click.option("--force", is_flag=True, help="Overwrite that file.")
+@terminal_options
+def command(
+    request: CaseRequest,
+    data: str,
+    test: str,
+    first: float | None,
+    last: float | None,
+    place: Path | None,
+    terminal: Terminal,
+    *,
+    force: bool,
+) -> None:
+    """What DATA.csv, measured on the structure of CASE, says about it, with intervals of 90 %.
+
+    Its header has names and units, as in `time [s],rotation [mrad]`. rocking: free rocking after a
+    release from rest, `rotation` or `cap_beam_displacement`, gives the loss at impacts, and the
+    lever of a rolling_resistance in the case. Before uplift the period and the damping follow from
+    a `floor_acceleration`: ambient vibration, the release of a pull, or an earthquake with
+    `ground_acceleration` beside it.
+    """
+    if place is not None and place.exists() and not force:
+        raise Refused(f"{place} exists; name another file with -o, or overwrite it with --force")
+    given = read_case(request, terminal)
+    structure = given.case.structure
+    columns = _columns(data, test, first, last)
+    announce_compilation(terminal)
+    with passing_time("fitting", terminal):
+        try:
+            found = (_rocking if test == "rocking" else _vibration)(structure, columns, test)
+        except AnalysisError as error:
+            raise AnalysisError(f"{data}: {error}") from None
+    document, parts, values = found
+    files = []
+    if place is not None:
+        if not values:
+            raise UsageError(f"-o {place}: nothing was found that a case has a key for")
+        from rpscli.case.text.edit import edited
+        from rpscli.case.text.files import read_text
+
+        changes = tuple(f"{key}={value}" for key, value in values.items())
+        read_case(CaseRequest(request.source, changes), terminal)
+        text = edited(read_text(request.source), request.source, values)
+        write_whole({place: encoded(text)})
+        files.append(str(place))
+        terminal.note(f"written to {place}")
+    begin = {**heading(), "command": "identify", "case": case_heading(given), "test": test}
+    end = {"keys": values, "warnings": given.case.warnings, "files": files}
+    terminal.result({**begin, **document, **end}, [Heading(given.case.title), *parts])
+
+
+WANTED = {
+    "rocking": (("rotation", "rad"), ("cap_beam_displacement", "m")),
+    "floor": (("floor_acceleration", "m/s2"),),
+    "ground": (("ground_acceleration", "m/s2"),),
+}
+"""Columns of which one is needed, and their SI units."""
+
+
+def _columns(source: str, test: str, first: float | None, last: float | None) -> Columns:
+    """What a test needs, in SI units, in the time that is looked at."""
+    import numpy as np
+
+    from rpscli.case.text.files import read_text
+    from rpscli.units import si_factor
+
+    heads, *rows = [row for row in csv.reader(io.StringIO(read_text(source))) if row] or [[]]
+    names = [head.strip().partition(" [")[0] for head in heads]
+    kinds = ("rocking",) if test == "rocking" else ("floor", "ground")[: 1 + (test == "earthquake")]
+    columns: Columns = {}
+    for wanted in ((("time", "s"),), *(WANTED[kind] for kind in kinds)):
+        column = next((each for each in wanted if each[0] in names), None)
+        if column is None:
+            missing = listed(f"`{name} [{unit}]`" for name, unit in wanted)
+            raise RecordError(f"{source}:1: no column {missing}; {test} needs one: name it so")
+        place, unit = names.index(column[0]), heads[names.index(column[0])].partition("[")[2]
+        try:
+            factor = si_factor(unit.strip(" ]") or column[1], column[1])
+            values = np.array([float(row[place]) for row in rows])
+        except (ValueError, IndexError) as error:
+            rule = f"write numbers, in {column[1]} or another such unit"
+            raise RecordError(f"{source}: column {column[0]}: {error}; {rule}") from None
+        columns[column[0]] = values * factor
+    time = columns["time"]
+    steps = np.diff(time)
+    if len(time) < 20 or not np.allclose(steps, steps.mean(), rtol=1e-2, atol=0.0):
+        raise RecordError(f"{source}: at least 20 samples at even times are needed; resample it")
+    kept = (time >= (time[0] if first is None else first)) & (
+        time <= (time[-1] if last is None else last)
+    )
+    if kept.sum() < 20:
+        raise UsageError(
+            f"{source}: {kept.sum()} samples lie between --from and --to; 20 are needed"
+        )
+    return {name: values[kept] for name, values in columns.items()}
+
+
+Found = tuple[dict[str, Any], list[Part], dict[str, str]]
+
+
+def _rocking(structure: PodiumStructure, columns: Columns, _: str) -> Found:
+    import numpy as np
+
+    from rpscli.analyses.identification.rocking import rocking
+    from rpscli.model.devices import RollingResistance
+
+    rotation = columns.get("rotation")
+    if rotation is None:
+        beam = columns["cap_beam_displacement"]
+        x = np.linspace(0.0, structure.critical_rotation, 2001)
+        rotation = np.sign(beam) * np.interp(np.abs(beam), structure.path(x)[1], x)
+    found = rocking(structure, columns["time"], rotation)
+    rows = {"restitution": (found.restitution, "-"), "loss": (found.loss, "-"),
+            "lever": (found.lever, "m")}  # fmt: skip
+    keys = {}
+    if found.loss is not None:
+        keys["podium.impact.loss"] = f"{found.loss.value:.4g}"
+    else:
+        keys["podium.impact.restitution"] = f"{found.restitution.value:.5g}"
+    if found.lever is not None:
+        kinds = [isinstance(device, RollingResistance) for device in structure.devices]
+        keys[f"podium.devices.{kinds.index(True)}.lever"] = f"{found.lever.value:.4g}"
+    names = ("time", "amplitude", "time_error", "amplitude_error", "model_time", "model_amplitude")
+    swings = [dict(zip(names, (*swing, *model), strict=True))
+              for swing, model in zip(found.swings, found.model.tolist(), strict=True)]  # fmt: skip
+    table = Table.of_texts(
+        ("swing at s", "of the model", "rotation mrad", "of the model", "over its error"),
+        [
+            (
+                *(shown(each[name], 5) for name in ("time", "model_time")),
+                *(shown(1e3 * each[name], 5) for name in ("amplitude", "model_amplitude")),
+                shown((each["amplitude"] - each["model_amplitude"]) / each["amplitude_error"], 2),
+            )
+            for each in swings
+        ],
+        words=0,
+    )
+    told = f"residuals are {shown(found.misfit, 3)} times what noise alone would leave"
+    if found.misfit > 2.0:
+        told += ": the model lacks something, such as rolling resistance; intervals hold that"
+    if found.ensembles:
+        told += "; neighbouring releases part ways, so that means of ensembles were fitted"
+    document = {"misfit": found.misfit, "ensembles": found.ensembles, "residuals": swings}
+    return document | _documents(rows), [_estimates(rows), table, told], keys
+
+
+def _vibration(structure: PodiumStructure, columns: Columns, test: str) -> Found:
+    from rpscli.analyses.identification.estimate import Estimate
+    from rpscli.analyses.identification.vibration import vibration
+
+    building = structure.superstructure
+    if building is None:
+        raise UsageError(f"{test}: without storeys there is no period before uplift; use rocking")
+    time, fixed = columns["time"], float(building.periods[0])
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    ground = columns.get("ground_acceleration")
+    found = vibration(fixed, step, columns["floor_acceleration"], ground, free=test == "release")
+    ratio = Estimate(*(value / fixed for value in found.period))
+    rows = {"period": (found.period, "s"), "damping": (found.damping, "-"),
+            "period_ratio": (ratio, "-")}  # fmt: skip
+    told = f"period_ratio is over {shown(fixed)} s, the period of the case on a fixed base"
+    if ratio.high < 1.0:
+        told += ": below 1 the building is stiffer than in the case, which no contact explains"
+    document = {"misfit": found.misfit, "ensembles": False, "residuals": []}
+    return document | _documents(rows), [_estimates(rows), told], {}
+
+
+Rows = Mapping[str, "tuple[Estimate | None, str]"]
+
+
+def _estimates(rows: Rows) -> Table:
+    return Table.of_texts(("", "value", "from", "to", "unit"), [
+        (name, *(shown(value, 5) for value in found), unit.strip("-"))
+        for name, (found, unit) in rows.items() if found is not None
+    ])  # fmt: skip
+
+
+def _documents(rows: Rows) -> dict[str, Any]:
+    def listed_rows() -> Iterator[dict[str, Any]]:
+        for name, (found, unit) in rows.items():
+            if found is not None:
+                yield {"name": name, "unit": unit, **found._asdict()}
+
+    return {"level": 0.9, "estimates": list(listed_rows())}

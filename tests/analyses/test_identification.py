@@ -1,0 +1,186 @@
+"""What measurements say: of motions that were made elsewhere, or here with noise, the truth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from paper_structures import Array, block, needs_compiled_kernels, podium
+from scipy.integrate import solve_ivp
+from scipy.signal import lsim
+
+from rpscli.analyses.identification.estimate import Estimate
+from rpscli.analyses.identification.rocking import Rocking, rocking
+from rpscli.analyses.identification.vibration import Vibration, vibration
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.errors import AnalysisError
+from rpscli.model.devices import RollingResistance
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import GroundMotion
+
+needs = needs_compiled_kernels
+
+
+def held(truth: float, found: Estimate) -> bool:
+    return found.low <= truth <= found.high
+
+
+@needs
+def test_a_block_of_another_integrator_has_its_restitution() -> None:
+    """Housner's block, I_o theta'' = -m g R sin(alpha - theta), theta' -> e theta' at theta = 0."""
+    found, e, dt = block(0.2, 0.6), 0.9, 0.002
+    alpha, p2 = found.bearing.alpha, 0.75 * found.gravity / found.bearing.semi_diagonal
+
+    def rates(_: float, y: Any) -> list[float]:
+        return [y[1], -p2 * math.sin(alpha - y[0])]
+
+    def falls(_: float, y: Any) -> float:
+        return float(y[0])
+
+    falls.terminal, falls.direction = True, -1.0  # type: ignore[attr-defined]
+    start, y, side = 0.0, [0.5 * alpha, 0.0], 1.0
+    time, theta = np.arange(0.0, 4.0, dt), np.zeros(2000)
+    while start < 4.0:
+        swing: Any = solve_ivp(
+            rates, (start, 5.0), y, events=falls, dense_output=True, rtol=1e-10, atol=1e-12
+        )
+        end = float(swing.t[-1])
+        inside = (time >= start) & (time < end)
+        theta[inside] = side * swing.sol(time[inside])[0]
+        start, y, side = end, [1e-14, -e * swing.y[1, -1]], -side
+    theta += np.random.default_rng(3).normal(0.0, 2e-4, len(theta))
+    case = replace(found, impact_law=ImpactLaw("value", 0.97))
+    read = rocking(case, time + 7.0, theta)
+    assert read.loss is None
+    assert held(e, read.restitution)
+    assert read.restitution.high - read.restitution.low < 2e-3
+    assert 0.5 < read.misfit < 1.6
+    assert not read.ensembles
+    with pytest.raises(AnalysisError, match="four are needed"):
+        rocking(case, time[:300], theta[:300])
+
+
+def decay(T: float, zeta: float, t: Any) -> Any:
+    w = 2.0 * math.pi / T
+    return np.exp(-zeta * w * t) * np.sin(w * math.sqrt(1.0 - zeta**2) * t + 0.4)
+
+
+@pytest.mark.parametrize("test", ["release", "earthquake", "ambient"])
+def test_the_period_of_closed_forms(test: str) -> None:
+    T, zeta, dt, rng = 0.437, 0.03, 0.01, np.random.default_rng(11)
+    t = np.arange({"release": 1500, "earthquake": 3000, "ambient": 60_000}[test]) * dt
+    ground = None
+    if test == "release":  # with a second mode
+        floor = decay(T, zeta, t) + 0.4 * decay(0.31 * T, zeta, t)
+    else:
+        w, shaking = 2.0 * math.pi / T, rng.normal(0.0, 1.0, len(t))
+        system = ([-1.0, 0.0, 0.0], [1.0, 2.0 * zeta * w, w**2])  # relative acceleration
+        floor = 1.3 * lsim(system, shaking, t)[1] + shaking
+        ground = shaking if test == "earthquake" else None
+    floor = floor + rng.normal(0.0, 0.1 * floor.std(), len(t))
+    found = vibration(0.4, dt, floor, ground, free=test == "release")
+    for truth, estimate in ((T, found.period), (zeta, found.damping)):
+        # four standard errors; its interval has 1.65 of them to each side
+        assert abs(estimate.value - truth) < 4.0 / 3.3 * (estimate.high - estimate.low)
+    assert found.period.high - found.period.low < 0.03 * T
+    with pytest.raises(AnalysisError, match="fewer than ten periods"):
+        vibration(0.4, dt, floor[:300])
+
+
+STILL = np.zeros(2)
+DT = 0.01
+
+
+def made_up(number: int) -> tuple[PodiumStructure, float]:
+    """One of twelve structures that nobody tuned this to, and its loss."""
+    rng = np.random.default_rng(100 + number)
+    storeys = (0, 0, 1, 1, 2, 3, 3, 4, 5, 6, 6, 9)[number]
+    tan_alpha, rho = rng.uniform(0.1, 0.2), rng.choice([0.0, 0.3, 0.5, 0.8])
+    structure = podium(storeys, tan_alpha, rho) if storeys else block(0.4, 1.5)
+    return structure, float(rng.uniform(0.3, 1.0))
+
+
+def released(structure: PodiumStructure, part: float, seconds: float) -> tuple[Array, Array]:
+    settings = TimeHistorySettings(
+        free_vibration=seconds, initial_rotation=part * structure.critical_rotation
+    )
+    record = GroundMotion(STILL, DT, "still", "still", "")
+    trace = time_history(structure, record, settings, with_fixed_base=False).trace
+    return trace.time, trace.rotation
+
+
+def identified(number: int, noise: Any) -> tuple[float, Rocking]:
+    design, loss = made_up(number)
+    law = replace(design.impact_law, kind="flexible", loss=loss)
+    true = replace(design, impact_law=law)
+    time, rotation = released(true, 0.4 + 0.2 * noise.uniform(), 25.0)
+    rotation = rotation + noise.normal(0.0, 1e-3 * np.abs(rotation).max(), len(rotation))
+    return loss, rocking(replace(true, impact_law=ImpactLaw()), time, rotation)
+
+
+@needs
+@pytest.mark.long
+def test_intervals_of_the_loss_hold_the_truth() -> None:
+    """90 +- 4 % of 240, twenty of each of twelve structures."""
+    held_ones = 0
+    for number in range(12):
+        noise = np.random.default_rng(number)
+        for _ in range(20):
+            loss, found = identified(number, noise)
+            assert found.loss is not None
+            held_ones += held(loss, found.loss)
+    assert 0.86 <= held_ones / 240 <= 0.94
+
+
+@needs
+@pytest.mark.long
+def test_restitution_and_rolling_resistance_are_told_apart() -> None:
+    design = podium(3, 0.15, 0.3)
+    true = replace(design, devices=(RollingResistance(2e-3),),
+                   impact_law=ImpactLaw(loss=0.5))  # fmt: skip
+    time, rotation = released(true, 0.5, 25.0)
+    noise = np.random.default_rng(8)
+    counts = np.zeros(2)
+    for _ in range(20):
+        seen = rotation + noise.normal(0.0, 1e-4, len(rotation))
+        case = replace(design, devices=(RollingResistance(1e-3),), impact_law=ImpactLaw())
+        found = rocking(case, time, seen)
+        assert found.loss is not None
+        assert found.lever is not None
+        counts += held(0.5, found.loss), held(2e-3, found.lever)
+        assert found.lever.high - found.lever.low < 1e-3
+    # 90 % of 20: fewer than 15 have a probability of 1 %
+    assert counts.min() >= 15
+
+
+@needs
+@pytest.mark.long
+@pytest.mark.parametrize("test", ["ambient", "release", "earthquake"])
+def test_intervals_of_the_period_hold_the_truth(test: str) -> None:
+    """90 +- 4 % of 240: floors of buildings of the program in full contact, with noise."""
+    rng, held_ones = np.random.default_rng(5), 0
+    for storeys in (1, 2, 3, 4, 5, 6):
+        structure = podium(storeys, 0.15, 0.5)
+        assert structure.superstructure is not None
+        T = float(structure.superstructure.periods[0])
+        for _ in range(40):
+            held_ones += held(T, shaken(structure, T, test, rng).period)
+    assert 0.86 <= held_ones / 240 <= 0.94
+
+
+def shaken(structure: PodiumStructure, T: float, test: str, rng: Any) -> Vibration:
+    count = round({"ambient": 400, "release": 30, "earthquake": 50}[test] * T / DT)
+    push = rng.normal(0.0, 1e-3, count if test != "release" else round(3.0 * T / DT))
+    settings = TimeHistorySettings(free_vibration=0.0 if test != "release" else count * DT)
+    record = GroundMotion(push, DT, "white", "white", "")
+    trace = time_history(structure, record, settings, with_fixed_base=False).trace
+    floor, first = trace.floor_accelerations[:, -1], 0 if test != "release" else len(push) + 1
+    floor = floor[first:] if first else floor[:count]
+    floor = floor + rng.normal(0.0, 0.1 * floor.std(), len(floor))
+    ground = push if test == "earthquake" else None
+    return vibration(0.9 * T, DT, floor, ground, free=test == "release")

@@ -1,0 +1,100 @@
+"""`rps identify`: from a file of measurements to a copy of the case."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from paper_structures import needs_compiled_kernels
+
+from .conftest import Invoke
+
+pytestmark = needs_compiled_kernels
+
+FRAME = """\
+rps: 1
+superstructure: {storeys: 0}
+podium:
+  bearing: {semi_diagonal: 1.5, slenderness: 0.15, curvature_ratio: 0}
+  cap_beam_mass: 100 t     # weighed
+  cap_beam_mass_ratio: 10
+  impact: {loss: 1}        # not measured yet
+"""
+RELEASED = ("--record", "pulse:sine?amplitude=1e-9g&period=0.1&dt=0.005", "--figures", "none",
+            "--set", "analysis.initial_rotation=0.06", "--set", "podium.impact.loss=0.6",
+            "--set", "analysis.free_vibration=12")  # fmt: skip
+
+
+@pytest.fixture
+def measured(workplace: Path, rps: Invoke) -> Path:
+    """A frame, and a release of one of another loss at impacts; mm and ms, as sensors have them."""
+    (workplace / "frame.yaml").write_text(FRAME, encoding="utf-8")
+    assert rps("timehistory", "frame.yaml", *RELEASED, "-o", "r").exit_code == 0
+    rows = csv.DictReader((workplace / "r/timehistory.csv").read_text("utf-8").splitlines())
+    lines = [f"{1e3 * float(row['time [s]'])},{1e3 * float(row['cap_beam_displacement [m]']):.2f}"
+             for row in rows]  # fmt: skip
+    file = workplace / "release.csv"
+    file.write_text("\n".join(["time [ms],cap_beam_displacement [mm]", *lines]), encoding="utf-8")
+    return file
+
+
+def test_a_release_gives_the_loss_and_a_copy_of_the_case(
+    measured: Path, rps_json: Callable[..., Any], rps: Invoke
+) -> None:
+    found = rps_json("identify", "frame.yaml", "release.csv", "rocking", "-o", "new.yaml")
+    by_name = {each["name"]: each for each in found["estimates"]}
+    # hundredths of a millimetre are rounded, of 180
+    assert by_name["loss"]["value"] == pytest.approx(0.6, rel=2e-3)
+    assert by_name["loss"]["low"] < 0.6 < by_name["loss"]["high"]
+    e = rps_json("check", "frame.yaml", "--set", "podium.impact.loss=0.6")["restitution"]
+    assert by_name["restitution"]["low"] < e < by_name["restitution"]["high"]
+    assert len(found["residuals"]) == 12
+    changed = (measured.parent / "new.yaml").read_text(encoding="utf-8")
+    loss = found["keys"]["podium.impact.loss"]
+    assert changed == FRAME.replace("loss: 1}", f"loss: {loss}}}")
+    assert rps("identify", "frame.yaml", "release.csv", "rocking", "-o", "new.yaml").exit_code == 7
+    shown = rps("identify", "frame.yaml", "release.csv", "rocking", "--from", "0.001").stdout
+    assert "residuals are" in shown
+
+
+def test_the_period_of_a_pull(workplace: Path, rps: Invoke, rps_json: Callable[..., Any]) -> None:
+    shake = ("--record", "pulse:sine?amplitude=0.02g&period=0.3&dt=0.005", "--figures", "none",
+             "--set", "analysis.free_vibration=8")  # fmt: skip
+    assert rps("timehistory", "small.yaml", *shake, "-o", "r").exit_code == 0
+    rows = csv.DictReader((workplace / "r/timehistory.csv").read_text("utf-8").splitlines())
+    lines = [f"{row['time [s]']},{row['floor_3_acceleration [m/s2]']}" for row in rows]
+    text = "\n".join(["time [s],floor_acceleration [m/s2]", *lines])
+    (workplace / "floor.csv").write_text(text, encoding="utf-8")
+    found = rps_json("identify", "small.yaml", "floor.csv", "release", "--from", "0.31")
+    by_name = {each["name"]: each for each in found["estimates"]}
+    assert by_name["period"]["value"] == pytest.approx(0.3, rel=1e-3)
+    assert by_name["period_ratio"]["value"] == pytest.approx(1.0, rel=1e-3)
+    assert by_name["damping"]["value"] == pytest.approx(0.05, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("words", "text", "code", "reason"),
+    [
+        (("rocking",), "time [s],tilt [rad]\n0,1\n", 3, "no column `rotation [rad]` or"),
+        (("rocking",), "time [s],rotation [m]\n0,1\n", 3, "column rotation:"),
+        (("rocking",), "time [s],rotation [rad]\n0,a\n", 3, "write numbers, in rad"),
+        (("rocking",), "time [s],rotation [rad]\n0,0\n1,1\n", 3, "at even times"),
+        (("rocking",), "", 3, "no column `time [s]`"),
+        (("ambient",), "time [s],floor_acceleration [g]\n", 2, "no period before uplift"),
+        (("rocking",), "time [s],rotation [rad]\n", 4, "four are needed"),
+        (("rocking", "--from", "9"), "time [s],rotation [rad]\n", 2, "between --from and --to"),
+    ],
+)
+def test_refusals_say_what_to_do(
+    workplace: Path, rps: Invoke, words: tuple[str, ...], text: str, code: int, reason: str
+) -> None:
+    (workplace / "frame.yaml").write_text(FRAME, encoding="utf-8")
+    if text.count("\n") == 1:
+        text += "".join(f"{0.1 * i:.1f},{i % 3}\n" for i in range(40))
+    (workplace / "data.csv").write_text(text, encoding="utf-8")
+    result = rps("identify", "frame.yaml", "data.csv", *words)
+    assert result.exit_code == code, result.stderr
+    assert reason in result.stderr
