@@ -14,7 +14,7 @@ from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.schema import HazardSection
 from rpscli.errors import CaseError
 from rpscli.records.measures import needs_period
-from rpscli.records.pair_measure import SHOWN, Of
+from rpscli.records.pair_measure import Of
 from rpscli.report.figures import style
 from rpscli.report.study.fragility import (
     BEYOND_COMPUTED,
@@ -53,6 +53,7 @@ from rpscli.sweep.fits.hazard import (
 )
 from rpscli.sweep.fits.lognormal import NOTHING, Band, band
 from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.statistics.verdicts import component_notes
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
 
@@ -224,7 +225,7 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
     above = rates_above(hazard, fit.median, total, at)
     medians, betas = fit.resampled
     sampled = [
-        annual_rate(hazard, *pair) if pair[0] > 0.0 else math.nan
+        annual_rate(hazard, *pair) if 0.0 < pair[0] < math.inf else math.nan
         for pair in zip(medians, options.dispersion.total(betas), strict=True)
     ]
     rate, curves = float(above[0]), [hazard.fractile(share) for share in hazard.fractiles]
@@ -291,13 +292,7 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
             share = f"{'up to ' * (len(far) > 1)}{100.0 * getattr(worst, name):.0f} %"
             which = f"({found.named(worst.fragility)}; above 5 % in {len(far)} of {len(risks)})"
             yield f"{share} of the annual rate {which} come from beyond {place}"
-    own = found.intensity.of or "component"
-    if of != own:
-        known = f"is of {SHOWN.get(of, of)}" if of else "does not say what of a pair it is of"
-        yield (
-            f"the hazard curve {known} (hazard: component), while intensities of the study are of"
-            f" {SHOWN.get(own, own)}: both must be of one definition (scale: of)"
-        )
+    yield from component_notes(of, found.intensity.of)
     yield from told(found, ((each.fragility, "; ".join(each.notes)) for each in risks))
 
 

@@ -137,13 +137,14 @@ class Search:
         search = self.task.file.search
         if not len(self.places):
             return first_places(len(self.task.unknowns), self.first, search.seed)
-        count = min(max(4, self.first // ROUNDS), self.most - len(self.places))
+        size = max(4, self.first // ROUNDS)
+        count, turn = (
+            min(size, self.most - len(self.places)),
+            (len(self.places) - self.first) // size,
+        )
         if count <= 0:
             return self.places[:0]
-        answer, turn = (
-            self.answer(),
-            (len(self.places) - self.first) // max(4, self.first // ROUNDS),
-        )
+        answer = self.answer()
         passes, aim = answer.judged.passes[: 1 + answer.resamples], answer.closest
         if turn % 2 and answer.robust != NONE:  # every second round looks for what holds
             passes, aim = np.concatenate([answer.holds[None], passes[1:]]), answer.robust

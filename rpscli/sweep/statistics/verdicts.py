@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rpscli.case.conditions import EVENTS, NOT_SHOWN, RATE, Condition
 from rpscli.case.text.document import Fault
+from rpscli.records.pair_measure import SHOWN, Of
 from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, share_of, shown_by
@@ -92,10 +93,23 @@ def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
     return rates, float(exceeded(hazard, levels[order[-1:]])[0])
 
 
+def component_notes(of: Of | None, own: Of | None) -> Iterator[str]:
+    """Whether a hazard curve and the intensities of a study are of the same of a pair."""
+    own = own or "component"
+    if of != own:
+        known = f"is of {SHOWN.get(of, of)}" if of else "does not say what of a pair it is of"
+        yield (
+            f"the hazard curve {known} (hazard: component), while intensities of the study are of"
+            f" {SHOWN.get(own, own)}: both must be of one definition (scale: of)"
+        )
+
+
 def rate_notes(layout: StudyPoints) -> Iterator[str]:
     """What a limit on a rate takes for granted; refuse one that the study cannot tell of."""
-    if any(limit.name == RATE for limit in layout.properties[0].limits):
+    section = layout.study.file.hazard
+    if section and any(limit.name == RATE for limit in layout.properties[0].limits):
         _, beyond = rates_of_levels(layout)
+        yield from component_notes(section.component, layout.of)
         yield (
             f"{RATE}: motions beyond the largest intensity come {beyond:.2g} times a year; they are"
             " taken to overturn the share that the largest does, and those below the least the"
