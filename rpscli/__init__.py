@@ -35,8 +35,8 @@ if TYPE_CHECKING:
         Superstructure,
         profile_stiffnesses,
     )
-    from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.source import load_record
+    from rpscli.records.ground_motion import GroundMotion, MotionComponents
+    from rpscli.records.source import load_components, load_record
     from rpscli.records.spectrum import response_spectrum
     from rpscli.studies import Study, StudyResult, load_study
 
@@ -60,9 +60,9 @@ _HOMES = {
         "Superstructure",
         "profile_stiffnesses",
     ),
-    "rpscli.records.ground_motion": ("GroundMotion",),
+    "rpscli.records.ground_motion": ("GroundMotion", "MotionComponents"),
     "rpscli.records.spectrum": ("response_spectrum",),
-    "rpscli.records.source": ("load_record",),
+    "rpscli.records.source": ("load_components", "load_record"),
     "rpscli.studies": ("Study", "StudyResult", "load_study"),
 }
 
@@ -77,6 +77,7 @@ __all__ = [
     "ImpactLaw",
     "ModalDamping",
     "ModalResult",
+    "MotionComponents",
     "PodiumStructure",
     "PushoverResult",
     "RayleighDamping",
@@ -92,6 +93,7 @@ __all__ = [
     "fixed_base_floor_spectra",
     "isolated_floor_spectra",
     "load_case",
+    "load_components",
     "load_record",
     "load_study",
     "modal",

@@ -44,6 +44,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "Case": lambda: rpscli.load_case("cases/six_storey.yaml"),
     "Demand": lambda: rpscli.demand(STRUCTURE, RECORD),
     "GroundMotion": lambda: RECORD,
+    "MotionComponents": lambda: rpscli.MotionComponents(RECORD, y=RECORD),
     "ImpactLaw": lambda: STRUCTURE.impact_law,
     "ModalDamping": lambda: rpscli.ModalDamping(0.05),
     "ModalResult": lambda: rpscli.modal(STRUCTURE),
@@ -63,8 +64,8 @@ OBJECTS: dict[str, Callable[[], Any]] = {
 """Every class that is offered, and what functions without a class of theirs give."""
 
 OTHER = {
-    "demand", "figures", "load_case", "load_record", "load_study", "modal", "pushover",
-    "time_history", "profile_stiffnesses", "__version__",
+    "demand", "figures", "load_case", "load_components", "load_record", "load_study", "modal",
+    "pushover", "time_history", "profile_stiffnesses", "__version__",
 }  # fmt: skip
 """They give objects of the classes above, texts, or an array that nobody else knows."""
 

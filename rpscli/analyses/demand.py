@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias, TypeVar
 
 import numpy as np
@@ -60,7 +60,7 @@ def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> l
 
 def demand(
     structure: PodiumStructure,
-    record: GroundMotion,
+    record: GroundMotion | MotionComponents,
     settings: TimeHistorySettings | None = None,
     *,
     vertical: GroundMotion | None = None,
@@ -72,14 +72,17 @@ def demand(
     structure
         Podium, bearings and building.
     record
-        Horizontal ground acceleration.
+        Horizontal ground acceleration, or all components of it.
     settings
         Accuracy, tolerance, limits.
     vertical
         Vertical ground acceleration with the same time step, positive upwards.
     """
     chosen = require_inputs(structure, record, settings)
-    return demands([Request(structure, MotionComponents(record, vertical), chosen)])[0]
+    motion = MotionComponents(record) if isinstance(record, GroundMotion) else record
+    if vertical is not None:
+        motion = replace(motion, vertical=vertical)
+    return demands([Request(structure, motion, chosen)])[0]
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:

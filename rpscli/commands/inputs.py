@@ -89,12 +89,19 @@ def conclude(
 ) -> None:
     """Write the files of a command about one case, and give its result."""
     write(folder, terminal)
+    warnings = list(given.case.warnings)
+    if given.case.structure.superstructure_y is not None:
+        warnings.append(
+            "superstructure.y is left out: this is the direction x; put --set"
+            " superstructure.period=... in its place for y"
+        )
+        terminal.warn(warnings[-1:])
     document = {
         **heading(),
         "command": folder.run.command,
         "case": case_heading(given),
         **results,
-        "warnings": given.case.warnings,
+        "warnings": warnings,
         "files": folder.files,
     }
     terminal.result(document, tables)

@@ -226,6 +226,7 @@ def command() -> None:
 
     SRC is a file (PEER AT2, columns of numbers, and more; options as in rec.txt?dt=0.01&units=g),
     a member of a set (fema_p695:farfield/1/b), two components at an angle in degrees
-    (fema_p695:farfield/1?angle=30, x.at2?second=y.at2&angle=30), a pulse
+    (fema_p695:farfield/1?angle=30, x.at2?second=y.at2&angle=30; `both` in place of the angle has
+    them act together in time histories), a pulse
     (pulse:sine?amplitude=0.4g&period=1.2) or a synthetic motion (synthetic:?pga=0.4g&seed=1).
     """

@@ -268,9 +268,25 @@ class GroundMotion(Shown):
 class MotionComponents(Frozen):
     """The components of one ground motion: horizontal, and vertical where that is known.
 
-    With a second horizontal one, `y`, the first is along x. The vertical one is positive upwards.
-    All have the same time step; shorter ones go on as zero. All were multiplied by `scale` since
-    they were read, which `scaled_to` may say the aim of.
+    All have the same time step; shorter ones go on as zero.
+
+    Parameters
+    ----------
+    horizontal : GroundMotion
+        Along x, where there is a second one.
+    vertical : GroundMotion, optional
+        Positive upwards.
+    scale : float
+        By which all were multiplied since they were read.
+    scaled_to : str
+        What that aimed at, in words.
+    y : GroundMotion, optional
+        The second horizontal component.
+
+    Raises
+    ------
+    RecordError
+        If the time steps differ.
 
     >>> along = GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5, "x", "x.at2", "PEER AT2")
     >>> up = GroundMotion(np.array([1.0, 2.0]), 0.5, "z", "z.at2", "PEER AT2")

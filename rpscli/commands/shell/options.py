@@ -141,7 +141,8 @@ records_option = click.option(
     metavar="SRC",
     type=FILE,
     shell_complete=sources,
-    help="Ground motion in place of the case's own: file, folder, set, pulse; repeatable.",
+    help="Ground motion in place of the case's own: file, folder, set, pulse, both components of a"
+    " pair (fema_p695:farfield/1?both); repeatable.",
 )
 
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.demand import Request, histories
-from rpscli.analyses.fixed_base import fixed_base_shears
+from rpscli.analyses.fixed_base import fixed_base_response, fixed_base_shears
 from rpscli.analyses.largest_demands import Histories
 from rpscli.analyses.outcome import failure_text
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, SAMPLED, STOREY_SHEARS, values_of
@@ -22,7 +23,7 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import RpsError
 from rpscli.model.podium import PodiumStructure
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import MotionComponents
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import (
@@ -150,10 +151,18 @@ def _attempt(work: Callable[..., Result], *given: Any) -> Result | str:
         return f"{type(error).__name__}: {error}"
 
 
-def reference_shears(structure: PodiumStructure, motion: GroundMotion) -> NDArray[np.float64]:
-    """Largest storey shears (n,) [N] from the bottom, under an unscaled motion."""
+def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> NDArray[np.float64]:
+    """Largest storey shears (n,) [N] from the bottom, of a pair resultants, of an unscaled one."""
     building = structure.superstructure
     assert building is not None, "only buildings have a response"
+    across = structure.superstructure_y or building
     # The largest shear after the end of the record comes within a period.
-    after = math.ceil(float(building.periods[0]) / motion.dt)
-    return fixed_base_shears(building, motion, motion.npts - 1 + after)
+    after = math.ceil(max(float(each.periods[0]) for each in (building, across)) / motion.dt)
+    if motion.y is None:
+        return fixed_base_shears(building, motion.horizontal, motion.horizontal.npts - 1 + after)
+    of_y = replace(structure, superstructure=across, superstructure_y=None)
+    shears = []
+    for of, floors, one in ((structure, building, motion.horizontal), (of_y, across, motion.y)):
+        found = fixed_base_response(of, one, motion.npts - 1 + after).floor_displacements
+        shears.append(np.diff(found, prepend=0.0) * floors.stiffnesses)
+    return np.asarray(np.hypot(*shears).max(axis=0))

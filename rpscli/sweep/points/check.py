@@ -130,7 +130,7 @@ def _properties(
         uplift_acceleration=structure.uplift_acceleration,
         frequency_parameter=structure.rigid_frequency_parameter,
         static_base_shear=structure.static_base_shear,
-        building=b"" if building is None else _digest(building),
+        building=b"".join(map(_digest, filter(None, (building, structure.superstructure_y)))),
         equipped=bool(structure.devices),
         record=request,
         scale=1.0 if case.record is None else case.record.scale,

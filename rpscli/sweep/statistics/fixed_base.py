@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import MotionComponents
 from rpscli.sweep.evaluation.batch import reference_shears
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import RecordRequest
@@ -29,7 +29,7 @@ def fixed_base_references(
     """Those of all systems with a building; what is not in the store is computed and stored."""
     known = store.fixed_base()
     keys: dict[tuple[int, RecordRequest], bytes] = {}
-    runs: dict[bytes, tuple[PodiumStructure, GroundMotion]] = {}
+    runs: dict[bytes, tuple[PodiumStructure, MotionComponents]] = {}
     structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
     for system, properties in enumerate(layout.properties):
         if not properties.building:
@@ -39,7 +39,7 @@ def fixed_base_references(
             key = _key(layout, context, properties.building, request)
             try:
                 if key not in known and key not in runs:
-                    motion = context.records.motion(request).horizontal
+                    motion = context.records.motion(request)
                     if properties.building not in structures:
                         structures[properties.building] = layout.system(system).structure
                     runs[key] = structures[properties.building], motion
