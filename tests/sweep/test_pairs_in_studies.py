@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -120,8 +121,8 @@ def test_one_component_is_no_measure_of_both(lay: Lay) -> None:
 
 def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
     """Over one storey the shear is that of an oscillator, integrated by scipy in x and in y."""
-    building = Superstructure([1e5], [4e6], ModalDamping(0.05))
-    across = Superstructure([1e5], [9e6], ModalDamping(0.05))
+    building = Superstructure(np.array([1e5]), np.array([4e6]), ModalDamping(0.05))
+    across = Superstructure(np.array([1e5]), np.array([9e6]), ModalDamping(0.05))
     structure = PodiumStructure(
         Bearing(1.5, 0.15, 0.3, 0.5), 1e4, 1e5, building, superstructure_y=across
     )
@@ -131,7 +132,7 @@ def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
     for motion, floors in ((x, building), (y, across)):
         w, k = float(floors.frequencies[0]), float(floors.stiffnesses[0])
         ground = np.interp(time, motion.time, motion.acceleration, right=0.0)
-        system = StateSpace([[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]])
+        system: Any = StateSpace([[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]])
         shears.append(lsim(system, ground, time)[1])
     (found,) = reference_shears(structure, MotionComponents(x, y=y))
     assert found == pytest.approx(np.hypot(*shears).max(), rel=1e-9)
