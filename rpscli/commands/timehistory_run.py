@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.analyses.result_quantities import LIMITED, NEEDS
 from rpscli.case.conditions import EVENTS, LIMITS, Condition, case_conditions, with_friction
-from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands.inputs import (
     RESULTS,
     CaseInput,
@@ -182,6 +181,8 @@ def add_summary(done: HistoryResult) -> None:
 
 
 def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, Any]:
+    from rpscli.case.rules.plausibility import doubts_of_directions  # the help needs no pydantic
+
     given, ground = request.given, request.ground
     document = {
         **heading(),
