@@ -84,7 +84,7 @@ class Collected:
 def require_results(layout: StudyPoints, conditions: Iterable[Condition]) -> None:
     """Refuse limits on results that systems do not have, and reports that cannot be drawn."""
     layout.study.document.refuse(requirement_faults(layout))
-    _ = [*rate_notes(layout)]
+    _ = [*rate_notes(layout)]  # which refuses a hazard that the intensities do not go with
     for condition in conditions:
         if layout.plan.analysis != "timehistory":
             raise UsageError(f"--fail-on {condition.name} needs analysis: timehistory")

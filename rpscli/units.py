@@ -196,6 +196,8 @@ def bare_or_si(text: str, unit: str) -> float:
     try:
         return float(text)
     except ValueError:
+        if unit not in KINDS:
+            raise ValueError("must be a number") from None
         return si_value(text, unit)
 
 

@@ -79,7 +79,7 @@ def parse_condition(text: str) -> Condition:
         raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")
     unit = LIMITS[name].unit if name in LIMITS else "-"
     try:
-        limit = float(value) if unit not in KINDS else bare_or_si(value, unit)
+        limit = bare_or_si(value, unit)
     except ValueError:
         limit = math.nan
     if name in EVENTS:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from rpscli.errors import UsageError, hint
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import intensity_measures
-from rpscli.units import si_value
+from rpscli.units import bare_or_si
 
 UNITS = {
     "magnitude": "",
@@ -63,9 +63,4 @@ def parse_filter(text: str) -> Filter:
 
 
 def _value(text: str, unit: str, missing: float) -> float:
-    try:
-        return float(text) if text.strip() else missing
-    except ValueError:
-        if not unit:
-            raise ValueError("must be a number") from None
-        return si_value(text.strip(), unit)
+    return bare_or_si(text.strip(), unit) if text.strip() else missing
