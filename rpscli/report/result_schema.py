@@ -98,7 +98,7 @@ _STATISTICS = {**_COUNTED, "failed": int, "overturned": _SHARE, "demands": _DEMA
 _VERDICT = {
     **_COUNTED, **_keys(Condition), "beyond": _SHARE, "overturned_among_them": int, "value": float,
     "record": str | None, "value_at_fractile": float, "exceeded": bool, "shown": bool,
-    "shown_by_recordings": int | None,
+    "shown_by_recordings": int | None, "interval?": list[float],
 }  # fmt: skip
 _OF_STOREYS = _quantities(known.STOREYS, listed=True)
 _HISTORY = {
