@@ -55,8 +55,8 @@ def _alone() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _compiled_once(**kind: bool) -> Iterator[None]:
-    with contextlib.nullcontext() if is_ready(**kind) else _alone(), compiled(**kind):
+def _compiled_once(variant: str) -> Iterator[None]:
+    with contextlib.nullcontext() if is_ready(variant) else _alone(), compiled(variant):
         yield
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.trace import Event, Trace
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.planar import geometry, state
+from rpscli.physics.planar import state
 
 Array = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
     """What leaning thrust lines and drifts add to that moment (samples,) [N m]."""
     # Columns bear on the beam at the edge they turn about, or where one at rest is in equilibrium.
     b, t = structure.bearing, trace
-    B, _, _, _ = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(t.rotation))
+    B = structure.weight_arm(np.abs(t.rotation))
     edge = np.sign(t.rotation) * b.semi_diagonal * B + 0.5 * t.cap_beam_displacement
     height = b.semi_diagonal * math.cos(b.alpha)
     rest = -height * (t.shear_top + t.shear_bottom)

@@ -39,12 +39,13 @@ with the same results. A step of all lanes takes as long as some five of one."""
 def histories(
     requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
 ) -> Iterator[tuple[list[int], Histories]]:
-    """Numbers of the requests with one number of storeys, and their results; without the GIL."""
+    """Numbers of requests alike in storeys and contact, and their results; without the GIL."""
     # From `worth_lanes` on they run side by side; no result depends on the others, or on the order.
-    groups: dict[tuple[int, bool], list[int]] = {}
+    groups: dict[tuple[int, bool, bool], list[int]] = {}
     for i, request in enumerate(requests):
-        pair = request.motion.y is not None
-        groups.setdefault((request.structure.storeys, pair), []).append(i)
+        pair, gives_way = request.motion.y is not None, request.structure.bed is not None
+        alike = request.structure.storeys, pair, gives_way
+        groups.setdefault(alike, []).append(i)
     for members in groups.values():
         yield members, _run([requests[i] for i in members], worth_lanes)
 

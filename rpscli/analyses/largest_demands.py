@@ -104,7 +104,16 @@ class Histories:
         rotations = np.array([largest, highest, self.column("residual_rotation")])
         _, _, u, v = geometry.path_along(rolling, rocking, beta, rotations)
         diameter = 2.0 * np.array([b.semi_diagonal for b in bearings])[self.number]
-        return diameter * u, diameter * v
+        u, v = diameter * u, diameter * v
+        for number, structure in enumerate(self.structures):
+            if structure.bed is not None:
+                rows = self.number == number
+                _, u[:, rows], v[:, rows] = structure.path(rotations[:, rows])
+        return u, v
+
+    def on_bed(self, values: Array) -> Array:
+        """The values where ends give way; NaN on rigid ones."""
+        return np.asarray(np.where(self.each(lambda st: st.bed is not None) > 0.0, values, np.nan))
 
     def of_storeys(self, field: str) -> Array:
         """(histories, n)."""
@@ -168,6 +177,16 @@ def _uplift_shear(structure: PodiumStructure) -> float | None:
     """M_tot times the ground acceleration that uplifts; None without devices."""
     mass = structure.superstructure_mass if structure.devices else 0.0
     return mass * uplift_acceleration(structure) or None
+
+
+def _edge_pressure(histories: Histories) -> Array:
+    """Of plane flat ends: it grows with the root of the rotation once an edge has lifted."""
+    plane = [
+        st.bed.uplift_rotation if st.bed and st.bed.root and st.bearing.is_flat else np.nan
+        for st in histories.structures
+    ]
+    ratio = histories.left["max_theta"] / np.array(plane)[histories.number]
+    return np.asarray(np.where(ratio > 1.0, 2.0 * np.sqrt(ratio), 1.0 + ratio))
 
 
 def _lost(device: Device, left: dict[str, Array]) -> Array | None:
@@ -305,6 +324,22 @@ class Demand(Shown):
     impacts = _Result[int](
         "Number of impacts, those that end in re-contact included.",
         lambda h: h.left["events"][:, state.IMPACT],
+    )
+    reentries = _Optional(
+        "Number of returns to full contact that gives way; None on rigid ends.",
+        lambda h: h.on_bed(h.left["events"][:, state.IMPACT]),
+    )
+    full_contact_share = _Optional(
+        "Share of the history in full contact that gives way; None on rigid ends.",
+        lambda h: h.on_bed(h.left["bedded_time"] / h.left["time"]),
+    )
+    max_impact_number = _Optional(
+        "chi of the strongest return to full contact; None on rigid ends (Theory, section 12).",
+        lambda h: h.on_bed(h.left["impact_number"]),
+    )
+    edge_pressure_ratio = _Optional(
+        "Largest edge pressure over the mean, of plane flat ends that give way; None without.",
+        _edge_pressure,
     )
     duration = _Result[float]("Length of the history with its free vibration [s].")
     energy_impact = _Result[float]("Net energy lost at impacts and re-contacts [J].")

@@ -34,6 +34,8 @@ PHASE_NAMES = {
     state.FULL_CONTACT: "full contact",
     state.ROLLING: "rolling",
     state.ROCKING: "rocking",
+    state.STUCK: "held by friction",
+    state.BEDDED: "full contact",
 }
 
 REASONS = {

@@ -83,6 +83,8 @@ NEEDS = {
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "superstructure, devices": "a superstructure and podium.devices",
     "podium.friction": "podium.friction in the case",
+    "contact": "a podium.contact that gives way: kind plane or edges",
+    "plane contact": "podium.contact of the kind plane under flat ends",
     "columns": "podium.plan and superstructure.vertical_period in the case, without which it leaves"
     " out the overturning moment and the shock of impacts",
     "damper": "a damper in podium.devices",
@@ -161,6 +163,18 @@ HISTORY = (
     ),
     ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
+    ResultQuantity("reentries", "-", "returns to full contact", whole=True, needs="contact"),
+    ResultQuantity(
+        "full_contact_share", "-", "share of time in full contact", needs="contact",
+    ),
+    ResultQuantity(
+        "max_impact_number", "-", "impact number", r"$\chi$", limit="8", needs="contact",
+        meaning="largest |theta'| sqrt(2 B/(g phi_u)) of returns to full contact",
+    ),
+    ResultQuantity(
+        "edge_pressure_ratio", "-", "edge pressure ratio", limit="10", needs="plane contact",
+        meaning="largest pressure at an edge over the mean under permanent load",
+    ),
     ResultQuantity("duration", "s", "duration", kernel="time"),
     ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
     ResultQuantity(

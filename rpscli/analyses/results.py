@@ -16,27 +16,33 @@ from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
 from rpscli.frozen import frozen
-from rpscli.physics.planar import geometry, state
+from rpscli.physics.planar import state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import data_frame
 
 NEAR_CRITICAL = 0.8
 """Rotations above this part of the critical one are near it: a little more may overturn."""
 
-RESTING = (state.FULL_CONTACT, state.STUCK)
-"""Phases in which the storey is at rest."""
+LARGEST_TRIED = 8.0
+"""chi of impacts, up to which records were followed on a resolved bed (VERIFICATION.md)."""
+
+CRUSHING = 10.0
+"""Edge pressure over the mean: 30 MPa where the permanent load presses with 3 MPa."""
+
+RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
+"""Phases in which the storey is down, or held."""
 
 
 @dataclass(frozen=True)
 class Energy:
-    """Where the energy went [J]: input = damped + devices + impact + stored + residual.
+    """Where the energy went [J]: input = damped + devices + bed + impact + stored + residual.
 
     Parameters
     ----------
     input
         By the ground.
-    damped, devices
-        Dissipated in the building and in devices.
+    damped, devices, bed
+        Dissipated in the building, in devices, and in what the ends bear on in full contact.
     impact, created
         Net loss at impacts and re-contacts; and the part of it that was gained where the rigid
         impact law sets floors in motion (Theory, section 4).
@@ -53,6 +59,7 @@ class Energy:
     residual: float
     created: float
     devices: float
+    bed: float
 
 
 @dataclass(frozen=True)
@@ -129,27 +136,28 @@ class TimeHistoryResult(Demand):
         supplied, damped, lost, stored = (
             float(history[f"energy_{name}"]) for name in ("input", "damped", "lost", "stored")
         )
-        stored = stored + float(history["device_stored"].sum())
+        stored, bed = stored + float(history["device_stored"].sum()), float(history["bed_energy"])
         available = supplied + float(self.trace.energy_stored[0])
         return Energy(
             input=supplied,
             damped=damped,
             impact=lost,
             stored=stored,
-            residual=available - damped - devices - lost - stored,
+            residual=available - damped - devices - bed - lost - stored,
             created=self.energy_created,
             devices=devices,
+            bed=bed,
         )
 
     def restoring_moment(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Static moment 2 R W s B(x) at rotations theta [N m], of the shape of `rotation`.
+        """Static moment 2 R W s B(x) at rotations theta [N m], on a bed with its arm in place of B.
 
         What `Trace.driving_moment` equals in slow motion; positive where the weight restores a
         positive rotation.
         """
-        b, theta = self.structure.bearing, np.asarray(rotation)
-        arm, *_ = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
-        return 2.0 * b.semi_diagonal * self.structure.weight * np.sign(theta) * arm
+        st, theta = self.structure, np.asarray(rotation)
+        arm = st.weight_arm(np.abs(theta))
+        return 2.0 * st.bearing.semi_diagonal * st.weight * np.sign(theta) * arm
 
     @property
     def floor_velocities(self) -> NDArray[np.float64]:
@@ -279,6 +287,7 @@ class TimeHistoryResult(Demand):
                 "the shock of impacts (and the overturning moment) exceeds the weight on a column,"
                 " whose axial force would be negative; the model assumes that all columns stand"
             )
+        notes += self._on_bed()
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
         if self.energy.created > 0.02 * supplied:
             share = self.energy.created / supplied
@@ -300,6 +309,21 @@ class TimeHistoryResult(Demand):
             elif self.duration >= self.record.duration + LONGEST_FREE_VIBRATION:
                 notes.append(f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end")
         return tuple(notes)
+
+    def _on_bed(self) -> Iterator[str]:
+        """What ends that give way were not tried for."""
+        chi, pressure = self.max_impact_number, self.edge_pressure_ratio
+        if chi is not None and chi > LARGEST_TRIED and self.structure.contact.kind == "plane":
+            yield (
+                f"the strongest re-contact has chi = {chi:.3g}, records with more than"
+                f" {LARGEST_TRIED:g} were not tried; vary `podium.impact.loss`"
+            )
+        if pressure is not None and pressure > CRUSHING:
+            yield (
+                f"the pressure at an edge reaches {pressure:.3g} times the mean under permanent"
+                " load, by which concrete crushes at usual ones: it loses more at impacts and"
+                " restores less than an elastic bed"
+            )
 
     def _near_the_limit(self) -> Iterator[str]:
         """How near a structure that survived came to overturning, and whether columns slide."""

@@ -154,7 +154,8 @@ class Trace(Shown):
     rotation, rotation_rate
         theta [rad], theta' [rad/s].
     phase
-        0 in full contact, 1 rolling, 2 rocking, 3 held by friction.
+        0 in full contact, 1 rolling, 2 rocking, 3 held by friction, 4 in full contact that
+        gives way.
     cap_beam_displacement, lift
         u_b and v_b [m].
     floor_displacements, floor_velocities, floor_accelerations
@@ -167,8 +168,8 @@ class Trace(Shown):
     shear_top, shear_bottom, normal_top, normal_bottom
         Forces at the ends of all columns together [N]: F to the right on what is above, N upwards
         on it (Theory, section 8).
-    energy_input, energy_damped, energy_impact, energy_stored
-        [J] (Theory, section 8).
+    energy_input, energy_damped, energy_impact, energy_bed, energy_stored
+        [J] (Theory, sections 8 and 12).
     devices
         What each device does.
     """
@@ -193,6 +194,7 @@ class Trace(Shown):
     energy_input: Array
     energy_damped: Array
     energy_impact: Array
+    energy_bed: Array
     energy_stored: Array
     devices: DeviceTrace
 
@@ -232,6 +234,8 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[tuple[str, str, ND
     yield "column_force_top", "N", t.normal_top / structure.columns
     yield "column_force_bottom", "N", t.normal_bottom / structure.columns
     yield from ((name, "J", getattr(t, name)) for name in ENERGIES)
+    if structure.bed is not None:
+        yield "energy_bed", "J", t.energy_bed
     for index, device in enumerate(structure.devices):
         name = f"device_{index}_{device.kind}"
         yield f"{name}_force", "N", t.devices.force[:, index]
@@ -255,6 +259,7 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
         energy_input=samples.energy_input,
         energy_damped=samples.energy_damped,
         energy_impact=samples.energy_lost,
+        energy_bed=samples.bed_energy,
         devices=devices,
         **_by_blocks(lambda rows: _derived(structure, run, devices, rows), len(samples)),
     )
@@ -284,6 +289,12 @@ def _derived(
     u, du = run.floors[rows, 0], run.floors[rows, 1]
     b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
+    potential, B_v = lift, B
+    if (bed := structure.bed) is not None:
+        on_bed = bed.path(np.abs(theta))
+        B, C = np.where(samples.phase == state.BEDDED, 0.0, B), on_bed.height
+        path, lift, potential = on_bed.displacement, on_bed.lift, on_bed.potential
+        B_v = on_bed.lift_arm
     base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
     up = run.motion.row("vertical")
     a_g = prolonged(run.motion.samples[0, rows], len(samples))
@@ -294,8 +305,8 @@ def _derived(
         forces = (u - base[:, None]) @ building.stiffness_matrix
         forces = forces + (du - base_rate[:, None]) @ building.damping_matrix
     devices, V = all_devices.at(rows), forces.sum(axis=1)
-    stored = structure.weight * diameter * lift + 0.5 * np.sum(shears * drifts, axis=1)
-    stored += devices.stored.sum(axis=1) + 0.5 * tilting_inertia(structure, B, C) * rate**2
+    stored = structure.weight * diameter * potential + 0.5 * np.sum(shears * drifts, axis=1)
+    stored += devices.stored.sum(axis=1) + 0.5 * tilting_inertia(structure, B_v, C) * rate**2
     if building is not None:
         stored += 0.5 * du**2 @ building.masses
     push, pull = np.zeros_like(theta), np.zeros_like(theta)
@@ -311,6 +322,8 @@ def _derived(
             side, diameter, c, B, C, rate, side * samples.theta_ddot
         )
     )
+    if bed is not None:
+        upwards = diameter * (B_v * side * samples.theta_ddot + on_bed.lift_bend * rate**2)
     a_v = 0.0 if up is None else prolonged(run.motion.samples[up, rows], len(samples))
     masses = structure.cap_beam_mass, structure.superstructure_mass, structure.columns_mass
     of_arrays = cast("Callable[..., tuple[Array, ...]]", contact_forces)

@@ -150,8 +150,8 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         points[number] = {"point": number + 1, **described(layout, number)}
         if histories and layout.plan.measure is None:  # no measure decides about the factor
             points[number]["scale"] = point.scale * point.scale_change
-    kernels = {properties.equipped for properties in layout.properties}
-    if histories and not all(is_ready(equipped=each) for each in kernels):
+    kernels = {properties.kernel for properties in layout.properties}
+    if histories and not all(is_ready(each) for each in kernels):
         seconds = GUESSED_POINT_SECONDS * count / jobs
         source = "a guess, since the kernel is not compiled yet"
     else:

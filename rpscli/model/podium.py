@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import is_number
 from rpscli.model.bearing import Bearing
+from rpscli.model.contact import Bed, Contact, bed_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
 from rpscli.model.uplifted_state import UpliftedState
@@ -59,6 +60,8 @@ class PodiumStructure(Shown):
     superstructure_y
         The same floors on the stiffnesses across the first direction, y, where they differ from
         those along it, x; None if they do not.
+    contact
+        What the ends bear on; rigid, or what gives way in full contact.
 
     Raises
     ------
@@ -67,6 +70,8 @@ class PodiumStructure(Shown):
         not in (0, 1]: with e <= 0 the columns would not go over to the other edge (Theory,
         section 4), or there are too many devices; of spherical ends, if the restitution is not 1
         or there is a tendon.
+        Of a contact that gives way, if it is too soft to hold the weight, or with what it is not
+        followed with.
 
     Notes
     -----
@@ -84,6 +89,7 @@ class PodiumStructure(Shown):
     friction: float | None = None
     rows: tuple[float, ...] = ()
     superstructure_y: Superstructure | None = None
+    contact: Contact = field(default_factory=Contact)
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""
@@ -119,6 +125,7 @@ class PodiumStructure(Shown):
                 " (a smaller tan alpha), with the law `flexible` a lighter building over the cap"
                 " beam, a smaller loss (0.5), or give a measured value"
             )
+        self.bed  # noqa: B018 -- raises what it asks for and does not have
 
     def _refuse_buildings(self) -> None:
         x, y = self.superstructure, self.superstructure_y
@@ -278,21 +285,47 @@ class PodiumStructure(Shown):
         ratio = (1.0 + 2.0 * carried) / (self.bearing.inertia_ratio + 4.0 * carried)
         return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)
 
+    @property
+    def kernel(self) -> str:
+        """Variant of the kernel that follows it, a key of `physics.planar.state.STATES`."""
+        if self.bed is not None:
+            return "compliant"
+        return "devices" if self.devices else "plain"
+
+    @cached_property
+    def bed(self) -> Bed | None:
+        """Full contact that gives way; None on rigid ends."""
+        return bed_of(self)
+
     def path(self, rotation: Array) -> tuple[Array, ...]:
         """Restoring force F, cap beam displacement u_b and lift v_b at |theta| [rad].
 
         Returns
         -------
-        Three arrays of the shape of `rotation`: F = W B/C [N], u_b [m], v_b [m].
+        Three arrays of the shape of `rotation`: F = W B/C [N], u_b [m], v_b [m]. On a bed the arm
+        of the weight stands in place of B.
         """
         b = self.bearing
+        if (bed := self.bed) is not None:
+            on_bed, diameter = bed.path(np.asarray(rotation)), 2.0 * b.semi_diagonal
+            force = self.weight * on_bed.arm / on_bed.height
+            return force, diameter * on_bed.displacement, diameter * on_bed.lift
         B, C, u, v = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
         diameter = 2.0 * b.semi_diagonal
         return self.weight * B / C, diameter * u, diameter * v
 
+    def weight_arm(self, rotation: Array) -> Array:
+        """Arm of the weight over R at |theta| [rad]: the restoring moment is 2 R W times it."""
+        b = self.bearing
+        if self.bed is not None:
+            return self.bed.path(np.asarray(rotation)).arm
+        return geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))[0]
+
     def lever_arm(self, rotation: Array) -> Array:
         """2 R C = |du_b/dtheta| at |theta| [rad]: the arm of a force at the cap beam [m]."""
         b = self.bearing
+        if self.bed is not None:
+            return 2.0 * b.semi_diagonal * self.bed.path(np.asarray(rotation)).height
         _, C, _, _ = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
         return 2.0 * b.semi_diagonal * C
 

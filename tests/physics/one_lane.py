@@ -24,7 +24,7 @@ from rpscli.physics.planar.equation_of_motion import (
     renew_accelerations,
     rotation_terms,
 )
-from rpscli.physics.planar.run import empty_state
+from rpscli.physics.planar.run import empty_state, variant_of
 from rpscli.physics.planar.steps import take_steps
 from rpscli.physics.planar.transitions import change_edge, enter_phase, recontact
 from rpscli.records.ground_motion import MotionComponents
@@ -69,7 +69,7 @@ class OneLane:
         systems = stacked_systems([(structure, settings or TimeHistorySettings())])
         self.run = run_of(systems, [MotionComponents(stillness(LEAST_DT))], [Request(0, 0)])
         self.system = systems[0]
-        self.state = empty_state(self.storeys, lanes=1, equipped=bool(structure.devices))
+        self.state = empty_state(self.storeys, lanes=1, variant=variant_of(self.run))
         self.s = self.state[0]
         begin_history(self.s, 0, self.run, 0)
         self.s.side[0] = side
@@ -186,7 +186,7 @@ class OneLane:
 
     def energy(self) -> float:
         """Kinetic, strain and potential energy [J]."""
-        return float(uplifted_energy(self.s, 0))
+        return float(uplifted_energy(self.s, 0, self.system))
 
     def change_edge(self) -> float:
         """Let the storey go over to its other edge; returns the energy lost [J]."""

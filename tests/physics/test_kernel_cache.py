@@ -274,10 +274,10 @@ def test_the_second_process_runs_nothing_from_the_working_folder(
     fresh_folder.chdir(tmp_path)
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
     fresh_folder.setenv("NUMBA_DISABLE_JIT", "1")  # the other process: it has nothing to compile
-    fresh_folder.setattr(prepare, "compile_phases", lambda **_: None)
+    fresh_folder.setattr(prepare, "compile_phases", lambda *_: None)
     fresh_folder.setattr(prepare, "integrate_lanes", lambda *_: None)
     fresh_folder.setattr(sys, "path", [place for place in sys.path if place])
-    prepare.compile_kernel(equipped=False)
+    prepare.compile_kernel("plain")
     assert not (tmp_path / "was_run").exists()
 
 

@@ -133,7 +133,7 @@ def test_kinds_and_outcomes_are_distinct() -> None:
     groups = [
         names.split()
         for names in (
-            "FULL_CONTACT ROLLING ROCKING STUCK",
+            "FULL_CONTACT ROLLING ROCKING STUCK BEDDED",
             "VISCOUS FRICTION STOP TENDON ROLLING_RESISTANCE",
             "IDLE WORKING BEYOND",
             f"{kinds} {changes} OVERTURNING NO_EVENT",

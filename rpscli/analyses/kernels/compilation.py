@@ -16,13 +16,14 @@ _lock = Lock()
 _ready: set[str] = set()
 """Kernels that are known to be compiled: a file tells, which is looked for once."""
 
-KERNELS = (
-    "kernel",
-    "kernel with devices",
-    "kernel for both components",
-    "kernel for both components with devices",
-)
-"""A case without devices needs the first of two; motions in x and y the last two."""
+KERNELS = {
+    "plain": "kernel",
+    "devices": "kernel with devices",
+    "compliant": "kernel with compliant contact",
+    "pairs": "kernel for both components",
+    "pairs with devices": "kernel for both components with devices",
+}
+"""By variant: planar ones of `physics.planar.state.STATES`, and those for motions in x and y."""
 
 
 def announce_to(listener: Listener) -> None:
@@ -30,24 +31,24 @@ def announce_to(listener: Listener) -> None:
     _listeners[:] = [listener]
 
 
-def is_ready(*, equipped: bool = False, pairs: bool = False) -> bool:
+def is_ready(variant: str) -> bool:
     """Whether the kernel was compiled before, so that calling it starts at once."""
     from rpscli.physics.core.compile import is_compiled
 
-    name = KERNELS[equipped + 2 * pairs]
+    name = KERNELS[variant]
     if name not in _ready and is_compiled(name):
         _ready.add(name)
     return name in _ready
 
 
 @contextmanager
-def compiled(*, equipped: bool, pairs: bool = False) -> Iterator[None]:
+def compiled(variant: str) -> Iterator[None]:
     """Around a call of the kernel: announce the compilation if there is one, and remember it."""
     from rpscli.physics.core.compile import cache_folder, remember_compiled
     from rpscli.physics.planar.prepare import compile_kernel
 
-    name = KERNELS[equipped + 2 * pairs]
-    if is_ready(equipped=equipped, pairs=pairs):
+    name = KERNELS[variant]
+    if is_ready(variant):
         yield
         return
     with _lock:
@@ -57,9 +58,10 @@ def compiled(*, equipped: bool, pairs: bool = False) -> Iterator[None]:
         if first:
             for listener in _listeners:
                 told.enter_context(listener(name))
-            if not pairs:
-                compile_kernel(equipped=equipped)
-            if not pairs and cache_folder() is not None:  # else the first call compiles
+            planar = not variant.startswith("pairs")
+            if planar:
+                compile_kernel(variant)
+            if planar and cache_folder() is not None:  # else the first call compiles
                 told.close()
         yield
     remember_compiled(name)

@@ -25,7 +25,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
-from rpscli.physics.planar.run import Output, Run
+from rpscli.physics.planar.run import Output, Run, variant_of
 from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
 from rpscli.physics.spatial.state import EVENT_3D, RESULT_3D, SAMPLE_3D
 from rpscli.records.ground_motion import MotionComponents
@@ -111,9 +111,15 @@ def _no_output(storeys: int, devices: int, pairs: bool) -> Output:  # noqa: FBT0
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
     """Follow every history of a run, of one component or of pairs; writes `run.results`."""
-    equipped = bool(run.systems.view(np.ndarray)["devices"].any())
-    pairs = "azimuth" in (run.results.dtype.names or ())
-    with compiled(equipped=equipped, pairs=pairs):
+    pairs, variant = "azimuth" in (run.results.dtype.names or ()), variant_of(run)
+    if pairs and variant == "compliant":
+        raise CaseError(
+            "ends that give way are followed under one component; use podium.contact `rigid`, or"
+            " one component at a time"
+        )
+    if pairs:
+        variant = "pairs" if variant == "plain" else "pairs with devices"
+    with compiled(variant):
         if pairs:
             from rpscli.physics.spatial.driver import integrate_pairs
 

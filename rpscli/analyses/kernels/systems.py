@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.model.contact import Bed
 from rpscli.model.devices import DEVICES
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
@@ -123,6 +124,18 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["contact_time"] = structure.impact_law.contact_time
     record["floors_jump"] = structure.impact_law.floors_jump
     fill_devices(record, structure)
+    if (bed := structure.bed) is not None:
+        fill_bed(record, bed)
+
+
+def fill_bed(record: Record, bed: Bed) -> None:
+    """What gives way in full contact; u_b goes on from there."""
+    record["compliant"], record["bed_uplift"] = 1, bed.uplift_rotation
+    record["bed_full"], record["bed_height"] = bed.full_rotation, bed.height
+    record["bed_k"], record["bed_c"] = bed.spring, bed.damper
+    record["sink"], record["root"], record["lifts"] = bed.sink, bed.root, bed.kept
+    for phase in ("rolling", "rocking"):
+        record[phase][3] += bed.shift
 
 
 def fill_devices(record: Record, structure: PodiumStructure) -> None:
@@ -160,6 +173,14 @@ def fill_settings(
     record["theta_limit"] = limit
     record["uplifted_rate"] = settings.accuracy * uplifted_rate(structure)
     record["contact_rate"] = contact_rate(structure)
+    record["bedded_rate"] = settings.accuracy * bedded_rate(structure)
+    if structure.bed is not None and 0.0 < abs(settings.initial_rotation) < (
+        least := structure.bed.uplift_rotation
+    ):
+        raise ValueError(
+            f"initial_rotation = {settings.initial_rotation:.6g} rad must be 0 or above"
+            f" {least:.6g} rad, where the ends begin to lift"
+        )
     record["most_steps"] = MOST_POWER_STEPS
     record["last_term"] = LAST_TERM * settings.accuracy**-ORDER
     record["recontact_tolerance"] = settings.recontact_tolerance
@@ -264,7 +285,8 @@ def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
     speed = linear_speed(structure)
     damping = sum(c * speed ** (exponent - 1.0) for c, exponent in powers(structure))
     about_rest = damping / least_base_mass(structure) / UPLIFTED_DECAY
-    return float(accuracy * uplifted_rate(structure) + about_rest)
+    rate = max(uplifted_rate(structure), bedded_rate(structure))
+    return float(accuracy * rate + about_rest)
 
 
 def uplifted_angle(structure: PodiumStructure) -> float:
@@ -303,6 +325,21 @@ def most_seconds(
     """About the computing time of that [s], for the parameters of `most_steps`."""
     each = STEP_SECONDS + MODE_SECONDS * structure.storeys
     return each * most_steps(structure, settings, duration)
+
+
+def bedded_rate(structure: PodiumStructure) -> float:
+    """Taylor steps a second in full contact that gives way [1/s]; 0 on rigid ends."""
+    bed = structure.bed
+    if bed is None:
+        return 0.0
+    stiffness, decay = bed.stiffness, bed.damper / bed.inertia + fastest_decay(structure)
+    highest = 0.0
+    if (building := structure.superstructure) is not None:
+        stiffness += float(building.stiffnesses[0])
+        highest = float(building.frequencies[-1])
+    frequency = math.hypot(highest, math.sqrt(stiffness / bed.mass))
+    decay += sum(device.bounds(structure)[1] for device in structure.devices) / bed.mass
+    return max(frequency / uplifted_angle(structure), decay / UPLIFTED_DECAY)
 
 
 def contact_rate(structure: PodiumStructure) -> float:

@@ -139,13 +139,15 @@ def specialised(function: Function) -> Function:
 
 
 def compiled_with(field: str, *, otherwise: object = None) -> Callable[[Function], Function]:
-    """Compile for records (the first argument) with a field; of others return a constant.
+    """Compile for records (the first argument) with a field; others get a constant or a function.
 
     So a kernel is compiled without what its records have no fields for.
     """
 
-    def nothing(*_: object) -> object:
+    def constant(*_: object) -> object:
         return otherwise
+
+    nothing: Any = otherwise if callable(otherwise) else constant
 
     def decorate(function: Function) -> Function:
         @wraps(function)

@@ -180,3 +180,19 @@ def slope(b: Quintic, t: float) -> float:
         + 4.0 * (b[4] - b[3]) * r * t**3
         + (b[5] - b[4]) * t**4
     )
+
+
+@compiled
+def peak_in_step(path: Quintic) -> tuple[float, float]:
+    """Fraction of the step and height of the tilt's maximum, where x' falls through zero.
+
+    Bisection of the slope: it never leaves the step, and is rarely needed.
+    """
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        t = 0.5 * (low + high)
+        if slope(path, t) > 0.0:
+            low = t
+        else:
+            high = t
+    return low, value(path, low)

@@ -33,6 +33,7 @@ from rpscli.physics.core.series import (
     turning_value,
     value,
 )
+from rpscli.physics.planar.bed.terms import upwards_on_bed
 from rpscli.physics.planar.devices.forces import set_devices
 from rpscli.physics.planar.equation_of_motion import (
     Measures,
@@ -126,6 +127,9 @@ def contacts_may_rise(s: Record, l: int) -> bool:
         s.next_theta_dot[l],
         s.next_theta_ddot[l],
     )
+    upwards = upwards_on_bed(
+        s, l, s.next_theta[l], upwards, s.next_theta_dot[l], s.next_theta_ddot[l]
+    )
     beam, floors, columns = s.cap_beam_mass[l], s.floors_mass[l], s.columns_mass[l]
     shear_top, shear_bottom, top, bottom = contact_forces(
         beam,
@@ -178,6 +182,7 @@ def weight(s: Record, l: int) -> float:
 def contacts_of(
     s: Record,
     l: int,
+    theta: float,
     theta_dot: float,
     theta_ddot: float,
     B: float,
@@ -190,6 +195,7 @@ def contacts_of(
     across, upwards = cap_beam_acceleration(
         s.side[l], s.diameter[l], s.phase_c[l], B, C, theta_dot, theta_ddot
     )
+    upwards = upwards_on_bed(s, l, theta, upwards, theta_dot, theta_ddot)
     return contact_measures(
         s.cap_beam_mass[l],
         s.floors_mass[l],
@@ -212,7 +218,8 @@ def contacts_at_start(s: Record, l: int) -> Measures:
     a_g = s.a_g[l] + s.a_g_slope[l] * s.time[l]
     g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
     B, C, V = s.B[l], s.C[l], s.V[l]
-    return contacts_of(s, l, s.theta_dot[l], s.theta_ddot[l], B, C, V, a_g, g_up)
+    theta, rate = s.theta[l], s.theta_dot[l]
+    return contacts_of(s, l, theta, rate, s.theta_ddot[l], B, C, V, a_g, g_up)
 
 
 @compiled
@@ -232,7 +239,8 @@ def contacts_within(s: Record, l: int, t: float) -> Measures:
     V = (a_g * s.ground_over_R[l] - s.side[l] * action) / s.shear_factor[l]
     if s.devices[l] > 0:
         set_devices(s, l, theta, theta_dot)
-    return contacts_of(s, l, theta_dot, slope(terms, t) / s.step[l], B, C, V, a_g, g_up)
+    acceleration = slope(terms, t) / s.step[l]
+    return contacts_of(s, l, theta, theta_dot, acceleration, B, C, V, a_g, g_up)
 
 
 @compiled

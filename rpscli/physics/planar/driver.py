@@ -18,6 +18,9 @@ import numpy as np
 from rpscli.physics.core.compile import compiled, kernel, uncounted
 from rpscli.physics.core.lanes import set_ground
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
+from rpscli.physics.planar.bed.passages import leave_bed, load_bed
+from rpscli.physics.planar.bed.terms import check_bed, watch_pace
+from rpscli.physics.planar.bed_events import observe_bed
 from rpscli.physics.planar.demands import (
     observe_ends,
     raise_contacts_within,
@@ -30,13 +33,13 @@ from rpscli.physics.planar.energy import book_energy, building_energy, uplifted_
 from rpscli.physics.planar.equation_of_motion import load_factors
 from rpscli.physics.planar.events import go_on_restarted, next_interval, raise_peak, resolve_step
 from rpscli.physics.planar.full_contact.follow import follow_full_contact
-from rpscli.physics.planar.run import Output, Run
+from rpscli.physics.planar.run import Output, Run, variant_of
 from rpscli.physics.planar.samples import store_sample, store_within
 from rpscli.physics.planar.state import (
     AFTER_RELEASE,
     AT_REST,
+    BEDDED,
     BLOCK,
-    EQUIPPED_STATE,
     EVENT_KINDS,
     FAILED_TOO_MANY_STEPS,
     FOLLOW_CONTACT,
@@ -48,7 +51,7 @@ from rpscli.physics.planar.state import (
     ROCKING,
     ROLLING,
     RUNNING,
-    STATE,
+    STATES,
     SURVIVED,
     UPLIFT,
 )
@@ -72,9 +75,11 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
     costs a tenth of a millisecond.
     """
     systems = run.systems.view(np.ndarray)  # fields of records take ten times as long
-    state = scratch(EQUIPPED_STATE if systems["devices"].any() else STATE)
+    state = scratch(STATES[variant_of(run)])
     block, storeys, plain = scratch(BLOCK), systems["n"][0], state.view(np.ndarray)
     plain["n"], plain["lanes"], plain["stop"] = storeys, lanes, 0
+    if "fading" in (plain.dtype.names or ()):
+        plain["fading"] = int((systems["bed_full"] > 0.0).any())
     block.view(np.ndarray)["n"] = storeys
     run_interruptible(integrate_lanes, state, block, run, interruptible=interruptible)
 
@@ -141,7 +146,7 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
                 else:
                     s.outcome[l] = FAILED_TOO_MANY_STEPS
             else:
-                next_action = next_interval(s, l, acceleration)
+                next_action = next_interval(s, l, systems[s.system[l]], acceleration)
                 if s.audited > 0:
                     keep_sample(s, l, systems, output)
             while next_action != GOES_ON or s.restart_after[l] != NOTHING_NEW:
@@ -165,9 +170,11 @@ def advance_lanes(state: Record, systems: Record, blocks: Record, output: Output
     take_steps(s)
     check_steps(s)
     check_devices(s)
+    check_bed(s)
     observe_ends(s)
     observe_lanes(s, systems, blocks[0], output)
     accept_steps(s)
+    watch_pace(s)
 
 
 @compiled
@@ -204,6 +211,7 @@ def observe_lanes(s: Record, systems: Record, block: Record, output: Output) -> 
         if s.devices[l] > 0:
             book_devices(s, l, 1.0)
             observe_devices(s, l, 1.0)
+        observe_bed(s, l, 1.0)
         if s.peak_inside[l] > 0.0:
             raise_peak(s, l, block, output.log)
         if s.demands_rise[l] > 0.0:
@@ -228,6 +236,7 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
     s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
     load_devices(s, l, system)
+    load_bed(s, l, system)
     s.outcome[l], s.restart_after[l] = RUNNING, NOTHING_NEW
     s.interval[l] = 0
     s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
@@ -241,7 +250,7 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.phase[l] = FULL_CONTACT
     clear_results(s, l)
     set_ground(s, l, run.acceleration)
-    if system.initial_rotation != 0.0 or system.alpha == 0.0:
+    if system.initial_rotation != 0.0 or system.alpha == 0.0 or system.compliant > 0:
         release(s, l, system)
         return GOES_ON
     s.next_a_g[l], s.next_g_up[l], s.next_V[l] = s.a_g[l], s.g_up[l], 0.0
@@ -295,7 +304,8 @@ def release(s: Record, l: int, system: Record) -> None:
     theta = abs(system.initial_rotation)
     s.side[l] = math.copysign(1.0, system.initial_rotation)
     s.theta[l], s.max_theta[l], s.restart_after[l] = theta, theta, AFTER_RELEASE
-    enter_phase(s, l, system, ROLLING if theta < system.beta else ROCKING)
+    phase = ROLLING if theta < system.beta else ROCKING
+    enter_phase(s, l, system, BEDDED if theta < system.bed_uplift else phase)
     release_devices(s, l)
 
 
@@ -306,13 +316,14 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     if s.phase[l] == FULL_CONTACT:
         result.energy_stored = building_energy(s, l, 0.0)
     else:
-        result.energy_stored = uplifted_energy(s, l)
+        result.energy_stored = uplifted_energy(s, l, system)
     if s.outcome[l] == RUNNING:
-        released = system.initial_rotation != 0.0 or s.max_theta[l] > 0.0
+        released = system.initial_rotation != 0.0 or s.max_theta[l] > system.bed_uplift
         moved = released or s.events[l, UPLIFT] > 0
         s.outcome[l] = SURVIVED if moved else AT_REST
     leave_result(s, l, result)
     leave_devices(s, l, result)
+    leave_bed(s, l, result)
 
 
 @compiled

@@ -5,6 +5,8 @@ from __future__ import annotations
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import Record
 from rpscli.physics.core.series import NODES, WEIGHTS, integral, sine_cosine, value
+from rpscli.physics.planar.bed.passages import potential
+from rpscli.physics.planar.bed.terms import lift_arm
 from rpscli.physics.planar.equation_of_motion import (
     cap_beam_lift,
     contact_arm,
@@ -37,13 +39,13 @@ def building_energy(s: Record, l: int, beam_velocity: float) -> float:
 
 
 @compiled
-def uplifted_energy(s: Record, l: int) -> float:
+def uplifted_energy(s: Record, l: int, system: Record) -> float:
     """Kinetic, strain and potential energy of the uplifted structure without devices [J]."""
     theta_dot, phase = s.theta_dot[l], phase_constants(s, l)
     sine, cosine = sine_cosine(s.theta[l])
     B, C = contact_arm(phase, cosine, sine), contact_height(phase, cosine, sine)
     lift = s.diameter[l] * cap_beam_lift(phase, cosine, sine)
-    lifted = lifted_mass(s, l) * s.gravity[l] * lift
+    lifted = potential(s, l, system, lifted_mass(s, l) * s.gravity[l], lift)
     beam_velocity = s.side[l] * s.diameter[l] * C * theta_dot
     moving = tilting_energy(s, l, B, C, theta_dot) + building_energy(s, l, beam_velocity)
     return float(lifted) + moving
@@ -66,6 +68,7 @@ def powers_within(s: Record, l: int, t: float) -> tuple[float, float]:
     time = s.time[l] + t * s.step[l]
     a_g = s.a_g[l] + s.a_g_slope[l] * time
     a_v = s.g_up[l] + s.g_up_slope[l] * time - s.gravity[l]
+    B = lift_arm(s, l, theta, B)
     supplied = a_g * momentum + a_v * mass * s.diameter[l] * B * theta_dot
     return -supplied, damped
 

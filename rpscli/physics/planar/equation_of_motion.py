@@ -36,6 +36,7 @@ from rpscli.physics.core.compile import compiled, inlined
 from rpscli.physics.core.records import Record
 from rpscli.physics.core.series import Terms, sine_cosine
 from rpscli.physics.planar import geometry
+from rpscli.physics.planar.bed.terms import accelerate_on_bed, bear, inertia_on_bed
 from rpscli.physics.planar.geometry import Phase
 
 Number = TypeVar("Number", float, NDArray[np.float64])
@@ -141,6 +142,7 @@ def accelerate_rotation(s: Record, l: int, elapsed: float) -> None:
     )
     s.next_B[l], s.next_C[l], s.next_per_A[l] = B, C, per_A
     s.next_a_g[l], s.next_g_up[l] = a_g, g_up
+    accelerate_on_bed(s, l, phase.c, B, C, action, g_up)
 
 
 @compiled
@@ -213,7 +215,9 @@ def extend_rotation(s: Record, lanes: int, m: int) -> None:
             beam += s.C_terms[j, l] * s.dtheta_terms[m - j, l]
         B_m = -part * ((C - c) * last + sum_B)
         C_m = part * (B * last + sum_C)
-        A_m = 2.0 * c * s.one_4gamma[l] * C_m + s.four_gamma_eta[l] * (2.0 * B * B_m + square)
+        squares = 2.0 * B * B_m + square
+        A_m = 2.0 * c * s.one_4gamma[l] * C_m + s.four_gamma_eta[l] * squares
+        A_m, sum_action = bear(s, l, m, A_m, B_m, squares, sum_action)
         s.B_terms[m, l], s.C_terms[m, l], s.A_terms[m, l] = B_m, C_m, A_m
         g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
         before = s.B_terms[k - 1, l] if m > 1 else 0.0
@@ -269,6 +273,7 @@ def tilting_energy(s: Record, l: int, B: float, C: float, theta_dot: float) -> f
     phase = phase_constants(s, l)
     S = squared_distance(phase, C)
     A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], S, B)
+    A = inertia_on_bed(s, l, s.theta[l], A, B)
     square = s.diameter[l] * s.diameter[l]
     return float(0.125 * s.columns_mass[l] * square * A * (theta_dot * theta_dot))
 

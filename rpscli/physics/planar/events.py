@@ -18,11 +18,13 @@ from rpscli.physics.core.quintic import (
     Quintic,
     first_descent,
     offset,
+    peak_in_step,
     slope,
     upper_hull,
-    value,
 )
 from rpscli.physics.core.records import NO_HISTORY, Floats, Record
+from rpscli.physics.planar.bed.terms import keep_pace
+from rpscli.physics.planar.bed_events import observe_bed, pass_on_bed, rests_on_bed
 from rpscli.physics.planar.demands import observe_end, observe_start, raise_contacts_within
 from rpscli.physics.planar.devices.events import change_law, has_friction, locate_change
 from rpscli.physics.planar.devices.flows import book_devices, observe_devices, raise_devices
@@ -125,6 +127,7 @@ def end_on_event(
     if s.devices[l] > 0:
         book_devices(s, l, fraction)
         observe_devices(s, l, fraction)
+    observe_bed(s, l, fraction)
     raise_contacts_within(s, l, fraction)
     end_step_at(s, l, fraction, level)
     observe_end(s, l, system)
@@ -137,6 +140,8 @@ def end_on_event(
     before = s.time[l]
     s.time[l] += s.step[l]
     s.stalled[l] = s.stalled[l] + 1 if s.time[l] == before else 0
+    if pass_on_bed(s, l, system, log, kind):
+        return
     if kind == IMPACT:
         apply_impact(s, l, system, log)
         begin_excursion(s, l, log)
@@ -170,15 +175,16 @@ def too_many_events(s: Record, l: int, system: Record) -> bool:
 
 
 @compiled
-def next_interval(s: Record, l: int, acceleration: Floats) -> int:
+def next_interval(s: Record, l: int, system: Record, acceleration: Floats) -> int:
     """Enter the record's next interval: GOES_ON, or IS_OVER at the history's end."""
-    if enter_interval(s, l, acceleration, s.interval[l] + 1):
+    if enter_interval(s, l, acceleration, s.interval[l] + 1) or rests_on_bed(s, l, system):
         return IS_OVER
     if s.interval[l] + 1 == s.npts[l]:
         s.restart_after[l] = AFTER_PHASE_CHANGE  # the ground acceleration may jump to zero
     s.step[l], s.steps_left[l] = s.uplifted_step[l], s.uplifted_steps[l]
     if s.nonsmooth_damper[l] > 0.0:
         shorten_step(s, l)
+    keep_pace(s, l)
     return GOES_ON
 
 
@@ -245,22 +251,6 @@ def go_on_restarted(s: Record, l: int, system: Record, output: Output) -> int:
 
 
 # The largest tilt, turning points between samples included, and the passage of theta_cr.
-
-
-@compiled
-def peak_in_step(path: Quintic) -> tuple[float, float]:
-    """Fraction of the step and height of the tilt's maximum, where x' falls through zero.
-
-    Bisection of the slope: it never leaves the step, and is rarely needed.
-    """
-    low, high = 0.0, 1.0
-    for _ in range(50):
-        t = 0.5 * (low + high)
-        if slope(path, t) > 0.0:
-            low = t
-        else:
-            high = t
-    return low, value(path, low)
 
 
 @compiled

@@ -27,15 +27,15 @@ from rpscli.physics.planar.full_contact.modal_block import integrate_fixed_base
 from rpscli.physics.planar.run import empty_block, empty_run, empty_state
 
 
-def compile_kernel(*, equipped: bool) -> None:
-    """Compile the kernel, with devices or without; what fails in a part is left to the first call.
+def compile_kernel(variant: str) -> None:
+    """Compile the kernel, of any variant; what fails in a part is left to the first call.
 
     Without a cache, or without machine code at all, there is nothing to prepare.
     """
     if cast("Any", numba.config).DISABLE_JIT or cache_folder() is None or not sys.executable:
         return
     # Without -P a numba.py in the working folder would be run.
-    command = [sys.executable, "-P", "-m", __name__, "equipped" if equipped else "plain"]
+    command = [sys.executable, "-P", "-m", __name__, variant]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     silent = subprocess.DEVNULL
     with (
@@ -45,17 +45,17 @@ def compile_kernel(*, equipped: bool) -> None:
         ) as other,
     ):
         try:
-            compile_phases(equipped=equipped)
+            compile_phases(variant)
             other.wait()
-            integrate_lanes(empty_state(1, 1, equipped=equipped), empty_block(1), empty_run(1))
+            integrate_lanes(empty_state(1, 1, variant=variant), empty_block(1), empty_run(1))
         except BaseException:
             other.kill()
             raise
 
 
-def compile_phases(*, equipped: bool) -> None:
+def compile_phases(variant: str) -> None:
     """Full contact, what begins a phase or a history, and the building on a fixed base."""
-    run, s = empty_run(1), no_histories(equipped=equipped)[0]
+    run, s = empty_run(1), no_histories(variant)[0]
     block = empty_block(1)
     follow_full_contact(s, 0, run.systems[0], block[0], run.acceleration, run.output)
     next_history(s, 0, run)
@@ -64,17 +64,17 @@ def compile_phases(*, equipped: bool) -> None:
     integrate_fixed_base(run.acceleration, 1.0, 1, 0, run.systems, block, floors, largest)
 
 
-def compile_steps(*, equipped: bool) -> None:
+def compile_steps(variant: str) -> None:
     """Uplifted steps of all lanes, and those of one that end on an event."""
-    run, state = empty_run(1), no_histories(equipped=equipped)
+    run, state = empty_run(1), no_histories(variant)
     block = empty_block(1)
     advance_lanes(state, run.systems, block, run.output)
     resolve_step(state[0], 0, run.systems[0], block[0], run.output)
 
 
-def no_histories(*, equipped: bool) -> Record:
+def no_histories(variant: str) -> Record:
     """Lanes for which there is nothing to do."""
-    state = empty_state(1, equipped=equipped)
+    state = empty_state(1, variant=variant)
     state.history[:] = NO_HISTORY
     return state
 
@@ -93,4 +93,4 @@ def garbage_kept() -> Iterator[None]:
 
 if __name__ == "__main__":
     with garbage_kept():
-        compile_steps(equipped=sys.argv[1:] == ["equipped"])
+        compile_steps(sys.argv[1])

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from rpscli.physics.core.records import LANES, Floats, Record, records
 from rpscli.physics.planar.state import (
     BLOCK,
-    EQUIPPED_STATE,
     EVENT,
     REQUEST,
     RESULT,
     SAMPLE,
-    STATE,
+    STATES,
     SYSTEM,
 )
 
@@ -43,9 +42,17 @@ class Run(NamedTuple):
     output: Output  # samples and events, where there is one history: written
 
 
-def empty_state(storeys: int, lanes: int = LANES, *, equipped: bool = False) -> Record:
+def variant_of(run: Run) -> str:
+    """Which of `state.STATES` the structures of a run ask for."""
+    systems = run.systems.view(np.ndarray)  # fields of records take ten times as long
+    if systems["compliant"].any():
+        return "compliant"
+    return "devices" if systems["devices"].any() else "plain"
+
+
+def empty_state(storeys: int, lanes: int = LANES, *, variant: str = "plain") -> Record:
     """Lanes with nothing to do, an array of one record; all of them are used, or one."""
-    state = records(EQUIPPED_STATE if equipped else STATE)
+    state = records(STATES[variant])
     state.n, state.lanes = storeys, lanes
     return state
 

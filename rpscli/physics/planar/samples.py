@@ -7,6 +7,7 @@ import math
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.records import Record
 from rpscli.physics.core.series import cubic, integral, sine_cosine, slope, value
+from rpscli.physics.planar.bed.passages import energy_of_bed
 from rpscli.physics.planar.devices.flows import store_devices
 from rpscli.physics.planar.equation_of_motion import (
     cap_beam_displacement,
@@ -85,6 +86,7 @@ def store_row(s: Record, l: int, system: Record, output: Output, at: int) -> Non
     sample.phase = s.phase[l]
     sample.energy_input, sample.energy_damped = s.energy_input[l], s.energy_damped[l]
     sample.energy_lost = s.energy_lost[l]
+    sample.bed_energy = energy_of_bed(s, l)
     u_b, du_b = 0.0, 0.0
     if not stands:
         phase, (sine, cosine) = phase_constants(s, l), sine_cosine(s.theta[l])

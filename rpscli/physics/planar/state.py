@@ -32,8 +32,8 @@ ROLLING_MOMENT = 0  # 2 W f
 # a tendon slack, elastic, yielding. The others have one.
 IDLE, WORKING, BEYOND = range(3)
 
-# Phases of motion; STUCK is held by friction while tilted.
-FULL_CONTACT, ROLLING, ROCKING, STUCK = range(4)
+# Phases of motion; STUCK is held by friction while tilted, BEDDED in full contact that gives way.
+FULL_CONTACT, ROLLING, ROCKING, STUCK, BEDDED = range(5)
 
 # Kinds of event, in the log and in the counts.
 (
@@ -133,6 +133,16 @@ SYSTEM = (
     Field("device_kind", f"{SLOTS}", WHOLE, "VISCOUS to ROLLING_RESISTANCE"),
     Field("device_constants", f"{SLOTS} 4", "mixed", "of its law, see the kinds"),
     Field("linear_speed", "", "m/s", "up to which |u_b'|^a is followed as linear"),
+    Field("compliant", "", WHOLE, "1 if full contact gives way, on a bed"),
+    Field("bed_uplift", "", "rad", "phi_u, at which full contact ends"),
+    Field("bed_full", "", "rad", "x_full of curved ends on a plane bed; else 0"),
+    Field("bed_height", "", "-", "C_u = C(phi_u)"),
+    Field("bed_k", "", "1/s2", "k of full contact, over N m_c R^2"),
+    Field("bed_c", "", "1/s", "its damping, likewise"),
+    Field("sink", "", "sqrt(rad)", "what a plane bed takes from the weight's arm, times w"),
+    Field("root", "", "sqrt(rad)", "and from that of the lift"),
+    Field("lifts", "", "-", "j = sqrt(A_u/A(phi_u+)), of theta' at uplift"),
+    Field("bedded_rate", "", "1/s", "least number of Taylor steps a second in full contact"),
 )
 
 REQUEST = (
@@ -181,7 +191,7 @@ STATE = (
     Field("intervals", "lanes", WHOLE, "of the history, at most", "driver"),
     Field("outcome", "lanes", WHOLE, "how it ended, or RUNNING", "driver, events, full_contact"),
     # The phase of motion and the range of the tilt in it.
-    Field("phase", "lanes", WHOLE, "FULL_CONTACT to STUCK", "devices, driver, transitions"),
+    Field("phase", "lanes", WHOLE, "FULL_CONTACT to BEDDED", "bed, devices, driver, transitions"),
     Field("phase_p", "lanes", "-", "B = p cos x + q sin x", "transitions"),
     Field("phase_q", "lanes", "-", "C = c + p sin x - q cos x", "transitions"),
     Field("phase_c", "lanes", "-", "k while rolling, 0 rocking", "transitions"),
@@ -363,6 +373,32 @@ EQUIPPED_STATE = (
     Field("device_energy", f"{SLOTS} lanes", "J", "dissipated", "devices"),
 )
 
+COMPLIANT_STATE = (
+    *EQUIPPED_STATE,
+    Field("compliant", "lanes", "-", "1 if the structure stands on a bed", "bed"),
+    Field("bed_uplift", "lanes", "rad", "phi_u", "bed"),
+    Field("bed_k", "lanes", "1/s2", "k in full contact, else 0", "bed"),
+    Field("bed_c", "lanes", "1/s", "damping there, else 0", "bed"),
+    Field("sink", "lanes", "sqrt(rad)", "while a plane end lifts, else 0", "bed"),
+    Field("root", "lanes", "sqrt(rad)", "likewise", "bed"),
+    Field("fade", "lanes", "1/rad", "1/(x_full - phi_u) of curved ends, else 0", "bed"),
+    Field("pace", "lanes", "s", "longest next step", "bed"),
+    Field("bed_energy", "lanes", "J", "dissipated in the bed", "bed"),
+    Field("bedded_time", "lanes", "s", "in full contact", "bed"),
+    Field("impact_number", "lanes", "-", "largest chi", "bed"),
+    Field("tilt_terms", "terms lanes", "rad", "of x", "bed"),
+    Field("y_terms", "terms lanes", "1/sqrt(rad)", "of x^(-1/2)", "bed"),
+    Field("shape_terms", "terms lanes", "-", "of 1 - fade (x - phi_u)", "bed"),
+    Field("square_terms", "terms lanes", "-", "of its square", "bed"),
+    Field("fourth_terms", "terms lanes", "-", "of its fourth power", "bed"),
+    Field("patch_terms", "terms lanes", "1/sqrt(rad)", "of w", "bed"),
+    Field("lift_terms", "terms lanes", "-", "of B_v", "bed"),
+    Field("fading", "", WHOLE, "1 if w has a second factor in any lane", "driver"),
+)
+
+STATES = {"plain": STATE, "devices": EQUIPPED_STATE, "compliant": COMPLIANT_STATE}
+"""By the variant of the kernel that is compiled for it."""
+
 BLOCK = (
     Field("n", "", WHOLE, "modes", "run"),
     # The modes, now and over a step: q1 = a q + b q' + c p + d p', q1' = e q + f q' + g p + i p'.
@@ -429,16 +465,20 @@ RESULT = (
     Field("device_energy", f"{SLOTS}", "J", "dissipated"),
     Field("device_stored", f"{SLOTS}", "J", "at the end, over the start"),
     Field("permanent", f"{SLOTS}", "m", "plastic elongation of a tendon"),
+    Field("bed_energy", "", "J", "dissipated in the bed, if audited"),
+    Field("bedded_time", "", "s", "in full contact with a bed"),
+    Field("impact_number", "", "-", "largest chi"),
 )
 
 SAMPLE = (
     Field("theta", "", "rad", "tilt of the storey, positive to the right", "samples"),
     Field("theta_dot", "", "rad/s", "theta'", "samples"),
     Field("theta_ddot", "", "rad/s2", "theta''; 0 in full contact", "samples"),
-    Field("phase", "", WHOLE, "FULL_CONTACT, ROLLING, ROCKING or STUCK", "samples"),
+    Field("phase", "", WHOLE, "FULL_CONTACT to BEDDED", "samples"),
     Field("energy_input", "", "J", "by the ground so far", "samples"),
     Field("energy_damped", "", "J", "in the building so far", "samples"),
     Field("energy_lost", "", "J", "at impacts and re-contacts so far, net", "samples"),
+    Field("bed_energy", "", "J", "dissipated in the bed so far", "bed"),
 )
 """The floors' displacements and velocities stand in an array of their own, as long as they are."""
 

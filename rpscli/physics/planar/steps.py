@@ -12,6 +12,7 @@ from rpscli.physics.core.compile import compiled, specialised
 from rpscli.physics.core.quintic import Quintic, lower_hull, quintic, upper_hull
 from rpscli.physics.core.records import LANES, ORDER, Record
 from rpscli.physics.core.series import integral, slope, value
+from rpscli.physics.planar.bed.terms import begin_bed, extend_bed, keep_pace
 from rpscli.physics.planar.devices.forces import begin_devices, extend_devices, set_devices_at_ends
 from rpscli.physics.planar.equation_of_motion import (
     accelerate,
@@ -51,6 +52,7 @@ def plan_steps(s: Record, l: int) -> None:
     s.step[l], s.steps_left[l] = max(left, 0.0) / steps, steps
     if s.nonsmooth_damper[l] > 0.0:
         shorten_step(s, l)
+    keep_pace(s, l)
 
 
 KINK = 0.25
@@ -171,6 +173,7 @@ def take_steps(s: Record) -> None:
     """
     begin_terms(s)
     begin_devices(s)
+    begin_bed(s)
     if s.lanes == 1:
         extend_all(s, 1)
     else:
@@ -189,24 +192,31 @@ def extend_all(s: Record, lanes: int) -> None:
 
     Written out: the compiler is to know lanes and orders, or it fears that terms overlap.
     """
+    extend_bed(s, lanes, 1)
     extend_rotation(s, lanes, 1)
     extend_modes(s, lanes, 1)
     extend_devices(s, 1)
+    extend_bed(s, lanes, 2)
     extend_rotation(s, lanes, 2)
     extend_modes(s, lanes, 2)
     extend_devices(s, 2)
+    extend_bed(s, lanes, 3)
     extend_rotation(s, lanes, 3)
     extend_modes(s, lanes, 3)
     extend_devices(s, 3)
+    extend_bed(s, lanes, 4)
     extend_rotation(s, lanes, 4)
     extend_modes(s, lanes, 4)
     extend_devices(s, 4)
+    extend_bed(s, lanes, 5)
     extend_rotation(s, lanes, 5)
     extend_modes(s, lanes, 5)
     extend_devices(s, 5)
+    extend_bed(s, lanes, 6)
     extend_rotation(s, lanes, 6)
     extend_modes(s, lanes, 6)
     extend_devices(s, 6)
+    extend_bed(s, lanes, 7)
     extend_rotation(s, lanes, 7)
     extend_modes(s, lanes, 7)
     extend_devices(s, 7)

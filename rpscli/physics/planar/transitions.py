@@ -7,6 +7,7 @@ import math
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.lanes import log_event, time_of
 from rpscli.physics.core.records import Record
+from rpscli.physics.planar.bed.passages import bed_above, bed_below, enter_on_bed
 from rpscli.physics.planar.energy import relative_momentum
 from rpscli.physics.planar.equation_of_motion import tilting_energy
 from rpscli.physics.planar.state import (
@@ -15,6 +16,7 @@ from rpscli.physics.planar.state import (
     AFTER_UPLIFT,
     FULL_CONTACT,
     IMPACT,
+    NO_EVENT,
     OVERTURNING,
     RECONTACT,
     ROCKING,
@@ -154,6 +156,7 @@ def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
     s.theta_low[l], s.theta_high[l] = system.beta, system.theta_limit
     if phase == ROLLING:
         s.theta_low[l], s.theta_high[l] = 0.0, min(system.beta, system.theta_limit)
+    enter_on_bed(s, l, system, phase)
 
 
 @compiled
@@ -167,12 +170,18 @@ def enter_first_phase(s: Record, l: int, system: Record) -> None:
 @compiled
 def event_below(s: Record, l: int, system: Record) -> int:
     """What happens where the tilt falls below the range of its phase."""
+    kind = bed_below(s, l, system)
+    if kind != NO_EVENT:
+        return kind
     return ROCKING_TO_ROLLING if s.phase[l] == ROCKING and system.beta > 0.0 else IMPACT
 
 
 @compiled
 def event_above(s: Record, l: int, system: Record) -> int:
     """What happens where the tilt rises above the range of its phase."""
+    kind = bed_above(s, l, system)
+    if kind != NO_EVENT:
+        return kind
     goes_on = s.phase[l] == ROLLING and system.beta < system.theta_limit
     return ROLLING_TO_ROCKING if goes_on else OVERTURNING
 

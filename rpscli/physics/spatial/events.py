@@ -12,6 +12,7 @@ from rpscli.physics.core.quintic import (
     first_descent,
     lower_hull,
     offset,
+    peak_in_step,
     slope,
     upper_hull,
     value,
@@ -20,7 +21,7 @@ from rpscli.physics.core.records import NO_HISTORY, Floats, Record
 from rpscli.physics.core.series import slope as slope_of
 from rpscli.physics.core.series import value as value_of
 from rpscli.physics.planar.equation_of_motion import cap_beam_lift, lifted_mass, rotation_terms
-from rpscli.physics.planar.events import peak_in_step, too_many_events
+from rpscli.physics.planar.events import too_many_events
 from rpscli.physics.planar.full_contact.follow import REST_EVERY
 from rpscli.physics.planar.geometry import Phase
 from rpscli.physics.planar.run import Output

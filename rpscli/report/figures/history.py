@@ -285,6 +285,8 @@ def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
         energy = trace.devices.energy[:, index]
         name = f"device {index}: {device.kind.replace('_', ' ')}"
         parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
+    if result.structure.bed is not None:
+        parts.insert(0, (trace.energy_bed, "dissipated in the joints", style.BLUE))
     if result.structure.storeys:
         parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))
     below = np.zeros_like(trace.time)
@@ -294,4 +296,4 @@ def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
         below = above
     axes.plot(trace.time, factor * trace.energy_input, color=style.BLACK, label="input")
     axes.set(xlim=(0.0, trace.time[-1]), xlabel="time [s]", ylabel=f"energy [{prefix}J]")
-    style.legend_above(axes, 3 if result.structure.devices else 4)
+    style.legend_above(axes, 4 if len(parts) < 4 else 3)

@@ -45,7 +45,7 @@ class SystemProperties(NamedTuple):
 
     `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
     that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
-    `equipped` whether there are devices; `limits` are those of the study or, where it has none, of
+    `kernel` the variant that follows it; `limits` are those of the study or, where it has none, of
     the case; `lacking` names results that the system cannot have; `doubts` are what is unusual.
     """
 
@@ -58,7 +58,7 @@ class SystemProperties(NamedTuple):
     frequency_parameter: float
     static_base_shear: float
     building: bytes
-    equipped: bool
+    kernel: str
     record: RecordRequest | None
     scale: float
     limits: tuple[Condition, ...]
@@ -131,7 +131,7 @@ def _properties(
         frequency_parameter=structure.rigid_frequency_parameter,
         static_base_shear=structure.static_base_shear,
         building=b"".join(map(_digest, filter(None, (building, structure.superstructure_y)))),
-        equipped=bool(structure.devices),
+        kernel=structure.kernel,
         record=request,
         scale=1.0 if case.record is None else case.record.scale,
         limits=_limits(study, case),
@@ -197,6 +197,10 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
     "podium.friction": lambda structure: structure.friction is not None,
     "columns": lambda structure: not structure.left_out_of_columns,
+    "contact": lambda structure: structure.bed is not None,
+    "plane contact": lambda structure: (
+        structure.contact.kind == "plane" and structure.bearing.is_flat
+    ),
     "damper": _device_with("max_damper_force"),
     "stop": _device_with("max_stop_force"),
     "tendon": _device_with("lost_prestress"),

@@ -8,6 +8,8 @@ from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.lanes import log_event, time_of
 from rpscli.physics.core.records import Record
 from rpscli.physics.core.series import middle_of, sine_cosine
+from rpscli.physics.planar.bed.passages import phase_on_bed
+from rpscli.physics.planar.bed.terms import hold_of_bed, lift_arm
 from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.devices.events import has_friction, reset_yielded_tendons
 from rpscli.physics.planar.devices.forces import (
@@ -145,6 +147,8 @@ def mobilised_friction(s: Record, l: int) -> float:
     B, C = arms(s, l)
     elastic, friction = force_at_rest(s, l)
     action = horizontal_action(s, l, s.next_a_g[l], s.next_V[l]) / s.shear_factor[l]
+    elastic = elastic + hold_of_bed(s, l, s.theta[l], 0.0, C) * 0.5 * s.columns_mass[l]
+    B = lift_arm(s, l, s.theta[l], B)
     resists = B / C * s.next_g_up[l] * s.weight_over_R[l] / s.shear_factor[l] + elastic
     if s.phase[l] == STUCK:
         return float(-(resists + action) / friction)
@@ -222,7 +226,7 @@ def at_reversal(s: Record, l: int, log: Record) -> bool:
 @with_devices()
 def slide(s: Record, l: int, log: Record, side: float) -> None:
     """Leave a tilt that friction held, to the right or to the left."""
-    s.phase[l] = ROLLING if s.phase_c[l] > 0.0 else ROCKING
+    s.phase[l] = phase_on_bed(s, l, ROLLING if s.phase_c[l] > 0.0 else ROCKING)
     s.direction[l], s.restart_after[l] = side * s.side[l], AFTER_PHASE_CHANGE
     rotation = s.side[l] * s.theta[l]
     log_event(s, l, log, time_of(s, l), SLIDING, rotation, 0.0, 0.0, 0.0)

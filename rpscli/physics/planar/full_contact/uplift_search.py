@@ -27,6 +27,7 @@ from rpscli.physics.core.quintic import (
     quintic,
 )
 from rpscli.physics.core.records import INSTANTS, Record
+from rpscli.physics.planar.bed.terms import hold_of_bed, lift_arm
 from rpscli.physics.planar.devices.rest import arms, force_at_rest
 from rpscli.physics.planar.equation_of_motion import load_factors, uplift_push
 from rpscli.physics.planar.full_contact.modal_block import fill_map, map_of, mapped
@@ -65,6 +66,8 @@ def margin_of(s: Record, l: int, system: Record) -> Margin:
         held_right, held_left = elastic + friction, elastic + friction
         if s.phase[l] == STUCK:
             B, C = arms(s, l)
+            elastic = hold_of_bed(s, l, s.theta[l], elastic, C)
+            B = lift_arm(s, l, s.theta[l], B)
             right = s.side[l] * B / C * (ground_factor + building)
             left, elastic = -right, s.side[l] * elastic
             held_right, held_left = friction + elastic, friction - elastic

@@ -1,0 +1,274 @@
+"""What the ends of the columns bear on: rigid, or a plane or two edges that give way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.physics.planar import geometry, plane_bed
+
+Array: TypeAlias = NDArray[np.float64]
+ContactKind = Literal["rigid", "plane", "edges"]
+SHAPE = {"plane": 1.0 / 3.0, "edges": 1.0}
+"""m(phi_u): the moment at which a kind begins to lift, over that of a column on its edge."""
+
+USUAL_LOSS = {"rigid": 1.0, "plane": 0.3, "edges": 1.0}
+"""kappa where a case gives none: little for plane ends, which is cautious for rotations."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How the ends of the columns bear in full contact and as they lift.
+
+    Parameters
+    ----------
+    kind
+        ``rigid``: nothing moves until the columns lift. ``plane``: a plane joint that gives way
+        evenly and cannot pull; it lifts gradually. ``edges``: the same at the edges of the flat
+        part alone, a hinge that begins to move at once and lifts at once.
+    period_ratio
+        r, first period in full contact over that on a fixed base; above 1.
+    stiffness
+        K_s = dF/du_b of the storey at u_b = 0 [N/m].
+    settlement
+        D_0, by which one joint gives way under the permanent load [m]; of flat ends only.
+    damping
+        zeta, damping ratio of the storey's own vibration in full contact, A theta'' + c theta' +
+        k theta = 0 with c = 2 zeta sqrt(k A).
+
+    Raises
+    ------
+    ValueError
+        For another kind, a damping < 0, or, unless it is rigid, not exactly one of the three.
+
+    Notes
+    -----
+    Theory, section 12.
+    """
+
+    kind: ContactKind = "rigid"
+    period_ratio: float | None = None
+    stiffness: float | None = None
+    settlement: float | None = None
+    damping: float = 0.03
+
+    def __post_init__(self) -> None:
+        """Refuse what does not say how soft it is."""
+        if self.kind not in USUAL_LOSS:
+            raise ValueError(f"contact {self.kind!r} must be rigid, plane or edges")
+        given = [x for x in (self.period_ratio, self.stiffness, self.settlement) if x is not None]
+        if self.kind == "rigid" and given:
+            raise ValueError(
+                "rigid contact takes no period_ratio, stiffness or settlement; a measured period"
+                " does not tell whether ends are `plane` or `edges`: name one, and try both"
+            )
+        if self.kind != "rigid" and len(given) != 1:
+            raise ValueError(
+                f"contact {self.kind} takes one of period_ratio, stiffness, settlement;"
+                f" {len(given)} are given"
+            )
+        if not all(0.0 < x < math.inf for x in given) or not 0.0 <= self.damping < math.inf:
+            raise ValueError("sizes of the contact must be > 0, its damping >= 0, all finite")
+        if self.period_ratio is not None and self.period_ratio <= 1.0:
+            raise ValueError(
+                f"period_ratio = {self.period_ratio:g} must be above 1: what gives way lengthens"
+                " the period; for 1 use the kind `rigid`"
+            )
+
+
+Standing: TypeAlias = Any
+"""A `PodiumStructure`, which imports this module."""
+
+
+class BedPath(NamedTuple):
+    """Along |theta|, lengths over R: what enters moments, inertia and displacements."""
+
+    arm: Array  # of the weight: the restoring moment is 2 W R times it
+    lift_arm: Array  # B_v: v_b' = 2 R B_v theta'
+    lift_bend: Array  # dB_v/dx
+    height: Array  # C
+    displacement: Array  # u_b/2R
+    lift: Array  # v_b/2R
+    potential: Array  # of weight and bed, over 2 W R
+
+
+class Bed(NamedTuple):
+    """Full contact that gives way, of a structure (Theory, section 12)."""
+
+    structure: Standing
+    uplift_rotation: float  # phi_u, at which an edge lifts [rad]
+    height: float  # C_u = C(phi_u)
+    lift_arm: float  # B(phi_u)
+    inertia: float  # A_u, over N m_c R^2
+    spring: float  # k, secant of the moment up to phi_u, over N m_c R^2 [1/s2]
+    damper: float  # c = 2 zeta sqrt(k A_u), likewise [1/s]
+    stiffness: float  # K_s = dF/du_b up to phi_u [N/m]
+    mass: float  # m_0, columns and cap beam at u_b [kg]
+    sink: float  # what w takes from the arm of the weight, 0 on edges
+    root: float  # what w takes from the arm of the lift, 0 on edges
+    kept: float  # j, theta' after uplift over that before: below 1 on edges
+    shift: float  # what u_b/2R lacks at phi_u for being continuous, C_u being constant below it
+    full_rotation: float  # x_full, from which curved ends bear outside of the flat part, or 0 [rad]
+    fade: float  # 1/(x_full - phi_u), or 0 [1/rad]
+
+    @property
+    def settlement(self) -> float | None:
+        """D_0 of one joint under permanent load [m]; None on curved ends, which bear wider."""
+        b = self.structure.bearing
+        return float(self.uplift_rotation * b.half_width) if b.is_flat else None
+
+    @property
+    def period_ratio(self) -> float | None:
+        """r, first period in full contact over that on a fixed base; None without a building."""
+        from scipy.optimize import brentq
+
+        if self.structure.superstructure is None:
+            return None
+        first = float(self.structure.superstructure.frequencies[0])
+
+        def misses(share: float) -> float:
+            return storey_stiffness(self.structure, self.mass, share * first) / self.stiffness - 1.0
+
+        return 1.0 / float(brentq(misses, 1e-9, 1.0 - 1e-12, xtol=1e-15, rtol=1e-15))
+
+    def path(self, x: Array) -> BedPath:
+        """Arms, displacements and potential at |theta| [rad]."""
+        u, fade, b = self.uplift_rotation, self.fade, self.structure.bearing
+        below, up = x < u, np.maximum(x, u)
+        B, C, displacement, lift = geometry.path_along(b.rolling, b.rocking, b.beta, up)
+        c = np.where(up < b.beta, b.rolling.c, b.rocking.c)
+        start = float(geometry.path_along(b.rolling, b.rocking, b.beta, np.array(u))[3])
+        end = np.minimum(up, self.full_rotation) if self.full_rotation else up
+        w, slope = plane_bed.patch(end, u, fade)
+        area = plane_bed.patch_integral(end, u, fade) - plane_bed.patch_integral(u, u, fade)
+        arm = self.lift_arm - self.sink / math.sqrt(u)  # at phi_u
+        stored = 0.5 * arm * u + lift - start - self.sink * area
+        return BedPath(
+            np.where(below, arm * x / u, B - self.sink * w),
+            np.where(below, 0.0, B - self.root * w),
+            np.where(below, 0.0, c - C - np.where(up > end, 0.0, self.root * slope)),
+            np.where(below, self.height, C),
+            np.where(below, self.height * x, displacement + self.shift),
+            np.where(below, 0.0, lift - start - self.root * area),
+            np.where(below, 0.5 * arm * x * x / u, stored),
+        )
+
+
+def make_bed(structure: Standing, u: float) -> Bed:
+    """The bed whose edges lift at phi_u [rad]."""
+    b, contact, gamma = structure.bearing, structure.contact, structure.gamma
+    phase, gradual = b.rocking if b.is_flat else b.rolling, contact.kind == "plane"
+    sine, cosine, columns = math.sin(u), math.cos(u), structure.columns_mass
+    B, C = (f(phase, cosine, sine) for f in (geometry.contact_arm, geometry.contact_height))
+    inertia = b.inertia_ratio - 1.0 + (1.0 + 4.0 * gamma) * C * C
+    lifted = inertia + (1.0 + 4.0 * gamma * (1.0 + structure.eta)) * B * B
+    sink = 2.0 / 3.0 * math.sin(b.alpha) * math.sqrt(u) if gradual else 0.0
+    arm = (B - sink / math.sqrt(u)) / u
+    spring = 2.0 * structure.weight * arm / (columns * b.semi_diagonal)
+    full = 0.0
+    if gradual and not b.is_flat:
+        sunk = 1.5 * b.half_width**2 * u / math.sqrt(2.0 * b.radius)
+        full = math.sqrt(2.0 * sunk ** (2.0 / 3.0) / b.radius)
+    return Bed(
+        structure,
+        uplift_rotation=u,
+        height=C,
+        lift_arm=B,
+        inertia=inertia,
+        spring=spring,
+        damper=2.0 * contact.damping * math.sqrt(max(spring, 0.0) * inertia),
+        stiffness=0.25 * columns * spring / C**2,
+        mass=0.25 * columns * inertia / C**2,
+        sink=sink,
+        root=B * math.sqrt(u) if gradual else 0.0,
+        kept=1.0 if gradual else math.sqrt(inertia / lifted),
+        shift=C * u - geometry.cap_beam_displacement(phase, u, cosine, sine),
+        full_rotation=full,
+        fade=1.0 / (full - u) if full > u else 0.0,
+    )
+
+
+def storey_stiffness(structure: Standing, mass: float, omega: float) -> float:
+    """K_s with which the building vibrates freely at omega, beam and columns weighing m_0 [N/m]."""
+    building = structure.superstructure
+    shaken = building.participation**2 / (1.0 - (omega / building.frequencies) ** 2)
+    return float(omega**2 * (mass + shaken.sum()))
+
+
+def bed_of(structure: Standing) -> Bed | None:
+    """What full contact of a structure gives way by; None on rigid ends.
+
+    Raises
+    ------
+    ValueError
+        If the structure's contact asks for what the model does not have.
+    """
+    contact, b = structure.contact, structure.bearing
+    if contact.kind == "rigid":
+        return None
+    refuse_combinations(structure)
+    softest, found = b.slenderness * SHAPE[contact.kind], None
+    if contact.settlement is not None:
+        found = make_bed(structure, contact.settlement / b.half_width)
+    else:
+        from scipy.optimize import brentq
+
+        def misses(u: float) -> float:
+            bed, wanted = make_bed(structure, u), contact.stiffness
+            if contact.period_ratio is not None:
+                omega = float(structure.superstructure.frequencies[0]) / contact.period_ratio
+                wanted = storey_stiffness(structure, bed.mass, omega)
+            return float(bed.stiffness / wanted) - 1.0
+
+        ends = 1e-12 * softest, softest * (1.0 - 1e-9)
+        if misses(ends[0]) < 0.0:
+            raise ValueError("the contact is so stiff that it is rigid; use the kind `rigid`")
+        if misses(ends[1]) < 0.0:
+            found = make_bed(structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15)))
+    if found is None or found.uplift_rotation >= softest or found.spring <= 0.0:
+        share = "3 phi_u" if contact.kind == "plane" else "phi_u"
+        raise ValueError(
+            f"the contact is so soft that it does not hold the weight upright: {share} must stay"
+            " below tan(alpha); use a smaller period_ratio or settlement, or a larger stiffness"
+        )
+    beyond = max(found.uplift_rotation, found.full_rotation)
+    if not b.is_flat and beyond >= b.beta:
+        raise ValueError(
+            f"the ends bear outside of their flat part from {beyond:.3g} rad on, beyond the end of"
+            f" their arcs at {b.beta:.3g} rad; use a stiffer contact, or flat ends"
+        )
+    farthest = 2.0 * b.semi_diagonal * found.height * found.uplift_rotation
+    if any(getattr(device, "gap", math.inf) <= farthest for device in structure.devices):
+        raise ValueError(
+            f"with ends that give way a stop must have a gap above {farthest:.3g} m, the"
+            " displacement at which they begin to lift"
+        )
+    return found
+
+
+def refuse_combinations(structure: Standing) -> None:
+    """Refuse what is not followed with ends that give way: raises ValueError."""
+    contact, b = structure.contact, structure.bearing
+    devices, law = {device.kind for device in structure.devices}, structure.impact_law
+    without, curved = structure.superstructure is None, not b.is_flat
+    reasons = {
+        "spherical ends have no flat part to bear on; use `rigid`": b.is_spherical,
+        "floors would jump at re-contact, use the impact law `flexible`": law.floors_jump,
+        "a period_ratio is that of a building, without one give stiffness or settlement": (
+            contact.period_ratio is not None and without
+        ),
+        "curved ends bear wider than a settlement tells, give period_ratio or stiffness": (
+            contact.settlement is not None and curved
+        ),
+        "tendons would load the bed, which is not followed; leave them out": "tendon" in devices,
+        "rolling resistance is given by the contact's damping; leave it out": (
+            "rolling_resistance" in devices
+        ),
+    }
+    for reason, refused in reasons.items():
+        if refused:
+            raise ValueError(f"contact `{contact.kind}`: {reason}")

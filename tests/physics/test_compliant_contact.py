@@ -1,0 +1,269 @@
+"""Ends that give way against exact numbers, energy, symmetry and a second integrator."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from oracles.compliant_storey import CompliantStorey
+from paper_structures import Array, ground, needs_compiled_kernels, waves
+
+from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.bearing import Bearing
+from rpscli.model.contact import Contact
+from rpscli.model.devices import FrictionDamper, Stop, ViscousDamper
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.superstructure import (
+    ModalDamping,
+    Profile,
+    RayleighDamping,
+    Superstructure,
+    profile_stiffnesses,
+)
+from rpscli.physics.planar.state import BEDDED
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
+
+UNDAMPED = ModalDamping(0.0)
+RHO = 0.5
+
+
+def podium(
+    storeys: int,
+    contact: Contact,
+    *,
+    loss: float = 1.0,
+    damping: RayleighDamping | ModalDamping | None = None,
+    profile: Profile = "sine",
+    rho: float = 0.0,
+    devices: tuple[Device, ...] = (),
+) -> PodiumStructure:
+    """R 1.5 m, tan(alpha) .15, gamma 10, eta n, T_1 n/10 s, 5 %."""
+    above = None
+    if storeys:
+        masses = np.full(storeys, 2e4)
+        stiffnesses = profile_stiffnesses(masses, storeys / 10.0, profile)
+        above = Superstructure(masses, stiffnesses, damping or RayleighDamping(0.05, (1, 2)))
+    bearing = Bearing(1.5, 0.15, 0.3 if rho else 0.15, rho)
+    law = ImpactLaw(loss=loss)
+    return PodiumStructure(bearing, 2e3, 2e4, above, law, contact=contact, devices=devices)
+
+
+def lifting_at(kind: str, phi_u: float, damping: float = 0.0) -> Contact:
+    """Of flat ends: the settlement tells it."""
+    return Contact(kind, settlement=phi_u * 1.5 * math.sin(math.atan(0.15)), damping=damping)  # type: ignore[arg-type]
+
+
+def released(
+    structure: PodiumStructure, seconds: float = 2.4, accuracy: float = 1.0
+) -> TimeHistoryResult:
+    settings = TimeHistorySettings(
+        free_vibration=0.0, accuracy=accuracy, initial_rotation=0.4 * structure.bearing.alpha
+    )
+    still = GroundMotion(np.zeros(round(seconds / 1e-3) + 1), 1e-3, "made", "made", "made")
+    return time_history(structure, still, settings, with_fixed_base=False)
+
+
+def shaken(structure: PodiumStructure, motion: GroundMotion, **how: float) -> TimeHistoryResult:
+    return time_history(structure, motion, TimeHistorySettings(**how), with_fixed_base=False)  # type: ignore[arg-type]
+
+
+# Releases at .4 alpha, undamped uniform buildings, by another program and two integrators.
+RELEASES = [
+    (1, 2.868200132581778e-05, 0.0, 0.39785, 3.3933),
+    (1, 2.868200132581778e-05, 0.3, 0.38490, 5.226),
+    (1, 2.868200132581778e-05, 1.0, 0.35612, 5.649),
+    (3, 2.1e-4, 0.0, 0.38034, 3.4081),
+    (3, 2.1e-4, 0.3, 0.36964, 3.922),
+    (3, 2.1e-4, 1.0, 0.34553, 3.694),
+]
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize(("storeys", "phi_u", "loss", "swing", "shear"), RELEASES)
+def test_a_release(storeys: int, phi_u: float, loss: float, swing: float, shear: float) -> None:
+    contact = lifting_at("plane", phi_u)
+    structure = podium(storeys, contact, loss=loss, damping=UNDAMPED, profile="uniform")
+    found = released(structure)
+    assert -found.trace.rotation.min() / structure.bearing.alpha == pytest.approx(swing, abs=1e-5)
+    assert found.base_shear_ratio == pytest.approx(shear, abs=5e-4)
+    # Steps may take 5e-6 of the energy of the fastest vibration, which impacts excite.
+    assert abs(found.energy.residual) < 5e-6 * found.trace.energy_stored[0]
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize(("storeys", "back"), [(1, 0.3546), (3, 0.3389), (6, 0.2955)])
+def test_stiff_edges_are_rigid_ends(storeys: int, back: float) -> None:
+    """The back swing of the rigid program; edges approach it with phi_u."""
+    edges, rigid = (
+        podium(storeys, contact, damping=UNDAMPED, profile="uniform")
+        for contact in (lifting_at("edges", 1e-5 * math.atan(0.15)), Contact())
+    )
+    swings = [-released(s).trace.rotation.min() / s.bearing.alpha for s in (edges, rigid)]
+    assert swings == pytest.approx([back, back], abs=1e-4)
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("kind", ["plane", "edges"])
+@pytest.mark.parametrize("rho", [0.0, RHO])
+def test_without_loss_and_damping_energy_stays(kind: str, rho: float) -> None:
+    contact = Contact(kind, stiffness=6e7, damping=0.0)  # type: ignore[arg-type]
+    structure = podium(3, contact, loss=0.0, damping=UNDAMPED, rho=rho)
+    found = released(structure, seconds=30.0)
+    kept = found.trace.energy_stored[0]
+    assert found.impacts > 10
+    assert abs(found.energy.residual) < 1e-6 * kept
+    assert np.ptp(found.trace.energy_stored) < 2e-6 * kept
+
+
+@needs_compiled_kernels
+def test_full_contact_swings_with_the_period_that_was_asked_for() -> None:
+    """The first mode, alone: M, C = 0 and K of [u_b, u_t] written here."""
+    structure = podium(3, Contact("plane", period_ratio=1.2, damping=0.0), damping=UNDAMPED)
+    bed, building = structure.bed, structure.superstructure
+    assert bed is not None
+    assert building is not None
+    K = np.zeros((4, 4))
+    K[1:, 1:] = building.stiffness_matrix
+    K[0, 1:] = K[1:, 0] = -building.stiffness_matrix.sum(axis=0)
+    K[0, 0] = building.stiffness_matrix.sum() + bed.stiffness
+    M = np.diag([bed.mass, *building.masses])
+    omega2, _ = np.linalg.eig(np.linalg.solve(M, K))
+    period = 2.0 * math.pi / math.sqrt(float(omega2.real.min()))
+    assert period / float(building.periods[0]) == pytest.approx(1.2, abs=1e-9)
+
+
+def oracle(structure: PodiumStructure) -> CompliantStorey:
+    bed, b, above = structure.bed, structure.bearing, structure.superstructure
+    assert bed is not None
+    assert above is not None
+    plane, damping = structure.contact.kind == "plane", structure.contact.damping
+    return CompliantStorey(
+        b.semi_diagonal, b.alpha, b.inertia_ratio, structure.columns_mass,
+        structure.cap_beam_mass, above.masses, above.stiffness_matrix, above.damping_matrix,
+        bed.uplift_rotation, damping, plane, structure.restitution,
+    )  # fmt: skip
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("kind", ["plane", "edges"])
+def test_a_second_integrator_agrees(kind: str) -> None:
+    motion = waves(2.5, 0.01, 2.5, seed=4)
+    contact = Contact(kind, period_ratio=1.3, damping=0.1)  # type: ignore[arg-type]
+    structure = podium(2, contact, loss=0.5)
+    found = shaken(structure, motion, free_vibration=0.0, accuracy=2.0)
+    theta, floors = oracle(structure).history(motion.acceleration, motion.dt)
+    assert found.impacts >= 3
+    largest = np.abs(theta).max()
+    np.testing.assert_allclose(found.trace.rotation, theta, atol=1e-6 * largest)
+    np.testing.assert_allclose(
+        found.trace.floor_displacements, floors, atol=1e-6 * np.abs(floors).max()
+    )
+
+
+def mirrored(motion: GroundMotion) -> GroundMotion:
+    return ground(-motion.acceleration, motion.dt)
+
+
+DEVICES: list[tuple[Device, ...]] = [
+    (),
+    (FrictionDamper(3e4),),
+    (ViscousDamper(2e5), Stop(0.02, 1e7, 1e5)),
+]
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("devices", DEVICES)
+@pytest.mark.parametrize("rho", [0.0, RHO])
+def test_audit_mirror_image_and_company(devices: tuple[Device, ...], rho: float) -> None:
+    motion = waves(6.0, 0.01, 3.0, seed=2)
+    contact = Contact("plane", stiffness=6e7)
+    structure = podium(3, contact, loss=0.3, rho=rho, devices=devices)
+    one, other = (shaken(structure, m) for m in (motion, mirrored(motion)))
+    assert one.uplifts > 2
+    assert abs(one.energy.residual) < 1e-6 * one.energy.input
+    np.testing.assert_array_equal(one.trace.rotation, -other.trace.rotation)
+    assert one.scalars() == other.scalars()
+    together = demands([Request(structure, MotionComponents(motion))] * 9)
+    assert {d.max_rotation for d in together} == {one.max_rotation}
+    assert {d.max_base_shear for d in together} == {one.max_base_shear}
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("amplitude", [0.3, 4.0])
+def test_nothing_comes_after_the_end(amplitude: float) -> None:
+    motion = waves(5.0, 0.01, amplitude, seed=7)
+    structure = podium(3, Contact("plane", period_ratio=1.2), loss=0.3)
+    short, long = (shaken(structure, motion, **how) for how in ({}, {"free_vibration": 60.0}))
+    assert short.duration < long.duration
+    assert short.history["phase"] == BEDDED
+    for name in ("max_rotation", "max_base_shear", "max_floor_acceleration"):
+        assert getattr(short, name) == getattr(long, name)
+    np.testing.assert_array_equal(short.storey_shears, long.storey_shears)
+
+
+@needs_compiled_kernels
+def test_the_residual_falls_with_the_order_of_the_steps() -> None:
+    motion = waves(4.0, 0.02, 3.0, seed=5)
+    structure = podium(3, Contact("edges", period_ratio=1.2), loss=1.0)
+    coarse, fine = (abs(shaken(structure, motion, accuracy=a).energy.residual) for a in (0.5, 1.0))
+    assert coarse > 2**6 * fine
+
+
+def slope(f: Array, x: Array) -> Array:
+    """Fourth-order differences on a geometric grid of steps 1e-4 x: rows -2 to 2."""
+    return np.asarray((f[0] - 8.0 * f[1] + 8.0 * f[3] - f[4]) / (12.0 * 1e-4 * x))
+
+
+@pytest.mark.parametrize("kind", ["plane", "edges"])
+@pytest.mark.parametrize("rho", [0.0, RHO, 0.8])
+def test_moments_are_slopes_of_the_potential(kind: str, rho: float) -> None:
+    structure = podium(2, Contact(kind, stiffness=8e7), rho=rho)  # type: ignore[arg-type]
+    bed, b = structure.bed, structure.bearing
+    assert bed is not None
+    ends = [bed.uplift_rotation, bed.full_rotation or 1.0, b.beta or 1.0]
+    x = np.geomspace(0.1 * bed.uplift_rotation, 0.9 * structure.critical_rotation, 60)
+    x = x[np.all(np.abs(x[:, None] / np.array(ends) - 1.0) > 1e-3, axis=1)]
+    grid = [bed.path(x * (1.0 + k * 1e-4)) for k in range(-2, 3)]
+    there = grid[2]
+    for whole, part in (
+        ("potential", "arm"), ("lift", "lift_arm"), ("displacement", "height"),
+        ("lift_arm", "lift_bend"),
+    ):  # fmt: skip
+        values = np.array([getattr(path, whole) for path in grid])
+        scale = np.abs(getattr(there, part)).max()
+        found = slope(values, x)
+        # Rounding of the differences: 1e-12 of what is differenced, over 1e-4 x.
+        allowed = 2e-12 * (1.0 + np.abs(values[2])) / (1e-4 * x) + 1e-9 * scale
+        assert np.all(np.abs(found - getattr(there, part)) < allowed)
+    for end in ends[: 2 if bed.full_rotation else 1]:
+        below, above = (bed.path(np.array([end * (1.0 + h)])) for h in (-1e-12, 1e-12))
+        for name in ("arm", "height", "displacement", "lift", "potential"):
+            one, other = getattr(below, name)[0], getattr(above, name)[0]
+            assert one == pytest.approx(other, rel=1e-9, abs=1e-11)
+
+
+LAW = {  # phi/phi_u: m, lift of the end's centre over B phi_u
+    1.0: (1.0 / 3.0, 0.0), 2.0: (0.528595, 0.171573), 4.0: (2.0 / 3.0, 1.0),
+    25.0: (0.866667, 16.0), 100.0: (0.933333, 81.0),
+}  # fmt: skip
+
+
+def test_the_law_of_a_plane_end() -> None:
+    """Columns so slender that B hardly changes: the law of one end remains."""
+    alpha, phi_u = math.atan(0.15), 1e-7
+    bed = podium(0, lifting_at("plane", phi_u)).bed
+    assert bed is not None
+    x = phi_u * np.array([*LAW])
+    path = bed.path(x)
+    np.testing.assert_allclose(path.arm / math.sin(alpha), [m for m, _ in LAW.values()], atol=1e-4)
+    np.testing.assert_allclose(
+        path.lift / (math.sin(alpha) * phi_u),
+        [lift for _, lift in LAW.values()],
+        rtol=1e-4,
+        atol=1e-6,
+    )
