@@ -30,7 +30,7 @@ COMMANDS = {
         "rpscli.commands.report", "one page to check, print and keep, from all of these"
     ),
     "compare": Member(
-        "rpscli.commands.compare", "what differs between two cases, studies or folders of results"
+        "rpscli.commands.compare", "what differs between two cases or folders of results"
     ),
     "export": Member("rpscli.commands.export", "a model that mujoco or OpenSees runs"),
     "identify": Member(

@@ -1,17 +1,17 @@
-"""`rps compare`: what differs between two cases, studies or folders of results."""
+"""`rps compare`: what differs between two cases or folders of results."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from rpscli.analyses.result_quantities import plain
-from rpscli.commands.inputs import RESULTS, MotionRequest, case_folder, read_case, single_motions
-from rpscli.commands.report_case import DESIGN, HISTORY, SUMMARY, SWEEP, kind_of
+from rpscli.commands.inputs import MotionRequest, read_case, single_motions
+from rpscli.commands.report_case import HISTORY, SUMMARY, kind_of
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
@@ -21,7 +21,7 @@ from rpscli.commands.shell.options import (
     terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import LimitExceeded, Refused, UsageError
+from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.documents import heading, versions
 from rpscli.report.figures.look import Look
 from rpscli.report.files import RUN_FILE
@@ -30,8 +30,6 @@ from rpscli.report.table import csv_text
 if TYPE_CHECKING:
     from rpscli.report.differences import Side
 
-CHECKED = "check"
-STORED = "a folder"
 NOT_DRAWN = Look(formats=())
 
 
@@ -50,27 +48,24 @@ NOT_DRAWN = Look(formats=())
 def command(
     a: str, b: str, records: tuple[str, ...], tolerance: float | None, terminal: Terminal
 ) -> None:
-    """What differs between A and B: each a case, a study, a folder of results or its run.json.
+    """What differs between A and B: each a case, a folder of results, or its run.json.
 
     Inputs are compared with all defaults written out, then versions, then every result, beside what
     1 % less or more of the motion does to it. Of a case the history is computed, or what `rps
-    check` says if neither names a record; of a study the points that are not stored yet, which is
-    all that is written.
+    check` says if neither names a record. Nothing is written.
     """
     from rpscli.report.differences import comparison_document, differences, tables
 
-    kinds = [STORED if _folder(source) else kind_of(source) for source in (a, b)]
+    stored = [_folder(source) is not None for source in (a, b)]
     made = []
-    for source, kind in zip((a, b), kinds, strict=True):
-        if kind == HISTORY:
-            made.append(_of_case(source, records, terminal, alone=STORED in kinds))
-        elif kind == DESIGN or records:
-            remedy = "run both by `rps design`, and compare the folders of their results"
-            if kind != DESIGN:
-                remedy = "leave --record out: studies and stored results have their own"
-            raise UsageError(f"{source}: is {kind if kind == STORED else f'a {kind}'}; {remedy}")
-        else:
-            made.append(_of_study(source, terminal) if kind == SWEEP else _of_folder(source))
+    for source, is_stored in zip((a, b), stored, strict=True):
+        if is_stored and records:
+            raise UsageError(f"{source}: stored results have their records; leave --record out")
+        if not is_stored and (kind := kind_of(source)) != HISTORY:
+            remedy = f"run both by `rps {kind}`, and compare the folders of their results"
+            raise UsageError(f"{source}: is not a case; {remedy}")
+        of_case = partial(_of_case, source, records, terminal, alone=any(stored))
+        made.append(_of_folder(source) if is_stored else of_case())
     (of_a, first), (of_b, second) = made
     if of_a != of_b:
         raise UsageError(
@@ -100,66 +95,35 @@ def _folder(source: str) -> Path | None:
     return path if path.is_dir() else None
 
 
-def _side(source: str, inputs: object, tables: Iterable[tuple[str, object]]) -> Side:
-    """What this version makes of a file."""
-    from rpscli.report.differences import Side, leaves
-
-    side = Side(source, versions(), dict(leaves(plain(inputs))))
-    for name, content in tables:
-        if name.endswith(".csv"):
-            side.add_table(name, str(content))
-    return side
-
-
 def _of_case(
     source: str, records: tuple[str, ...], terminal: Terminal, *, alone: bool
 ) -> tuple[str, Side]:
     from rpscli.commands.shell.waiting import announce_compilation
     from rpscli.commands.timehistory_run import compute, history_requests, look_beside
     from rpscli.commands.timehistory_set import computed_set
+    from rpscli.report.differences import Side, leaves
     from rpscli.report.study.statistics import demand_columns, records_columns
     from rpscli.report.tables.derived import derived_quantities
 
     given = read_case(CaseRequest(source, ()), terminal)
     unwritten = OutputRequest(Path(), force=True)
+    side = Side(source, versions(), dict(leaves(plain({"case": given.case.document}))))
     if given.case.record is None and not records and not alone:
-        side = _side(source, case_folder(given, unwritten, CHECKED).run.inputs, ())
         side.add_document(plain(derived_quantities(given.case.structure)))
-        return CHECKED, side
+        return "check", side
     requests = history_requests([given], [*single_motions(records, MotionRequest())], unwritten)
     announce_compilation(terminal)
     if len(requests) == 1:
-        side = _side(source, requests[0].folder.run.inputs, ())
+        side.inputs = dict(leaves(plain(requests[0].folder.run.inputs)))
         done, result = compute(requests[0], (), NOT_DRAWN, terminal)
         look_beside(done, result)
         side.add_document(plain(done.document))
         return HISTORY, side
     found = computed_set(requests, (), NOT_DRAWN, terminal, None, written=False)
     rows = records_columns(found.labels, [history.document for history in found.histories])
-    tables = {"records.csv": rows, "statistics.csv": demand_columns(found.together)}
-    texts = ((name, csv_text(columns)) for name, columns in tables.items())
-    return HISTORY, _side(source, {"case": given.case.document}, texts)
-
-
-def _of_study(source: str, terminal: Terminal) -> tuple[str, Side]:
-    from rpscli.commands.study import begin, compute, read
-    from rpscli.report.study.folder import study_folder
-    from rpscli.sweep.store import Store
-
-    study = read(CaseRequest(source, ()), (), terminal)
-    place = RESULTS / study.layout.study.name / SWEEP
-    try:
-        folder = study_folder(study.layout, place, study.overrides)
-    except Refused as error:
-        raise Refused(f"{error}; or compare folders of `rps sweep {source} -o FOLDER`") from None
-    with Store(place) as store:
-        run = study.opened(store)
-        begin(run, terminal, report_only=False)
-        compute("compare", run, terminal)
-        found = run.collect(place, NOT_DRAWN)
-    side = _side(source, folder.run.inputs, found.files.items())
-    side.warnings = [*study.warnings, *found.notes]
-    return SWEEP, side
+    side.add_table("records.csv", csv_text(rows))
+    side.add_table("statistics.csv", csv_text(demand_columns(found.together)))
+    return HISTORY, side
 
 
 def _of_folder(source: str) -> tuple[str, Side]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,7 @@ from rpscli.commands.shell.waiting import announce_compilation, passing_time
 from rpscli.errors import AnalysisError, RecordError, Refused, UsageError, listed
 from rpscli.report.documents import heading
 from rpscli.report.files import encoded, write_whole
-from rpscli.report.table import Heading, Part, Table, shown
+from rpscli.report.table import Heading, Part, Table, columns_of, records, shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -63,14 +63,20 @@ def command(
         raise Refused(f"{place} exists; name another file with -o, or overwrite it with --force")
     given = read_case(request, terminal)
     structure = given.case.structure
-    columns = _columns(data, test, first, last)
+    measured = _measured(data, test, first, last)
     announce_compilation(terminal)
+    from rpscli.analyses.identification.estimate import LEVEL
+
     with passing_time("fitting", terminal):
         try:
-            found = (_rocking if test == "rocking" else _vibration)(structure, columns, test)
+            found = (_rocking if test == "rocking" else _vibration)(structure, measured, test)
         except AnalysisError as error:
             raise AnalysisError(f"{data}: {error}") from None
-    document, parts, values = found
+    estimates, document, parts, values = found
+    rows = [(*each, *value) for each, value in estimates.items() if value is not None]
+    columns = columns_of(dict.fromkeys(("name", "unit", "value", "low", "high"), "-"), rows)
+    texts = [(name, *(shown(x, 5) for x in value), unit.strip("-")) for name, unit, *value in rows]
+    table = Table.of_texts(("", "value", "from", "to", "unit"), texts)
     files = []
     if place is not None:
         if not values:
@@ -78,15 +84,16 @@ def command(
         from rpscli.case.text.edit import edited
         from rpscli.case.text.files import read_text
 
-        changes = tuple(f"{key}={value}" for key, value in values.items())
-        read_case(CaseRequest(request.source, changes), terminal)
+        changes = (f"{key}={value}" for key, value in values.items())
+        read_case(CaseRequest(request.source, (*request.overrides, *changes)), terminal)
         text = edited(read_text(request.source), request.source, values)
         write_whole({place: encoded(text)})
         files.append(str(place))
         terminal.note(f"written to {place}")
     begin = {**heading(), "command": "identify", "case": case_heading(given), "test": test}
+    begin |= {"level": LEVEL, "estimates": records(columns), **document}
     end = {"keys": values, "warnings": given.case.warnings, "files": files}
-    terminal.result({**begin, **document, **end}, [Heading(given.case.title), *parts])
+    terminal.result({**begin, **end}, [Heading(given.case.title), table, *parts])
 
 
 WANTED = {
@@ -97,7 +104,7 @@ WANTED = {
 """Columns of which one is needed, and their SI units."""
 
 
-def _columns(source: str, test: str, first: float | None, last: float | None) -> Columns:
+def _measured(source: str, test: str, first: float | None, last: float | None) -> Columns:
     """What a test needs, in SI units, in the time that is looked at."""
     import numpy as np
 
@@ -125,9 +132,8 @@ def _columns(source: str, test: str, first: float | None, last: float | None) ->
     steps = np.diff(time)
     if len(time) < 20 or not np.allclose(steps, steps.mean(), rtol=1e-2, atol=0.0):
         raise RecordError(f"{source}: at least 20 samples at even times are needed; resample it")
-    kept = (time >= (time[0] if first is None else first)) & (
-        time <= (time[-1] if last is None else last)
-    )
+    ends = (time[0] if first is None else first), (time[-1] if last is None else last)
+    kept = (time >= ends[0]) & (time <= ends[1])
     if kept.sum() < 20:
         raise UsageError(
             f"{source}: {kept.sum()} samples lie between --from and --to; 20 are needed"
@@ -135,7 +141,9 @@ def _columns(source: str, test: str, first: float | None, last: float | None) ->
     return {name: values[kept] for name, values in columns.items()}
 
 
-Found = tuple[dict[str, Any], list[Part], dict[str, str]]
+Found = tuple[
+    "Mapping[tuple[str, str], Estimate | None]", dict[str, Any], list[Part], dict[str, str]
+]
 
 
 def _rocking(structure: PodiumStructure, columns: Columns, _: str) -> Found:
@@ -150,8 +158,8 @@ def _rocking(structure: PodiumStructure, columns: Columns, _: str) -> Found:
         x = np.linspace(0.0, structure.critical_rotation, 2001)
         rotation = np.sign(beam) * np.interp(np.abs(beam), structure.path(x)[1], x)
     found = rocking(structure, columns["time"], rotation)
-    rows = {"restitution": (found.restitution, "-"), "loss": (found.loss, "-"),
-            "lever": (found.lever, "m")}  # fmt: skip
+    estimates = {("restitution", "-"): found.restitution, ("loss", "-"): found.loss,
+                 ("lever", "m"): found.lever}  # fmt: skip
     keys = {}
     if found.loss is not None:
         keys["podium.impact.loss"] = f"{found.loss.value:.4g}"
@@ -163,25 +171,20 @@ def _rocking(structure: PodiumStructure, columns: Columns, _: str) -> Found:
     names = ("time", "amplitude", "time_error", "amplitude_error", "model_time", "model_amplitude")
     swings = [dict(zip(names, (*swing, *model), strict=True))
               for swing, model in zip(found.swings, found.model.tolist(), strict=True)]  # fmt: skip
-    table = Table.of_texts(
-        ("swing at s", "of the model", "rotation mrad", "of the model", "over its error"),
-        [
-            (
-                *(shown(each[name], 5) for name in ("time", "model_time")),
-                *(shown(1e3 * each[name], 5) for name in ("amplitude", "model_amplitude")),
-                shown((each["amplitude"] - each["model_amplitude"]) / each["amplitude_error"], 2),
-            )
-            for each in swings
-        ],
-        words=0,
-    )
+    heads = ("swing at s", "of the model", "rotation mrad", "of the model", "over its error")
+    texts = []
+    for swing, (at, top) in zip(found.swings, found.model.tolist(), strict=True):
+        numbers = (swing.time, at, 1e3 * swing.amplitude, 1e3 * top)
+        off = (swing.amplitude - top) / swing.amplitude_error
+        texts.append((*(shown(number, 5) for number in numbers), shown(off, 2)))
+    table = Table.of_texts(heads, texts, words=0)
     told = f"residuals are {shown(found.misfit, 3)} times what noise alone would leave"
     if found.misfit > 2.0:
         told += ": the model lacks something, such as rolling resistance; intervals hold that"
     if found.ensembles:
         told += "; neighbouring releases part ways, so that means of ensembles were fitted"
     document = {"misfit": found.misfit, "ensembles": found.ensembles, "residuals": swings}
-    return document | _documents(rows), [_estimates(rows), table, told], keys
+    return estimates, document, [table, told], keys
 
 
 def _vibration(structure: PodiumStructure, columns: Columns, test: str) -> Found:
@@ -196,29 +199,10 @@ def _vibration(structure: PodiumStructure, columns: Columns, test: str) -> Found
     ground = columns.get("ground_acceleration")
     found = vibration(fixed, step, columns["floor_acceleration"], ground, free=test == "release")
     ratio = Estimate(*(value / fixed for value in found.period))
-    rows = {"period": (found.period, "s"), "damping": (found.damping, "-"),
-            "period_ratio": (ratio, "-")}  # fmt: skip
+    estimates = {("period", "s"): found.period, ("damping", "-"): found.damping,
+                 ("period_ratio", "-"): ratio}  # fmt: skip
     told = f"period_ratio is over {shown(fixed)} s, the period of the case on a fixed base"
     if ratio.high < 1.0:
         told += ": below 1 the building is stiffer than in the case, which no contact explains"
     document = {"misfit": found.misfit, "ensembles": False, "residuals": []}
-    return document | _documents(rows), [_estimates(rows), told], {}
-
-
-Rows = Mapping[str, "tuple[Estimate | None, str]"]
-
-
-def _estimates(rows: Rows) -> Table:
-    return Table.of_texts(("", "value", "from", "to", "unit"), [
-        (name, *(shown(value, 5) for value in found), unit.strip("-"))
-        for name, (found, unit) in rows.items() if found is not None
-    ])  # fmt: skip
-
-
-def _documents(rows: Rows) -> dict[str, Any]:
-    def listed_rows() -> Iterator[dict[str, Any]]:
-        for name, (found, unit) in rows.items():
-            if found is not None:
-                yield {"name": name, "unit": unit, **found._asdict()}
-
-    return {"level": 0.9, "estimates": list(listed_rows())}
+    return estimates, document, [told], {}

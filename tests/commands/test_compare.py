@@ -79,7 +79,10 @@ def test_folders_of_two_versions(workplace: Path, rps: Invoke, rps_json: Json) -
 def test_points_are_matched_by_what_they_are(workplace: Path, rps: Invoke, rps_json: Json) -> None:
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
     (workplace / "turned.yaml").write_text(STUDY.replace("0.1, 0.15", "0.15, 0.1"), "utf-8")
-    found = rps_json("compare", "study.yaml", "turned.yaml", "--tolerance", "0")
+    for name in ("study", "turned"):
+        assert rps("sweep", f"{name}.yaml", *NONE).exit_code == 0
+    folders = [f"results/{name}/sweep" for name in ("study", "turned", "other")]
+    found = rps_json("compare", *folders[:2], "--tolerance", "0")
     assert found["results"] == []
     assert len(found["inputs"]) == 1
     steeper = STUDY.replace("small.yaml\n", "steeper.yaml\n")
@@ -87,7 +90,7 @@ def test_points_are_matched_by_what_they_are(workplace: Path, rps: Invoke, rps_j
     (workplace / "steeper.yaml").write_text(SMALL_CASE.replace("storeys: 3\n", "storeys: 3\n"
         "  profile: uniform\n"), encoding="utf-8")  # fmt: skip
     assert rps("sweep", "other.yaml", *NONE).exit_code == 0
-    found = rps_json("compare", "study.yaml", "results/other/sweep")
+    found = rps_json("compare", folders[0], folders[2])
     (shear,) = (each for each in found["results"] if each["name"] == "points.csv: max_lift [m]")
     lifts = []
     for name in ("study", "other"):
@@ -125,6 +128,7 @@ def test_cases_without_a_record_are_compared_by_what_follows(
         (("small.yaml", "."), "cannot be compared: No such file"),
         (("small.yaml", "damaged"), "it is damaged"),
         (("design.yaml", "small.yaml"), "run both by `rps design`"),
+        (("study.yaml", "small.yaml"), "run both by `rps sweep`"),
         (("modes", "stored", "--record", "x.at2"), "leave --record out"),
         (("modes", "stored"), "is of `rps modal`, stored of `rps timehistory`"),
     ],
@@ -135,6 +139,7 @@ def test_refusals_say_what_to_do(
     (workplace / "damaged").mkdir()
     (workplace / "damaged" / "run.json").write_text("{}", encoding="utf-8")
     (workplace / "design.yaml").write_text("base: small.yaml\nvariables: {}\n", encoding="utf-8")
+    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
     if "modes" in words:
         rps("modal", "small.yaml", *NONE, "-o", "modes")
         rps("timehistory", "small.yaml", *NONE, "-o", "stored")

@@ -29,7 +29,9 @@ NEAR_TOP = 0.7
 """Part of a swing's amplitude above which its samples are taken for its top."""
 ENSEMBLE = 9
 """Releases within three standard errors of the amplitude."""
-WIDE = 2.0
+SETTLED = 0.02
+"""Move at which a fit ends, over the steps of differences: the next one would be its square."""
+WIDE = 4.0
 """Steps of differences of ensembles, over the standard errors."""
 PARTING = 0.3
 """Scatter of an ensemble over the error of measurement from which it counts."""
@@ -137,7 +139,9 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
         )
     first, *swings = every[: MOST_SWINGS + 1]
     dt, side = float(time[1] - time[0]), math.copysign(1.0, rotation[np.argmax(time >= first.time)])
-    of = _Release(structure, dt, float(time[-1]), noise, side, swings)
+    # Half a swing more than is looked at, which are ever shorter ones.
+    span = swings[-1].time + 0.5 * (swings[-1].time - swings[-2].time)
+    of = _Release(structure, dt, min(span, float(time[-1])), noise, side, swings)
     errors = np.array([value for swing in swings for value in swing[2:]])
     q, steps, bounds = _start(of, first)
     try:
@@ -238,7 +242,7 @@ def _fitted(
         better = (each for each in parts if np.sum(misses(each[1]) ** 2) < np.sum(r**2))
         part, tried = next(better, (0.0, q))
         q = tried
-        if np.all(np.abs(part * move) < 1e-3 * steps):
+        if np.all(np.abs(part * move) < SETTLED * steps):
             break
     variance = float(np.sum(misses(q) ** 2)) / (len(measured) - len(q))
     return q, variance * np.linalg.inv(J.T @ J), math.sqrt(variance)
