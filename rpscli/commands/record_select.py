@@ -58,14 +58,15 @@ FAR = 2.0
 
 COMPONENTS = ("component", "rotd50", "rotd100", "geomean", "larger", "x", "srss")
 RULES = ("en1998", "asce7-ch16", "asce7-ch17", "mean90", "none")
-CODES = ("en1998:", "en1998-2024:", "asce7:", "sp14:")
 
 
 def _targets(ctx: click.Context, option: click.Parameter, incomplete: str) -> list[Any]:
-    """Codes after --target, or files."""
+    """Codes after --target, those of other packages too, or files."""
+    from rpscli.records.codes import CODES  # numpy is slow
+
     del ctx, option
-    codes = [CompletionItem(f"{code}?") for code in CODES if code.startswith(incomplete)]
-    return codes or [CompletionItem(incomplete, type="file")]
+    codes = [f"{code}:?" for code in CODES.names() if f"{code}:?".startswith(incomplete)]
+    return list(map(CompletionItem, codes)) or [CompletionItem(incomplete, type="file")]
 
 
 @click.command("select")

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import click
 import numpy as np
 import pytest
 from click.testing import Result
@@ -18,6 +19,7 @@ from click.testing import Result
 import rpscli
 from rpscli import registry
 from rpscli.case.schema.scale_to import scale_to_of
+from rpscli.commands.record_select import command as select
 from rpscli.errors import PluginError, RecordError
 from rpscli.records.codes import CODES, load_target
 from rpscli.records.formats import FORMATS
@@ -115,6 +117,9 @@ def test_a_target(example: None) -> None:
     assert target.acceleration(np.array([0.1, 0.5, 1.0])).tolist() == [4.0, 4.0, 2.0]
     with pytest.raises(RecordError, match="a and corner must be > 0"):
         load_target("plateau:?a=4 m/s2&corner=0 s")
+    option = next(each for each in select.params if each.name == "target")
+    known = [found.value for found in option.shell_complete(click.Context(select), "")]
+    assert {"plateau:?", "en1998:?"} < {*known}
 
 
 def test_a_figure_of_a_history(example: None, rps: Callable[..., Result], workplace: Path) -> None:
