@@ -117,7 +117,8 @@ class Quantity:
         if suggestion:
             refuse(f"{self._not_a_number}; did you mean {suggestion}?")
         if self.unit == PLAIN:
-            refuse(f"is text; it {self._not_a_number}, without unit and without quotes")
+            share = ", as 0.05 for 5 %" * ("%" in text)
+            refuse(f"is text; it {self._not_a_number}, without unit and without quotes{share}")
         try:
             return si_value(text, self.unit)
         except ValueError as error:
