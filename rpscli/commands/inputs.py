@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.commands.shell.options import CaseRequest, OutputRequest
+from rpscli.commands.shell.options import (
+    FILE,
+    CaseRequest,
+    OutputRequest,
+    completing,
+    gathered,
+    measures,
+    records_option,
+)
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import CaseError, UsageError
 from rpscli.report.documents import heading
@@ -146,6 +154,25 @@ class MotionRequest:
             raise UsageError("--scale and --scale-to both fix the factor; keep one of them")
         if self.scale is not None and not math.isfinite(self.scale):
             raise UsageError(f"--scale {self.scale}: must be a finite number")
+
+
+motion_options = gathered(
+    "motion",
+    MotionRequest,
+    records_option,
+    click.option(
+        "--vertical", metavar="SRC", type=FILE, help="Vertical component, with the same time step."
+    ),
+    click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration."),
+    click.option(
+        "--scale-to",
+        metavar="MEASURE=VALUE",
+        **completing(measures),
+        help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', AvgSa, FIV3, PGD,"
+        " Housner, CAV or Arias.",
+    ),
+)
+"""--record as `records`; --vertical, --scale and --scale-to as `motion`."""
 
 
 def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator[MotionRequest]:

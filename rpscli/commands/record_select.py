@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
-from click.shell_completion import CompletionItem
 
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
     OutputRequest,
+    completing,
     figure_options,
     output_options,
     terminal_options,
@@ -60,13 +60,11 @@ COMPONENTS = ("component", "rotd50", "rotd100", "geomean", "larger", "x", "srss"
 RULES = ("en1998", "asce7-ch16", "asce7-ch17", "mean90", "none")
 
 
-def _targets(ctx: click.Context, option: click.Parameter, incomplete: str) -> list[Any]:
-    """Codes after --target, those of other packages too, or files."""
+def _targets() -> list[str]:
+    """Codes after --target, those of other packages too."""
     from rpscli.records.codes import CODES  # numpy is slow
 
-    del ctx, option
-    codes = [f"{code}:?" for code in CODES.names() if f"{code}:?".startswith(incomplete)]
-    return list(map(CompletionItem, codes)) or [CompletionItem(incomplete, type="file")]
+    return [f"{code}:?" for code in CODES.names()]
 
 
 @click.command("select")
@@ -75,7 +73,7 @@ def _targets(ctx: click.Context, option: click.Parameter, incomplete: str) -> li
     "--target",
     required=True,
     metavar="SPECTRUM",
-    shell_complete=_targets,
+    **completing(_targets, or_file=True),
     help="A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to scatter), the"
     " sure way; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with s, tb, tc, td of a national annex;"
     " en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2; asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer;"

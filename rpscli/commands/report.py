@@ -6,12 +6,11 @@ from collections.abc import Callable
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import click
 
 from rpscli.case.conditions import Condition
-from rpscli.commands.inputs import FACTOR, RESULTS, MotionRequest, read_case, single_motions
+from rpscli.commands.inputs import RESULTS, MotionRequest, motion_options, read_case, single_motions
 from rpscli.commands.report_case import (
     DESIGN,
     HISTORY,
@@ -28,7 +27,6 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     fail_on_option,
     overrides_option,
-    records_option,
     style_option,
     terminal_options,
 )
@@ -51,10 +49,7 @@ from rpscli.report.files import require_writable, write_whole
     help="The page; results/<name>/report.html by default.",
 )
 @overrides_option("Override a value of the case or study")
-@records_option
-@click.option("--vertical", metavar="SRC", help="Vertical component, with the same time step.")
-@click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
-@click.option("--scale-to", metavar="MEASURE=VALUE", help="Scale to a measure, as PGA=0.4g.")
+@motion_options
 @fail_on_option("A limit besides those of the case or study, as in `rps timehistory`; repeatable.")
 @click.option("--project", metavar="TEXT", help="Name or number of the project, for the page.")
 @click.option("--author", metavar="NAME", help="Who made the page and signs it.")
@@ -73,9 +68,9 @@ def command(
     checker: str | None,
     style_file: Path | None,
     terminal: Terminal,
+    motion: MotionRequest,
     *,
     force: bool,
-    **motion: Any,
 ) -> None:
     """One page about a CASE, a STUDY, a DESIGN or a FOLDER of results.
 
@@ -86,7 +81,7 @@ def command(
     held against what is stored.
     """
     look = Look(style={} if style_file is None else drawable_style(style_file))
-    request, asked = CaseRequest(subject, overrides), MotionRequest(**motion)
+    request, asked = CaseRequest(subject, overrides), motion
     earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None
     kind = kind_of(subject) if earlier is None else earlier.run["command"]
     _require_sense(subject, (records, asked), overrides, kind, stored=earlier is not None)

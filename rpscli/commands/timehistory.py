@@ -5,29 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import click
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import (
-    FACTOR,
     MotionRequest,
+    motion_options,
     read_case,
     single_motions,
     write,
 )
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
-    FILE,
     CaseRequest,
     OutputRequest,
-    completing,
     fail_on_option,
     history_film_options,
-    measures,
-    records_option,
     result_options,
     several_cases_options,
 )
@@ -47,18 +42,7 @@ from rpscli.report.figures.look import Look, drawn_with
 
 @click.command("timehistory")
 @several_cases_options
-@records_option
-@click.option(
-    "--vertical", metavar="SRC", type=FILE, help="Vertical component, with the same time step."
-)
-@click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration.")
-@click.option(
-    "--scale-to",
-    metavar="MEASURE=VALUE",
-    **completing(measures),
-    help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', AvgSa, FIV3, PGD, Housner,"
-    " CAV or Arias.",
-)
+@motion_options
 @fail_on_option(
     "End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
     f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units), or"
@@ -79,9 +63,9 @@ def command(
     conditions: list[Condition],
     film: FilmRequest | None,
     look: Look,
+    motion: MotionRequest,
     *,
     floor_spectra: bool,
-    **motion: Any,
 ) -> None:
     """Response of each CASE to its record, or to each --record.
 
@@ -90,7 +74,7 @@ def command(
     """
     from rpscli.records.source import repeated
 
-    motions = list(single_motions(records, MotionRequest(**motion)))
+    motions = list(single_motions(records, motion))
     terminal.warn(f"--record {text}" for text in repeated(records))
     cases = all_made(lambda request: read_case(request, terminal), requests, CaseError)
     histories = [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
@@ -24,56 +24,52 @@ FILE = click.Path(allow_dash=True, readable=False)
 """A file, of which the command itself says what is wrong with it."""
 
 
-def case_keys(
-    ctx: click.Context, option: click.Parameter, incomplete: str
-) -> list[CompletionItem | str]:
-    """Keys of a case that hold a value, after `--set`; what they mean beside them."""
-    del ctx, option
-    # pydantic is slow.
-    from rpscli.case.schema.case_file import CaseFile
-    from rpscli.case.schema.keys import field_at, known_paths, section_of
-
-    found: list[CompletionItem | str] = []
-    for path in known_paths(CaseFile):
-        key, field = ".".join(map(str, path)), field_at(CaseFile, path)
-        if field and section_of(field.annotation) is None and key.startswith(incomplete):
-            found.append(CompletionItem(key, help=field.description))
-    return found
+Words = Mapping[str, str | None] | Iterable[str]
+"""For a shell, what they mean beside them where that is known."""
 
 
-def condition_names(
-    ctx: click.Context, option: click.Parameter, incomplete: str
-) -> list[CompletionItem | str]:
-    """Events and results after `--fail-on`, these with the unit of their limit."""
-    del ctx, option
-    from rpscli.case.conditions import EVENTS, LIMITS, NOT_SHOWN
+def completing(known: Callable[[], Words], *, or_file: bool = False) -> dict[str, Any]:
+    """For `click.option`: the words that a shell may complete a value with, or files."""
 
-    labels = {name: f"records that {verb}" for name, verb in EVENTS.items()}
-    labels[NOT_SHOWN] = "limits that so few records cannot show to be kept"
-    labels |= {name: f"{quantity.label} [{quantity.unit}]" for name, quantity in LIMITS.items()}
-    return [
-        CompletionItem(name, help=label)
-        for name, label in labels.items()
-        if name.startswith(incomplete)
-    ]
-
-
-def completing(known: Callable[[], Iterable[str]]) -> dict[str, Any]:
-    """For `click.option`: the words that a shell may complete a value with."""
-
-    def words(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
-        return [word for word in known() if word.startswith(begun)]
+    def words(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
+        found = known()
+        told = found if isinstance(found, Mapping) else dict.fromkeys(found)
+        fit = [CompletionItem(word, help=told[word]) for word in told if word.startswith(begun)]
+        return [CompletionItem(begun, type="file")] if or_file and not (begun and fit) else fit
 
     return {"shell_complete": words}
 
 
-def sources(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem | str]:
-    """What `--record` may be: records of a set, once its name is written, else files."""
+def _case_keys() -> dict[str, str | None]:
+    """Keys of a case that hold a value, after `--set`."""
+    # pydantic is slow.
+    from rpscli.case.schema.case_file import CaseFile
+    from rpscli.case.schema.keys import field_at, known_paths, section_of
+
+    fields = {".".join(map(str, path)): field_at(CaseFile, path) for path in known_paths(CaseFile)}
+    return {
+        key: field.description
+        for key, field in fields.items()
+        if field and section_of(field.annotation) is None
+    }
+
+
+def _condition_names() -> dict[str, str | None]:
+    """Events and results after `--fail-on`, these with the unit of their limit."""
+    from rpscli.case.conditions import EVENTS, LIMITS, NOT_SHOWN
+
+    return {
+        **{name: f"records that {verb}" for name, verb in EVENTS.items()},
+        NOT_SHOWN: "limits that so few records cannot show to be kept",
+        **{name: f"{quantity.label} [{quantity.unit}]" for name, quantity in LIMITS.items()},
+    }
+
+
+def _sources() -> Iterator[str]:
+    """Records of sets, after `--record`."""
     from rpscli.records import sets
 
-    known = [f"{sets.SCHEME}:{name}" for name in (*sets.COMPONENTS, *sets.WHOLE)]
-    found: list[CompletionItem | str] = [name for name in known if name.startswith(begun)]
-    return found if begun and found else [CompletionItem(begun, type="file")]
+    return (f"{sets.SCHEME}:{name}" for name in (*sets.COMPONENTS, *sets.WHOLE))
 
 
 def measures() -> list[str]:
@@ -103,7 +99,7 @@ class OutputRequest:
     force: bool
 
 
-def _gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decorator:
+def gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decorator:
     """Options whose values reach the command as one argument, which is made of them."""
     taken = tuple(signature(make).parameters)
 
@@ -113,17 +109,17 @@ def _gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decor
             made = make(**{key: given.pop(key) for key in taken if key in given})
             function(**{name: made}, **given)
 
-        return _all(*options)(command)
+        return in_order(*options)(command)
 
     return decorate
 
 
-def _all(*options: Decorator) -> Decorator:
+def in_order(*options: Decorator) -> Decorator:
     """Options in the order in which the help lists them."""
     return lambda function: functools.reduce(lambda f, option: option(f), options[::-1], function)
 
 
-terminal_options = _gathered(
+terminal_options = gathered(
     "terminal",
     Terminal,
     click.option(
@@ -140,7 +136,7 @@ records_option = click.option(
     multiple=True,
     metavar="SRC",
     type=FILE,
-    shell_complete=sources,
+    **completing(_sources, or_file=True),
     help="Ground motion in place of the case's own: file, folder, set, pulse, both components of a"
     " pair (fema_p695:farfield/1?both); repeatable.",
 )
@@ -153,7 +149,7 @@ def overrides_option(meaning: str) -> Decorator:
         "overrides",
         multiple=True,
         metavar="KEY=VALUE",
-        shell_complete=case_keys,
+        **completing(_case_keys),
         help=f"{meaning}; repeatable.",
     )
 
@@ -171,7 +167,7 @@ style_option = click.option(
 )
 
 
-case_options = _gathered(
+case_options = gathered(
     "request", CaseRequest, click.argument("source", metavar="CASE", type=FILE), _overrides
 )
 """CASE and --set, as `request`."""
@@ -207,7 +203,7 @@ def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
     return tuple(dict.fromkeys(formats)) or None, added
 
 
-figure_options = _gathered(
+figure_options = gathered(
     "look",
     _look,
     click.option(
@@ -275,12 +271,12 @@ _PART = (
     ),
     click.option("--animate-to", "last", type=_SECOND, metavar="S", help="Its end, in seconds."),
 )
-film_options = _gathered("film", _film, *_FILM)
+film_options = gathered("film", _film, *_FILM)
 """--animate and --animate-size, as `film`."""
-history_film_options = _gathered("film", _film, *_PART, *_FILM)
+history_film_options = gathered("film", _film, *_PART, *_FILM)
 """The same, with speed and part of a history."""
 
-run_options = _all(
+run_options = in_order(
     click.option(
         "--jobs",
         type=click.IntRange(1, MOST_JOBS),
@@ -305,7 +301,7 @@ def _case_requests(cases: tuple[str, ...], overrides: tuple[str, ...]) -> list[C
     return [CaseRequest(case, overrides) for case in cases]
 
 
-several_cases_options = _gathered(
+several_cases_options = gathered(
     "requests",
     _case_requests,
     click.argument("cases", metavar="CASE...", nargs=-1, required=True, type=FILE),
@@ -313,7 +309,7 @@ several_cases_options = _gathered(
 )
 """CASE... and --set, as `requests`."""
 
-output_options = _gathered(
+output_options = gathered(
     "output",
     OutputRequest,
     click.option(
@@ -328,20 +324,20 @@ output_options = _gathered(
 )
 """-o and --force, as `output`."""
 
-result_options = _all(figure_options, output_options, terminal_options)
+result_options = in_order(figure_options, output_options, terminal_options)
 """What every command that draws and writes takes: `look`, `output` and `terminal`."""
 
 
 def fail_on_option(meaning: str) -> Decorator:
     """--fail-on, with what it does for the command, as `conditions`."""
-    return _gathered(
+    return gathered(
         "conditions",
         lambda fail_on: [parse_condition(text) for text in fail_on],
         click.option(
             "--fail-on",
             multiple=True,
             metavar="WHAT",
-            shell_complete=condition_names,
+            **completing(_condition_names),
             help=meaning,
         ),
     )
