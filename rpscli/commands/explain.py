@@ -11,7 +11,7 @@ import click
 
 from rpscli.analyses import result_quantities
 from rpscli.analyses.result_quantities import ResultQuantity
-from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, nearest
 from rpscli.report.documents import heading
@@ -39,12 +39,8 @@ DRAWINGS = {"podium.bearing": BEARING}
 """Small drawings of what sections describe."""
 
 
-def _beginning_so(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
-    return [word for word in _words() if word.startswith(begun)]
-
-
 @click.command("explain")
-@click.argument("word", metavar="KEY", shell_complete=_beginning_so)
+@click.argument("word", metavar="KEY", **completing(lambda: _words()))
 @terminal_options
 def command(word: str, terminal: Terminal) -> None:
     """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.

@@ -156,44 +156,39 @@ def progress_report(
         yield lambda _: None
         return
     if not _looked_at(terminal):
-        yield _lines(terminal)
+        due = FIRST_LINE
+
+        def tell(progress: Progress) -> None:
+            nonlocal due  # later and later: logs stay short
+            if progress.seconds >= due and progress.done < progress.total:
+                due = progress.seconds * GROWTH
+                terminal.note(progress_line(progress))
+
+        yield tell
         return
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 
     columns = BarColumn(20), MofNCompleteColumn(), TextColumn("{task.description}")
     with _bar(*columns, TimeElapsedColumn()) as bar:
         task = bar.add_task("", total=total, completed=kept)
-
-        def report(progress: Progress) -> None:
-            left = progress.seconds_left
-            rate = f"{progress.rate:.3g}/s" * bool(progress.rate)
-            text = rate + ("" if left is None else f", {duration(left)} left")
-            text += f", {progress.failed} failed" if progress.failed else ""
-            bar.update(task, completed=progress.done, description=text)
-
-        yield report
-
-
-def _lines(terminal: Terminal) -> Callable[[Progress], None]:
-    """Fewer lines as time goes on: logs stay short."""
-    due = FIRST_LINE
-
-    def report(progress: Progress) -> None:
-        nonlocal due
-        if progress.seconds >= due and progress.done < progress.total:
-            due = progress.seconds * GROWTH
-            terminal.note(progress_line(progress))
-
-    return report
+        yield lambda progress: bar.update(
+            task, completed=progress.done, description=", ".join(_pace(progress))
+        )
 
 
 def progress_line(progress: Progress) -> str:
     """Points done, rate and time left in one line."""
-    failed = f", {progress.failed} failed" if progress.failed else ""
-    left = progress.seconds_left
-    ahead = "" if left is None else f", {duration(left)} left"
-    rate = f", {progress.rate:.3g} points/s" if progress.rate else ""
-    return f"{progress.done} of {progress.total} points{failed}{rate}{ahead}"
+    return ", ".join((f"{progress.done} of {progress.total} points", *_pace(progress)))
+
+
+def _pace(progress: Progress) -> Iterator[str]:
+    """What failed, rate and time left, as far as they are known."""
+    if progress.failed:
+        yield f"{progress.failed} failed"
+    if progress.rate:
+        yield f"{progress.rate:.3g} points/s"
+    if progress.seconds_left is not None:
+        yield f"{duration(progress.seconds_left)} left"
 
 
 def duration(seconds: float) -> str:

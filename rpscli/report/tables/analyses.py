@@ -30,17 +30,8 @@ def mode_columns(result: ModalResult) -> list[Column]:
 def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, ...]]:
     if (fixed := result.fixed_base) is not None:
         for i, (w, xi) in enumerate(zip(fixed.frequencies, fixed.damping, strict=True)):
-            yield (
-                "full_contact",
-                i + 1,
-                float(w),
-                2.0 * math.pi / w,
-                float(xi),
-                1.0,
-                1.0,
-                None,
-                None,
-            )
+            of_itself = (1.0, 1.0, None, None)
+            yield "full_contact", i + 1, float(w), 2.0 * math.pi / w, float(xi), *of_itself
     for name, (modes, first) in result.both_orders.items():
         for i, (w, xi) in enumerate(zip(modes.frequencies, modes.damping, strict=True)):
             ratios = float(modes.frequency_ratio[i]), float(modes.damping_ratio[i])
@@ -50,23 +41,16 @@ def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, 
 
 def shape_columns(result: ModalResult) -> list[Column]:
     """`shapes.csv`: one row a level of each mode; mode 0 is the storey's own, level 0 the beam."""
-    heads = dict.fromkeys(("state", "mode", "level", "horizontal", "elastic"), "-")
-    return columns_of(heads, _shape_rows(result))
-
-
-def _shape_rows(result: ModalResult) -> Iterator[tuple[str, int, int, float, float]]:
-    fixed = result.fixed_base
-    if fixed is not None:
-        yield from _profile_rows("full_contact", 1, *2 * (fixed.profiles()["shapes"],))
-    for name, modes in result.uplifted.items():
-        yield from _profile_rows(name, 0, *modes.profiles().values())
-
-
-def _profile_rows(
-    state: str, first: int, shapes: NDArray[np.float64], elastic: NDArray[np.float64]
-) -> Iterator[tuple[str, int, int, float, float]]:
-    for mode, level in np.ndindex(*shapes.shape):
-        yield state, first + mode, level, float(shapes[mode, level]), float(elastic[mode, level])
+    profiles = {(name, 0): modes.profiles().values() for name, modes in result.uplifted.items()}
+    if result.fixed_base is not None:
+        fixed = result.fixed_base.profiles()["shapes"]
+        profiles = {("full_contact", 1): [fixed, fixed], **profiles}
+    rows = [
+        (state, first + mode, level, float(shapes[mode, level]), float(elastic[mode, level]))
+        for (state, first), (shapes, elastic) in profiles.items()
+        for mode, level in np.ndindex(*shapes.shape)
+    ]
+    return columns_of(dict.fromkeys(("state", "mode", "level", "horizontal", "elastic"), "-"), rows)
 
 
 def eigenvalue_columns(result: ModalResult) -> list[Column]:
