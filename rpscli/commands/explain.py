@@ -39,8 +39,18 @@ DRAWINGS = {"podium.bearing": BEARING}
 """Small drawings of what sections describe."""
 
 
+def _words() -> list[str]:
+    """What may be asked for: keys, their ends, results, reports and words."""
+    from rpscli.report.study.registry import REPORTS
+
+    keys = [key.key for key in _formats()]
+    names = [name for entry, _ in glossary() for name in _names(entry)]
+    ends = [key.rsplit(".", 1)[-1] for key in keys]
+    return list(dict.fromkeys([*keys, *ends, *(q.name for q in _results()), *REPORTS, *names]))
+
+
 @click.command("explain")
-@click.argument("word", metavar="KEY", **completing(lambda: _words()))
+@click.argument("word", metavar="KEY", **completing(_words))
 @terminal_options
 def command(word: str, terminal: Terminal) -> None:
     """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.
@@ -164,16 +174,6 @@ def glossary() -> list[tuple[str, str]]:
     text = resources.files("rpscli").joinpath("GLOSSARY.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (.+?) \| (.+) \|$", text, re.MULTILINE)
     return [(name.replace("`", ""), meaning) for name, meaning in rows if name != "word"]
-
-
-def _words() -> list[str]:
-    """What may be asked for: keys, their ends, results, reports and words."""
-    from rpscli.report.study.registry import REPORTS
-
-    keys = [key.key for key in _formats()]
-    names = [name for entry, _ in glossary() for name in _names(entry)]
-    ends = [key.rsplit(".", 1)[-1] for key in keys]
-    return list(dict.fromkeys([*keys, *ends, *(q.name for q in _results()), *REPORTS, *names]))
 
 
 def _names(entry: str) -> list[str]:

@@ -55,7 +55,7 @@ def test_a_terminal_gets_a_bar(
         report(progress(40, 1))
     text = capsys.readouterr().err
     assert "60/100" in text
-    assert "10 s left, 1 failed" in text
+    assert "1 failed, 4 points/s, 10 s left" in text
 
 
 def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_took(

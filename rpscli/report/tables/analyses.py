@@ -41,7 +41,7 @@ def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, 
 
 def shape_columns(result: ModalResult) -> list[Column]:
     """`shapes.csv`: one row a level of each mode; mode 0 is the storey's own, level 0 the beam."""
-    profiles = {(name, 0): modes.profiles().values() for name, modes in result.uplifted.items()}
+    profiles = {(name, 0): [*modes.profiles().values()] for name, modes in result.uplifted.items()}
     if result.fixed_base is not None:
         fixed = result.fixed_base.profiles()["shapes"]
         profiles = {("full_contact", 1): [fixed, fixed], **profiles}
