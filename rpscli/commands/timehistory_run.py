@@ -191,8 +191,6 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
         "case": case_heading(given),
         **timehistory_document(result),
     }
-    from rpscli.case.rules.plausibility import doubts_of_directions  # numpy is slow
-
     document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
     doubts = doubts_of_directions(given.case.structure, both=ground.y is not None)
     warnings = [*given.case.warnings, *map(str, doubts)]
