@@ -207,7 +207,7 @@ class PerturbSection(Section):
     restitution: Share = 0.01
     """largest change of the restitution, relative"""
     rotation: Annotated[float, Quantity("deg", at_least=0, at_most=45)] = 1.0
-    """largest turn of a pair whose components act together"""
+    """largest turn of a pair whose components act together; matters with superstructure.y"""
     members: Annotated[int, Whole(2)] = 20
     """points in place of one; the first is the unperturbed one"""
     seed: Seed = 1

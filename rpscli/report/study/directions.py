@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 FRACTILES = (0.50, HIGH)
 
 NO_BOUND = (
-    "even the worst direction is no bound: with both components at once the rotations of a"
-    " prototype were 1.1 to 1.25 times those of the worst direction in the median"
+    "even the worst direction is no bound: both components together may turn columns further;"
+    " write ?both behind the pair in place of an angle"
 )
 
 
