@@ -12,7 +12,7 @@ import pytest
 from scipy.signal import StateSpace, lsim
 
 from rpscli.case.case import load_case
-from rpscli.commands.inputs import MotionRequest, load_motion
+from rpscli.commands.inputs import MotionRequest, load_motion, motion_inputs, single_motions
 from rpscli.errors import CaseError
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
@@ -136,3 +136,27 @@ def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
         shears.append(lsim(system, ground, time)[1])
     (found,) = reference_shears(structure, MotionComponents(x, y=y))
     assert found == pytest.approx(np.hypot(*shears).max(), rel=1e-9)
+
+
+def test_the_command_line_scales_a_pair_as_a_study_does(lay: Lay) -> None:
+    lay(f"records: ['{BOTH}']\n")
+    asked = MotionRequest(vertical="one.at2", scale_to="PGV(rotd100)=0.3")
+    (request,) = single_motions((BOTH,), asked)
+    case = load_case("base.yaml")
+    motion = load_motion(case, request)
+    a, b = load_record("one.at2"), load_record("other.at2")
+    factor = 0.3 / pair_measure(a, b, "PGV", "rotd100")
+    assert motion.scale == pytest.approx(factor, rel=1e-12)
+    assert motion.scaled_to == "PGV(RotD100) = 0.3 m/s"
+    np.testing.assert_array_equal(
+        motion.samples, factor * np.array([c.acceleration for c in (a, b, a)])
+    )
+    own = load_case(
+        "base.yaml",
+        ["record={x: one.at2, y: other.at2, scale_to: {measure: PGV, value: 0.3, of: rotd100}}"],
+    )
+    assert load_motion(own, MotionRequest()).scale == motion.scale
+    assert set(motion_inputs(motion)) == {"scale", "horizontal", "y", "vertical"}
+    rigid = load_case("base.yaml", ["podium.impact.law=rigid"])
+    with pytest.raises(CaseError, match=r"both components of one.at2.*use the law flexible"):
+        load_motion(rigid, request)
