@@ -37,7 +37,9 @@ COMMANDS = {
         "rpscli.commands.identify", "what a test of the standing building says about its case"
     ),
     "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
-    "completion": Member("rpscli.commands.completion", "let your shell complete what you type"),
+    "completion": Member(
+        "rpscli.commands.init", "let your shell complete what you type", "completion"
+    ),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
 }
 

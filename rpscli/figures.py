@@ -46,13 +46,13 @@ from rpscli.report.figures.history import draw_ground as ground_acceleration
 from rpscli.report.figures.history import draw_moment as moment
 from rpscli.report.figures.history import draw_rotation as rotation
 from rpscli.report.figures.look import FIGURES
-from rpscli.report.figures.modes import draw_mode as mode
 from rpscli.report.figures.motions import draw_motion as motion
 from rpscli.report.figures.motions import draw_spectra as spectra
 from rpscli.report.figures.motions import draw_spectrum as spectrum
 from rpscli.report.figures.pushover import draw_capacity as capacity
 from rpscli.report.figures.pushover import draw_force as storey_curve
 from rpscli.report.figures.pushover import draw_lift as lift
+from rpscli.report.figures.structure import draw_mode as mode
 from rpscli.report.figures.structure import draw_structure as structure
 from rpscli.report.figures.style import in_style as style
 

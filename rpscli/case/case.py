@@ -147,6 +147,8 @@ class Case(Shown):
             content["podium"].setdefault("columns", 1)
         if not content["podium"]["devices"]:
             del content["podium"]["devices"]
+        if not content["document"]:
+            del content["document"]
         return content
 
 

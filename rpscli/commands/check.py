@@ -10,7 +10,6 @@ import click
 
 from rpscli.case.conditions import Condition, condition_text, conditions_of
 from rpscli.commands.inputs import (
-    CaseInput,
     MotionRequest,
     case_folder,
     case_heading,
@@ -76,22 +75,17 @@ def command(
         "warnings": [*given.case.warnings, *(record or {}).get("warnings", ())],
     }
     if draw:
-        document["files"] = _drawn(given, output, look, terminal)
+        from rpscli.report.bundles import bearing_files
+
+        folder = case_folder(given, output, "check")
+        folder.add_all(bearing_files(structure, given.case.title, look))
+        write(folder, terminal)
+        document["files"] = folder.files
     terminal.warn((record or {}).get("warnings", ()))
     limits = conditions_of(given.case.limits, "limits of the case")
     tables = chain(check_tables(document, limits), device_tables(structure))
     terminal.result(concluded(document, error), tables)
     leave(error)
-
-
-def _drawn(given: CaseInput, output: OutputRequest, look: Look, terminal: Terminal) -> list[str]:
-    """Draw the bearing; the files that there are of it."""
-    from rpscli.report.bundles import bearing_files
-
-    folder = case_folder(given, output, "check")
-    folder.add_all(bearing_files(given.case.structure, given.case.title, look))
-    write(folder, terminal)
-    return folder.files
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:

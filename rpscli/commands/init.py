@@ -1,4 +1,4 @@
-"""`rps init` and `rps schema`: the formats of files, to start from and for programs."""
+"""`rps init`, `rps schema` and `rps completion`: what helps to write files and commands."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.shell_completion import BashComplete, FishComplete, ShellComplete, ZshComplete
 
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
@@ -94,3 +95,23 @@ def schema_of(what: str) -> dict[str, Any]:
     from rpscli.report.study.registry import REPORTS
 
     return study_json_schema(DesignFile if what == "design" else format_with(REPORTS.everything()))
+
+
+SHELLS: dict[str, type[ShellComplete]] = {
+    "bash": BashComplete,
+    "zsh": ZshComplete,
+    "fish": FishComplete,
+}
+
+
+@click.command("completion")
+@click.argument("shell", type=click.Choice(tuple(SHELLS)))
+def completion(shell: str) -> None:
+    """Print the lines by which SHELL completes commands, options, files, keys and names.
+
+    For bash put `eval "$(rps completion bash)"` into ~/.bashrc, for zsh the same with zsh into
+    ~/.zshrc; for fish, `rps completion fish > ~/.config/fish/completions/rps.fish`.
+    """
+    complete = SHELLS[shell](click.Command("rps"), {}, "rps", "_RPS_COMPLETE")
+    # Not `source()`, which for bash first asks the version of a bash that need not be here.
+    emit(complete.source_template % complete.source_vars() + "\n", sys.stdout)

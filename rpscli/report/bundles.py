@@ -26,9 +26,9 @@ from rpscli.report.figures.history import (
     thinned,
 )
 from rpscli.report.figures.look import FIGURES, USUAL, Draw, Look, figure_files
-from rpscli.report.figures.modes import modes_figure
 from rpscli.report.figures.motions import record_figure, selection_figure
 from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
+from rpscli.report.figures.structure import modes_figure
 from rpscli.report.files import Content
 from rpscli.report.table import csv_lines, csv_text
 from rpscli.report.tables.analyses import (

@@ -50,10 +50,9 @@ from rpscli.report.figures.history import (
     moment_figure,
     rotation_figure,
 )
-from rpscli.report.figures.modes import ELASTIC, modes_figure
 from rpscli.report.figures.motions import record_figure
 from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
-from rpscli.report.figures.structure import level_heights
+from rpscli.report.figures.structure import ELASTIC, level_heights, modes_figure
 
 Drawn = Callable[..., Figure]
 

@@ -12,8 +12,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.bearing import BearingView, frame_end, leaning_outline
 from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.film import MOST_FRAMES, FilmRequest, Motion, Progress, film
-from rpscli.report.figures.modes import draw_modes, modes_size
-from rpscli.report.figures.structure import level_heights
+from rpscli.report.figures.structure import draw_modes, level_heights, modes_size
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -111,10 +111,14 @@ def fixed_base_demands(result: TimeHistoryResult) -> StoreyDemands | None:
 def storey_columns(result: TimeHistoryResult) -> list[Column]:
     """`storeys.csv`: one row a storey, from the bottom."""
     count = result.structure.storeys
+    both = {"": isolated_demands(result), "fixed_base_": fixed_base_demands(result)}
     columns = [Column("storey", "-", range(1, count + 1))]
-    columns += _columns("", isolated_demands(result), count)
-    fixed = fixed_base_demands(result)
-    return [*columns, *(_columns("fixed_base_", fixed, count) if fixed else ())]
+    for prefix, demands in both.items():
+        for quantity in STOREYS if demands else ():
+            values = getattr(demands, quantity.name)
+            known = [None] * count if values is None else values
+            columns.append(Column(f"{prefix}{quantity.column}", quantity.unit, known))
+    return columns
 
 
 def _demands(result: TimeHistoryResult, drifts: Array, of: Any) -> StoreyDemands:
@@ -122,13 +126,6 @@ def _demands(result: TimeHistoryResult, drifts: Array, of: Any) -> StoreyDemands
     ratios = None if building is None else building.drift_ratios(drifts)
     floors = of.floor_accelerations, of.floor_velocities
     return StoreyDemands(drifts, ratios, of.storey_shears, *floors)
-
-
-def _columns(prefix: str, demands: StoreyDemands, count: int) -> Iterator[Column]:
-    for quantity in STOREYS:
-        values = getattr(demands, quantity.name)
-        known = [None] * count if values is None else values
-        yield Column(f"{prefix}{quantity.column}", quantity.unit, known)
 
 
 def history_columns(result: TimeHistoryResult) -> list[Column]:
