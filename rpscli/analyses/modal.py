@@ -110,13 +110,18 @@ class ModalResult(Shown):
     fixed_base
         None without a building.
     rolling, rocking
-        After uplift, on the arcs and on the edges of the columns.
+        After uplift, on the arcs and on the edges of the columns; of ends that give way as if they
+        were rigid, at 0+.
+    full_contact
+        Of ends that give way: n + 1 modes, shapes from the cap beam up; None on rigid ends, where
+        it is `fixed_base`.
     """
 
     structure: PodiumStructure
     fixed_base: FixedBaseModes | None
     rolling: UpliftedModes | None
     rocking: UpliftedModes
+    full_contact: FixedBaseModes | None = None
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -147,13 +152,14 @@ class ModalResult(Shown):
 
     def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""
-        fixed = self.fixed_base
+        fixed, full = self.fixed_base, self.full_contact
         states = {
             name: values_of(exact, UPLIFTED) | {"first_order": values_of(paper, LINEAR)}
             for name, (exact, paper) in self.both_orders.items()
         }
         return {
             "fixed_base": None if fixed is None else values_of(fixed, FIXED_BASE_MODES),
+            **({"full_contact": values_of(full, FIXED_BASE_MODES)} if full else {}),
             "rolling": None,
             **states,
             "left_out": list(self.left_out),
@@ -172,7 +178,32 @@ def modal(structure: PodiumStructure) -> ModalResult:
         fixed_base=_fixed_base(building) if building else None,
         rolling=None if flat else _both_orders(structure, rolling=True),
         rocking=_both_orders(structure, rolling=False),
+        full_contact=_full_contact(structure),
     )
+
+
+def _full_contact(structure: PodiumStructure) -> FixedBaseModes | None:
+    """Modes of full contact that gives way, in [u_b, u_t] (Theory, section 12)."""
+    if (bed := structure.bed) is None:
+        return None
+    C_u, diameter = bed.height, 2.0 * structure.bearing.semi_diagonal
+    kappa = bed.stiffness * C_u**2 * diameter / structure.weight
+    state = UpliftedState(0.0, 0.0, C_u, kappa, C_u**2, (0.0, 0.0, 0.0))
+    M, C, K = linearised_matrices(structure, state)
+    C[0, 0] += 0.25 * structure.columns_mass * bed.damper
+    values, vectors = np.linalg.eig(_state_matrix(M, C, K))
+    pairs = _pairs(values.astype(complex))
+    frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])
+    damping = np.array([-(a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
+    vectors = vectors[: len(M)].astype(complex)
+    vectors[0] *= C_u  # u_b
+    shapes = np.column_stack([_real_shape(vectors[:, i]) for *_, i in pairs])
+    return FixedBaseModes(frequencies, damping, _scaled(shapes))
+
+
+def _state_matrix(M: Array, C: Array, K: Array) -> Array:
+    size = len(M)
+    return np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
 
 
 def _both_orders(structure: PodiumStructure, *, rolling: bool) -> UpliftedModes:
@@ -225,8 +256,7 @@ def _of_devices(structure: PodiumStructure, state: UpliftedState) -> tuple[float
 def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes:
     M, C, K = linearised_matrices(structure, state)
     size, diameter = len(M), 2.0 * structure.bearing.semi_diagonal
-    system = np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
-    values, vectors = np.linalg.eig(system)
+    values, vectors = np.linalg.eig(_state_matrix(M, C, K))
     stiffness, coefficient = _of_devices(structure, state)
     kappa = state.kappa + stiffness * diameter / structure.weight
     carried = structure.superstructure_mass * state.squared_distance

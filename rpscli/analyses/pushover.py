@@ -66,11 +66,11 @@ class PushoverResult(Shown):
     structure
         Podium, bearings and building.
     uplift_force
-        F at 0+ [N].
+        F at 0+ [N]; of ends that give way where they begin to lift.
     critical_rotation, critical_displacement
         theta_cr [rad], and u_b there [m].
     initial_stiffness
-        dF/du_b at 0+ [N/m].
+        dF/du_b at 0+ [N/m]; of ends that give way K_s.
     curve
         Restoring force of the storey.
     capacity
@@ -134,6 +134,11 @@ def pushover(
     rotation = np.linspace(0.0, end, points)
     if 0.0 < beta < end:
         rotation = np.sort(np.append(rotation, beta))
+    uplift, stiffness = 0.0, structure.initial_stiffness
+    if (bed := structure.bed) is not None:
+        uplift, stiffness = bed.uplift_rotation, bed.stiffness
+        gradual = np.geomspace(uplift, min(100.0 * uplift, end), 40)
+        rotation = np.unique(np.concatenate([rotation, gradual]))
     _, displacement, lift = structure.path(rotation)
     held = friction_force(structure, rotation)
     curve = StoreyCurve(
@@ -147,29 +152,33 @@ def pushover(
     added = sum(device.stiffness_after_uplift(structure) for device in structure.devices)
     return PushoverResult(
         structure=structure,
-        uplift_force=float(curve.force[0]),
+        uplift_force=float(np.interp(uplift, rotation, curve.force)),
         critical_rotation=end,
         critical_displacement=float(displacement[-1]),
-        initial_stiffness=structure.initial_stiffness + added,
+        initial_stiffness=stiffness + added,
         curve=curve,
-        capacity=tuple(_capacity(building, curve, p) for p in patterns) if building else (),
+        capacity=tuple(_capacity(building, curve, p, uplift) for p in patterns) if building else (),
     )
 
 
 def _capacity(
-    building: Superstructure, curve: StoreyCurve, pattern: PatternName | Sequence[float]
+    building: Superstructure,
+    curve: StoreyCurve,
+    pattern: PatternName | Sequence[float],
+    uplift: float,
 ) -> CapacityCurve:
     forces = load_pattern(building, pattern)
     sway = np.linalg.solve(building.stiffness_matrix, forces)
     pushed = np.concatenate([[0.0], curve.force])
     base = np.concatenate([[0.0], curve.displacement])
+    roof = base + pushed * sway[-1]
     return CapacityCurve(
         pattern=pattern if isinstance(pattern, str) else "given",
         forces=forces,
-        roof_displacement=base + pushed * sway[-1],
+        roof_displacement=roof,
         cap_beam_displacement=base,
         sum_of_floor_forces=pushed,
-        roof_displacement_at_uplift=float(curve.force[0] * sway[-1]),
+        roof_displacement_at_uplift=float(np.interp(uplift, curve.rotation, roof[1:])),
     )
 
 

@@ -18,6 +18,7 @@ from rpscli.case.schema.case_file import (
     SuperstructureSection,
 )
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
+from rpscli.model.contact import USUAL_LOSS, Contact
 from rpscli.model.devices import DEVICES
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
@@ -85,7 +86,9 @@ def podium_of(file: CaseFile, shape: Shape) -> Podium:
     """The podium that a validated case file describes, with columns of a given shape."""
     total = building_mass(file.superstructure)
     columns, cap_beam = podium_masses(file.podium, total)
-    impact = file.podium.impact
+    impact = file.podium.impact.model_dump(exclude={"law"})
+    if impact["loss"] is None:
+        impact["loss"] = USUAL_LOSS[file.podium.contact.kind]
     return Podium(
         Bearing(
             *shape,
@@ -95,7 +98,7 @@ def podium_of(file: CaseFile, shape: Shape) -> Podium:
         columns,
         cap_beam,
         total,
-        ImpactLaw(**impact.model_dump(exclude={"law"}), kind=impact.law),
+        ImpactLaw(**impact, kind=file.podium.impact.law),
     )
 
 
@@ -116,6 +119,7 @@ def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
         friction=file.podium.friction,
         rows=_rows(file.podium.plan),
         superstructure_y=_across(file.superstructure),
+        contact=Contact(**file.podium.contact.model_dump()),
     )
 
 

@@ -13,10 +13,11 @@ from typing import Any
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.build import Podium, podium_of, podium_structure, time_history_settings
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.rules.partial_case import PartialCase
+from rpscli.case.rules.partial_case import CONTACT, PartialCase
 from rpscli.case.rules.plausibility import Doubt, doubts_of_storeys, doubts_of_structure
 from rpscli.case.rules.podium import (
     bearing_rules,
+    contact_rules,
     devices_rules,
     impact_rules,
     overturning_rule,
@@ -39,6 +40,7 @@ from rpscli.case.text.document import Document, is_design, is_study, text_of_val
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, require_kind, stem_of
+from rpscli.model.contact import refuse_start
 from rpscli.model.podium import PodiumStructure
 from rpscli.shown import Shown
 
@@ -47,6 +49,7 @@ RULES = (
     masses_rules,
     bearing_rules,
     impact_rules,
+    contact_rules,
     devices_rules,
     record_rules,
     limits_rules,
@@ -236,4 +239,16 @@ def _podium(file: CaseFile, partial: PartialCase) -> Podium:
         place = document.key_place(("podium",))
         raise CaseError(f"{place}: podium: {error}") from None
     document.refuse(faults)
+    if document.has(CONTACT):
+        _refuse_contact(podium, file, document)
     return podium
+
+
+def _refuse_contact(podium: Podium, file: CaseFile, document: Document) -> None:
+    """Say what the model does not take of ends that give way, or of a start below phi_u."""
+    try:
+        structure = podium_structure(podium, file)
+        if structure.bed is not None:
+            refuse_start(structure.bed, file.analysis.initial_rotation)
+    except ValueError as error:
+        raise CaseError(f"{document.key_place(CONTACT)}: podium.contact: {error}") from None

@@ -29,7 +29,7 @@ from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.table import Heading, Part, Table, large, shown
-from rpscli.report.tables.derived import BOTH, DYNAMICS, FIRST_PERIOD, GEOMETRY
+from rpscli.report.tables.derived import BOTH, CONTACT, DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -111,11 +111,12 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
     heads = ("", "symbol", "value", "unit")
     yield Heading(document["case"]["title"])
     pair = document["record"] and document["record"]["y"]
-    for rows in (GEOMETRY, (*DYNAMICS, FIRST_PERIOD), BOTH)[: 3 if pair else 2]:
+    on_bed = CONTACT if "contact_stiffness" in document else ()
+    for rows in (GEOMETRY, (*DYNAMICS, FIRST_PERIOD, *on_bed), BOTH)[: 3 if pair else 2]:
         texts = []
         for row in rows:
-            if row.name == "rolling_period" and document[row.name] is None:
-                continue  # columns with a flat part have none
+            if document[row.name] is None and (row in on_bed or row.name == "rolling_period"):
+                continue  # columns with a flat part, edges, or curved ends have none
             value, unit = large(document[row.name], row.unit)
             texts.append((row.label, row.symbol, shown(value), unit))
         yield Table.of_texts(heads, texts, words=2)

@@ -24,7 +24,7 @@ from rpscli.report.figures.look import Look, drawn_with
 from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:
-    from rpscli.analyses.modal import ModalResult
+    from rpscli.analyses.modal import FixedBaseModes, ModalResult
 
 
 @click.command("modal")
@@ -84,12 +84,24 @@ def _tables(result: ModalResult, title: str) -> Iterator[Part]:
     yield ORDER
     if result.left_out:
         yield f"Not linear, and left out: {listed(result.left_out, 'and')}."
+    if (full := result.full_contact) is not None:
+        yield _mode_table("full contact", full)
+        if result.fixed_base is not None:
+            ratio = full.periods[0] / result.fixed_base.periods[0]
+            yield (
+                f"First period {shown(full.periods[0])} s in full contact, {ratio:.3f} of the fixed"
+                " base. Uplifted states are linearised as on rigid ends."
+            )
     if (fixed := result.fixed_base) is None:
         return
-    rows = [
-        (str(i + 1), shown(w), shown(fixed.periods[i]), shown(100.0 * fixed.damping[i], 3))
-        for i, w in enumerate(fixed.frequencies)
-    ]
-    yield Table.of_texts(("full contact", "rad/s", "T s", "xi %"), rows)
+    yield _mode_table("fixed base" if full else "full contact", fixed)
     heads = "rad/s", "first order", "of fixed base", "xi %", "first order", "of fixed base"
     yield Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
+
+
+def _mode_table(state: str, modes: FixedBaseModes) -> Table:
+    rows = [
+        (str(i + 1), shown(w), shown(modes.periods[i]), shown(100.0 * modes.damping[i], 3))
+        for i, w in enumerate(modes.frequencies)
+    ]
+    return Table.of_texts((state, "rad/s", "T s", "xi %"), rows)

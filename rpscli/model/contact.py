@@ -135,6 +135,28 @@ class Bed(NamedTuple):
 
         return 1.0 / float(brentq(misses, 1e-9, 1.0 - 1e-12, xtol=1e-15, rtol=1e-15))
 
+    @property
+    def period(self) -> float | None:
+        """First period in full contact [s]."""
+        building, ratio = self.structure.superstructure, self.period_ratio
+        return None if ratio is None else ratio * float(building.periods[0])
+
+    @property
+    def joint_stiffness(self) -> float | None:
+        """Of one joint of all columns, pressed evenly by the permanent load: W/D_0 [N/m]."""
+        return self.settlement and float(self.structure.weight) / self.settlement
+
+    @property
+    def ratio(self) -> float:
+        """phi_u/alpha."""
+        return float(self.uplift_rotation / self.structure.bearing.alpha)
+
+    @property
+    def contact_share(self) -> float | None:
+        """Contact length at alpha/10 over the flat part's; None of edges and curved ends."""
+        gradual = self.root and self.structure.bearing.is_flat
+        return math.sqrt(min(10.0 * self.ratio, 1.0)) if gradual else None
+
     def path(self, x: Array) -> BedPath:
         """Arms, displacements and potential at |theta| [rad]."""
         u, fade, b = self.uplift_rotation, self.fade, self.structure.bearing
@@ -248,6 +270,15 @@ def bed_of(structure: Standing) -> Bed | None:
             " displacement at which they begin to lift"
         )
     return found
+
+
+def refuse_start(bed: Bed, rotation: float) -> None:
+    """Refuse a release from full contact: raises ValueError [rad]."""
+    if 0.0 < abs(rotation) <= bed.uplift_rotation:
+        raise ValueError(
+            f"initial_rotation = {rotation:.6g} rad must be 0, or above"
+            f" {bed.uplift_rotation:.6g} rad, where the ends begin to lift"
+        )
 
 
 def refuse_combinations(structure: Standing) -> None:

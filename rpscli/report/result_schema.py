@@ -29,7 +29,7 @@ from rpscli.records.requirements import Rule
 from rpscli.registry import Offer
 from rpscli.report.documents import OF_RECORD, SCHEMA_VERSION
 from rpscli.report.study.statistics import OF_RECORDS
-from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
+from rpscli.report.tables.derived import CONTACT, DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 Shape = Any
 """A mapping of keys (`?`: not always), a list or a tuple of shapes, or any annotation."""
@@ -129,11 +129,13 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
     },
     "check": {
         "case": _SUBJECT, **_quantities(GEOMETRY, DYNAMICS, [FIRST_PERIOD]), "overturns": str,
+        **{f"{name}?": shape for name, shape in _quantities(CONTACT).items()},
         "storeys": int, **dict.fromkeys(("periods", "damping_ratios", "stiffnesses"), list[float]),
         "devices": [{"kind": str}], "recentring": [Return], "limits": dict, **_TOLD, **_ENDED,
     },
     "modal": {
         "case": _SUBJECT, "fixed_base": _quantities(known.FIXED_BASE_MODES, listed=True),
+        "full_contact?": _quantities(known.FIXED_BASE_MODES, listed=True),
         "rolling": _UPLIFTED, "rocking": _UPLIFTED, **_TOLD, **_FILES,
     },
     "pushover": {

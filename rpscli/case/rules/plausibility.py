@@ -15,6 +15,7 @@ from rpscli.case.schema.case_file import SuperstructureSection
 from rpscli.case.text.document import Document
 
 if TYPE_CHECKING:
+    from rpscli.model.contact import Bed
     from rpscli.model.podium import PodiumStructure
 
 
@@ -82,6 +83,9 @@ WALKS = 0.25
 NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""
 
+STIFFEST, SOFTEST = 1.02, 0.02
+"""Least period ratio and largest phi_u/alpha of ends that give way for which that is meant."""
+
 STRONGEST = 0.4
 """Hardly a building carries more than this part of its weight sideways: V_st/(M_tot g)."""
 
@@ -111,6 +115,8 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
             " out, let the cap beam walk over its columns",
             bearing.slenderness,
         )
+    if (bed := structure.bed) is not None:
+        yield from doubts_of_contact(bed)
     if building is None:
         return
     yield from STOREY_MASS.doubts(1e-3 * float(building.masses.mean()))
@@ -137,6 +143,23 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
                 float(drifts[storey]),
                 f" (storey {storey + 1}, under a shear of {above[storey]:.4g} N)",
             )
+
+
+def doubts_of_contact(bed: Bed) -> Iterator[Doubt]:
+    """Ends that hardly give way, or so much that small rotations are not small."""
+    ratio, share = bed.period_ratio, bed.ratio
+    if ratio is not None and ratio < STIFFEST:
+        yield Doubt(
+            f"podium.contact: the period in full contact is {{0}} of the fixed base, below"
+            f" {STIFFEST:g}: short steps and no effect; use kind: rigid",
+            ratio,
+        )
+    if share > SOFTEST:
+        yield Doubt(
+            f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the settlement is"
+            " no longer small beside the width of the joint",
+            share,
+        )
 
 
 def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[Doubt]:

@@ -7,7 +7,14 @@ from collections.abc import Callable, Iterator
 from typing import get_args
 
 from rpscli.case.build import Podium, Shape, overturning_limit
-from rpscli.case.rules.partial_case import BEARING, DEVICES, IMPACT, PODIUM, PartialCase
+from rpscli.case.rules.partial_case import (
+    BEARING,
+    CONTACT,
+    DEVICES,
+    IMPACT,
+    PODIUM,
+    PartialCase,
+)
 from rpscli.case.schema.case_file import (
     DEVICE_KEYS,
     AnalysisSection,
@@ -144,6 +151,17 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
             " factor",
             at_key=True,
         )
+
+
+def contact_rules(case: PartialCase) -> Iterator[Fault]:
+    """Ends that give way come down without bounces that could be left out."""
+    if case.document.at((*CONTACT, "kind")) in ("plane", "edges"):
+        for name in case.written(("analysis",), "recontact_tolerance", "recontact_rule"):
+            text = (
+                f"analysis.{name} means nothing with podium.contact"
+                f"{case.where((*CONTACT, 'kind'))}: ends that give way do not bounce; take it out"
+            )
+            yield Fault(("analysis", name), text, at_key=True)
 
 
 def above(x: float, digits: int = 4) -> str:

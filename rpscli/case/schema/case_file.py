@@ -212,11 +212,13 @@ class ImpactSection(Section):
     ] = None
     """e of the law value"""
     loss: Annotated[
-        float, Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5)
+        float | None,
+        Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5),
     ] = Field(
-        1.0,
+        None,
         description="kappa: part of the law's loss at an impact, 1 - e = kappa (1 - e of the law);"
-        " 1 = impulse at the edges, 0.3 to 0.5 = spread over plane ends on a damped bed",
+        " 1 = impulse at the edges, 0.3 to 0.5 = spread over plane ends on a damped bed; left out:"
+        " 0.3 with contact plane, else 1",
     )
     factor: PositiveRatio = 1.0
     """multiplies the restitution of the law"""
@@ -231,6 +233,24 @@ class ImpactSection(Section):
 
 def _law_alone(value: object) -> object:
     return {"law": value} if isinstance(value, str) else value
+
+
+class ContactSection(Section):
+    """What the ends of the columns bear on; other kinds than rigid take one of three sizes."""
+
+    kind: Literal["rigid", "plane", "edges"] = Field(
+        "rigid",
+        description="rigid: nothing moves before uplift; plane: a joint that gives way and lifts"
+        " gradually; edges: two edges that give way and lift at once",
+    )
+    period_ratio: Annotated[float | None, Quantity(symbol="r = T/T_1", above=1)] = None
+    """first period in full contact over that on a fixed base, as measured"""
+    stiffness: Annotated[float | None, Quantity("N/m", symbol="K_s", above=0)] = None
+    """K_s of the storey in full contact, force at the cap beam over u_b"""
+    settlement: Annotated[float | None, Quantity("m", symbol="D_0", above=0)] = None
+    """D_0 of one joint under the permanent load, of flat ends"""
+    damping: Annotated[float, Quantity(symbol="zeta", at_least=0, at_most=2)] = 0.03
+    """damping ratio of the storey's own vibration in full contact"""
 
 
 class PodiumMasses(Section):
@@ -275,6 +295,8 @@ class PodiumSection(PodiumMasses):
     """shape of one column"""
     impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = ImpactSection()
     """impact law; a law's name alone may stand here"""
+    contact: ContactSection = ContactSection()
+    """what the ends of the columns bear on: rigid, or giving way, with a period before uplift"""
     friction: Annotated[
         float | None, Quantity(symbol="of friction, at both ends of the columns", above=0)
     ] = None

@@ -159,6 +159,7 @@ SECTIONS = {
     "podium.bearing.inertia_ratio": "2",
     "podium.impact": "4",
     "podium.friction": "8",
+    "podium.contact": "12",
     "podium.devices": "11",
     "podium.plan": "8",
     "superstructure.vertical_period": "8",

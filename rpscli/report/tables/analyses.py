@@ -28,10 +28,14 @@ def mode_columns(result: ModalResult) -> list[Column]:
 
 
 def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, ...]]:
+    if (full := result.full_contact) is not None:
+        for i, (w, xi) in enumerate(zip(full.frequencies, full.damping, strict=True)):
+            yield "full_contact", i + 1, float(w), 2.0 * math.pi / w, float(xi), *4 * (None,)
     if (fixed := result.fixed_base) is not None:
+        name = "fixed_base" if full else "full_contact"
         for i, (w, xi) in enumerate(zip(fixed.frequencies, fixed.damping, strict=True)):
             of_itself = (1.0, 1.0, None, None)
-            yield "full_contact", i + 1, float(w), 2.0 * math.pi / w, float(xi), *of_itself
+            yield name, i + 1, float(w), 2.0 * math.pi / w, float(xi), *of_itself
     for name, (modes, first) in result.both_orders.items():
         for i, (w, xi) in enumerate(zip(modes.frequencies, modes.damping, strict=True)):
             ratios = float(modes.frequency_ratio[i]), float(modes.damping_ratio[i])
@@ -42,9 +46,13 @@ def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, 
 def shape_columns(result: ModalResult) -> list[Column]:
     """`shapes.csv`: one row a level of each mode; mode 0 is the storey's own, level 0 the beam."""
     profiles = {(name, 0): [*modes.profiles().values()] for name, modes in result.uplifted.items()}
+    full = result.full_contact
     if result.fixed_base is not None:
         fixed = result.fixed_base.profiles()["shapes"]
-        profiles = {("full_contact", 1): [fixed, fixed], **profiles}
+        profiles = {("fixed_base" if full else "full_contact", 1): [fixed, fixed], **profiles}
+    if full is not None:
+        elastic = full.shapes.T - full.shapes[0][:, None]
+        profiles = {("full_contact", 1): [full.shapes.T, elastic], **profiles}
     rows = [
         (state, first + mode, level, float(shapes[mode, level]), float(elastic[mode, level]))
         for (state, first), (shapes, elastic) in profiles.items()

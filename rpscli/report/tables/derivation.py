@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
+from rpscli.report.tables.derived import CONTACT, DYNAMICS, FIRST_PERIOD, GEOMETRY
 
 if TYPE_CHECKING:
     from rpscli.model.bearing import Bearing
@@ -54,7 +54,8 @@ def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterat
     """All derived quantities that are numbers, in the order in which they follow."""
     letters = _letters(structure)
     formulas = _formulas(structure, podium)
-    rows = [(*row[:4], row.value(structure)) for row in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD)]
+    derived = (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *(CONTACT if structure.bed else ()))
+    rows = [(*row[:4], row.value(structure)) for row in derived]
     for row in rows:
         for name, label, symbol, unit, value in (*_before(row[0], structure, letters), row):
             if isinstance(value, float | int):

@@ -90,6 +90,19 @@ BOTH = (
 )  # fmt: skip
 """Where both horizontal components act."""
 
+CONTACT = (
+    Derived("period_ratio", "period in full contact over T1", "r", "-", "bed.period_ratio"),
+    Derived("contact_period", "first period in full contact", "T", "s", "bed.period"),
+    Derived("contact_stiffness", "stiffness in full contact", "K_s", "N/m", "bed.stiffness"),
+    Derived("settlement", "settlement of a joint", "D_0", "m", "bed.settlement"),
+    Derived("joint_stiffness", "mean stiffness of a joint", "W/D_0", "N/m", "bed.joint_stiffness"),
+    Derived("lifts_from", "ends begin to lift at", "phi_u", "rad", "bed.uplift_rotation"),
+    Derived("lifts_from_ratio", "over the slenderness angle", "phi_u/alpha", "-", "bed.ratio"),
+    Derived("contact_mass", "columns and cap beam at u_b", "m_0", "kg", "bed.mass"),
+    Derived("contact_share", "contact length at 0.1 alpha", "", "-", "bed.contact_share"),
+)
+"""Of ends that give way."""
+
 FIRST_PERIOD = Derived(
     "T1", "first period on a fixed base", "T1", "s",
     lambda s: float(s.superstructure.periods[0]) if s.superstructure else None,
@@ -104,5 +117,6 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
         **{row.name: row.value(structure) for row in (*GEOMETRY, *DYNAMICS, *BOTH)},
         "storeys": structure.storeys,
         FIRST_PERIOD.name: FIRST_PERIOD.value(structure),
+        **({row.name: row.value(structure) for row in CONTACT} if structure.bed else {}),
         **{name: getattr(building, name) if building else [] for name in lists},
     }

@@ -43,6 +43,8 @@ def timehistory_tables(
     if scaled_to:
         yield f"record scaled to {scaled_to}"
     yield f"outcome: {outcome_text(result)}"
+    if (contact := contact_text(result.structure)) is not None:
+        yield contact
     yield outcome_table(result)
     if result.structure.storeys:
         yield storeys_table(result)
@@ -87,10 +89,27 @@ def restitution_text(structure: PodiumStructure) -> str:
     if structure.bearing.is_spherical:
         return "no impacts: columns without a flat part roll through the upright position"
     text = f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"
+    if (contact := contact_text(structure)) is not None:
+        text = f"{text}; {contact}"
     if law.kind == "value" or law.loss <= OTHER_LOSS:
         return text
     other = replace(structure, impact_law=replace(law, loss=OTHER_LOSS)).restitution
     return f"{text}; with podium.impact.loss {OTHER_LOSS:g} it would be {shown(other)}"
+
+
+def contact_text(structure: PodiumStructure) -> str | None:
+    """Kind, period and settlement of ends that give way; None of rigid ones."""
+    if (bed := structure.bed) is None:
+        return None
+    kind, ratio = structure.contact.kind, bed.period_ratio
+    parts = [f"{kind} contact"]
+    if ratio is not None:
+        period = shown(bed.period, 3)
+        parts.append(f"period {period} s in full contact ({ratio:.2f} x fixed base)")
+    if bed.settlement is not None:
+        parts.append(f"a joint settles {shown(1e3 * bed.settlement, 2)} mm")
+    other = "edges" if kind == "plane" else "plane"
+    return f"{', '.join(parts)}; a period does not tell the kind: compare with {other}"
 
 
 def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> Iterator[str]:
@@ -169,6 +188,12 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     if not result.structure.bearing.is_spherical:
         rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
     rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
+    if result.structure.bed is not None:
+        rows += [
+            _row(result, name)
+            for name in ("full_contact_share", "max_impact_number", "edge_pressure_ratio")
+            if getattr(result, name) is not None
+        ]
     friction = result.friction_ratio
     of_friction = "" if friction is None else f"{shown(friction)} of mu"
     rows.append(_row(result, "friction_demand", of_friction))
@@ -208,10 +233,12 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
 
 def _energy(result: TimeHistoryResult) -> list[Row]:
     energy = result.energy
-    supplied = energy.damped + energy.devices + energy.impact + energy.stored + energy.residual
+    supplied = energy.damped + energy.devices + energy.bed + energy.impact + energy.stored
+    supplied += energy.residual
     parts = {
         "damped": energy.damped,
         **({"in devices": energy.devices} if result.structure.devices else {}),
+        **({"in the joints": energy.bed} if result.structure.bed else {}),
         "lost at impacts": energy.impact,
         "still stored": energy.stored,
         "residual": energy.residual,
