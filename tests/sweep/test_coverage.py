@@ -101,14 +101,14 @@ def test_bands_and_shares_where_events_are_drawn(outcomes: dict[str, Beyond], wh
     """
     every, draws = outcomes[what], 1500
     pairs_of = [np.flatnonzero(np.array(EVENTS) == event) for event in range(14)]
-    truth, intensity = fitted(every, 0, 1), np.broadcast_to(LEVELS, every.shape)
+    truth = fitted(every, 0, 1)
     held, shares = np.zeros((draws, 2), dtype=bool), np.zeros((draws, len(LEVELS)), dtype=bool)
     for seed in range(draws):
         drawn = [pairs_of[event] for event in np.random.default_rng(seed).integers(0, 14, 14)]
         beyond = every[np.concatenate(drawn)]
         event = np.repeat(np.arange(14), [len(pairs) for pairs in drawn])
         fit = lognormal_fit(
-            intensity[: len(beyond)].ravel().copy(), beyond.ravel(),
+            np.broadcast_to(LEVELS, beyond.shape).ravel().copy(), beyond.ravel(),
             np.repeat(event, 2 * len(LEVELS)), 1.0, np.array(LEVELS), Bootstrap(200, 0.9, seed),
         )  # fmt: skip
         held[seed] = (
