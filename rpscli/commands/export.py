@@ -73,7 +73,7 @@ def command(
     ground = load_motion(given.case, motions[0])
     structure = given.case.structure
     kept = {"podium.devices": structure.devices, "record.vertical": ground.vertical,
-            "record.y": ground.y}  # fmt: skip
+            "record.y": ground.y, "podium.contact": structure.bed}  # fmt: skip
     if left := [key for key, what in kept.items() if what]:
         raise UsageError(
             f"{given.case.source}: {left[0]} is not exported; take it out, by --set {left[0]}=null,"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -199,10 +200,31 @@ def _vibration(structure: PodiumStructure, columns: Columns, test: str) -> Found
     ground = columns.get("ground_acceleration")
     found = vibration(fixed, step, columns["floor_acceleration"], ground, free=test == "release")
     ratio = Estimate(*(value / fixed for value in found.period))
-    estimates = {("period", "s"): found.period, ("damping", "-"): found.damping,
-                 ("period_ratio", "-"): ratio}  # fmt: skip
+    estimates: dict[tuple[str, str], Estimate | None] = {
+        ("period", "s"): found.period,
+        ("damping", "-"): found.damping,
+        ("period_ratio", "-"): ratio,
+    }
     told = f"period_ratio is over {shown(fixed)} s, the period of the case on a fixed base"
-    if ratio.high < 1.0:
-        told += ": below 1 the building is stiffer than in the case, which no contact explains"
-    document = {"misfit": found.misfit, "ensembles": False, "residuals": []}
-    return estimates, document, [told], {}
+    keys: dict[str, str] = {}
+    if ratio.low > 1.0:
+        from rpscli.case.schema.case_file import CaseFile
+        from rpscli.case.schema.keys import field_at
+        from rpscli.model.contact import Contact
+
+        try:
+            soft = [replace(structure, contact=Contact("plane", each)).bed for each in ratio]
+            best, stiffest, softest = (bed for bed in soft if bed is not None)
+        except ValueError as error:
+            raise AnalysisError(f"period_ratio = {ratio.value:.4g}: {error}") from None
+        both = (best.stiffness, softest.stiffness, stiffest.stiffness)
+        estimates["stiffness", "N/m"] = Estimate(*both)
+        if None not in (sunk := [bed.settlement for bed in (best, stiffest, softest)]):
+            estimates["settlement", "m"] = Estimate(*(each for each in sunk if each is not None))
+        if field_at(CaseFile, ("podium", "contact")) is not None:
+            keys = {"podium.contact.kind": "plane",
+                    "podium.contact.period_ratio": f"{ratio.value:.4g}"}  # fmt: skip
+        told += "; stiffness of the storey in full contact; settlement of a joint if it is `plane`"
+    else:
+        told += "; 1, which is rigid contact, is not excluded"
+    return estimates, {"misfit": found.misfit, "ensembles": False, "residuals": []}, [told], keys

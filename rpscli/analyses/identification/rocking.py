@@ -137,6 +137,8 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
             f"{len(every)} swings stand out of the noise of {noise:.2g} rad, and four are needed:"
             " release it from a larger rotation, or choose a part of the motion by --from and --to"
         )
+    if structure.bearing.is_spherical:
+        raise AnalysisError("columns without a flat part roll without impacts; use another test")
     first, *swings = every[: MOST_SWINGS + 1]
     dt, side = float(time[1] - time[0]), math.copysign(1.0, rotation[np.argmax(time >= first.time)])
     # Half a swing more than is looked at, which are ever shorter ones.
@@ -145,10 +147,9 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
     errors = np.array([value for swing in swings for value in swing[2:]])
     q, steps, bounds = _start(of, first)
     try:
-        q, covariance, misfit = _fitted(
-            of.tops, q, steps, bounds, of.measured, np.diag(1.0 / errors)
-        )
-        reach = 3.0 * math.sqrt(covariance[0, 0]) / q[0]
+        q, gain, misfit = _fitted(of.tops, q, steps, bounds, of.measured, errors)
+        covariance = (gain * errors**2) @ gain.T
+        reach = 3.0 * max(1.0, misfit) * math.sqrt(covariance[0, 0]) / q[0]
         releases = 1.0 + reach * np.linspace(-1.0, 1.0, ENSEMBLE)
 
         def means(q: Array) -> tuple[Array, Array]:
@@ -159,19 +160,21 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
             return many.mean(axis=0), left
 
         left = means(q)[1]
-        scatter = left.T @ left / (ENSEMBLE - 2)
+        # Of one motion, and of the mean that it is held against.
+        scatter = left.T @ left / (ENSEMBLE - 2) * (1.0 + 1.0 / ENSEMBLE)
         ensembles = bool(np.any(np.sqrt(np.diag(scatter)) > PARTING * errors))
         if ensembles:
-            # Swings that part ways do so together.
-            whiten = np.linalg.inv(np.linalg.cholesky(np.diag(errors**2) + scatter))
+            wide = np.sqrt(errors**2 + np.diag(scatter))
             steps = WIDE * np.sqrt(np.diag(covariance))
-            q, covariance, misfit = _fitted(
-                lambda q: means(q)[0], q, steps, bounds, of.measured, whiten
-            )
+            q, gain, misfit = _fitted(lambda q: means(q)[0], q, steps, bounds, of.measured, wide)
+            # Swings that part ways do so together, which the gain adds up.
+            covariance = (gain * errors**2) @ gain.T + gain @ scatter @ gain.T
     except (ValueError, np.linalg.LinAlgError) as error:
         raise AnalysisError(f"no structure like this one rocks so: {error}") from None
-    spread = np.sqrt(np.diag(covariance))
-    found = [estimate(*each, 2 * len(swings) - len(q)) for each in zip(q, spread, strict=True)]
+    spread = max(1.0, misfit) * np.sqrt(np.diag(covariance))
+    # The scatter of an ensemble is known from so few motions.
+    freedoms = ENSEMBLE - 2 if ensembles else 2 * len(swings) - len(q)
+    found = [estimate(*each, freedoms) for each in zip(q, spread, strict=True)]
     kappa = None if structure.impact_law.kind == "value" else found[2]
     ratios = sorted(of.changed(np.array([*q[:2], k, *q[3:]])).restitution for k in
                     np.clip(found[2], *bounds[:, 2]))  # fmt: skip
@@ -226,18 +229,19 @@ def swings_of(time: Array, rotation: Array, noise: float, least: float) -> list[
 
 def _fitted(
     model: Callable[[Array], Array], q: Array, steps: Array, bounds: Array, measured: Array,
-    whiten: Array,
+    errors: Array,
 ) -> tuple[Array, Array, float]:  # fmt: skip
-    """Least squares by Gauss and Newton with wide differences: covariance with the misfit in it."""
+    """Least squares by Gauss and Newton: q, its change by each measurement, misfit over errors."""
 
     def misses(q: Array) -> Array:
-        return np.asarray(whiten @ (measured - model(np.clip(q, *bounds))))
+        return np.asarray((measured - model(np.clip(q, *bounds))) / errors)
 
     for _ in range(12):
         r = misses(q)
         sides = [(misses(q - step), misses(q + step)) for step in np.diag(steps)]
         J = np.column_stack([(a - b) / (2.0 * h) for (a, b), h in zip(sides, steps, strict=True)])
-        move = np.linalg.lstsq(J * steps, r, rcond=None)[0] * steps
+        inverse = np.linalg.inv((J * steps).T @ (J * steps)) * steps[:, None]
+        move = inverse @ (J * steps).T @ r
         parts = ((part, np.clip(q + part * move, *bounds)) for part in (1.0, 0.5, 0.25, 0.1))
         better = (each for each in parts if np.sum(misses(each[1]) ** 2) < np.sum(r**2))
         part, tried = next(better, (0.0, q))
@@ -245,4 +249,4 @@ def _fitted(
         if np.all(np.abs(part * move) < SETTLED * steps):
             break
     variance = float(np.sum(misses(q) ** 2)) / (len(measured) - len(q))
-    return q, variance * np.linalg.inv(J.T @ J), math.sqrt(variance)
+    return q, inverse @ (J * steps).T / errors, math.sqrt(variance)
