@@ -94,6 +94,7 @@ def test_the_pair_of_the_case(lay: Lay) -> None:
     record = "record: {x: one.at2, y: other.at2, rotation: 30}\n"
     layout = lay("perturb: {members: 2}\n", BASE + record)
     context = StudyContext(layout.plan)
+    assert layout.identifying["record"][1] == ["one.at2 + other.at2"]
     wanted = load_components(f"{BOTH}&rotation=30").samples
     np.testing.assert_array_equal(motions(layout, context)[0], wanted)
     words = shlex.split(reproduction(layout, context, layout[1], Path("base.yaml")))

@@ -32,6 +32,11 @@ class RecordRequest(NamedTuple):
     rotation: float = 0.0
 
     @property
+    def name(self) -> str:
+        """The source, or both."""
+        return self.source if self.y is None else f"{self.source} + {self.y}"
+
+    @property
     def is_pair(self) -> bool:
         """Whether both horizontal components act."""
         return self.y is not None or parts_of(self.source).both

@@ -127,7 +127,7 @@ class StudyPoints:
             columns[measure_label(self.plan.measure.measure, self.of)] = 2, self.scales
         if self.plan.analysis == "timehistory":
             own = self.records == (None,)
-            columns["record"] = 0 if own else 1, [record.source for record in self._requests]
+            columns["record"] = 0 if own else 1, [record.name for record in self._requests]
         return columns
 
     @cached_property
@@ -143,7 +143,7 @@ class StudyPoints:
     @cached_property
     def recordings(self) -> Indices:
         """(points,) numbers of the recordings, or events, of all points."""
-        of, sources = self.identifying["record"]
+        of, sources = self.identifying["record"][0], [r.source for r in self._requests]
         folder = self.study.base_folder if self.records == (None,) else self.study.folder
         found = clusters(sources, folder, self.independent)
         return frozen(np.array(found)[self.places[of]])
