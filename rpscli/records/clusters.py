@@ -152,13 +152,6 @@ ONE_FACTOR = (
 )
 
 
-def pair_of(x: str, y: str, of: Of | None) -> Pair:
-    """Two sources as a pair, which has one factor."""
-    if of == "component":
-        raise RecordError(f"{x}: {ONE_FACTOR}")
-    return x, y
-
-
 def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ...]:
     """What each source is measured by: both components of its recording, or None for itself."""
     # Without `of` it is the pair where its recording stands in several directions among the

@@ -22,9 +22,10 @@ from rpscli.case.schema.fields import (
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
+from rpscli.errors import RecordError
 from rpscli.model.devices import DEVICES
 from rpscli.model.impact import CONTACT_TIME, LONGEST_CONTACT
-from rpscli.records.clusters import Pair, pair_of, pairs
+from rpscli.records.clusters import ONE_FACTOR, Pair, pairs
 from rpscli.records.pair_measure import Of
 from rpscli.records.source import parts_of
 
@@ -353,7 +354,9 @@ class RecordSection(Section):
 
     def pair(self, of: Of | None) -> Pair | None:
         """Both components that a measure is of; None if it is that of a single one."""
-        return pairs([self.source], of)[0] if self.y is None else pair_of(self.source, self.y, of)
+        if self.y is not None and of == "component":
+            raise RecordError(f"{self.source}: {ONE_FACTOR}")
+        return pairs([self.source], of)[0] if self.y is None else (self.source, self.y)
 
 
 class AnalysisSection(Section):
