@@ -11,6 +11,7 @@ from paper_structures import ground, podium
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.devices import FrictionDamper
+from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import MotionComponents
 
 
@@ -24,3 +25,5 @@ def _compiled() -> None:
                 [Request(structure, MotionComponents(record), settings)],
                 worth_lanes=worth_lanes,
             )
+    both = MotionComponents(record, y=record)
+    demands([Request(replace(podium(1), impact_law=ImpactLaw()), both, settings)])

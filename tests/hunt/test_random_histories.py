@@ -14,9 +14,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from paper_structures import needs_compiled_kernels
+from two_components import followed, pair
 
 from hunt.trials import hunt, shares
 from rpscli.analyses.kernels.systems import contact_rate, most_seconds, uplifted_rate
+from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -187,6 +189,73 @@ def judged_history(random: Random) -> str:
     return here.outcome
 
 
+def structure_of_a_pair(random: Random) -> PodiumStructure:
+    """With passes of 0 to 20 ms of contact, perhaps other columns in spin, or stiffnesses in y."""
+    system = structure(random)
+    law = ImpactLaw(
+        "flexible",
+        loss=random.choice([1.0, 1.0, random.uniform(0.0, 1.2)]),
+        contact_time=random.choice([0.0, 2e-3, logarithmic(random, 1e-5, 0.02)]),
+    )
+    above, axial = system.superstructure, logarithmic(random, 1e-3, 1.0)
+    if random.random() < 0.3:
+        system = replace(system, bearing=replace(system.bearing, inertia_ratio_axial=axial))
+    if above is not None and random.random() < 0.4:
+        share = [logarithmic(random, 0.1, 10.0)] * above.storeys
+        system = replace(
+            system, superstructure_y=replace(above, stiffnesses=above.stiffnesses * share)
+        )
+    return replace(system, impact_law=law)
+
+
+def judged_pair(random: Random) -> str:
+    """An outcome, the energy, and the history under the opposite pair."""
+    try:
+        system = structure_of_a_pair(random)
+    except ValueError:
+        return "refused"
+    record, vertical = motions(random)
+    across = np.zeros(record.npts)
+    if random.random() < 0.9:
+        other = samples(random, 9.81 * logarithmic(random, 0.02, 3.0))
+        count = min(len(other), record.npts)
+        across[:count] = other[:count]
+    chosen = settings(random, system, record)
+    chosen = replace(chosen, free_vibration=random.choice([0.0, 1.0, 5.0]), initial_rotation=0.0)
+    if most_seconds(system, chosen, record.duration) > MOST_SECONDS:
+        return "not followed: stiff floors on light columns take millions of steps"
+    up = None
+    if vertical is not None:
+        up = np.zeros(record.npts)
+        count = min(vertical.npts, record.npts)
+        up[:count] = vertical.acceleration[:count]
+    here = followed(system, pair(record.acceleration, across, record.dt, up), chosen)
+    outcome = Demand(system, here.left).outcome
+    assert outcome in OUTCOMES
+    assert np.isfinite(here.samples.theta).all()
+    assert np.isfinite(here.floors).all()
+    if outcome == "failed":
+        return f"failed: {(Demand(system, here.left).failure or '')[:40]}"
+    at, left = here.samples, here.left
+    spent = at.energy_damped + at.energy_lost
+    sizes = (at.energy_input, at.energy_damped, at.energy_lost, at.energy_input - spent)
+    largest = max(float(np.max(np.abs(size))) for size in sizes)
+    error = abs(here.residual * float(left.energy_input)) if left.energy_input else 0.0
+    PAIR_ERRORS.append(error / largest if largest > 0.0 else 0.0)
+    assert error <= RESIDUAL * largest, f"residual {error / largest:.2g}, {outcome}"
+    if up is not None and float(up.min()) < -system.gravity:
+        return outcome  # what has no weight uplifts, and nothing may say to which side
+    there = followed(system, pair(-record.acceleration, -across, record.dt, up), chosen)
+    assert there.left.outcome == left.outcome
+    assert np.array_equal(there.samples.theta, at.theta)
+    assert np.array_equal(there.floors, -here.floors)
+    return outcome
+
+
+PAIR_ERRORS: list[float] = []
+"""Of the energy, of the pairs that were judged: what the long hunt is read for."""
+
+
 @needs_compiled_kernels
 @pytest.mark.parametrize(
     "seed", ["20270-histories 0-60", "20271-histories 2-608", "20281-histories 0-735"]
@@ -201,3 +270,9 @@ def test_histories_that_lost_too_much(seed: str) -> None:
 @pytest.mark.parametrize("part", range(4))
 def test_histories(part: int, long: bool) -> None:
     hunt(f"histories {part}", judged_history, 6, 1000 if long else None)
+
+
+@needs_compiled_kernels
+@shares
+def test_pairs(long: bool) -> None:
+    hunt("pairs", judged_pair, 4, 1000 if long else None)

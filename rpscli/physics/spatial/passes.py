@@ -64,14 +64,14 @@ def log_event_3d(
 
 
 @compiled
-def move_floors(s: Record, l: int, before: tuple[float, float, float, float], dt: float) -> None:
-    """The cap beam has left u_b and u_b' of `before` without the floors, which went on for dt."""
+def move_floors(s: Record, l: int, before: tuple[float, float, float, float]) -> None:
+    """The cap beam has left u_b and u_b' of `before` without the floors."""
     now, half = beam_now(s, l), s.storeys
     for r in range(s.n):
         axis, Gamma = (0 if r < half else 1), s.Gamma[r, l]
         velocity = s.dq[0, r, l] + Gamma * (before[2] if axis == 0 else before[3])
         jump = (before[0] - now[0]) if axis == 0 else (before[1] - now[1])
-        s.q[r, l] += Gamma * jump + dt * velocity
+        s.q[r, l] += Gamma * jump
         s.dq[0, r, l] = velocity - Gamma * (now[2] if axis == 0 else now[3])
 
 
@@ -83,29 +83,17 @@ def limit_of(s: Record, l: int, system: Record) -> float:
 
 
 @compiled
-def pull_of(s: Record, l: int) -> float:
-    """x'' at the present state but for what turning adds [rad/s2]."""
-    at = place_of(s, l, s.theta[l])
-    z_x, z_y = renew_push(s, l)
-    g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
-    along = z_x * s.cos_phi[l] + z_y * s.sin_phi[l]
-    return float((at.C * along - at.B * s.weight_over_R[l] * g_up) / at.A)
-
-
-@compiled
 def pass_upright(s: Record, l: int, system: Record, log: Record, near: int) -> None:
-    """Lose at the closest approach what a contact of t_c does; `near`: by the map from theta_c."""
+    """Lose at the closest approach what a contact of t_c does; `near`: by the map from theta_c.
+
+    The map takes no time: in what it would take neither forces nor their work could be left out.
+    """
     at, before, strain = place_of(s, l, s.theta[l]), beam_now(s, l), strain_energy(s, l)
     p, q = s.theta_dot[l], s.angular_momentum[l] / at.J * s.theta[l]
-    moving, kappa, took = tilting_energy_3d(s, l, at), s.cone[l], 0.0
+    moving, kappa = tilting_energy_3d(s, l, at), s.cone[l]
     least, speed = s.theta[l], abs(q)
     if near > 0:
-        v2 = p * p + kappa * kappa * q * q
-        took = 2.0 * s.theta[l] * abs(p) / v2
-        p += 0.5 * took * pull_of(s, l)
-        v2 = p * p + kappa * kappa * q * q
-        took = 2.0 * s.theta[l] * abs(p) / v2
-        speed = math.sqrt(v2) / kappa
+        speed = math.sqrt(p * p + kappa * kappa * q * q) / kappa
         least = s.theta[l] * abs(q) / speed
     nearness = (
         math.inf if s.contact_time[l] == 0.0 else least / max(speed * s.contact_time[l], 1e-300)
@@ -119,15 +107,12 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: int) -> N
         if q != 0.0:
             inside = 2.0 * math.asin(min(1.0, least / s.theta[l])) / kappa
             turn_by(s, l, sign * (turn * (1.0 - share) - inside))
-        s.time[l] += took
-        s.theta_dot[l] = max(-keeps * p + 0.5 * took * pull_of(s, l), 0.0)
+        s.theta_dot[l] = max(-keeps * p, 0.0)
     else:
         s.theta_dot[l] = 0.0
         turn_by(s, l, -sign * share * turn)
-    move_floors(s, l, before, took)
-    lost = (1.0 - left) * moving
-    if near == 0:
-        lost += strain - strain_energy(s, l)
+    move_floors(s, l, before)
+    lost = (1.0 - left) * moving + strain - strain_energy(s, l)
     s.energy_lost[l] += lost
     s.energy_passes[l] += lost
     row = log_event_3d(s, l, log, PASS, p, s.theta_dot[l], lost)
@@ -187,7 +172,7 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
         enter_phase_3d(s, l, system, phase)
     s.cos_phi[l], s.sin_phi[l] = z_x / size, z_y / size
     s.theta[l], s.theta_dot[l], s.angular_momentum[l] = UPLIFT_TILT, 0.0, 0.0
-    move_floors(s, l, before, 0.0)
+    move_floors(s, l, before)
     s.energy_input[l] += lifting_energy(s, l, place_of(s, l, UPLIFT_TILT)) - lifted
     s.energy_input[l] += strain_energy(s, l) - strain
     s.step_limit[l] = FIRST_STEP
