@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,27 +13,31 @@ from numpy.typing import NDArray
 from rpscli.analyses.kernels.systems import CONTACT_ANGLE, building_system
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import velocity
 from rpscli.shown import Shown
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FixedBaseResponse(Shown):
     """Exact linear response of the building on a fixed base."""
 
-    storey_shears: NDArray[np.float64]
+    storey_shears: Array
     """(n,) largest k_i d_i [N], from the bottom."""
-    floor_accelerations: NDArray[np.float64]
+    floor_accelerations: Array
     """(n,) largest absolute accelerations [m/s2]."""
-    floor_velocities: NDArray[np.float64]
+    floor_velocities: Array
     """(n,) largest absolute velocities [m/s], see `TimeHistoryResult.floor_velocities`."""
-    floor_displacements: NDArray[np.float64]
+    floor_displacements: Array
     """(samples, n) relative to the ground [m]."""
-    drifts: NDArray[np.float64]
+    drifts: Array
     """(n,) largest storey drifts [m]."""
-    acceleration_histories: NDArray[np.float64]
+    acceleration_histories: Array
     """(samples, n) absolute accelerations of the floors [m/s2]."""
+    y: FixedBaseResponse | None = None
+    """In y, where both components act: largest values above are then resultants, histories in x."""
 
     @property
     def base_shear(self) -> float:
@@ -40,16 +46,45 @@ class FixedBaseResponse(Shown):
 
 
 def fixed_base_response(
-    structure: PodiumStructure, record: GroundMotion, intervals: int
+    structure: PodiumStructure, motion: MotionComponents, intervals: int
 ) -> FixedBaseResponse:
-    """Run the building of a structure on a fixed base for a number of sampling intervals."""
-    building = structure.superstructure
-    if building is None:
+    """Run the building of a structure on a fixed base for a number of sampling intervals.
+
+    Under both components the largest values are resultants of cubics through the samples, looked at
+    in `PARTS` of each interval: 0.3 % low at most for periods from 5 dt.
+    """
+    if structure.superstructure is None:
         raise ValueError("a structure without superstructure has no fixed-base response")
+    x, of_x = _in_direction(structure.superstructure, motion.horizontal, intervals)
+    if motion.y is None:
+        return x
+    building = structure.superstructure_y or structure.superstructure
+    y, of_y = _in_direction(building, motion.y, intervals)
+    drifts, shears, accelerations, velocities = (
+        largest_resultants(both, motion.dt) for both in zip(of_x, of_y, strict=True)
+    )
+    return replace(
+        x,
+        storey_shears=shears,
+        floor_accelerations=accelerations,
+        floor_velocities=velocities,
+        drifts=drifts,
+        y=y,
+    )
+
+
+Moving: TypeAlias = tuple[Array, Array]
+"""Values (samples, n) and their rates."""
+
+
+def _in_direction(
+    building: Superstructure, record: GroundMotion, intervals: int
+) -> tuple[FixedBaseResponse, list[Moving]]:
+    """Response in one direction; drifts, shears, accelerations and velocities with their rates."""
     floors = np.empty((intervals + 1, 2, building.storeys))
     shears, accelerations = _follow(building, record, intervals, floors)
     histories = _accelerations(building, floors)
-    return FixedBaseResponse(
+    response = FixedBaseResponse(
         storey_shears=shears,
         floor_accelerations=accelerations,
         floor_velocities=largest_velocities(floors[:, 1], histories, record),
@@ -57,20 +92,44 @@ def fixed_base_response(
         drifts=shears / building.stiffnesses,
         acceleration_histories=histories,
     )
+    drifts, rates = (np.diff(floors[:, i], axis=1, prepend=0.0) for i in range(2))
+    ground = _sampled(record.acceleration, intervals + 1)[:, None]
+    jerks = _accelerations(building, np.stack((floors[:, 1], histories - ground), axis=1))
+    k = building.stiffnesses
+    return response, [
+        (drifts, rates), (k * drifts, k * rates), (histories, jerks),
+        (floor_speeds(floors[:, 1], record), histories),
+    ]  # fmt: skip
+
+
+PARTS = 8
+
+
+def largest_resultants(both: Sequence[Moving], dt: float) -> Array:
+    """Largest sqrt(x^2 + y^2) (n,) of cubics through values with their rates."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    samples = len(both[0][0])
+    times = dt / PARTS * np.arange((samples - 1) * PARTS + 1)
+    cubics = [CubicHermiteSpline(times[::PARTS], *moving)(times) for moving in both]
+    return np.asarray(np.hypot(*cubics).max(axis=0))
 
 
 def fixed_base_shears(
-    building: Superstructure, record: GroundMotion, intervals: int
-) -> NDArray[np.float64]:
+    structure: PodiumStructure, motion: MotionComponents, intervals: int
+) -> Array:
     """Largest storey shears (n,) [N] from the bottom, without all that needs every sample."""
+    building = structure.superstructure
+    if building is None:
+        raise ValueError("a structure without superstructure has no fixed-base response")
+    if motion.y is not None:
+        return fixed_base_response(structure, motion, intervals).storey_shears
     nowhere = np.empty((0, 2, building.storeys))
-    shears: NDArray[np.float64] = _follow(building, record, intervals, nowhere)[0]
+    shears: Array = _follow(building, motion.horizontal, intervals, nowhere)[0]
     return shears
 
 
-def _follow(
-    building: Superstructure, record: GroundMotion, intervals: int, floors: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _follow(building: Superstructure, record: GroundMotion, intervals: int, floors: Array) -> Array:
     """Largest shears and accelerations (2, n); displacements and velocities go to `floors`."""
     from rpscli.physics.planar.full_contact.modal_block import integrate_fixed_base
     from rpscli.physics.planar.run import empty_block
@@ -89,7 +148,7 @@ def _follow(
     return largest
 
 
-def _accelerations(building: Superstructure, floors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _accelerations(building: Superstructure, floors: Array) -> Array:
     """Absolute ones (samples, n) [m/s2]."""
     found = floors[:, 0] @ building.stiffness_matrix
     found += floors[:, 1] @ building.damping_matrix
@@ -97,17 +156,24 @@ def _accelerations(building: Superstructure, floors: NDArray[np.float64]) -> NDA
     return found
 
 
-def largest_velocities(
-    relative: NDArray[np.float64], accelerations: NDArray[np.float64], record: GroundMotion
-) -> NDArray[np.float64]:
+def largest_velocities(relative: Array, accelerations: Array, record: GroundMotion) -> Array:
     """Largest absolute velocities of floors (n,) [m/s], from those to the ground at the samples."""
+    floors = zip(floor_speeds(relative, record).T, accelerations.T, strict=True)
+    return np.array([largest_of_cubics(floor, rate, record.dt) for floor, rate in floors])
+
+
+def floor_speeds(relative: Array, record: GroundMotion) -> Array:
+    """Absolute velocities of floors (samples, n) [m/s], from those relative to the ground."""
     ground = velocity(record.acceleration, record.dt)[: len(relative)]
-    ground = np.pad(ground, (0, len(relative) - len(ground)), mode="edge")
-    floors = zip(relative.T, accelerations.T, strict=True)
-    return np.array([largest_of_cubics(floor + ground, rate, record.dt) for floor, rate in floors])
+    return relative + np.pad(ground, (0, len(relative) - len(ground)), mode="edge")[:, None]
 
 
-def largest_of_cubics(values: NDArray[np.float64], rates: NDArray[np.float64], dt: float) -> float:
+def _sampled(values: Array, samples: int) -> Array:
+    kept = values[:samples]
+    return np.pad(kept, (0, samples - len(kept)))
+
+
+def largest_of_cubics(values: Array, rates: Array, dt: float) -> float:
     """Largest absolute value of cubics through values (samples,) with these rates."""
     first, last = dt * rates[:-1], dt * rates[1:]
     change = values[1:] - values[:-1]

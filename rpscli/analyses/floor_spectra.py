@@ -126,7 +126,7 @@ def fixed_base_floor_spectra(
     if result.fixed_base is None:
         return None
     parts = round(result.record.dt / _step(result))
-    denser = result.motion.finer(parts).horizontal
+    denser = result.motion.finer(parts)
     intervals = (len(result.fixed_base.floor_displacements) - 1) * parts
     intervals += math.ceil(_ringing(result) / denser.dt)
     fixed = fixed_base_response(result.structure, denser, intervals)

@@ -11,7 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.outcome import Outcome, failure_text, outcomes_of
-from rpscli.analyses.result_quantities import HISTORY, KERNEL_FIELDS, ResultQuantity, values_of
+from rpscli.analyses.result_quantities import (
+    HISTORY,
+    KERNEL_FIELDS,
+    PAIR,
+    ResultQuantity,
+    values_of,
+)
 from rpscli.analyses.trace import DeviceDemand, device_demands
 from rpscli.frozen import frozen
 from rpscli.model.podium import Device, PodiumStructure
@@ -131,6 +137,19 @@ class Histories:
                     found[rows, i] = values
         return np.asarray(np.fmax.reduce(found, axis=1))
 
+    def known(self, field: str) -> Array:
+        """A field that histories under both components have; NaN of the others."""
+        if field not in (self.left.dtype.names or ()):
+            return np.full(len(self.left), np.nan)
+        return np.asarray(self.left[field], np.float64)
+
+    def of_roof(self, field: str, storey: Callable[[Array], Array]) -> Array:
+        """One number of what stands by storeys; NaN where there is none."""
+        values = self.known(field)
+        if values.ndim == 1 or not self.storeys:
+            return np.full(len(self.left), np.nan)
+        return storey(values[:, : self.storeys])
+
     def largest_force(self, result: str) -> Array:
         """Of the devices whose laws name a result."""
         return self.of_devices(
@@ -171,6 +190,27 @@ class _Optional(_Result[float | None]):
 def _largest(values: Array) -> Array:
     """Of each row; NaN of empty ones."""
     return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
+
+
+def _finite(h: Histories, field: str) -> Array:
+    values = h.known(field)
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def _where_seen(azimuth: str, time: str) -> Callable[[Histories], Array]:
+    """An azimuth of what was seen at some time, which is negative if never."""
+    return lambda h: np.where(h.left[time] >= 0.0, h.known(azimuth), np.nan)
+
+
+def _drifts(h: Histories) -> Array:
+    """Resultants over the stiffness; where that differs in y, the lesser of two upper bounds."""
+    shears, k = h.column("storey_shears"), h.of_building(lambda b: b.stiffnesses)
+    in_y = [structure.superstructure_y for structure in h.structures]
+    if "storey_shear_y" not in (h.left.dtype.names or ()) or not any(in_y):
+        return shears / k
+    k_y = h.each(lambda s: getattr(s.superstructure_y or s.superstructure, "stiffnesses", np.nan))
+    parts = h.of_storeys("storey_shear_x") / k, h.of_storeys("storey_shear_y") / k_y
+    return np.minimum(shears / np.minimum(k, k_y), np.hypot(*parts))
 
 
 def _uplift_shear(structure: PodiumStructure) -> float | None:
@@ -303,8 +343,8 @@ class Demand(Shown):
         lambda h: h.column("max_base_shear") / h.each(_uplift_shear),
     )
     max_drifts = _Result[Array](
-        "(n,) largest storey drifts [m].",
-        lambda h: h.column("storey_shears") / h.of_building(lambda b: b.stiffnesses),
+        "(n,) largest storey drifts [m]; of both directions, the resultants.",
+        _drifts,
     )
     drift_ratio = _Optional(
         "Largest drift over storey height; None where no heights are given.",
@@ -348,6 +388,64 @@ class Demand(Shown):
     )
     creating_impacts = _Result[int]("Number of impacts that gained energy.")
 
+    max_rotation_azimuth = _Optional(
+        "Towards which it leant furthest, from x towards y [rad]; None under one component.",
+        lambda h: np.where(h.left["max_theta"] > 0.0, h.known("max_azimuth"), np.nan),
+    )
+    critical_azimuth = _Optional(
+        "Towards which it passed theta_cr for the first time [rad]; None if it did not.",
+        _where_seen("critical_azimuth", "critical_time"),
+    )
+    residual_azimuth = _Optional(
+        "Towards which it leans at the end [rad]; None if it does not.",
+        lambda h: np.where(h.left["rotation"] != 0.0, h.known("azimuth"), np.nan),
+    )
+    max_cap_beam_displacement_x = _Optional(
+        "Largest |u_b| in x [m]; None under one component.", lambda h: h.known("max_x")
+    )
+    max_cap_beam_displacement_y = _Optional("The same in y.", lambda h: h.known("max_y"))
+    max_base_shear_x = _Optional(
+        "Largest elastic shear of the first storey in x [N]; None under one component.",
+        lambda h: h.of_roof("storey_shear_x", lambda storeys: storeys[:, 0]),
+    )
+    max_base_shear_y = _Optional(
+        "The same in y.", lambda h: h.of_roof("storey_shear_y", lambda storeys: storeys[:, 0])
+    )
+    max_floor_acceleration_x = _Optional(
+        "Largest absolute floor acceleration in x [m/s2]; None under one component.",
+        lambda h: h.of_roof("floor_acceleration_x", _largest),
+    )
+    max_floor_acceleration_y = _Optional(
+        "The same in y.", lambda h: h.of_roof("floor_acceleration_y", _largest)
+    )
+    passes = _Result[int](
+        "Number of passes near upright.", lambda h: h.left["events"][:, state.PASS]
+    )
+    passes_as_impacts = _Optional(
+        "Passes that lost more than half of what an impact would; None under one component.",
+        lambda h: h.known("passes_as_impacts"),
+    )
+    closest_pass = _Optional(
+        "Least theta_min/alpha of a pass; None without passes.",
+        lambda h: _finite(h, "closest_pass"),
+    )
+    shortest_pass = _Optional(
+        "Least time theta_min/|theta phi'| of a pass [s]; None without passes.",
+        lambda h: _finite(h, "shortest_pass"),
+    )
+    energy_passes = _Optional(
+        "Energy lost in passes [J], part of `energy_impact`.", lambda h: h.known("energy_passes")
+    )
+    torsion_lever = _Optional(
+        "Largest torsion in a contact over the weight on it [m].",
+        lambda h: h.known("torsion_lever"),
+    )
+
+    @property
+    def both_components(self) -> bool:
+        """Whether both horizontal components acted."""
+        return "azimuth" in (self.history.dtype.names or ())
+
     @property
     def devices(self) -> tuple[DeviceDemand, ...]:
         """Demands of each device, in the order of the structure's."""
@@ -366,4 +464,5 @@ class Demand(Shown):
 
         A value that does not exist, or is infinite, is None.
         """
-        return {"outcome": self.outcome, **values_of(self, HISTORY)}
+        more = PAIR if self.both_components else ()
+        return {"outcome": self.outcome, **values_of(self, (*HISTORY, *more))}

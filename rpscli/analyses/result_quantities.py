@@ -228,7 +228,36 @@ IMPACTS = (
 )  # fmt: skip
 """What the impacts of a history did, in the table of a study."""
 
-KERNEL_FIELDS = {q.name: q.kernel for q in (*HISTORY, *IMPACTS) if q.kernel}
+PAIR = (
+    ResultQuantity("max_rotation_azimuth", "rad", "azimuth of the largest rotation"),
+    ResultQuantity("critical_azimuth", "rad", "azimuth where the critical rotation was passed"),
+    ResultQuantity("residual_azimuth", "rad", "azimuth of the residual rotation"),
+    *(
+        ResultQuantity(f"{name}_{way}", unit, f"{label} in {way}")
+        for name, unit, label in (
+            ("max_cap_beam_displacement", "m", "cap beam displacement"),
+            ("max_base_shear", "N", "base shear"),
+            ("max_floor_acceleration", "m/s2", "floor acceleration"),
+        )
+        for way in "xy"
+    ),
+    ResultQuantity("passes", "-", "passes near upright", whole=True),
+    ResultQuantity(
+        "passes_as_impacts", "-", "passes that lose like an impact", whole=True,
+        kernel="passes_as_impacts", meaning="more than half of what an impact would lose",
+    ),
+    ResultQuantity("closest_pass", "-", "closest pass", meaning="least theta_min over alpha"),
+    ResultQuantity("shortest_pass", "s", "shortest pass", meaning="least theta_min/|theta phi'|"),
+    ResultQuantity("energy_passes", "J", "energy lost in passes", kernel="energy_passes"),
+    ResultQuantity(
+        "torsion_lever", "m", "torsion in a contact over its weight", kernel="torsion_lever",
+        meaning="what friction in the contacts must hold, lest columns roll out of their place",
+    ),
+)  # fmt: skip
+"""What a history besides has where both horizontal components act: its other results are those of
+resultants, largest sqrt(x^2 + y^2)."""
+
+KERNEL_FIELDS = {q.name: q.kernel for q in (*HISTORY, *IMPACTS, *PAIR) if q.kernel}
 
 INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s", "PGV"))
 """Peaks of the scaled motion of a history, in the table of a study."""

@@ -10,7 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.column_forces import AxialForces
-from rpscli.analyses.fixed_base import FixedBaseResponse, largest_of_cubics, largest_velocities
+from rpscli.analyses.fixed_base import (
+    FixedBaseResponse,
+    floor_speeds,
+    largest_of_cubics,
+    largest_resultants,
+    largest_velocities,
+)
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
@@ -167,7 +173,12 @@ class TimeHistoryResult(Demand):
         floors jump with the cap beam, dt up to 0.02 s and periods from 0.1 s.
         """
         t = self.trace
-        return frozen(largest_velocities(t.floor_velocities, t.floor_accelerations, self.record))
+        x, ground = self.motion.horizontal, self.motion.y
+        if t.y is None or ground is None:
+            return frozen(largest_velocities(t.floor_velocities, t.floor_accelerations, x))
+        both = (t, x), (t.y, ground)
+        moving = [(floor_speeds(of.floor_velocities, g), of.floor_accelerations) for of, g in both]
+        return frozen(largest_resultants(moving, self.record.dt))
 
     @property
     def max_floor_velocity(self) -> float | None:
@@ -182,8 +193,15 @@ class TimeHistoryResult(Demand):
         """
         if self.structure.superstructure is None:
             return None
-        roof = self.trace.floor_displacements[:, -1], self.trace.floor_velocities[:, -1]
-        return largest_of_cubics(*roof, self.record.dt)
+        t, dt = self.trace, self.record.dt
+        roofs = [
+            (of.floor_displacements[:, -1:], of.floor_velocities[:, -1:])
+            for of in (t, t.y)
+            if of is not None
+        ]
+        if len(roofs) == 2:
+            return float(largest_resultants(roofs, dt)[0])
+        return largest_of_cubics(t.floor_displacements[:, -1], t.floor_velocities[:, -1], dt)
 
     @property
     def fixed_base_ratio(self) -> float | None:
@@ -261,8 +279,8 @@ class TimeHistoryResult(Demand):
         coefficient, trace = self.structure.friction, self.trace
         if coefficient is None:
             return None
-        bottom = np.abs(trace.shear_bottom) > coefficient * trace.normal_bottom
-        top = np.abs(trace.shear_top) > coefficient * trace.normal_top
+        bottom = trace.size("shear_bottom") > coefficient * trace.normal_bottom
+        top = trace.size("shear_top") > coefficient * trace.normal_top
         slides = np.flatnonzero(top | bottom)
         return float(trace.time[slides[0]]) if len(slides) else None
 

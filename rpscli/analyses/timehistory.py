@@ -56,8 +56,9 @@ def time_history(
     run = sampled_history(structure, motion, settings)
     fixed = None
     if with_fixed_base and structure.superstructure is not None:
-        intervals = max(int(run.history.intervals), motion.horizontal.npts - 1)
-        fixed = fixed_base_response(structure, motion.horizontal, intervals)
+        horizontal = [each.npts for name, each in motion.named.items() if name != "vertical"]
+        intervals = max(int(run.history.intervals), max(horizontal) - 1)
+        fixed = fixed_base_response(structure, motion, intervals)
     result = TimeHistoryResult(
         structure=structure,
         history=run.history,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import Any, Literal, TypeAlias, cast, get_args
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from rpscli.frozen import Frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import Record
 from rpscli.physics.planar import geometry, state
+from rpscli.records.ground_motion import MotionComponents
 from rpscli.shown import Shown
 
 Array = NDArray[np.float64]
@@ -64,14 +65,19 @@ class Event:
     """theta' [rad/s]."""
     energy_lost: float
     """[J], negative where an impact created energy."""
+    azimuth: float | None = None
+    """Of the tilt, from x towards y [rad]; None where one component acts."""
+    least_tilt: float | None = None
+    """Of a pass near upright: theta_min [rad]; of others 0."""
+    nearness: float | None = None
+    """Of a pass: s, the time it takes over that of an impact; infinite if that takes none."""
+    loss_share: float | None = None
+    """Of a pass: l, how much of what an impact would lose."""
 
 
 def event_list(log: Record) -> tuple[Event, ...]:
     """Events from the rows of the kernel's log."""
-    return tuple(
-        Event(time, EVENT_NAMES[kind], theta, before, after, lost)
-        for time, kind, theta, before, after, lost in log.tolist()
-    )
+    return tuple(Event(time, EVENT_NAMES[kind], *told) for time, kind, *told in log.tolist())
 
 
 @dataclass(frozen=True)
@@ -137,6 +143,26 @@ BLOCK = 50_000
 """Samples whose quantities are derived at once."""
 
 
+@dataclass(frozen=True, eq=False)
+class Direction(Frozen):
+    """What a history has in one horizontal direction, as in `Trace`: (samples, ...)."""
+
+    ground_acceleration: Array
+    cap_beam_displacement: Array
+    floor_displacements: Array
+    floor_velocities: Array
+    floor_accelerations: Array
+    drifts: Array
+    storey_shears: Array
+    driving_moment: Array
+    shear_top: Array
+    shear_bottom: Array
+
+    def at(self, rows: Rows) -> Direction:
+        """Only some samples."""
+        return Direction(*(getattr(self, each.name)[rows] for each in fields(self)))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Trace(Shown):
     """Histories at the record's samples and on through the free vibration, SI units.
@@ -172,6 +198,9 @@ class Trace(Shown):
         [J] (Theory, sections 8 and 12).
     devices
         What each device does.
+    azimuth, y
+        Where both horizontal components act: phi of the tilt [rad], from x towards y, whose size
+        `rotation` then is; and what the history has in y. All else that has a direction is in x.
     """
 
     time: Array
@@ -197,12 +226,21 @@ class Trace(Shown):
     energy_bed: Array
     energy_stored: Array
     devices: DeviceTrace
+    azimuth: Array | None = None
+    y: Direction | None = None
 
     def at(self, rows: Rows) -> Trace:
         """Only some samples."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}
-        devices = values.pop("devices").at(rows)
-        return Trace(**{name: of[rows] for name, of in values.items()}, devices=devices)
+        parts = {name: values.pop(name) for name in ("devices", "azimuth", "y")}
+        kept = {name: part and part.at(rows) for name, part in parts.items() if name != "azimuth"}
+        azimuth = None if self.azimuth is None else self.azimuth[rows]
+        return Trace(**{name: of[rows] for name, of in values.items()}, **kept, azimuth=azimuth)
+
+    def size(self, name: str) -> Array:
+        """Of what has a direction: its absolute value, or sqrt(x^2 + y^2)."""
+        in_x = getattr(self, name)
+        return np.asarray(np.abs(in_x) if self.y is None else np.hypot(in_x, getattr(self.y, name)))
 
 
 ENERGIES = ("energy_input", "energy_damped", "energy_impact", "energy_stored")
@@ -214,23 +252,34 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[tuple[str, str, ND
     # accelerations absolute. Forces are those of one column, F to the right and N upwards on what
     # is above; of all columns together where the case does not give their number. Devices' energy
     # is what they dissipated so far, of a damped stop that has let go as the cap beam moves back to
-    # the gap.
+    # the gap. Where both components act, what has a direction stands in x and in y.
+    ways: list[tuple[str, Trace | Direction]] = (
+        [("", t)] if t.y is None else [("_x", t), ("_y", t.y)]
+    )
     yield "time", "s", t.time
-    yield "ground_acceleration", "m/s2", t.ground_acceleration
+    yield from ((f"ground_acceleration{way}", "m/s2", of.ground_acceleration) for way, of in ways)
     yield "rotation", "rad", t.rotation
+    if t.azimuth is not None:
+        yield "azimuth", "rad", t.azimuth
+        yield "rotation_x", "rad", t.rotation * np.cos(t.azimuth)
+        yield "rotation_y", "rad", t.rotation * np.sin(t.azimuth)
     yield "rotation_rate", "rad/s", t.rotation_rate
-    yield "cap_beam_displacement", "m", t.cap_beam_displacement
+    for way, of in ways:
+        yield f"cap_beam_displacement{way}", "m", of.cap_beam_displacement
     yield "lift", "m", t.lift
-    for name, unit, values in (
-        ("floor_{}_displacement", "m", t.floor_displacements),
-        ("storey_{}_drift", "m", t.drifts),
-        ("storey_{}_shear", "N", t.storey_shears),
-        ("floor_{}_acceleration", "m/s2", t.floor_accelerations),
+    for name, unit, field in (
+        ("floor_{}_displacement", "m", "floor_displacements"),
+        ("storey_{}_drift", "m", "drifts"),
+        ("storey_{}_shear", "N", "storey_shears"),
+        ("floor_{}_acceleration", "m/s2", "floor_accelerations"),
     ):
-        yield from ((name.format(i), unit, column) for i, column in enumerate(values.T, start=1))
-    yield "driving_moment", "N m", t.driving_moment
-    yield "column_shear_top", "N", t.shear_top / structure.columns
-    yield "column_shear_bottom", "N", t.shear_bottom / structure.columns
+        for way, of in ways:
+            for i, column in enumerate(getattr(of, field).T, start=1):
+                yield name.format(i) + way, unit, column
+    yield from ((f"driving_moment{way}", "N m", of.driving_moment) for way, of in ways)
+    for end in ("top", "bottom"):
+        for way, of in ways:
+            yield f"column_shear_{end}{way}", "N", getattr(of, f"shear_{end}") / structure.columns
     yield "column_force_top", "N", t.normal_top / structure.columns
     yield "column_force_bottom", "N", t.normal_bottom / structure.columns
     yield from ((name, "J", getattr(t, name)) for name in ENERGIES)
@@ -248,20 +297,21 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
     """Histories from what the kernel stored, at samples or between them as well."""
     samples = run.samples
     devices = DeviceTrace(*np.moveaxis(run.devices, 1, 0))
+    found = _by_blocks(lambda rows: _derived(structure, run, devices, rows), len(samples))
+    in_y = {name[2:]: found.pop(name) for name in [*found] if name.startswith("y.")}
     return Trace(
         time=np.arange(len(samples), dtype=np.float64) * run.motion.dt,
-        ground_acceleration=prolonged(run.motion.samples[0], len(samples)),
         rotation=samples.theta,
         rotation_rate=samples.theta_dot,
         phase=samples.phase.astype(np.int8),
-        floor_displacements=run.floors[:, 0],
-        floor_velocities=run.floors[:, 1],
         energy_input=samples.energy_input,
         energy_damped=samples.energy_damped,
         energy_impact=samples.energy_lost,
         energy_bed=samples.bed_energy,
         devices=devices,
-        **_by_blocks(lambda rows: _derived(structure, run, devices, rows), len(samples)),
+        azimuth=samples.azimuth if in_y else None,
+        y=Direction(**in_y) if in_y else None,
+        **found,
     )
 
 
@@ -277,16 +327,24 @@ def _by_blocks(derived: Callable[[slice], dict[str, Array]], samples: int) -> di
     return whole
 
 
+class _Beam(NamedTuple):
+    """Of the cap beam in one direction, relative to the ground, and what pushes it (samples,)."""
+
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    push: Array
+
+
 def _derived(
     structure: PodiumStructure, run: SampledHistory, all_devices: DeviceTrace, rows: slice
 ) -> dict[str, Array]:
-    """What follows from some samples, by the names of `Trace`."""
+    """What follows from some samples, by the names of `Trace`; what is in y begins with `y.`."""
     # Imported here: numba is slow, and the command line imports this module's classes.
-    from rpscli.physics.planar.equation_of_motion import cap_beam_acceleration, contact_forces
+    from rpscli.physics.planar.equation_of_motion import cap_beam_acceleration
 
-    samples, building = run.samples[rows], structure.superstructure
+    samples, devices, motion = run.samples[rows], all_devices.at(rows), run.motion
     theta, rate = samples.theta, samples.theta_dot
-    u, du = run.floors[rows, 0], run.floors[rows, 1]
     b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
     B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
     potential, B_v = lift, B
@@ -295,20 +353,6 @@ def _derived(
         B, C = np.where(samples.phase == state.BEDDED, 0.0, B), on_bed.height
         path, lift, potential = on_bed.displacement, on_bed.lift, on_bed.potential
         B_v = on_bed.lift_arm
-    base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
-    up = run.motion.row("vertical")
-    a_g = prolonged(run.motion.samples[0, rows], len(samples))
-    drifts = np.diff(u, axis=1, prepend=base[:, None])
-    shears, forces = np.zeros_like(u), np.zeros_like(u)
-    if building is not None:
-        shears = building.stiffnesses * drifts
-        forces = (u - base[:, None]) @ building.stiffness_matrix
-        forces = forces + (du - base_rate[:, None]) @ building.damping_matrix
-    devices, V = all_devices.at(rows), forces.sum(axis=1)
-    stored = structure.weight * diameter * potential + 0.5 * np.sum(shears * drifts, axis=1)
-    stored += devices.stored.sum(axis=1) + 0.5 * tilting_inertia(structure, B_v, C) * rate**2
-    if building is not None:
-        stored += 0.5 * du**2 @ building.masses
     push, pull = np.zeros_like(theta), np.zeros_like(theta)
     for i, device in enumerate(structure.devices):
         to_the_right, down = device.beam_forces(structure, theta, devices.force[:, i])
@@ -324,26 +368,71 @@ def _derived(
     )
     if bed is not None:
         upwards = diameter * (B_v * side * samples.theta_ddot + on_bed.lift_bend * rate**2)
-    a_v = 0.0 if up is None else prolonged(run.motion.samples[up, rows], len(samples))
-    masses = structure.cap_beam_mass, structure.superstructure_mass, structure.columns_mass
-    of_arrays = cast("Callable[..., tuple[Array, ...]]", contact_forces)
-    shear_top, shear_bottom, normal_top, normal_bottom = of_arrays(
-        *masses, across, upwards, V + push, a_g, structure.gravity + a_v, pull
-    )
-    beam = 0.5 * structure.columns_mass + structure.cap_beam_mass
-    return {
-        "cap_beam_displacement": base,
+    moving = devices.stored.sum(axis=1) + 0.5 * tilting_inertia(structure, B_v, C) * rate**2
+    base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
+    beams = {"": _Beam(base, base_rate, across, push)}
+    if motion.y is not None:
+        # Along the tilt as in one plane; going round adds what turns with it.
+        w = samples.turning
+        moving = moving + 0.5 * turning_inertia(structure, np.abs(theta), path) * w**2
+        away = across - np.where(moves, diameter * path * w**2, 0.0)
+        aside = diameter * (path * samples.turning_rate + 2.0 * C * rate * w)
+        aside = np.where(moves, aside, 0.0)
+        cosine, sine = np.cos(samples.azimuth), np.sin(samples.azimuth)
+        beams = {
+            way: _Beam(base * r, base_rate * r + base * w * t, away * r + aside * t, pushed)
+            for way, r, t, pushed in (
+                ("", cosine, -sine, samples.push_x),
+                ("y.", sine, cosine, samples.push_y),
+            )
+        }
+    found: dict[str, Array] = {}
+    strained, swinging = np.zeros_like(theta), np.zeros_like(theta)
+    for (way, beam), component in zip(beams.items(), ("horizontal", "y"), strict=False):
+        a_g, n = _ground(motion, component, rows, len(samples)), structure.storeys
+        floors = run.floors[rows, :, n:] if way else run.floors[rows, :, :n]
+        building = (structure.superstructure_y if way else None) or structure.superstructure
+        u, du = floors[:, 0], floors[:, 1]
+        drifts = np.diff(u, axis=1, prepend=beam.displacement[:, None])
+        shears, forces = np.zeros_like(u), np.zeros_like(u)
+        if building is not None:
+            shears = building.stiffnesses * drifts
+            forces = (u - beam.displacement[:, None]) @ building.stiffness_matrix
+            forces = forces + (du - beam.velocity[:, None]) @ building.damping_matrix
+            strained += 0.5 * np.sum(shears * drifts, axis=1)
+            swinging += 0.5 * du**2 @ building.masses
+        V = forces.sum(axis=1)
+        top = structure.cap_beam_mass * (beam.acceleration + a_g) - (V + beam.push)
+        bottom = top + structure.columns_mass * (0.5 * beam.acceleration + a_g)
+        base_mass = 0.5 * structure.columns_mass + structure.cap_beam_mass
+        of_direction = {
+            "ground_acceleration": a_g,
+            "cap_beam_displacement": beam.displacement,
+            "floor_displacements": u,
+            "floor_velocities": du,
+            "floor_accelerations": forces if building is None else -forces / building.masses,
+            "drifts": drifts,
+            "storey_shears": shears,
+            "driving_moment": diameter * C * (V - base_mass * a_g),
+            "shear_top": top,
+            "shear_bottom": bottom,
+        }
+        found |= {way + name: values for name, values in of_direction.items()}
+    g_up = structure.gravity + _ground(motion, "vertical", rows, len(samples))
+    carried = structure.cap_beam_mass + structure.superstructure_mass
+    normal = carried * (g_up + upwards) + pull
+    return found | {
         "lift": diameter * lift,
-        "drifts": drifts,
-        "storey_shears": shears,
-        "floor_accelerations": forces if building is None else -forces / building.masses,
-        "driving_moment": diameter * C * (V - beam * a_g),
-        "shear_top": shear_top,
-        "shear_bottom": shear_bottom,
-        "normal_top": normal_top,
-        "normal_bottom": normal_bottom,
-        "energy_stored": stored,
+        "normal_top": normal,
+        "normal_bottom": normal + structure.columns_mass * (g_up + 0.5 * upwards),
+        "energy_stored": structure.weight * diameter * potential + strained + moving + swinging,
     }
+
+
+def _ground(motion: MotionComponents, component: str, rows: slice, count: int) -> Array:
+    """A component of the ground's acceleration at some samples [m/s2]; 0 where it is not known."""
+    row = motion.row(component)
+    return np.zeros(count) if row is None else prolonged(motion.samples[row, rows], count)
 
 
 def prolonged(acceleration: Array, samples: int) -> Array:
@@ -359,3 +448,14 @@ def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
     io_1, beam = structure.bearing.inertia_ratio - 1.0, 4.0 * structure.gamma
     A = inertia(io_1, 1.0 + beam, beam * structure.eta, B**2 + C**2, B)
     return np.asarray(structure.columns_mass * structure.bearing.semi_diagonal**2 * A)
+
+
+def turning_inertia(structure: PodiumStructure, x: Array, path: Array) -> Array:
+    """N m_c R^2 J(x) along a path u = |u_b|/2R (samples,) [kg m2] (Theory, section 14)."""
+    b = structure.bearing
+    y, (sin_alpha, _, k, _, _) = np.minimum(x, b.beta), b.rolling
+    spin = k * (y - np.sin(y)) / (sin_alpha + k * np.sin(y)) if b.beta > 0.0 else 0.0
+    G = 1.0 - np.cos(x) + spin
+    J = (b.inertia_ratio - 1.0) * np.sin(x) ** 2 + b.inertia_ratio_axial * G**2
+    J = J + (1.0 + 4.0 * structure.gamma) * path**2
+    return np.asarray(structure.columns_mass * b.semi_diagonal**2 * J)

@@ -21,6 +21,7 @@ from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import RayleighDamping
+from rpscli.records.ground_motion import MotionComponents
 
 
 @needs_compiled_kernels
@@ -83,7 +84,7 @@ def test_the_yardstick_goes_on_through_the_free_vibration() -> None:
     assert result.fixed_base.drifts[0] == pytest.approx(np.max(swaying), rel=0.02)
     building = result.structure.superstructure
     assert building is not None
-    shears = fixed_base_shears(building, record, record.npts + 24)
+    shears = fixed_base_shears(result.structure, MotionComponents(record), record.npts + 24)
     assert shears.tolist() == result.fixed_base.storey_shears.tolist()
 
 
@@ -94,7 +95,7 @@ def test_a_frame_has_no_yardstick() -> None:
     )
     assert time_history(podium(1), record, with_fixed_base=False).fixed_base is None
     with pytest.raises(ValueError, match="without superstructure"):
-        fixed_base_response(podium(0), record, 2)
+        fixed_base_response(podium(0), MotionComponents(record), 2)
 
 
 @pytest.mark.parametrize(

@@ -102,6 +102,7 @@ def store_row_3d(
     sample.theta, sample.azimuth = 0.0, 0.0
     sample.theta_dot, sample.turning, sample.theta_ddot, sample.turning_rate = rates
     sample.phase = s.phase[l]
+    sample.push_x, sample.push_y = s.push_x[l], s.push_y[l]
     sample.energy_input, sample.energy_damped = s.energy_input[l], s.energy_damped[l]
     sample.energy_lost = s.energy_lost[l]
     beam = 0.0, 0.0, 0.0, 0.0

@@ -173,6 +173,8 @@ SAMPLE_3D = (
     Field("azimuth", "", "rad", "phi of the tilt, from x towards y; 0 in full contact", "spatial"),
     Field("turning", "", "rad/s", "phi'", "spatial"),
     Field("turning_rate", "", "rad/s2", "phi''", "spatial"),
+    Field("push_x", "", "N", "of devices on the cap beam, in x", "spatial"),
+    Field("push_y", "", "N", "in y", "spatial"),
 )
 """The floors' displacements and velocities stand in an array of their own: in x, then in y.
 

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.demand import Request, histories
-from rpscli.analyses.fixed_base import fixed_base_response, fixed_base_shears
+from rpscli.analyses.fixed_base import fixed_base_shears
 from rpscli.analyses.largest_demands import Histories
 from rpscli.analyses.outcome import failure_text
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, SAMPLED, STOREY_SHEARS, values_of
@@ -158,11 +157,5 @@ def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> ND
     across = structure.superstructure_y or building
     # The largest shear after the end of the record comes within a period.
     after = math.ceil(max(float(each.periods[0]) for each in (building, across)) / motion.dt)
-    if motion.y is None:
-        return fixed_base_shears(building, motion.horizontal, motion.horizontal.npts - 1 + after)
-    of_y = replace(structure, superstructure=across, superstructure_y=None)
-    shears = []
-    for of, floors, one in ((structure, building, motion.horizontal), (of_y, across, motion.y)):
-        found = fixed_base_response(of, one, motion.npts - 1 + after).floor_displacements
-        shears.append(np.diff(found, prepend=0.0) * floors.stiffnesses)
-    return np.asarray(np.hypot(*shears).max(axis=0))
+    shaken = [each.npts for name, each in motion.named.items() if name != "vertical"]
+    return fixed_base_shears(structure, motion, max(shaken) - 1 + after)
