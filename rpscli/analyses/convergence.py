@@ -9,6 +9,7 @@ from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.model.podium import PodiumStructure
+from rpscli.records.pair import turned
 
 PROMISED = 1e-4
 """Of the largest rotation and base shear: what the default step keeps where motions converge."""
@@ -30,7 +31,7 @@ def steps_warning(result: TimeHistoryResult) -> str | None:
     for factor in SHORTER:
         if not steps_left(before, MOST_STEPS):
             break
-        (after,) = run_again(result, [(result.structure, 1.0)], factor)
+        (after,) = run_again(result, [(result.structure, 1.0, 0.0)], factor)
         changed = _changes(before, after)
         first = first or changed
         if not changed:
@@ -49,12 +50,15 @@ def steps_left(found: Demand, most: int) -> bool:
 
 def run_again(
     result: TimeHistoryResult,
-    beside: Iterable[tuple[PodiumStructure, float]],
+    beside: Iterable[tuple[PodiumStructure, float, float]],
     accuracy: float = 1.0,
 ) -> list[Demand]:
-    """A history with other structures, factors on its motion, and steps so many times shorter."""
+    """A history with other structures, its motion with a factor and turned, and shorter steps."""
     settings = replace(result.settings, accuracy=accuracy * result.settings.accuracy)
-    requests = [Request(st, result.motion, settings, factor) for st, factor in beside]
+    requests = [
+        Request(st, turned(result.motion, angle) if angle else result.motion, settings, factor)
+        for st, factor, angle in beside
+    ]
     # One by one: the kernel for many at a time would have to be compiled first.
     return demands(requests, worth_lanes=len(requests) + 1)
 

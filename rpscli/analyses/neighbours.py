@@ -1,4 +1,4 @@
-"""Histories beside one: its motion a little weaker and stronger, another impact law."""
+"""Histories beside one: its motion a little weaker, stronger and turned, another impact law."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from rpscli.analyses.results import TimeHistoryResult
 FACTORS = (0.97, 0.98, 0.99, 1.01, 1.02, 1.03)
 """On the motion."""
 
+TURNS = (-1.0, 1.0)
+"""Of a motion with both components [deg]."""
+
 OTHER_LOSS = 0.5
 """`podium.impact.loss` of the history beside that of the law as it is."""
 
@@ -22,6 +25,8 @@ MOST_STEPS = 100_000
 class Neighbour(NamedTuple):
     """One of them: factor on its motion, its restitution, and what came of it, SI units.
 
+    A pair may be `turned` [deg].
+
     `demands` has all results of a history that may be limited, by name.
     """
 
@@ -31,6 +36,7 @@ class Neighbour(NamedTuple):
     rotation_ratio: float
     max_base_shear: float
     demands: dict[str, float | None]
+    turned: float = 0.0
 
 
 def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
@@ -38,9 +44,11 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
     if not steps_left(result, MOST_STEPS):
         return []
     structure, law = result.structure, result.structure.impact_law
-    beside = [(structure, factor) for factor in FACTORS]
+    beside = [(structure, factor, 0.0) for factor in FACTORS]
+    if result.both_components:
+        beside += [(structure, 1.0, angle) for angle in TURNS]
     if structure.restitution < 1.0 and law.kind != "value" and law.loss > OTHER_LOSS:
-        beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0))
+        beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0, 0.0))
     found = run_again(result, beside)
     limited = [quantity for quantity in HISTORY if quantity.limit]
     return [
@@ -51,6 +59,7 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
             each.rotation_ratio,
             each.max_base_shear,
             values_of(each, limited),
+            angle,
         )
-        for (of, factor), each in zip(beside, found, strict=True)
+        for (of, factor, angle), each in zip(beside, found, strict=True)
     ]

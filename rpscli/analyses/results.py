@@ -313,7 +313,16 @@ class TimeHistoryResult(Demand):
                 f"the rigid impact law created {share:.1%} of the energy supplied at impacts;"
                 " compare with `impact: {law: flexible}`"
             )
-        if self.outcome == "survived" and self.history["phase"] not in RESTING:
+        if (
+            self.both_components
+            and self.outcome == "survived"
+            and (self.history["phase"] not in RESTING and self.settings.free_vibration is None)
+        ):
+            notes.append(
+                "at the end the storey still wobbles round, which loses nothing in this model; no"
+                " larger rotation can come (rolling resistance would bring it to rest)"
+            )
+        elif self.outcome == "survived" and self.history["phase"] not in RESTING:
             if self.structure.bearing.is_spherical:
                 notes.append(
                     "columns without a flat part still roll at the end, as nothing but dampers and"

@@ -100,7 +100,7 @@ def _one(
     film: FilmRequest | None,
     terminal: Terminal,
 ) -> None:
-    from rpscli.report.tables.timehistory import neighbours_texts, timehistory_tables
+    from rpscli.report.tables.timehistory import neighbours_texts, passes_text, timehistory_tables
 
     title = request.given.case.title
     done, result = compute(request, conditions, look, terminal)
@@ -117,5 +117,6 @@ def _one(
     scaled_to = request.ground.scaled_to
     tables = timehistory_tables(result, done.verdicts, title, scaled_to)
     single = neighbours_texts(result, beside)
-    terminal.result(done.document, [*tables, *single, *filter(None, [done.document["note"]])])
+    told = [*single, passes_text(result), done.document["note"]]
+    terminal.result(done.document, [*tables, *filter(None, told)])
     leave(done.error)

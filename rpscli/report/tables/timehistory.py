@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
-from rpscli.analyses.result_quantities import HISTORY, SAMPLED
+from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED
 from rpscli.case.conditions import EVENTS
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
 from rpscli.report.tables.analyses import fixed_base_demands, isolated_demands
@@ -30,7 +31,7 @@ OUTCOMES = {
     "failed": "the analysis failed",
 }
 
-QUANTITIES = {quantity.name: quantity for quantity in (*HISTORY, *SAMPLED)}
+QUANTITIES = {quantity.name: quantity for quantity in (*HISTORY, *SAMPLED, *PAIR)}
 
 Row = tuple[str, str, str, str]
 
@@ -117,16 +118,19 @@ def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> I
     motions = [each for each in found if each.factor != 1.0]
     if motions:
         near = [each for each in motions if abs(each.factor - 1.0) < 0.0101]
+        turned = [each for each in found if each.turned]
+        beside = f"; turned by 1 deg {_reached(turned)}" if turned else ""
         yield (
             f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
-            f" {_reached(motions)}. Motions with impacts are chaotic: judge by several records"
+            f" {_reached(motions)}{beside}. Motions with {'passes' if turned else 'impacts'} are"
+            " chaotic: judge by several records"
         )
     elif result.outcome != "failed":
         yield (
             f"one history: its {result.history['steps']} steps are too many to look at motions 1 %"
             " weaker and stronger; judge by several records"
         )
-    for other in (each for each in found if each.factor == 1.0):
+    for other in (each for each in found if each.factor == 1.0 and not each.turned):
         instead = f"{shown(other.restitution)} in place of {shown(result.structure.restitution)}"
         yield (
             f"one impact law: with podium.impact.loss {OTHER_LOSS:g}, which is e = {instead},"
@@ -157,14 +161,16 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     """The largest demands beside those of the fixed base."""
     rows = [
         _row(result, "max_rotation", f"{shown(result.rotation_ratio)} theta_cr"),
+        *_azimuth(result.max_rotation_azimuth),
         _row(result, "max_rotation_time"),
         *([] if result.critical_passage_time is None else [_row(result, "critical_passage_time")]),
-        _row(result, "max_cap_beam_displacement"),
+        _row(result, "max_cap_beam_displacement", _ways(result, "max_cap_beam_displacement")),
         _row(result, "max_lift"),
     ]
     if result.residual_rotation > 0.0:
         residual = f"{shown(result.residual_rotation / result.critical_rotation)} theta_cr"
         rows.append(_row(result, "residual_rotation", residual))
+        rows += _azimuth(result.residual_azimuth)
         rows.append(_row(result, "residual_displacement"))
     rows += [
         _row(result, name)
@@ -174,6 +180,8 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     if result.fixed_base is not None:
         ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
         rows.append(_row(result, "max_base_shear", ratio, shear))
+        if result.both_components:
+            rows.append(("  in x, in y", _ways(result, "max_base_shear"), "", ""))
         if result.uplift_shear_ratio is not None:
             rows.append(_row(result, "uplift_shear_ratio"))
         rows.append(_row(result, "fixed_base_ratio"))
@@ -187,7 +195,10 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     e = result.structure.restitution
     if not result.structure.bearing.is_spherical:
         rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
-    rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
+    if result.both_components:
+        rows += _passes(result)
+    else:
+        rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
     if result.structure.bed is not None:
         rows += [
             _row(result, name)
@@ -211,6 +222,45 @@ def _row(
     _, unit, label, *_ = QUANTITIES[name]
     beside = "" if fixed is None else measured(fixed, unit)
     return label, measured(getattr(result, name), unit), normalised, beside
+
+
+def _azimuth(angle: float | None) -> list[Row]:
+    if angle is None:
+        return []
+    return [("  towards", f"{shown(math.degrees(angle))} deg from x", "", "")]
+
+
+def _ways(result: TimeHistoryResult, name: str) -> str:
+    """A result in x and in y; empty where one component acts."""
+    if not result.both_components:
+        return ""
+    unit = QUANTITIES[name].unit
+    x, y = (measured(getattr(result, f"{name}_{way}"), unit) for way in "xy")
+    return f"x {x}, y {y}"
+
+
+def _passes(result: TimeHistoryResult) -> list[Row]:
+    """How often it came near upright, how near, and what that takes."""
+    rows = [("uplifts, passes", f"{result.uplifts}, {result.passes}", "", "")]
+    if result.passes:
+        rows.append(_row(result, "passes_as_impacts"))
+        rows += [
+            (QUANTITIES["closest_pass"].label, f"{shown(result.closest_pass)} alpha", "", ""),
+            _row(result, "shortest_pass"),
+        ]
+    return [*rows, _row(result, "torsion_lever")]
+
+
+def passes_text(result: TimeHistoryResult) -> str | None:
+    """What the contact time, which is assumed, decided; None where one component acts."""
+    if not result.passes:
+        return None
+    lost = 0 if result.passes_as_impacts is None else int(result.passes_as_impacts)
+    return (
+        f"{result.passes} passes near upright, {lost} of them lose like an impact (l > 0.5);"
+        f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
+        " how the end of the motion dies, hardly how large it gets"
+    )
 
 
 def _columns(result: TimeHistoryResult) -> list[Row]:
