@@ -12,6 +12,7 @@ from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import denser_trace
 from rpscli.analyses.trace import Trace
+from rpscli.errors import CaseError
 from rpscli.frozen import frozen
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.spectrum import response_spectrum
@@ -77,6 +78,11 @@ def isolated_floor_spectra(
     the jump. The same motion written ten times denser moves pseudo-accelerations by less than
     0.5 % at 0.1 s, and by less than 1 % at 0.05 s.
     """
+    if result.both_components:
+        raise CaseError(
+            f"{result.record.source}: floor spectra are those of one horizontal component at a"
+            " time; give each component by itself, without ?both"
+        )
     trace = denser_trace(result, STEP, _ringing(result))
     accelerations = trace.floor_accelerations + jumps_left_out(result, trace)
     return floor_spectra(accelerations, _step(result), periods, damping)

@@ -45,7 +45,8 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
         return []
     structure, law = result.structure, result.structure.impact_law
     beside = [(structure, factor, 0.0) for factor in FACTORS]
-    if result.both_components:
+    if result.both_components and structure.superstructure_y is not None:
+        # Columns are round: of a building alike in x and y all turns with the motion.
         beside += [(structure, 1.0, angle) for angle in TURNS]
     if structure.restitution < 1.0 and law.kind != "value" and law.loss > OTHER_LOSS:
         beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0, 0.0))

@@ -226,7 +226,7 @@ class TimeHistoryResult(Demand):
 
         All columns carry alike, but for the overturning moment where their rows are given; where
         the case does not give their number, these are the forces of all columns together. What
-        axial forces do not hold: `structure.left_out_of_columns`.
+        axial forces do not hold: `left_out_of_columns`.
         """
         st, history, axial = self.structure, self.history, self.axial
         upper = st.cap_beam_mass + st.superstructure_mass
@@ -239,6 +239,16 @@ class TimeHistoryResult(Demand):
                 largest, least = axial.largest[end], axial.least[end]
             found[end] = ColumnForces(float(history[f"shear_{end}"]) / st.columns, largest, least)
         return found if upper > 0.0 else found | {"top": ColumnForces(0.0, 0.0, 0.0)}
+
+    @property
+    def left_out_of_columns(self) -> tuple[str, ...]:
+        """What they do not hold, and the key that would give it."""
+        if self.both_components and self.structure.storeys:
+            return (
+                "the overturning moment of the building (known under one component)",
+                "the shock of impacts (known under one component)",
+            )
+        return self.structure.left_out_of_columns
 
     @property
     def overturning_ratio(self) -> float | None:
@@ -281,8 +291,16 @@ class TimeHistoryResult(Demand):
             return None
         bottom = trace.size("shear_bottom") > coefficient * trace.normal_bottom
         top = trace.size("shear_top") > coefficient * trace.normal_top
-        slides = np.flatnonzero(top | bottom)
+        slides = np.flatnonzero((top | bottom) & ~self._passes_by)
         return float(trace.time[slides[0]]) if len(slides) else None
+
+    @property
+    def _passes_by(self) -> NDArray[np.bool_]:
+        """Samples in passes that take less than an impact, whose forces are an impulse's."""
+        t, own = self.trace, self.structure.impact_law.contact_time
+        if t.azimuth_rate is None:
+            return np.zeros(len(t.time), dtype=bool)
+        return np.asarray(own * np.hypot(t.rotation_rate, t.rotation * t.azimuth_rate) > t.rotation)
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -69,7 +69,7 @@ def time_history(
         fixed_base=fixed,
         motion=motion,
     )
-    if structure.superstructure is None or len(structure.left_out_of_columns) > 1:
+    if structure.superstructure is None or len(result.left_out_of_columns) > 1:
         return result
     dense = denser_trace(result, AXIAL_STEP)
     return replace(result, axial=axial_forces(structure, dense, result.events))

@@ -198,9 +198,11 @@ class Trace(Shown):
         [J] (Theory, sections 8 and 12).
     devices
         What each device does.
-    azimuth, y
-        Where both horizontal components act: phi of the tilt [rad], from x towards y, whose size
-        `rotation` then is; and what the history has in y. All else that has a direction is in x.
+    azimuth, azimuth_rate, y
+        Where both horizontal components act: phi [rad], from x towards y, and phi' [rad/s] of the
+        tilt, whose size `rotation` then is; and what the history has in y. All else that has a
+        direction is in x. Forces of the columns are those of the smooth motion, which in a pass
+        near upright that is shorter than an impact may be large for an instant.
     """
 
     time: Array
@@ -227,15 +229,16 @@ class Trace(Shown):
     energy_stored: Array
     devices: DeviceTrace
     azimuth: Array | None = None
+    azimuth_rate: Array | None = None
     y: Direction | None = None
 
     def at(self, rows: Rows) -> Trace:
         """Only some samples."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}
-        parts = {name: values.pop(name) for name in ("devices", "azimuth", "y")}
-        kept = {name: part and part.at(rows) for name, part in parts.items() if name != "azimuth"}
-        azimuth = None if self.azimuth is None else self.azimuth[rows]
-        return Trace(**{name: of[rows] for name, of in values.items()}, **kept, azimuth=azimuth)
+        parts = {name: values.pop(name) for name in ("devices", "y")}
+        kept = {name: part and part.at(rows) for name, part in parts.items()}
+        arrays = {name: None if of is None else of[rows] for name, of in values.items()}
+        return Trace(**arrays, **kept)
 
     def size(self, name: str) -> Array:
         """Of what has a direction: its absolute value, or sqrt(x^2 + y^2)."""
@@ -259,8 +262,9 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[tuple[str, str, ND
     yield "time", "s", t.time
     yield from ((f"ground_acceleration{way}", "m/s2", of.ground_acceleration) for way, of in ways)
     yield "rotation", "rad", t.rotation
-    if t.azimuth is not None:
+    if t.azimuth is not None and t.azimuth_rate is not None:
         yield "azimuth", "rad", t.azimuth
+        yield "azimuth_rate", "rad/s", t.azimuth_rate
         yield "rotation_x", "rad", t.rotation * np.cos(t.azimuth)
         yield "rotation_y", "rad", t.rotation * np.sin(t.azimuth)
     yield "rotation_rate", "rad/s", t.rotation_rate
@@ -310,6 +314,7 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
         energy_bed=samples.bed_energy,
         devices=devices,
         azimuth=samples.azimuth if in_y else None,
+        azimuth_rate=samples.turning if in_y else None,
         y=Direction(**in_y) if in_y else None,
         **found,
     )

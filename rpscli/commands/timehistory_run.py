@@ -137,7 +137,7 @@ def compute(
         limits = [*with_friction(limits, case.structure), *conditions]
         for limit in limits:
             needs = LIMITS[limit.name].needs if limit.name in found else ""
-            partial = needs == "columns" and case.structure.left_out_of_columns
+            partial = needs == "columns" and result.left_out_of_columns
             if needs and (found[limit.name] is None or partial):
                 raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
         records = Records.of([result.outcome], [demands], [result.record.source])

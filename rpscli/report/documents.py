@@ -108,7 +108,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         **result.scalars(),
         **values_of(result, SAMPLED),
         "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},
-        "column_forces_leave_out": list(result.structure.left_out_of_columns),
+        "column_forces_leave_out": list(result.left_out_of_columns),
         **values_of(isolated, STOREYS),
         "fixed_base": None if fixed is None else values_of(fixed, STOREYS),
         "energy": asdict(result.energy),

@@ -104,6 +104,7 @@ _OF_STOREYS = _quantities(known.STOREYS, listed=True)
 _HISTORY = {
     "case": _SUBJECT, "record": {**dict.fromkeys(OF_RECORD, float), **_MOTION, "scale": float},
     "outcome": str, "failure": str | None, **_quantities(known.HISTORY, known.SAMPLED),
+    **{f"{name}?": shape for name, shape in _quantities(known.PAIR).items()},
     **_OF_STOREYS, "fixed_base": (_OF_STOREYS, type(None)), "energy": Energy,
     "column_forces": dict[str, ColumnForces], "devices": [DeviceDemand], "verdicts": [_VERDICT],
     "neighbours?": [Neighbour], **_TOLD, **_ENDED,

@@ -145,6 +145,8 @@ def event_columns(events: tuple[Event, ...]) -> list[Column]:
     """`events.csv`: one row an event, in the order of time."""
     heads = {"time": "s", "kind": "-", "rotation": "rad"}
     heads |= {"rotation_rate_before": "rad/s", "rotation_rate_after": "rad/s", "energy_lost": "J"}
+    if any(event.azimuth is not None for event in events):
+        heads |= {"azimuth": "rad", "least_tilt": "rad", "nearness": "-", "loss_share": "-"}
     return columns_of(heads, [[getattr(event, name) for name in heads] for event in events])
 
 

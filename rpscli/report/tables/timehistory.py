@@ -277,7 +277,7 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
         rows.append(_row(result, "overturning_ratio"))
     return [
         *rows,
-        *((f"  without {what}", "", "", "") for what in result.structure.left_out_of_columns),
+        *((f"  without {what}", "", "", "") for what in result.left_out_of_columns),
     ]
 
 

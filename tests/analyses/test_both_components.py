@@ -1,0 +1,128 @@
+"""What is read off a history under both horizontal components."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_structures import needs_compiled_kernels, podium
+
+from rpscli.analyses.fixed_base import fixed_base_response
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.trace import sampled
+from rpscli.errors import CaseError
+from rpscli.model.impact import ImpactLaw
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.records.pair import turned
+from rpscli.report.documents import json_text, timehistory_document
+from rpscli.report.tables.analyses import event_columns, history_columns
+
+pytestmark = needs_compiled_kernels
+
+DT = 0.01
+BUILDING = replace(podium(3), impact_law=ImpactLaw("flexible"))
+
+
+def wave(period: float, size: float, seconds: float = 4.0) -> GroundMotion:
+    t = np.arange(round(seconds / DT) + 1) * DT
+    fade = np.minimum(1.0, 2.0 * (seconds - t) / seconds)
+    return GroundMotion(size * fade * np.sin(2.0 * np.pi * t / period), DT, f"wave {period:g} s")
+
+
+@pytest.fixture(scope="module")
+def motion() -> MotionComponents:
+    return MotionComponents(wave(0.9, 3.5), wave(0.3, 1.0), y=wave(0.62, 3.0))
+
+
+@pytest.fixture(scope="module")
+def result(motion: MotionComponents) -> TimeHistoryResult:
+    return time_history(BUILDING, motion, TimeHistorySettings(free_vibration=2.0))
+
+
+def test_the_energies_balance_at_every_sample(result: TimeHistoryResult) -> None:
+    # Those put in, damped and lost are the kernel's; what is stored follows from the samples.
+    t = result.trace
+    known = t.energy_input - t.energy_damped - t.energy_impact
+    assert result.uplifts == 1
+    assert result.passes > 3
+    assert np.max(np.abs(t.energy_stored - known)) < 1e-6 * np.max(t.energy_input)
+
+
+def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> None:
+    t = result.trace
+    assert t.y is not None
+    for name, largest in (
+        ("cap_beam_displacement", result.max_cap_beam_displacement),
+        ("storey_shears", result.storey_shears),
+        ("floor_accelerations", result.floor_accelerations),
+    ):
+        seen = np.max(t.size(name), axis=0)
+        # Samples every 10 ms miss little of what vibrates with 0.05 s and more.
+        assert np.all(seen <= largest * (1.0 + 1e-9))
+        assert np.all(seen > 0.97 * largest)
+    # In a pass shorter than an impact the forces are an impulse's, which demands leave out.
+    assert t.azimuth_rate is not None
+    slow = 2e-3 * np.hypot(t.rotation_rate, t.rotation * t.azimuth_rate) <= t.rotation
+    friction = np.max((t.size("shear_bottom") / t.normal_bottom)[slow])
+    assert 0.9 * result.friction_demand < friction <= result.friction_demand * (1.0 + 1e-9)
+    assert result.max_cap_beam_displacement_x == pytest.approx(
+        np.max(np.abs(t.cap_beam_displacement)), rel=1e-3
+    )
+    assert result.max_base_shear_y == pytest.approx(
+        np.max(np.abs(t.y.storey_shears[:, 0])), rel=0.02
+    )
+    assert result.max_base_shear_x is not None
+    assert result.max_base_shear_x <= result.max_base_shear
+
+
+def test_a_turned_pair_turns_all_results(
+    result: TimeHistoryResult, motion: MotionComponents
+) -> None:
+    other = time_history(BUILDING, turned(motion, 30.0), result.settings)
+    assert other.max_rotation == pytest.approx(result.max_rotation, rel=1e-9)
+    assert other.max_base_shear == pytest.approx(result.max_base_shear, rel=1e-9)
+    assert other.max_floor_velocity == pytest.approx(result.max_floor_velocity, rel=1e-6)
+    assert other.max_roof_displacement == pytest.approx(result.max_roof_displacement, rel=1e-6)
+    assert other.max_rotation_azimuth is not None
+    assert result.max_rotation_azimuth is not None
+    ahead = other.max_rotation_azimuth - result.max_rotation_azimuth - np.radians(30.0)
+    assert np.cos(ahead) == pytest.approx(1.0, abs=1e-9)
+    assert other.fixed_base is not None
+    assert result.fixed_base is not None
+    assert other.fixed_base.base_shear == pytest.approx(result.fixed_base.base_shear, rel=1e-6)
+
+
+def test_a_fixed_base_under_equal_components_has_sqrt_2_of_one() -> None:
+    one = wave(0.5, 2.0)
+    alone = fixed_base_response(BUILDING, MotionComponents(one), 500)
+    both = fixed_base_response(BUILDING, MotionComponents(one, y=one), 500)
+    # 0.3 % is what cubics through samples may miss.
+    for name in ("storey_shears", "floor_accelerations", "floor_velocities", "drifts"):
+        exact = np.sqrt(2.0) * getattr(alone, name)
+        assert getattr(both, name) == pytest.approx(exact, rel=3e-3)
+
+
+def test_files_have_both_directions(result: TimeHistoryResult) -> None:
+    names = [name for name, *_ in sampled(result.structure, result.trace)]
+    assert names == [column.name for column in history_columns(result)]
+    for name in ("azimuth", "rotation_y", "floor_3_acceleration_y", "storey_1_shear_x"):
+        assert name in names
+    passes = [event for event in result.events if event.kind == "pass"]
+    assert len(passes) == result.passes
+    closest = min(event.least_tilt or 0.0 for event in passes)
+    assert closest / result.structure.bearing.alpha == pytest.approx(result.closest_pass)
+    assert {"azimuth", "loss_share"} <= {column.name for column in event_columns(result.events)}
+    document = json.loads(json_text(timehistory_document(result)))
+    for name in ("max_base_shear_y", "passes_as_impacts", "torsion_lever"):
+        assert document[name] == getattr(result, name)
+
+
+def test_floor_spectra_of_both_are_refused(result: TimeHistoryResult) -> None:
+    from rpscli.analyses.floor_spectra import isolated_floor_spectra
+
+    with pytest.raises(CaseError, match=r"without \?both"):
+        isolated_floor_spectra(result)
