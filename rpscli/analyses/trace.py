@@ -234,11 +234,13 @@ class Trace(Shown):
 
     def at(self, rows: Rows) -> Trace:
         """Only some samples."""
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
-        parts = {name: values.pop(name) for name in ("devices", "y")}
-        kept = {name: part and part.at(rows) for name, part in parts.items()}
-        arrays = {name: None if of is None else of[rows] for name, of in values.items()}
-        return Trace(**arrays, **kept)
+        values: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
+        for name, of in values.items():
+            if isinstance(of, DeviceTrace | Direction):
+                values[name] = of.at(rows)
+            elif of is not None:
+                values[name] = of[rows]
+        return Trace(**values)
 
     def size(self, name: str) -> Array:
         """Of what has a direction: its absolute value, or sqrt(x^2 + y^2)."""
@@ -393,36 +395,10 @@ def _derived(
         }
     found: dict[str, Array] = {}
     strained, swinging = np.zeros_like(theta), np.zeros_like(theta)
-    for (way, beam), component in zip(beams.items(), ("horizontal", "y"), strict=False):
-        a_g, n = _ground(motion, component, rows, len(samples)), structure.storeys
-        floors = run.floors[rows, :, n:] if way else run.floors[rows, :, :n]
-        building = (structure.superstructure_y if way else None) or structure.superstructure
-        u, du = floors[:, 0], floors[:, 1]
-        drifts = np.diff(u, axis=1, prepend=beam.displacement[:, None])
-        shears, forces = np.zeros_like(u), np.zeros_like(u)
-        if building is not None:
-            shears = building.stiffnesses * drifts
-            forces = (u - beam.displacement[:, None]) @ building.stiffness_matrix
-            forces = forces + (du - beam.velocity[:, None]) @ building.damping_matrix
-            strained += 0.5 * np.sum(shears * drifts, axis=1)
-            swinging += 0.5 * du**2 @ building.masses
-        V = forces.sum(axis=1)
-        top = structure.cap_beam_mass * (beam.acceleration + a_g) - (V + beam.push)
-        bottom = top + structure.columns_mass * (0.5 * beam.acceleration + a_g)
-        base_mass = 0.5 * structure.columns_mass + structure.cap_beam_mass
-        of_direction = {
-            "ground_acceleration": a_g,
-            "cap_beam_displacement": beam.displacement,
-            "floor_displacements": u,
-            "floor_velocities": du,
-            "floor_accelerations": forces if building is None else -forces / building.masses,
-            "drifts": drifts,
-            "storey_shears": shears,
-            "driving_moment": diameter * C * (V - base_mass * a_g),
-            "shear_top": top,
-            "shear_bottom": bottom,
-        }
-        found |= {way + name: values for name, values in of_direction.items()}
+    for way, beam in beams.items():
+        in_way, energies = _in_direction(structure, run, rows, beam, diameter * C, across=bool(way))
+        strained, swinging = strained + energies[0], swinging + energies[1]
+        found |= {way + name: values for name, values in in_way.items()}
     g_up = structure.gravity + _ground(motion, "vertical", rows, len(samples))
     carried = structure.cap_beam_mass + structure.superstructure_mass
     normal = carried * (g_up + upwards) + pull
@@ -432,6 +408,50 @@ def _derived(
         "normal_bottom": normal + structure.columns_mass * (g_up + 0.5 * upwards),
         "energy_stored": structure.weight * diameter * potential + strained + moving + swinging,
     }
+
+
+def _in_direction(
+    structure: PodiumStructure,
+    run: SampledHistory,
+    rows: slice,
+    beam: _Beam,
+    height: Array,
+    *,
+    across: bool,
+) -> tuple[dict[str, Array], tuple[Array, Array]]:
+    """By the names of `Direction`, in x or across it; energies of the building's strain and motion.
+
+    `height` is 2 R C, the height of the thrust lines [m].
+    """
+    n, building = structure.storeys, structure.superstructure
+    floors = run.floors[rows, :, :n]
+    if across:
+        floors, building = run.floors[rows, :, n:], structure.superstructure_y or building
+    a_g = _ground(run.motion, "y" if across else "horizontal", rows, len(beam.push))
+    u, du = floors[:, 0], floors[:, 1]
+    drifts = np.diff(u, axis=1, prepend=beam.displacement[:, None])
+    shears, forces = np.zeros_like(u), np.zeros_like(u)
+    swinging = np.zeros_like(beam.push)
+    if building is not None:
+        shears = building.stiffnesses * drifts
+        forces = (u - beam.displacement[:, None]) @ building.stiffness_matrix
+        forces = forces + (du - beam.velocity[:, None]) @ building.damping_matrix
+        swinging = 0.5 * du**2 @ building.masses
+    V = forces.sum(axis=1)
+    top = structure.cap_beam_mass * (beam.acceleration + a_g) - (V + beam.push)
+    base_mass = 0.5 * structure.columns_mass + structure.cap_beam_mass
+    return {
+        "ground_acceleration": a_g,
+        "cap_beam_displacement": beam.displacement,
+        "floor_displacements": u,
+        "floor_velocities": du,
+        "floor_accelerations": forces if building is None else -forces / building.masses,
+        "drifts": drifts,
+        "storey_shears": shears,
+        "driving_moment": height * (V - base_mass * a_g),
+        "shear_top": top,
+        "shear_bottom": top + structure.columns_mass * (0.5 * beam.acceleration + a_g),
+    }, (0.5 * np.sum(shears * drifts, axis=1), swinging)
 
 
 def _ground(motion: MotionComponents, component: str, rows: slice, count: int) -> Array:

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from rpscli.physics.core.compile import compiled, inlined
 from rpscli.physics.core.records import ORDER, Record
 from rpscli.physics.core.series import Terms, sine_cosine
-from rpscli.physics.planar.equation_of_motion import inertia
+from rpscli.physics.planar.equation_of_motion import inertia, inertia_slope, phase_constants
 from rpscli.physics.planar.state import ROLLING
 from rpscli.physics.planar.transitions import enter_phase
 from rpscli.physics.spatial.state import UPRIGHT_TILT
@@ -326,6 +326,21 @@ def beam_now(s: Record, l: int) -> tuple[float, float, float, float]:
     """The same of the present state, whose w follows from L."""
     at = place_of(s, l, s.theta[l])
     return beam_motion(s, l, at, s.theta_dot[l], s.angular_momentum[l] / at.J)
+
+
+@compiled
+def rates_now(s: Record, l: int) -> tuple[float, float, float, float]:
+    """p, w, p' and w' of the present state, devices as they push at the step's start."""
+    at = place_of(s, l, s.theta[l])
+    p, w = s.theta_dot[l], s.angular_momentum[l] / at.J
+    z_x, z_y = renew_push(s, l)
+    z_x, z_y = z_x + s.shear_factor[l] * s.push_x[l], z_y + s.shear_factor[l] * s.push_y[l]
+    cosine, sine = s.cos_phi[l], s.sin_phi[l]
+    slope = inertia_slope(s.one_4gamma[l], s.four_gamma_eta[l], phase_constants(s, l), at.B, at.C)
+    weights = (s.g_up[l] + s.g_up_slope[l] * s.time[l]) * s.weight_over_R[l]
+    along, across = z_x * cosine + z_y * sine, z_y * cosine - z_x * sine
+    p_rate = (at.C * along + at.H * w * w - slope * p * p - at.B * weights) / at.A
+    return p, w, p_rate, (at.u * across - 2.0 * at.H * p * w) / at.J
 
 
 @compiled

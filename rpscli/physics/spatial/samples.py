@@ -12,7 +12,12 @@ from rpscli.physics.planar.run import Output
 from rpscli.physics.planar.samples import PASSED
 from rpscli.physics.planar.state import FULL_CONTACT
 from rpscli.physics.spatial.energy import direction_at
-from rpscli.physics.spatial.equation_of_motion import beam_motion, place_of, turning_terms
+from rpscli.physics.spatial.equation_of_motion import (
+    beam_motion,
+    place_of,
+    rates_now,
+    turning_terms,
+)
 
 
 @compiled
@@ -22,8 +27,7 @@ def store_sample_3d(s: Record, l: int, systems: tuple[Record, Record], output: O
         s.next_q[r, l], s.next_dq[r, l] = s.q[r, l], s.dq[0, r, l]
     rates = 0.0, 0.0, 0.0, 0.0
     if s.phase[l] != FULL_CONTACT:
-        at = place_of(s, l, s.theta[l])
-        rates = s.theta_dot[l], s.angular_momentum[l] / at.J, s.theta_ddot[l], s.turning_rate[l]
+        rates = rates_now(s, l)
     at_row, direction = s.interval[l] * output.finer, (s.cos_phi[l], s.sin_phi[l])
     store_row_3d(s, l, systems, output, at_row, s.theta[l], direction, rates)
 
