@@ -149,19 +149,17 @@ class PodiumStructure(Shown):
     @property
     def planar_only(self) -> str:
         """Why both horizontal components cannot act at once; empty if they can."""
-        kinds = {device.kind for device in self.devices}
         if self.bearing.is_spherical:
             return "columns without a flat part are followed in one plane only"
+        if self.bed is not None:
+            return "ends that give way in full contact are followed in one plane only"
         if self.impact_law.floors_jump and self.superstructure is not None:
             return (
                 f"the impact law {self.impact_law.kind} lets floors jump, which has no form for a"
                 " pass that loses a part of an impact; use the law flexible, with loss or factor"
             )
-        if {"friction", "rolling_resistance"} <= kinds:
-            return (
-                "a friction damper beside rolling resistance is not followed in two directions;"
-                " leave one of them out"
-            )
+        if self.devices:
+            return "devices are followed in one plane only; leave podium.devices out"
         return ""
 
     @property

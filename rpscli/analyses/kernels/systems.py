@@ -52,9 +52,7 @@ def paired_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]
     """
     both = []
     for structure, settings in systems:
-        if why := structure.planar_only or (
-            "devices are not followed" if structure.devices else ""
-        ):
+        if why := structure.planar_only:
             raise ValueError(f"both horizontal components: {why}")
         both += [(structure, settings), (_across(structure), settings)]
     pairs = _stacked(tuple(both))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.core.compile import compiled, inlined
-from rpscli.physics.core.records import Record
+from rpscli.physics.core.records import Floats, Record
 from rpscli.physics.core.series import integral, middle_of, peak, slope, value
 from rpscli.physics.planar.demands import SURELY, WITHIN, raise_by, reach, whole_vectors
 from rpscli.physics.planar.equation_of_motion import (
@@ -21,10 +21,12 @@ from rpscli.physics.planar.equation_of_motion import (
     rotation_terms,
 )
 from rpscli.physics.spatial.energy import direction_at
-from rpscli.physics.spatial.equation_of_motion import Place, place_of, turning_terms
+from rpscli.physics.spatial.equation_of_motion import MOST, Place, dot, place_of, turning_terms
+from rpscli.physics.spatial.state import Pair
 
-NEARLY = 0.95
-"""Steps that begin above this part of the largest force so far are looked at within."""
+NEARLY, AS_MUCH = 0.95, 0.999
+"""Steps that begin above this part of the largest force so far, or of the largest friction demand,
+are looked at within. As long as columns rock |F|/N hardly leaves tan(alpha)."""
 
 
 @inlined
@@ -61,16 +63,16 @@ def floors_may_rise_3d(s: Record, l: int) -> bool:
 @compiled
 def observe_ends_3d(s: Record) -> None:
     """Say where the demands of floors and contacts may be raised; the beam's way in x and y."""
-    lanes, half = s.lanes, s.storeys
+    lanes, half = s.lanes, s.storeys & MOST
     for i in range(2):
         for l in range(lanes):
             s.shear_bound[i, l], s.acceleration_bound[i, l], s.shear_bend[i, l] = 0.0, 0.0, 0.0
     for r in range(half):
         for l in range(lanes):
             add_mode_3d(s, r, l, 0)
-    for r in range(half, s.n):
+    for r in range(half):
         for l in range(lanes):
-            add_mode_3d(s, r, l, 1)
+            add_mode_3d(s, half + r, l, 1)
     for l in range(lanes):
         s.demands_rise[l] = 1.0 if floors_may_rise_3d(s, l) else 0.0
     for l in range(lanes):
@@ -120,14 +122,14 @@ def forces_of(
     p, w, p_rate, w_rate = rates
     cosine, sine = direction
     diameter, beam, floors = s.diameter[l], s.cap_beam_mass[l], s.floors_mass[l]
-    along = diameter * (at.C * p_rate + at.B * p * p - at.u * w * w)
-    across = diameter * (at.u * w_rate + 2.0 * at.C * p * w)
-    upwards = diameter * (at.B * p_rate + (s.phase_c[l] - at.C) * p * p)
+    along = diameter * (dot(at.C, p_rate, at.B * p, p) - at.u * w * w)
+    across = diameter * dot(at.u, w_rate, 2.0 * at.C * p, w)
+    upwards = diameter * dot(at.B, p_rate, (s.phase_c[l] - at.C) * p, p)
     top_x, bottom_x, top, bottom = contact_forces(
         beam,
         floors,
         s.columns_mass[l],
-        along * cosine - across * sine,
+        dot(along, cosine, -across, sine),
         upwards,
         V[0] + s.push_x[l],
         ground[0],
@@ -138,7 +140,7 @@ def forces_of(
         beam,
         floors,
         s.columns_mass[l],
-        along * sine + across * cosine,
+        dot(along, sine, across, cosine),
         upwards,
         V[1] + s.push_y[l],
         ground[1],
@@ -146,9 +148,9 @@ def forces_of(
         s.pull[l],
     )
     return (
-        math.sqrt(top_x * top_x + top_y * top_y),
+        math.sqrt(dot(top_x, top_x, top_y, top_y)),
         top,
-        math.sqrt(bottom_x * bottom_x + bottom_y * bottom_y),
+        math.sqrt(dot(bottom_x, bottom_x, bottom_y, bottom_y)),
         bottom,
     )
 
@@ -178,8 +180,8 @@ def contacts_may_rise_3d(s: Record, l: int) -> bool:
     )
     upper = (s.cap_beam_mass[l] + s.floors_mass[l]) * s.gravity[l]
     lower = upper + s.columns_mass[l] * s.gravity[l]
-    rises = (top > NEARLY * s.friction_top[l] * N_top) | (top > NEARLY * s.shear_top[l])
-    rises |= (bottom > NEARLY * s.friction_bottom[l] * N_bottom) | (
+    rises = (top > AS_MUCH * s.friction_top[l] * N_top) | (top > NEARLY * s.shear_top[l])
+    rises |= (bottom > AS_MUCH * s.friction_bottom[l] * N_bottom) | (
         bottom > NEARLY * s.shear_bottom[l]
     )
     rises |= N_bottom < lower * (1.0 - NEARLY * (1.0 - s.normal_bottom[l]))
@@ -187,13 +189,14 @@ def contacts_may_rise_3d(s: Record, l: int) -> bool:
     rises |= N_top < upper * (1.0 - NEARLY * (1.0 - s.normal_top[l]))
     # What takes less than the contact's own time is an impulse.
     own, across = s.contact_time[l], w * x
-    slow = own * own * (p * p + across * across) <= x * x
+    slow = own * own * dot(p, p, across, across) <= x * x
     i_1, i_3 = s.io_1[l], s.inertia_axial[l]
-    l_1 = -i_1 * (w_rate * sine + w * p * cosine) - p * w * (i_3 * G + i_1 * cosine)
-    l_3 = -i_3 * (w_rate * G + w * p * (sine + slope_of_g))
+    turns = w * p + 0.0
+    l_1 = -i_1 * dot(w_rate, sine, 2.0 * turns, cosine) - turns * (i_3 * G)
+    l_3 = -i_3 * dot(w_rate, G, turns, sine + slope_of_g)
     tall, wide = s.phase_c[l] * cosine - s.phase_q[l], s.phase_p[l] + s.phase_c[l] * sine
     arm = 0.25 * s.diameter[l] * s.diameter[l] * s.columns_mass[l]
-    lever = arm * abs(tall * l_3 - wide * l_1) / (C * lower)
+    lever = arm * abs(dot(tall, l_3, -wide, l_1)) / (C * lower)
     s.torsion_lever[l] = max(s.torsion_lever[l], lever if slow else 0.0)
     return bool(rises & slow)
 
@@ -258,7 +261,7 @@ def observe_start_3d(s: Record, l: int) -> None:
 
 
 @compiled
-def observe_end_3d(s: Record, l: int, systems: tuple[Record, Record]) -> None:
+def observe_end_3d(s: Record, l: int, systems: Pair) -> None:
     """Raise the demands of a lane's floors by those of a step that was cut short by an event."""
     if s.demands_rise[l] > 0.0:  # in the whole step
         for r in range(s.n):
@@ -268,7 +271,7 @@ def observe_end_3d(s: Record, l: int, systems: tuple[Record, Record]) -> None:
 
 
 @compiled
-def raise_floors_3d(s: Record, l: int, systems: tuple[Record, Record]) -> None:
+def raise_floors_3d(s: Record, l: int, systems: Pair) -> None:
     """Raise the demands of storeys and floors by those at three instants of the step, and between.
 
     Notes what room is left for what changes from its end on.
@@ -297,70 +300,68 @@ def raise_floors_3d(s: Record, l: int, systems: tuple[Record, Record]) -> None:
             rows[first + 8, i] += phi * f1
     for i in range(2):
         s.shear_bound[i, l], s.acceleration_bound[i, l] = 0.0, 0.0
-    x, y, both = math.inf, math.inf, math.inf
-    for i in range(half):
-        now = raise_rows(s.storey_shear[l], s.storey_shear_x[l], s.storey_shear_y[l], rows, 0, i)
-        share_x, share_y = systems[0].shear_bound_of[i], systems[1].shear_bound_of[i]
-        both = min(both, min(share_x, share_y) * (s.storey_shear[l, i] - now[0]))
-        x = min(x, share_x * (s.storey_shear_x[l, i] - now[1]))
-        y = min(y, share_y * (s.storey_shear_y[l, i] - now[2]))
-    set_rooms(s.shear_rooms, l, both, x, y)
-    x, y, both = math.inf, math.inf, math.inf
-    for i in range(half):
-        now = raise_rows(
-            s.floor_acceleration[l],
-            s.floor_acceleration_x[l],
-            s.floor_acceleration_y[l],
-            rows,
-            6,
-            i,
-        )
-        share_x = systems[0].acceleration_bound_of[i]
-        share_y = systems[1].acceleration_bound_of[i]
-        both = min(both, min(share_x, share_y) * (s.floor_acceleration[l, i] - now[0]))
-        x = min(x, share_x * (s.floor_acceleration_x[l, i] - now[1]))
-        y = min(y, share_y * (s.floor_acceleration_y[l, i] - now[2]))
-    set_rooms(s.acceleration_rooms, l, both, x, y)
+    both, in_x, in_y = s.storey_shear[l], s.storey_shear_x[l], s.storey_shear_y[l]
+    of_x, of_y = systems[0].shear_bound_of, systems[1].shear_bound_of
+    raise_rows(both, in_x, in_y, rows, 0, half)
+    set_rooms(s.shear_rooms, l, both, in_x, in_y, of_x, of_y, rows, 0, half)
+    both, in_x, in_y = s.floor_acceleration[l], s.floor_acceleration_x[l], s.floor_acceleration_y[l]
+    of_x, of_y = systems[0].acceleration_bound_of, systems[1].acceleration_bound_of
+    raise_rows(both, in_x, in_y, rows, 6, half)
+    set_rooms(s.acceleration_rooms, l, both, in_x, in_y, of_x, of_y, rows, 6, half)
 
 
 @compiled
 def raise_rows(
-    both: Record, in_x: Record, in_y: Record, rows: Record, first: int, i: int
-) -> tuple[float, float, float]:
-    """Raise one floor's demand by a step whose instants stand in rows; the values at its end."""
-    x0, x1, x2 = rows[first, i], rows[first + 1, i], rows[first + 2, i]
-    y0, y1, y2 = rows[first + 3, i], rows[first + 4, i], rows[first + 5, i]
-    size = math.sqrt(x2 * x2 + y2 * y2)
-    middle = math.sqrt(x1 * x1 + y1 * y1)
-    both[i] = max(both[i], peak(math.sqrt(x0 * x0 + y0 * y0), middle, size))
-    in_x[i], in_y[i] = max(in_x[i], peak(x0, x1, x2)), max(in_y[i], peak(y0, y1, y2))
-    return size, abs(x2), abs(y2)
+    both: Floats, in_x: Floats, in_y: Floats, rows: Floats, first: int, storeys: int
+) -> None:
+    """Raise demands of all floors by a step whose instants stand in rows; writes sizes to row 0."""
+    for i in range(whole_vectors(storeys)):
+        x0, x1, x2 = rows[first, i], rows[first + 1, i], rows[first + 2, i]
+        y0, y1, y2 = rows[first + 3, i], rows[first + 4, i], rows[first + 5, i]
+        start, middle = math.sqrt(x0 * x0 + y0 * y0), math.sqrt(x1 * x1 + y1 * y1)
+        size = math.sqrt(x2 * x2 + y2 * y2)
+        both[i] = max(both[i], peak(start, middle, size))
+        in_x[i], in_y[i] = max(in_x[i], peak(x0, x1, x2)), max(in_y[i], peak(y0, y1, y2))
+        rows[first, i] = size
 
 
 @compiled
-def set_rooms(rooms: Record, l: int, both: float, x: float, y: float) -> None:
-    """Keep the squares of the least of what is left."""
-    both, x, y = max(both, 0.0), max(x, 0.0), max(y, 0.0)
-    rooms[0, l], rooms[1, l], rooms[2, l] = SURELY * both * both, SURELY * x * x, SURELY * y * y
+def set_rooms(
+    rooms: Floats,
+    l: int,
+    both: Floats,
+    in_x: Floats,
+    in_y: Floats,
+    of_x: Floats,
+    of_y: Floats,
+    rows: Floats,
+    first: int,
+    storeys: int,
+) -> None:
+    """Keep the squares of what sums over modes may change by before a demand is raised.
+
+    `rows` hold the present values: of sizes in `first`, in x and y in the third and sixth from it.
+    """
+    least, x, y = math.inf, math.inf, math.inf
+    for i in range(storeys):
+        least = min(least, min(of_x[i], of_y[i]) * (both[i] - rows[first, i]))
+        x = min(x, of_x[i] * (in_x[i] - abs(rows[first + 2, i])))
+        y = min(y, of_y[i] * (in_y[i] - abs(rows[first + 5, i])))
+    least, x, y = max(least, 0.0), max(x, 0.0), max(y, 0.0)
+    rooms[0, l], rooms[1, l] = SURELY * (least * least), SURELY * (x * x)
+    rooms[2, l] = SURELY * (y * y)
 
 
 @compiled
-def set_below(s: Record, l: int, systems: tuple[Record, Record]) -> None:
+def set_below(s: Record, l: int, systems: Pair) -> None:
     """Note which sums over all modes, from rest, raise no storey's shear and no acceleration."""
-    for kind in range(2):
-        both, x, y = math.inf, math.inf, math.inf
-        for i in range(s.storeys):
-            if kind == 0:
-                share_x, share_y = systems[0].shear_bound_of[i], systems[1].shear_bound_of[i]
-                largest = s.storey_shear[l, i], s.storey_shear_x[l, i], s.storey_shear_y[l, i]
-            else:
-                share_x = systems[0].acceleration_bound_of[i]
-                share_y = systems[1].acceleration_bound_of[i]
-                largest = (
-                    s.floor_acceleration[l, i],
-                    s.floor_acceleration_x[l, i],
-                    s.floor_acceleration_y[l, i],
-                )
-            both = min(both, min(share_x, share_y) * largest[0])
-            x, y = min(x, share_x * largest[1]), min(y, share_y * largest[2])
-        set_rooms(s.shear_below if kind == 0 else s.acceleration_below, l, both, x, y)
+    rows, half = s.looked_at, s.storeys
+    for k in range(12):
+        for i in range(half):
+            rows[k, i] = 0.0
+    of_x, of_y = systems[0].shear_bound_of, systems[1].shear_bound_of
+    both, in_x, in_y = s.storey_shear[l], s.storey_shear_x[l], s.storey_shear_y[l]
+    set_rooms(s.shear_below, l, both, in_x, in_y, of_x, of_y, rows, 0, half)
+    of_x, of_y = systems[0].acceleration_bound_of, systems[1].acceleration_bound_of
+    both, in_x, in_y = s.floor_acceleration[l], s.floor_acceleration_x[l], s.floor_acceleration_y[l]
+    set_rooms(s.acceleration_below, l, both, in_x, in_y, of_x, of_y, rows, 0, half)

@@ -8,12 +8,7 @@ import numpy as np
 
 from rpscli.physics.core.compile import compiled, kernel, uncounted
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
-from rpscli.physics.planar.driver import (
-    clear_results,
-    leave_result,
-    load_system,
-    run_interruptible,
-)
+from rpscli.physics.planar.driver import clear_results, leave_result, load_system, run_interruptible
 from rpscli.physics.planar.run import Output, Run
 from rpscli.physics.planar.state import (
     AT_REST,
@@ -31,11 +26,7 @@ from rpscli.physics.planar.state import (
     SURVIVED,
     UPLIFT,
 )
-from rpscli.physics.spatial.demands import (
-    observe_ends_3d,
-    observe_start_3d,
-    raise_floors_3d,
-)
+from rpscli.physics.spatial.demands import observe_ends_3d, observe_start_3d, raise_floors_3d
 from rpscli.physics.spatial.energy import resting_energy, uplifted_energy_3d
 from rpscli.physics.spatial.equation_of_motion import enter_phase_3d, place_of
 from rpscli.physics.spatial.events import (

@@ -45,6 +45,20 @@ def enter_phase_3d(s: Record, l: int, system: Record, phase: int) -> None:
     s.H_cos2[l], s.H_x[l] = beam * P * Q, beam * c * c
 
 
+MOST = 1023
+"""No building has more storeys: a number masked by this, the compiler knows not to be negative."""
+
+
+@inlined
+def dot(a: float, b: float, c: float, d: float) -> float:
+    """Sum a b + c d, each product rounded by itself: alike in one lane and in all.
+
+    Of several products in one sum the compiler may choose which it rounds with the sum; adding zero
+    leaves it no choice. So do all sums of the step that more than one loop could share.
+    """
+    return (a * b + 0.0) + (c * d + 0.0)
+
+
 class Place(NamedTuple):
     """What follows from a tilt alone."""
 
@@ -67,16 +81,16 @@ def place_of(s: Record, l: int, x: float) -> Place:
     sine, cosine = sine_cosine(x)
     half, _ = sine_cosine(0.5 * x)
     versed = 2.0 * half * half
-    B, C = P * cosine + Q * sine, c + P * sine - Q * cosine
-    u = (s.phase_u0[l] - P) + P * versed + c * x - Q * sine
+    B, C = dot(P, cosine, Q, sine), c + dot(P, sine, -Q, cosine)
+    u = (s.phase_u0[l] - P) + dot(P, versed, c, x) - (Q * sine + 0.0)
     spin_1, base = s.spin_1[l], s.spin_0[l] + s.spin_1[l] * sine
     rolls = spin_1 > 0.0
     g = s.spin[l] * ((x - sine) / base if rolls else 1.0)
     g_slope = spin_1 * (versed - g * cosine) / base
     G = versed + g
-    A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], B * B + C * C, B)
-    J = s.io_1[l] * sine * sine + s.inertia_axial[l] * G * G + s.one_4gamma[l] * u * u
-    H = s.io_1[l] * sine * cosine + s.inertia_axial[l] * G * (sine + g_slope)
+    A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], dot(B, B, C, C), B)
+    J = dot(s.io_1[l] * sine, sine, s.inertia_axial[l] * G, G) + s.one_4gamma[l] * u * u
+    H = dot(s.io_1[l] * sine, cosine, s.inertia_axial[l] * G, sine + g_slope)
     return Place(sine, cosine, B, C, u, A, J, H + s.one_4gamma[l] * u * C, G, g_slope)
 
 
@@ -88,11 +102,11 @@ def begin_terms(s: Record, lanes: int) -> None:
     """Terms of order 0: the state, and what follows from it."""
     for l in range(lanes):
         s.V_term[l], s.V_y_term[l] = 0.0, 0.0
-    half = s.storeys
     for r in range(s.n):
         for l in range(lanes):
-            s.modal_force[r, l] = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[0, r, l]
-    add_shears(s, lanes, half)
+            omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
+            s.modal_force[r, l] = dot(omega2, s.q[r, l], damping, s.dq[0, r, l])
+    add_shears(s, lanes)
     for l in range(lanes):
         x = s.theta[l]
         at = place_of(s, l, x)
@@ -119,107 +133,114 @@ def begin_terms(s: Record, lanes: int) -> None:
 
 
 @inlined
-def add_shears(s: Record, lanes: int, half: int) -> None:
+def add_shears(s: Record, lanes: int) -> None:
     """Add up the terms of V in x and in y."""
+    half = s.storeys & MOST
     for r in range(half):
         for l in range(lanes):
             s.V_term[l] += s.Gamma[r, l] * s.modal_force[r, l]
-    for r in range(half, s.n):
+    for r in range(half):
         for l in range(lanes):
-            s.V_y_term[l] += s.Gamma[r, l] * s.modal_force[r, l]
+            s.V_y_term[l] += s.Gamma[half + r, l] * s.modal_force[half + r, l]
 
 
 @inlined
 def push_term(s: Record, l: int, V: float, a_g: float) -> float:
     """z from shear or device force V [N] and a_g [m/s2] [1/s2]."""
-    return float(s.shear_factor[l] * V - s.ground_over_R[l] * a_g)
+    return dot(s.shear_factor[l], V, -s.ground_over_R[l], a_g)
 
 
 @inlined
 def extend_positions(s: Record, lanes: int, m: int) -> None:
-    """Terms of order m of what depends on positions, from velocities up to order m - 1."""
+    """Terms of order m of what depends on positions, from velocities up to order m - 1.
+
+    Inner loops are few and long: the compiler is to unroll them once it knows m, not before.
+    """
     k = m - 1
     for l in range(lanes):
         part = s.step[l] * (1.0 / m)
-        x, sine, cosine, sine2, cosine2, cos_phi, sin_phi = (
-            part * s.dtheta_terms[k, l],
-            *(
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-            ),
-        )
+        sine, cosine, sine2, cosine2 = 0.0, 0.0, 0.0, 0.0
+        cos_phi, sin_phi, J = 0.0, 0.0, 0.0
         for j in range(m):
             p, w = s.dtheta_terms[k - j, l], s.turning_terms[k - j, l]
             sine += s.cos_terms[j, l] * p
-            cosine += s.sin_terms[j, l] * p
+            cosine -= s.sin_terms[j, l] * p
             sine2 += s.cos2_terms[j, l] * p
-            cosine2 += s.sin2_terms[j, l] * p
-            cos_phi += s.sin_phi_terms[j, l] * w
+            cosine2 -= s.sin2_terms[j, l] * p
+            cos_phi -= s.sin_phi_terms[j, l] * w
             sin_phi += s.cos_phi_terms[j, l] * w
-        sine, cosine, sine2, cosine2 = (
-            part * sine,
-            -part * cosine,
-            2.0 * part * sine2,
-            -2.0 * part * cosine2,
-        )
-        cos_phi, sin_phi = -part * cos_phi, part * sin_phi
+            J += s.H_terms[j, l] * p
+        x, sine, cosine = part * s.dtheta_terms[k, l], part * sine, part * cosine
+        sine2, cosine2 = 2.0 * part * sine2, 2.0 * part * cosine2
         P, Q, c = s.phase_p[l], s.phase_q[l], s.phase_c[l]
-        D, u = P * sine - Q * cosine, c * x - Q * sine - P * cosine
+        D, u = dot(P, sine, -Q, cosine), dot(c, x, -Q, sine) - (P * cosine + 0.0)
         s.tilt_terms[m, l], s.sin_terms[m, l], s.cos_terms[m, l] = x, sine, cosine
         s.sin2_terms[m, l], s.cos2_terms[m, l] = sine2, cosine2
-        s.cos_phi_terms[m, l], s.sin_phi_terms[m, l] = cos_phi, sin_phi
+        s.cos_phi_terms[m, l], s.sin_phi_terms[m, l] = part * cos_phi, part * sin_phi
         s.D_terms[m, l], s.u_terms[m, l] = D, u
-        u_cos, u_sin = 0.0, 0.0
-        for j in range(m + 1):
-            u_cos += s.u_terms[j, l] * s.cos_phi_terms[m - j, l]
-            u_sin += s.u_terms[j, l] * s.sin_phi_terms[m - j, l]
-        s.u_cos_terms[m, l], s.u_sin_terms[m, l] = u_cos, u_sin
-        speed = m / s.step[l] * s.diameter[l]
-        s.beam_x[l], s.beam_y[l] = speed * u_cos, speed * u_sin
         if m <= ORDER:
-            s.B_terms[m, l], s.C_terms[m, l] = P * cosine + Q * sine, D
-            s.A_terms[m, l] = 2.0 * c * s.one_4gamma[l] * D + s.four_gamma_eta[l] * (
-                s.A_cos2[l] * cosine2 + s.A_sin2[l] * sine2
-            )
-            C_cos, C_sin, along, J = 0.0, 0.0, 0.0, 0.0
-            for j in range(m + 1):
-                C_cos += s.C_terms[j, l] * s.cos_phi_terms[m - j, l]
-                C_sin += s.C_terms[j, l] * s.sin_phi_terms[m - j, l]
-                along += s.tilt_terms[j, l] * s.D_terms[m - j, l]
-            for j in range(m):
-                J += s.H_terms[j, l] * s.dtheta_terms[k - j, l]
-            s.C_cos_terms[m, l], s.C_sin_terms[m, l] = C_cos, C_sin
-            s.J_terms[m, l] = 2.0 * part * J
-            H = s.H_sin[l] * sine + s.H_cos[l] * cosine + s.H_sin2[l] * sine2
-            H += s.H_cos2[l] * cosine2 + s.H_x[l] * x + s.one_4gamma[l] * c * along
-            s.H_terms[m, l] = H + s.inertia_axial[l] * spin_term(s, l, m)
+            s.B_terms[m, l], s.J_terms[m, l] = dot(P, cosine, Q, sine), 2.0 * part * J
+            vertical = dot(s.A_cos2[l], cosine2, s.A_sin2[l], sine2)
+            s.A_terms[m, l] = dot(2.0 * c * s.one_4gamma[l], D, s.four_gamma_eta[l], vertical)
+    extend_products(s, lanes, m)
+    if m <= ORDER:
+        extend_spin(s, lanes, m)
 
 
 @inlined
-def spin_term(s: Record, l: int, m: int) -> float:
-    """What spin on arcs adds to the term of order m of H, over i_3; writes G and dG/dx."""
-    spin_1, per = s.spin_1[l], 1.0 / (s.spin_0[l] + s.spin_1[l] * s.sin_terms[0, l])
-    arc = 1.0 if spin_1 > 0.0 else 0.0
-    g = (arc * s.spin[l]) * (s.tilt_terms[m, l] - s.sin_terms[m, l])
-    for j in range(1, m + 1):
-        g -= spin_1 * s.sin_terms[j, l] * s.g_terms[m - j, l]
-    s.g_terms[m, l] = g * per
-    slope = s.cos_terms[m, l]
-    for j in range(m + 1):
-        slope += s.g_terms[j, l] * s.cos_terms[m - j, l]
-    slope *= -spin_1
-    for j in range(1, m + 1):
-        slope -= spin_1 * s.sin_terms[j, l] * s.g_slope_terms[m - j, l]
-    s.g_slope_terms[m, l] = slope * per
-    more = s.g_slope_terms[m, l]
-    for j in range(m + 1):
-        G = s.g_terms[j, l] - s.cos_terms[j, l]
-        more += G * s.g_slope_terms[m - j, l] + s.g_terms[j, l] * s.sin_terms[m - j, l]
-    return float(more)
+def extend_products(s: Record, lanes: int, m: int) -> None:
+    """Terms of order m of u and C along both axes, and of H but for spin on arcs."""
+    for l in range(lanes):
+        c = s.phase_c[l]
+        u_cos, u_sin, C_cos, C_sin, along = 0.0, 0.0, 0.0, 0.0, 0.0
+        for j in range(m + 1):
+            cos_phi, sin_phi = s.cos_phi_terms[m - j, l], s.sin_phi_terms[m - j, l]
+            D, u = s.D_terms[j, l], s.u_terms[j, l]
+            u_cos += u * cos_phi
+            u_sin += u * sin_phi
+            C_cos += D * cos_phi
+            C_sin += D * sin_phi
+            along += s.tilt_terms[m - j, l] * D
+        s.u_cos_terms[m, l], s.u_sin_terms[m, l] = u_cos, u_sin
+        speed = m / s.step[l] * s.diameter[l]
+        s.beam_x[l], s.beam_y[l] = speed * u_cos + 0.0, speed * u_sin + 0.0
+        if m <= ORDER:
+            s.C_cos_terms[m, l] = C_cos + c * s.cos_phi_terms[m, l]
+            s.C_sin_terms[m, l] = C_sin + c * s.sin_phi_terms[m, l]
+            H = dot(s.H_sin[l], s.sin_terms[m, l], s.H_cos[l], s.cos_terms[m, l])
+            H += s.H_sin2[l] * s.sin2_terms[m, l]
+            H += s.H_cos2[l] * s.cos2_terms[m, l]
+            H += s.H_x[l] * s.tilt_terms[m, l]
+            s.H_terms[m, l] = H + s.one_4gamma[l] * c * along
+
+
+@inlined
+def extend_spin(s: Record, lanes: int, m: int) -> None:
+    """Terms of order m of what spin on arcs adds to G, dG/dx and H."""
+    for l in range(lanes):
+        spin_1, crossed, slope, more = s.spin_1[l], 0.0, 0.0, 0.0
+        for j in range(1, m):
+            sine, cosine = s.sin_terms[j, l], s.cos_terms[j, l]
+            g_j, other, slope_j = s.g_terms[j, l], s.g_terms[m - j, l], s.g_slope_terms[m - j, l]
+            crossed += sine * other
+            slope += other * cosine
+            slope += sine * slope_j
+            more += (g_j - cosine) * slope_j
+        sine, cosine = s.sin_terms[m, l], s.cos_terms[m, l]
+        sine_0, cosine_0 = s.sin_terms[0, l], s.cos_terms[0, l]
+        g_0, slope_0 = s.g_terms[0, l], s.g_slope_terms[0, l]
+        per, rolls = 1.0 / (s.spin_0[l] + spin_1 * sine_0), 1.0 if spin_1 > 0.0 else 0.0
+        crossed += g_0 * sine
+        g = dot(rolls * s.spin[l], s.tilt_terms[m, l] - sine, -spin_1, crossed) * per
+        slope += cosine + g_0 * cosine
+        slope += g * cosine_0
+        slope += sine * slope_0
+        slope *= -spin_1 * per
+        more += slope + (g_0 - cosine_0) * slope
+        more += (g - cosine) * slope_0
+        more += crossed + g * sine_0
+        s.g_terms[m, l], s.g_slope_terms[m, l] = g, slope
+        s.H_terms[m, l] += s.inertia_axial[l] * more
 
 
 @inlined
@@ -229,26 +250,31 @@ def extend_tilt(s: Record, lanes: int, m: int) -> None:
     for l in range(lanes):
         h = s.step[l]
         part = h * (1.0 / m)
-        pushes, turns, w2 = 0.0, 0.0, 0.0
-        for j in range(m):
+        p, w, w_last = s.dtheta_terms[0, l], s.turning_terms[0, l], s.turning_terms[k, l]
+        z_x, z_y = s.z_x_terms[0, l], s.z_y_terms[0, l]
+        pushes = dot(z_x, s.C_cos_terms[k, l], z_y, s.C_sin_terms[k, l])
+        turns = dot(z_y, s.u_cos_terms[k, l], -z_x, s.u_sin_terms[k, l])
+        inertial, slowed = 0.5 * s.A_terms[m, l] * p + 0.0, s.J_terms[m, l] * w + 0.0
+        w2 = w * w_last + 0.0
+        for j in range(1, m):
             z_x, z_y = s.z_x_terms[j, l], s.z_y_terms[j, l]
-            pushes += z_x * s.C_cos_terms[k - j, l] + z_y * s.C_sin_terms[k - j, l]
-            turns += z_y * s.u_cos_terms[k - j, l] - z_x * s.u_sin_terms[k - j, l]
-            w2 += s.turning_terms[j, l] * s.turning_terms[k - j, l]
-        s.w2_terms[k, l] = w2
-        for j in range(m):
+            pushes += z_x * s.C_cos_terms[k - j, l]
+            pushes += z_y * s.C_sin_terms[k - j, l]
             pushes += s.H_terms[j, l] * s.w2_terms[k - j, l]
-        inertial, slowed = 0.0, 0.0
-        for j in range(m):
+            turns += z_y * s.u_cos_terms[k - j, l]
+            turns -= z_x * s.u_sin_terms[k - j, l]
+            w2 += s.turning_terms[j, l] * s.turning_terms[k - j, l] + 0.0
             inertial += (0.5 * (m + j) / m) * s.A_terms[m - j, l] * s.dtheta_terms[j, l]
             slowed += s.J_terms[m - j, l] * s.turning_terms[j, l]
+        s.w2_terms[k, l] = w2
+        pushes += s.H_terms[0, l] * w2
         g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
         before = s.B_terms[k - 1, l] if m > 1 else 0.0
-        weights = g_up * s.B_terms[k, l] + h * s.g_up_slope[l] * before
-        weights *= s.weight_over_R[l]
+        weights = s.weight_over_R[l] * dot(g_up, s.B_terms[k, l], h * s.g_up_slope[l], before)
         s.dtheta_terms[m, l] = -s.per_A[l] * (part * (weights - pushes) + inertial)
-        s.momentum_terms[m, l] = part * turns
-        s.turning_terms[m, l] = s.per_J[l] * (part * turns - slowed)
+        momentum = part * turns + 0.0
+        s.momentum_terms[m, l] = momentum
+        s.turning_terms[m, l] = s.per_J[l] * (momentum - slowed)
 
 
 @inlined
@@ -264,13 +290,13 @@ def extend_modes(s: Record, lanes: int, m: int) -> None:
         s.beam_x[l] += part * a_x
         s.beam_y[l] += part * a_y
         s.V_term[l], s.V_y_term[l] = 0.0, 0.0
-    half = s.storeys
+    half = s.storeys & MOST
     for r in range(half):
         for l in range(lanes):
             s.V_term[l] += extended_mode(s, r, l, m, s.beam_x[l])
-    for r in range(half, s.n):
+    for r in range(half):
         for l in range(lanes):
-            s.V_y_term[l] += extended_mode(s, r, l, m, s.beam_y[l])
+            s.V_y_term[l] += extended_mode(s, half + r, l, m, s.beam_y[l])
     for l in range(lanes):
         rise = s.step[l] if m == 1 else 0.0
         s.z_x_terms[m, l] = push_term(s, l, s.V_term[l], rise * s.a_g_slope[l])
@@ -282,8 +308,8 @@ def extended_mode(s: Record, r: int, l: int, m: int, beam: float) -> float:
     """Write the term of order m of a mode; returns its part of V."""
     part, Gamma = s.step[l] * (1.0 / m), s.Gamma[r, l]
     q = part * s.dq[m - 1, r, l]
-    dq = -Gamma * beam - part * s.modal_force[r, l]
-    force = s.two_xi_omega[r, l] * dq + s.omega2[r, l] * q
+    dq = dot(-Gamma, beam, -part, s.modal_force[r, l])
+    force = dot(s.two_xi_omega[r, l], dq, s.omega2[r, l], q)
     s.dq[m, r, l] = dq
     s.modal_force[r, l] = force
     return float(Gamma * force)

@@ -49,12 +49,8 @@ from rpscli.physics.spatial.equation_of_motion import enter_phase_3d
 from rpscli.physics.spatial.full_contact import enter_interval_3d
 from rpscli.physics.spatial.passes import log_event_3d, pass_upright, settles
 from rpscli.physics.spatial.samples import store_within_3d
-from rpscli.physics.spatial.steps import (
-    end_step_at_3d,
-    plan_step,
-    rate_path,
-    take_end,
-)
+from rpscli.physics.spatial.state import Pair
+from rpscli.physics.spatial.steps import end_step_at_3d, plan_step, rate_path, take_end
 
 NEAR_PASS = -2
 """Kind of an event: the tilt falls below theta_c, and the map takes over."""
@@ -108,9 +104,7 @@ def turning_point(s: Record, l: int, guess: float) -> float:
 
 
 @compiled
-def observe_step(
-    s: Record, l: int, systems: tuple[Record, Record], output: Output, fraction: float
-) -> None:
+def observe_step(s: Record, l: int, systems: Pair, output: Output, fraction: float) -> None:
     """Book the first part of a lane's step, and look at what it demands."""
     if s.audited > 0:
         book_energy_3d(s, l, fraction)
@@ -120,9 +114,7 @@ def observe_step(
 
 
 @kernel
-def resolve_step_3d(
-    s: Record, l: int, systems: tuple[Record, Record], block: Record, output: Output
-) -> int:
+def resolve_step_3d(s: Record, l: int, systems: Pair, block: Record, output: Output) -> int:
     """Deal with a step that was not accepted: GOES_ON, FOLLOW_CONTACT or IS_OVER."""
     if s.history[l] == NO_HISTORY:
         return IS_OVER
@@ -152,7 +144,7 @@ def resolve_step_3d(
 def end_on_event_3d(
     s: Record,
     l: int,
-    systems: tuple[Record, Record],
+    systems: Pair,
     block: Record,
     output: Output,
     fraction: float,

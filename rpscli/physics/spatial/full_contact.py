@@ -9,6 +9,7 @@ limit^2 - |z|^2, and the instant is found on the exact margin.
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 from rpscli.physics.core.compile import compiled, kernel
 from rpscli.physics.core.lanes import enter_interval, set_ground_of_block
@@ -40,24 +41,17 @@ from rpscli.physics.planar.full_contact.modal_block import (
     map_of,
     mapped,
 )
-from rpscli.physics.planar.full_contact.uplift_search import (
-    ROUNDING,
-    Margin,
-    margin_of,
-    push_path,
-)
+from rpscli.physics.planar.full_contact.uplift_search import ROUNDING, Margin, margin_of, push_path
 from rpscli.physics.planar.run import Output
-from rpscli.physics.planar.state import (
-    FAILED_NOT_FINITE,
-    GOES_ON,
-    IS_OVER,
-    SHORT_STEP,
-    WHOLE_STEP,
-)
+from rpscli.physics.planar.state import FAILED_NOT_FINITE, GOES_ON, IS_OVER, SHORT_STEP, WHOLE_STEP
 from rpscli.physics.spatial.demands import set_below
 from rpscli.physics.spatial.passes import uplift_3d
 from rpscli.physics.spatial.samples import store_at_rest_3d, store_sample_3d
+from rpscli.physics.spatial.state import Pair
 from rpscli.physics.spatial.steps import plan_step
+
+Margins: TypeAlias = tuple[Margin, Margin]
+"""In x and in y; the limit is that of the first."""
 
 
 @compiled
@@ -77,7 +71,7 @@ def modes_between(s: Record, l: int, blocks: Record, back: int) -> None:
 
 
 @compiled
-def raise_alarms_3d(blocks: Record, margins: tuple[Margin, Margin], h: float, least: float) -> bool:
+def raise_alarms_3d(blocks: Record, margins: Margins, h: float, least: float) -> bool:
     """Write `alarm` of the first block: 0 for steps that surely keep the margin; whether any is."""
     alarms, block, limits = 0, blocks[0], margins[0]
     for k in range(INSTANTS):
@@ -94,7 +88,7 @@ def raise_alarms_3d(blocks: Record, margins: tuple[Margin, Margin], h: float, le
 
 
 @compiled
-def first_uplift_3d(blocks: Record, margins: tuple[Margin, Margin], h: float, k: int) -> float:
+def first_uplift_3d(blocks: Record, margins: Margins, h: float, k: int) -> float:
     """Fraction of the step after k others at which |z| passes the limit, or NO_PASSAGE."""
     limits, x, y, block = margins[0], blocks[0], blocks[1], blocks[0]
     ends = (0.0, 0.0, 0.0)
@@ -128,12 +122,7 @@ def first_uplift_3d(blocks: Record, margins: tuple[Margin, Margin], h: float, k:
 
 @compiled
 def locate_uplift_3d(
-    blocks: Record,
-    systems: tuple[Record, Record],
-    margins: tuple[Margin, Margin],
-    h: float,
-    k: int,
-    guess: float,
+    blocks: Record, systems: Pair, margins: Margins, h: float, k: int, guess: float
 ) -> float:
     """Time into the step after k others, near guess in [0, h], where the margin is zero [s]."""
     t = guess
@@ -183,7 +172,7 @@ def push_after(
 
 @compiled
 def search_blocks(
-    blocks: Record, margins: tuple[Margin, Margin], plan: Plan, least: float
+    blocks: Record, margins: Margins, plan: Plan, least: float
 ) -> tuple[int, float, bool]:
     """Steps that end before uplift, the fraction of the next, and whether uplift comes or is near.
 
@@ -205,9 +194,7 @@ def search_blocks(
 
 
 @compiled
-def observe_blocks(
-    s: Record, l: int, systems: tuple[Record, Record], blocks: Record, h: float, steps: int
-) -> None:
+def observe_blocks(s: Record, l: int, systems: Pair, blocks: Record, h: float, steps: int) -> None:
     """Raise the demands of a lane by those of the first steps of the blocks, of length h [s]."""
     part, ratio = (WITHIN / 8.0 * h * h) ** 2, s.bend_ratio[l]
     found, x, y = 0, blocks[0], blocks[1]
@@ -231,7 +218,7 @@ def observe_blocks(
 
 @compiled
 def raise_floors_of_blocks(
-    s: Record, l: int, systems: tuple[Record, Record], blocks: Record, h: float, steps: int
+    s: Record, l: int, systems: Pair, blocks: Record, h: float, steps: int
 ) -> None:
     """Raise the largest storey shears and floor accelerations by those of a block."""
     x, y = blocks[0], blocks[1]
@@ -262,14 +249,7 @@ def raise_floors_of_blocks(
 
 @compiled
 def raise_by_rows(
-    both: Floats,
-    in_x: Floats,
-    in_y: Floats,
-    x: Record,
-    y: Record,
-    i: int,
-    h: float,
-    steps: int,
+    both: Floats, in_x: Floats, in_y: Floats, x: Record, y: Record, i: int, h: float, steps: int
 ) -> None:
     """Raise the demand of one floor by the rows of both blocks."""
     in_x[i] = max(in_x[i], largest_of_row(x, h, steps))
@@ -345,13 +325,13 @@ def measures_at_rest(
 def accept_blocks(
     s: Record,
     l: int,
-    systems: tuple[Record, Record],
+    systems: Pair,
     blocks: Record,
     acceleration: Floats,
     output: Output,
     plan: Plan,
     taken: int,
-    margins: tuple[Margin, Margin],
+    margins: Margins,
 ) -> bool:
     """Make the state after some steps of the blocks that of the lane; True if its history ends."""
     first, time = s.interval[l], s.time[l]
@@ -401,7 +381,7 @@ def keep_states(blocks: Record, k: int) -> None:
 
 
 @compiled
-def book_blocks(blocks: Record, systems: tuple[Record, Record], which: int, h: float) -> None:
+def book_blocks(blocks: Record, systems: Pair, which: int, h: float) -> None:
     """What ground and dampers do in each step of both blocks."""
     if which == SHORT_STEP:
         fill_work(blocks[0], systems[0], SHORT_STEP, h)
@@ -412,13 +392,7 @@ def book_blocks(blocks: Record, systems: tuple[Record, Record], which: int, h: f
 
 @compiled
 def leave_contact_3d(
-    s: Record,
-    l: int,
-    systems: tuple[Record, Record],
-    blocks: Record,
-    output: Output,
-    at: int,
-    h: float,
+    s: Record, l: int, systems: Pair, blocks: Record, output: Output, at: int, h: float
 ) -> None:
     """Leave full contact a time h into the step after `at` others of the blocks [h s]."""
     for axis in range(2):
@@ -442,7 +416,7 @@ def leave_contact_3d(
 
 
 @compiled
-def follow_blocks(blocks: Record, systems: tuple[Record, Record], which: int, h: float) -> None:
+def follow_blocks(blocks: Record, systems: Pair, which: int, h: float) -> None:
     """Follow the modes of both directions through their blocks."""
     if which == SHORT_STEP:
         fill_map(blocks[0], systems[0], SHORT_STEP, h)
@@ -453,12 +427,7 @@ def follow_blocks(blocks: Record, systems: tuple[Record, Record], which: int, h:
 
 @kernel
 def follow_full_contact_3d(
-    s: Record,
-    l: int,
-    systems: tuple[Record, Record],
-    blocks: Record,
-    acceleration: Floats,
-    output: Output,
+    s: Record, l: int, systems: Pair, blocks: Record, acceleration: Floats, output: Output
 ) -> int:
     """Follow a lane in full contact: GOES_ON when it begins to tilt, or IS_OVER."""
     if s.history[l] == NO_HISTORY:
@@ -502,13 +471,7 @@ def follow_full_contact_3d(
 
 
 @compiled
-def is_over_3d(
-    s: Record,
-    l: int,
-    systems: tuple[Record, Record],
-    blocks: Record,
-    margins: tuple[Margin, Margin],
-) -> bool:
+def is_over_3d(s: Record, l: int, systems: Pair, blocks: Record, margins: Margins) -> bool:
     """Whether no later moment of the free vibration in full contact can bring a new maximum."""
     free = s.interval[l] + 1 - s.npts[l]
     if systems[0].until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
@@ -530,7 +493,7 @@ def is_over_3d(
 
 
 @compiled
-def demands_stand_3d(s: Record, l: int, systems: tuple[Record, Record], blocks: Record) -> bool:
+def demands_stand_3d(s: Record, l: int, systems: Pair, blocks: Record) -> bool:
     """Whether free vibration in full contact can raise no storey shear and no acceleration."""
     for i in range(s.storeys):
         shears, accelerations = 0.0, 0.0

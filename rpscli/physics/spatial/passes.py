@@ -13,21 +13,9 @@ import math
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.lanes import log_event, time_of
 from rpscli.physics.core.records import Record
-from rpscli.physics.planar.state import (
-    FULL_CONTACT,
-    PASS,
-    RECONTACT,
-    ROCKING,
-    ROLLING,
-    UPLIFT,
-)
+from rpscli.physics.planar.state import FULL_CONTACT, PASS, RECONTACT, ROCKING, ROLLING, UPLIFT
 from rpscli.physics.spatial.energy import lifting_energy, strain_energy, tilting_energy_3d
-from rpscli.physics.spatial.equation_of_motion import (
-    beam_now,
-    enter_phase_3d,
-    place_of,
-    renew_push,
-)
+from rpscli.physics.spatial.equation_of_motion import beam_now, enter_phase_3d, place_of, renew_push
 from rpscli.physics.spatial.state import UPLIFT_TILT, UPRIGHT_TILT
 from rpscli.physics.spatial.steps import turn_by
 

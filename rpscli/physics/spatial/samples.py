@@ -18,10 +18,11 @@ from rpscli.physics.spatial.equation_of_motion import (
     rates_now,
     turning_terms,
 )
+from rpscli.physics.spatial.state import Pair
 
 
 @compiled
-def store_sample_3d(s: Record, l: int, systems: tuple[Record, Record], output: Output) -> None:
+def store_sample_3d(s: Record, l: int, systems: Pair, output: Output) -> None:
     """Keep the state at the start of the present interval, if there is room."""
     for r in range(s.n):
         s.next_q[r, l], s.next_dq[r, l] = s.q[r, l], s.dq[0, r, l]
@@ -33,9 +34,7 @@ def store_sample_3d(s: Record, l: int, systems: tuple[Record, Record], output: O
 
 
 @compiled
-def store_within_3d(
-    s: Record, l: int, systems: tuple[Record, Record], output: Output, fraction: float
-) -> None:
+def store_within_3d(s: Record, l: int, systems: Pair, output: Output, fraction: float) -> None:
     """Keep the states at the even parts of the interval that the first part of the step passes."""
     h, rates, turning = s.step[l], rotation_terms(s, l), turning_terms(s, l)
     part = s.dt[l] / output.finer
@@ -64,14 +63,7 @@ def store_within_3d(
 
 @compiled
 def store_at_rest_3d(
-    s: Record,
-    l: int,
-    systems: tuple[Record, Record],
-    blocks: Record,
-    output: Output,
-    k: int,
-    begin: float,
-    h: float,
+    s: Record, l: int, systems: Pair, blocks: Record, output: Output, k: int, begin: float, h: float
 ) -> None:
     """The same in a step of the blocks, the k-th, that begins at a time of the interval."""
     part, half = s.dt[l] / output.finer, s.storeys
@@ -92,7 +84,7 @@ def store_at_rest_3d(
 def store_row_3d(
     s: Record,
     l: int,
-    systems: tuple[Record, Record],
+    systems: Pair,
     output: Output,
     row: int,
     theta: float,

@@ -9,8 +9,13 @@ these rows, so that what loops over modes serves both kernels. What is planar an
 
 from __future__ import annotations
 
-from rpscli.physics.core.records import WHOLE, Field
+from typing import TypeAlias
+
+from rpscli.physics.core.records import WHOLE, Field, Record
 from rpscli.physics.planar import state as planar
+
+Pair: TypeAlias = tuple[Record, Record]
+"""Of a structure the systems in x and in y."""
 
 UPRIGHT_TILT = 5e-10
 """theta_c [rad]: what passes nearer is taken over by a map."""

@@ -13,16 +13,10 @@ from rpscli.physics.core.compile import compiled, specialised
 from rpscli.physics.core.quintic import Quintic, lower_hull, quintic, upper_hull
 from rpscli.physics.core.records import LANES, ORDER, Record
 from rpscli.physics.core.series import integral, sine_cosine, value
-from rpscli.physics.planar.steps import (
-    ONE_BEFORE,
-    add_terms,
-    chosen,
-    end_step_at,
-    path_of,
-    sums,
-)
+from rpscli.physics.planar.steps import ONE_BEFORE, add_terms, chosen, end_step_at, path_of, sums
 from rpscli.physics.spatial.equation_of_motion import (
     begin_terms,
+    dot,
     extend_modes,
     extend_positions,
     extend_tilt,
@@ -60,21 +54,27 @@ def take_steps(s: Record) -> None:
 def extend_all(s: Record, lanes: int) -> None:
     """Terms of all orders, in all lanes, see `planar.steps.extend_all`."""
     begin_terms(s, lanes)
-    extend_order(s, lanes, 1)
-    extend_order(s, lanes, 2)
-    extend_order(s, lanes, 3)
-    extend_order(s, lanes, 4)
-    extend_order(s, lanes, 5)
-    extend_order(s, lanes, 6)
-    extend_order(s, lanes, 7)
-
-
-@specialised
-def extend_order(s: Record, lanes: int, m: int) -> None:
-    """Terms of one order: the tilt's rates, then positions of the next, then the modes."""
-    extend_tilt(s, lanes, m)
-    extend_positions(s, lanes, m + 1)
-    extend_modes(s, lanes, m)
+    extend_tilt(s, lanes, 1)
+    extend_positions(s, lanes, 2)
+    extend_modes(s, lanes, 1)
+    extend_tilt(s, lanes, 2)
+    extend_positions(s, lanes, 3)
+    extend_modes(s, lanes, 2)
+    extend_tilt(s, lanes, 3)
+    extend_positions(s, lanes, 4)
+    extend_modes(s, lanes, 3)
+    extend_tilt(s, lanes, 4)
+    extend_positions(s, lanes, 5)
+    extend_modes(s, lanes, 4)
+    extend_tilt(s, lanes, 5)
+    extend_positions(s, lanes, 6)
+    extend_modes(s, lanes, 5)
+    extend_tilt(s, lanes, 6)
+    extend_positions(s, lanes, 7)
+    extend_modes(s, lanes, 6)
+    extend_tilt(s, lanes, 7)
+    extend_positions(s, lanes, 8)
+    extend_modes(s, lanes, 7)
 
 
 @compiled
@@ -100,15 +100,15 @@ def add_turns(s: Record) -> None:
         s.next_theta_ddot[l] = per * (faster + 5.0 * d[5, l] + 6.0 * d[6, l] + 7.0 * d[7, l])
     for r in range(s.n):
         for l in range(s.lanes):
-            force = s.omega2[r, l] * s.next_q[r, l] + s.two_xi_omega[r, l] * s.next_dq[r, l]
-            s.modal_force[r, l] = force
+            omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
+            s.modal_force[r, l] = dot(omega2, s.next_q[r, l], damping, s.next_dq[r, l])
 
 
 @compiled
 def rate_path(s: Record, l: int) -> Quintic:
     """The quintic through p, p' and p'' at both ends of the step."""
     h, d = s.step[l], s.dtheta_terms
-    bend = 2.0 * d[2, l] + 6.0 * d[3, l] + 12.0 * d[4, l] + 20.0 * d[5, l]
+    bend = (d[2, l] + d[2, l]) + 6.0 * d[3, l] + 12.0 * d[4, l] + 20.0 * d[5, l]
     bend += 30.0 * d[6, l] + 42.0 * d[7, l]
     return quintic(
         1.0, d[0, l], d[1, l], 2.0 * d[2, l], s.next_theta_dot[l], h * s.next_theta_ddot[l], bend
@@ -194,8 +194,10 @@ def longest_here(s: Record, l: int) -> float:
 def grow(s: Record, l: int) -> None:
     """Let steps grow behind an accepted one that was limited."""
     if s.step_limit[l] > 0.0:
-        fits = CAUTION * max(s.series_ratio[l], 1e-30) ** (-1.0 / ORDER)
-        s.step_limit[l] = s.step[l] * min(GROWTH, fits)
+        ratio, fits = s.series_ratio[l], GROWTH
+        if ratio > (CAUTION / GROWTH) ** ORDER:
+            fits = CAUTION * ratio ** (-1.0 / ORDER)
+        s.step_limit[l] = s.step[l] * fits
         if s.step_limit[l] > s.uplifted_step[l]:
             s.step_limit[l] = 0.0
 
@@ -213,8 +215,8 @@ def accept_steps(s: Record) -> None:
         s.theta_ddot[l] = chosen(accepted, s.next_theta_ddot[l], s.theta_ddot[l])
         momentum = chosen(accepted, s.next_angular_momentum[l], s.angular_momentum[l])
         s.angular_momentum[l] = momentum
-        s.cos_phi[l] = chosen(accepted, cos_phi * cosine - sin_phi * sine, cos_phi)
-        s.sin_phi[l] = chosen(accepted, sin_phi * cosine + cos_phi * sine, sin_phi)
+        s.cos_phi[l] = chosen(accepted, dot(cos_phi, cosine, -sin_phi, sine), cos_phi)
+        s.sin_phi[l] = chosen(accepted, dot(sin_phi, cosine, cos_phi, sine), sin_phi)
         for i in range(2):
             s.shear_before[i, l] = chosen(accepted, s.shear_bound[i, l], s.shear_before[i, l])
             s.acceleration_before[i, l] = chosen(
@@ -231,7 +233,7 @@ def accept_steps(s: Record) -> None:
         s.steps_left[l] = left
         x, p = s.theta[l], s.theta_dot[l]
         across = s.turning[l] * x
-        near = s.step[l] * s.step[l] * (p * p + across * across) > ARC * ARC * (x * x)
+        near = s.step[l] * s.step[l] * dot(p, p, across, across) > ARC * ARC * (x * x)
         goes_on = accepted & (left > 0.0) & (s.step_limit[l] == 0.0) & (not near)
         s.needs_attention[l] = 0.0 if goes_on else 1.0
         s.no_event[l] = 0.0
