@@ -21,7 +21,6 @@ KERNELS = {
     "devices": "kernel with devices",
     "compliant": "kernel with compliant contact",
     "pairs": "kernel for both components",
-    "pairs with devices": "kernel for both components with devices",
 }
 """By variant: planar ones of `physics.planar.state.STATES`, and those for motions in x and y."""
 
@@ -58,10 +57,13 @@ def compiled(variant: str) -> Iterator[None]:
         if first:
             for listener in _listeners:
                 told.enter_context(listener(name))
-            planar = not variant.startswith("pairs")
-            if planar:
+            if variant.startswith("pairs"):
+                from rpscli.physics.spatial.prepare import compile_pairs
+
+                compile_pairs()
+            else:
                 compile_kernel(variant)
-            if planar and cache_folder() is not None:  # else the first call compiles
+            if cache_folder() is not None:  # else the first call compiles
                 told.close()
         yield
     remember_compiled(name)

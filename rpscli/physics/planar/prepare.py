@@ -32,18 +32,9 @@ def compile_kernel(variant: str) -> None:
 
     Without a cache, or without machine code at all, there is nothing to prepare.
     """
-    if cast("Any", numba.config).DISABLE_JIT or cache_folder() is None or not sys.executable:
+    if not can_prepare():
         return
-    # Without -P a numba.py in the working folder would be run.
-    command = [sys.executable, "-P", "-m", __name__, variant]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    silent = subprocess.DEVNULL
-    with (
-        garbage_kept(),
-        subprocess.Popen(  # noqa: S603 -- this very program
-            command, env=environment, stdin=silent, stdout=silent, stderr=silent
-        ) as other,
-    ):
+    with garbage_kept(), compiling(__name__, variant) as other:
         try:
             compile_phases(variant)
             other.wait()
@@ -51,6 +42,23 @@ def compile_kernel(variant: str) -> None:
         except BaseException:
             other.kill()
             raise
+
+
+def can_prepare() -> bool:
+    """Whether machine code is made and kept."""
+    no_code = cast("Any", numba.config).DISABLE_JIT
+    return bool(not no_code and cache_folder() is not None and sys.executable)
+
+
+def compiling(module: str, what: str) -> subprocess.Popen[bytes]:
+    """Another process that compiles a part: it runs a module like this one."""
+    # Without -P a numba.py in the working folder would be run.
+    command = [sys.executable, "-P", "-m", module, what]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    silent = subprocess.DEVNULL
+    return subprocess.Popen(  # noqa: S603 -- this very program
+        command, env=environment, stdin=silent, stdout=silent, stderr=silent
+    )
 
 
 def compile_phases(variant: str) -> None:

@@ -128,7 +128,7 @@ def resolve_step_3d(s: Record, l: int, systems: Pair, block: Record, output: Out
     if kind in (HALVE, NO_EVENT):
         s.no_event[l] = 1.0 if kind == NO_EVENT else 0.0
         if kind == HALVE:
-            s.step[l], s.steps_left[l] = 0.5 * s.step[l], 2.0
+            s.step[l], s.steps_left[l] = 0.5 * s.step[l], 1.0
             s.step_limit[l] = s.step[l]
         return GOES_ON
     rests = end_on_event_3d(s, l, systems, block, output, fraction, level, kind)
@@ -177,11 +177,8 @@ def end_on_event_3d(
 @compiled
 def next_interval_3d(s: Record, l: int, system: Record, acceleration: Floats) -> int:
     """Enter the records' next interval: GOES_ON, or IS_OVER at the history's end."""
-    over = s.time[l] - s.dt[l]
     if enter_interval_3d(s, l, acceleration, s.interval[l] + 1) or wobbles_on(s, l, system):
         return IS_OVER
-    if over > 1e-12 * s.dt[l]:  # of the map of a near pass, which takes a time of its own
-        s.time[l] = over
     plan_step(s, l)
     return GOES_ON
 

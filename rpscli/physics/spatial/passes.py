@@ -78,6 +78,9 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: int) -> N
     """
     at, before, strain = place_of(s, l, s.theta[l]), beam_now(s, l), strain_energy(s, l)
     p, q = s.theta_dot[l], s.angular_momentum[l] / at.J * s.theta[l]
+    if near == 0 and s.theta[l] <= 2.0 * UPLIFT_TILT and abs(q) < s.theta[l]:
+        s.theta_dot[l] = 0.0
+        return  # it has only begun to tilt, a little too early
     moving, kappa = tilting_energy_3d(s, l, at), s.cone[l]
     least, speed = s.theta[l], abs(q)
     if near > 0:

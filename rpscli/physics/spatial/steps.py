@@ -177,7 +177,7 @@ def plan_step(s: Record, l: int) -> None:
     if s.step_limit[l] > 0.0:
         limit = min(limit, s.step_limit[l])
     if limit < s.step[l]:
-        s.step[l], s.steps_left[l] = limit, 2.0
+        s.step[l], s.steps_left[l] = limit, 1.0  # what follows is planned anew
 
 
 @compiled
