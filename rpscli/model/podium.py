@@ -152,7 +152,10 @@ class PodiumStructure(Shown):
         if self.bearing.is_spherical:
             return "columns without a flat part are followed in one plane only"
         if self.bed is not None:
-            return "ends that give way in full contact are followed in one plane only"
+            return (
+                "ends that give way are followed under one component; use podium.contact `rigid`,"
+                " or one component at a time"
+            )
         if self.impact_law.floors_jump and self.superstructure is not None:
             return (
                 f"the impact law {self.impact_law.kind} lets floors jump, which has no form for a"

@@ -111,15 +111,8 @@ def _no_output(storeys: int, devices: int, pairs: bool) -> Output:  # noqa: FBT0
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
     """Follow every history of a run, of one component or of pairs; writes `run.results`."""
-    pairs, variant = "azimuth" in (run.results.dtype.names or ()), variant_of(run)
-    if pairs and variant == "compliant":
-        raise CaseError(
-            "ends that give way are followed under one component; use podium.contact `rigid`, or"
-            " one component at a time"
-        )
-    if pairs:
-        variant = "pairs" if variant == "plain" else "pairs with devices"
-    with compiled(variant):
+    pairs = "azimuth" in (run.results.dtype.names or ())
+    with compiled("pairs" if pairs else variant_of(run)):
         if pairs:
             from rpscli.physics.spatial.driver import integrate_pairs
 

@@ -1,8 +1,8 @@
 """The first compilation of the kernel for both components, by two other processes.
 
-This process finds the parts in numba's cache. Were they compiled here, the compiler would merge them
-into what calls them, and round other sums: a history would not have the same bits in the process
-that compiled its kernel and in the next.
+This process finds the parts in numba's cache. Were they compiled here, the compiler would merge
+them into what calls them, and round other sums: a history would not have the same bits in the
+process that compiled its kernel and in the next.
 """
 
 from __future__ import annotations
