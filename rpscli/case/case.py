@@ -40,7 +40,6 @@ from rpscli.case.text.document import Document, is_design, is_study, text_of_val
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, require_kind, stem_of
-from rpscli.model.contact import refuse_start
 from rpscli.model.podium import PodiumStructure
 from rpscli.shown import Shown
 
@@ -249,6 +248,6 @@ def _refuse_contact(podium: Podium, file: CaseFile, document: Document) -> None:
     try:
         structure = podium_structure(podium, file)
         if structure.bed is not None:
-            refuse_start(structure.bed, file.analysis.initial_rotation)
+            structure.bed.refuse_start(file.analysis.initial_rotation)
     except ValueError as error:
         raise CaseError(f"{document.key_place(CONTACT)}: podium.contact: {error}") from None

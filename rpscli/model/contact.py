@@ -85,35 +85,67 @@ Standing: TypeAlias = Any
 
 
 class BedPath(NamedTuple):
-    """Along |theta|, lengths over R: what enters moments, inertia and displacements."""
+    """What enters moments, inertia and displacements along |theta|, arrays of its shape.
 
-    arm: Array  # of the weight: the restoring moment is 2 W R times it
-    lift_arm: Array  # B_v: v_b' = 2 R B_v theta'
-    lift_bend: Array  # dB_v/dx
-    height: Array  # C
-    displacement: Array  # u_b/2R
-    lift: Array  # v_b/2R
-    potential: Array  # of weight and bed, over 2 W R
+    Parameters
+    ----------
+    arm
+        Of the weight, over R: the restoring moment is 2 W R times it.
+    lift_arm, lift_bend
+        B_v, v_b' = 2 R B_v theta', and dB_v/dx.
+    height
+        C.
+    displacement, lift, potential
+        u_b/2R, v_b/2R, and that of weight and bed over 2 W R.
+    """
+
+    arm: Array
+    lift_arm: Array
+    lift_bend: Array
+    height: Array
+    displacement: Array
+    lift: Array
+    potential: Array
 
 
 class Bed(NamedTuple):
-    """Full contact that gives way, of a structure (Theory, section 12)."""
+    """Full contact that gives way, of a structure (Theory, section 12).
+
+    Parameters
+    ----------
+    structure
+        The `PodiumStructure` that stands on it.
+    uplift_rotation, full_rotation, fade
+        phi_u, at which an edge lifts, x_full of curved ends or 0 [rad]; 1/(x_full - phi_u) or 0.
+    height, lift_arm
+        C and B at phi_u.
+    inertia, spring, damper
+        A_u; k, the secant of the moment [1/s2]; c [1/s], all over N m_c R^2.
+    stiffness, mass
+        K_s [N/m] and m_0 [kg] at the cap beam.
+    sink, root
+        What w takes from the arms of the weight and of the lift; 0 on edges.
+    kept
+        j, theta' after uplift over that before: below 1 on edges.
+    shift
+        What u_b/2R lacks at phi_u for being continuous, C_u being constant below it.
+    """
 
     structure: Standing
-    uplift_rotation: float  # phi_u, at which an edge lifts [rad]
-    height: float  # C_u = C(phi_u)
-    lift_arm: float  # B(phi_u)
-    inertia: float  # A_u, over N m_c R^2
-    spring: float  # k, secant of the moment up to phi_u, over N m_c R^2 [1/s2]
-    damper: float  # c = 2 zeta sqrt(k A_u), likewise [1/s]
-    stiffness: float  # K_s = dF/du_b up to phi_u [N/m]
-    mass: float  # m_0, columns and cap beam at u_b [kg]
-    sink: float  # what w takes from the arm of the weight, 0 on edges
-    root: float  # what w takes from the arm of the lift, 0 on edges
-    kept: float  # j, theta' after uplift over that before: below 1 on edges
-    shift: float  # what u_b/2R lacks at phi_u for being continuous, C_u being constant below it
-    full_rotation: float  # x_full, from which curved ends bear outside of the flat part, or 0 [rad]
-    fade: float  # 1/(x_full - phi_u), or 0 [1/rad]
+    uplift_rotation: float
+    height: float
+    lift_arm: float
+    inertia: float
+    spring: float
+    damper: float
+    stiffness: float
+    mass: float
+    sink: float
+    root: float
+    kept: float
+    shift: float
+    full_rotation: float
+    fade: float
 
     @property
     def settlement(self) -> float | None:
@@ -131,7 +163,9 @@ class Bed(NamedTuple):
         first = float(self.structure.superstructure.frequencies[0])
 
         def misses(share: float) -> float:
-            return storey_stiffness(self.structure, self.mass, share * first) / self.stiffness - 1.0
+            return (
+                _storey_stiffness(self.structure, self.mass, share * first) / self.stiffness - 1.0
+            )
 
         return 1.0 / float(brentq(misses, 1e-9, 1.0 - 1e-12, xtol=1e-15, rtol=1e-15))
 
@@ -157,6 +191,14 @@ class Bed(NamedTuple):
         gradual = self.root and self.structure.bearing.is_flat
         return math.sqrt(min(10.0 * self.ratio, 1.0)) if gradual else None
 
+    def refuse_start(self, rotation: float) -> None:
+        """Refuse a release from full contact: raises ValueError [rad]."""
+        if 0.0 < abs(rotation) <= self.uplift_rotation:
+            raise ValueError(
+                f"initial_rotation = {rotation:.6g} rad must be 0, or above"
+                f" {self.uplift_rotation:.6g} rad, where the ends begin to lift"
+            )
+
     def path(self, x: Array) -> BedPath:
         """Arms, displacements and potential at |theta| [rad]."""
         u, fade, b = self.uplift_rotation, self.fade, self.structure.bearing
@@ -180,7 +222,7 @@ class Bed(NamedTuple):
         )
 
 
-def make_bed(structure: Standing, u: float) -> Bed:
+def _make_bed(structure: Standing, u: float) -> Bed:
     """The bed whose edges lift at phi_u [rad]."""
     b, contact, gamma = structure.bearing, structure.contact, structure.gamma
     phase, gradual = b.rocking if b.is_flat else b.rolling, contact.kind == "plane"
@@ -214,7 +256,7 @@ def make_bed(structure: Standing, u: float) -> Bed:
     )
 
 
-def storey_stiffness(structure: Standing, mass: float, omega: float) -> float:
+def _storey_stiffness(structure: Standing, mass: float, omega: float) -> float:
     """K_s with which the building vibrates freely at omega, beam and columns weighing m_0 [N/m]."""
     building = structure.superstructure
     shaken = building.participation**2 / (1.0 - (omega / building.frequencies) ** 2)
@@ -232,25 +274,25 @@ def bed_of(structure: Standing) -> Bed | None:
     contact, b = structure.contact, structure.bearing
     if contact.kind == "rigid":
         return None
-    refuse_combinations(structure)
+    _refuse_combinations(structure)
     softest, found = b.slenderness * SHAPE[contact.kind], None
     if contact.settlement is not None:
-        found = make_bed(structure, contact.settlement / b.half_width)
+        found = _make_bed(structure, contact.settlement / b.half_width)
     else:
         from scipy.optimize import brentq
 
         def misses(u: float) -> float:
-            bed, wanted = make_bed(structure, u), contact.stiffness
+            bed, wanted = _make_bed(structure, u), contact.stiffness
             if contact.period_ratio is not None:
                 omega = float(structure.superstructure.frequencies[0]) / contact.period_ratio
-                wanted = storey_stiffness(structure, bed.mass, omega)
+                wanted = _storey_stiffness(structure, bed.mass, omega)
             return float(bed.stiffness / wanted) - 1.0
 
         ends = 1e-12 * softest, softest * (1.0 - 1e-9)
         if misses(ends[0]) < 0.0:
             raise ValueError("the contact is so stiff that it is rigid; use the kind `rigid`")
         if misses(ends[1]) < 0.0:
-            found = make_bed(structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15)))
+            found = _make_bed(structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15)))
     if found is None or found.uplift_rotation >= softest or found.spring <= 0.0:
         share = "3 phi_u" if contact.kind == "plane" else "phi_u"
         raise ValueError(
@@ -272,16 +314,7 @@ def bed_of(structure: Standing) -> Bed | None:
     return found
 
 
-def refuse_start(bed: Bed, rotation: float) -> None:
-    """Refuse a release from full contact: raises ValueError [rad]."""
-    if 0.0 < abs(rotation) <= bed.uplift_rotation:
-        raise ValueError(
-            f"initial_rotation = {rotation:.6g} rad must be 0, or above"
-            f" {bed.uplift_rotation:.6g} rad, where the ends begin to lift"
-        )
-
-
-def refuse_combinations(structure: Standing) -> None:
+def _refuse_combinations(structure: Standing) -> None:
     """Refuse what is not followed with ends that give way: raises ValueError."""
     contact, b = structure.contact, structure.bearing
     devices, law = {device.kind for device in structure.devices}, structure.impact_law

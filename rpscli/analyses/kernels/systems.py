@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.model.contact import Bed, refuse_start
+from rpscli.model.contact import Bed
 from rpscli.model.devices import DEVICES
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
@@ -173,7 +173,7 @@ def fill_settings(
     record["contact_rate"] = contact_rate(structure)
     record["bedded_rate"] = settings.accuracy * bedded_rate(structure)
     if structure.bed is not None:
-        refuse_start(structure.bed, settings.initial_rotation)
+        structure.bed.refuse_start(settings.initial_rotation)
     record["most_steps"] = MOST_POWER_STEPS
     record["last_term"] = LAST_TERM * settings.accuracy**-ORDER
     record["recontact_tolerance"] = settings.recontact_tolerance
