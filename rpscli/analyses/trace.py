@@ -476,7 +476,7 @@ def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
 
 
 def turning_inertia(structure: PodiumStructure, x: Array, path: Array) -> Array:
-    """N m_c R^2 J(x) along a path u = |u_b|/2R (samples,) [kg m2] (Theory, section 14)."""
+    """N m_c R^2 J(x) along a path u = |u_b|/2R (samples,) [kg m2] (Theory, section 13)."""
     b = structure.bearing
     y, (sin_alpha, _, k, _, _) = np.minimum(x, b.beta), b.rolling
     spin = k * (y - np.sin(y)) / (sin_alpha + k * np.sin(y)) if b.beta > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""What happens near the upright position, and how a tilt begins and ends (Theory, section 14).
+"""What happens near the upright position, and how a tilt begins and ends (Theory, section 13).
 
 As x goes to 0 the motion is one on a cone: A and J/x^2 = K stay, and what passes near upright turns
 its azimuth by pi/kappa in all, kappa = sqrt(K(0)/A(0)), however near. A real contact takes a time
