@@ -79,16 +79,11 @@ def command(
             f"{given.case.source}: {left[0]} is not exported; take it out, by --set {left[0]}=null,"
             " so that both programs compute the same"
         )
-    place = OutputRequest(output.place or RESULTS / given.case.name / "export" / program,
-                          output.force)  # fmt: skip
-    folder = case_folder(
-        given,
-        place,
-        "export",
-        record_source=motion_source(given.case, motions[0]),
-        program=program,
-        record=motion_inputs(ground),
-    )
+    own = RESULTS / given.case.name / "export" / program
+    place = OutputRequest(output.place or own, output.force)
+    inputs = {"program": program, "record": motion_inputs(ground)}
+    source = motion_source(given.case, motions[0])
+    folder = case_folder(given, place, "export", record_source=source, **inputs)
     announce_compilation(terminal)
     result = time_history(structure, ground, given.case.analysis)
     if result.failure:

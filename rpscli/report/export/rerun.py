@@ -6,7 +6,6 @@ in timehistory.csv; rerun.csv and rerun.png are written. All numbers are SI.
 
 from __future__ import annotations
 
-import csv
 import runpy
 import sys
 from pathlib import Path
@@ -23,18 +22,6 @@ AT_ONCE = 5e-4
 """Longest step of OpenSees [s]."""
 
 
-def history() -> dict[str, Any]:
-    """Columns of timehistory.csv by name, without units."""
-    with (HERE / "timehistory.csv").open(encoding="utf-8") as file:
-        heads, *rows = list(csv.reader(file))
-    columns = zip(heads, zip(*rows, strict=True), strict=True)
-    return {
-        head.partition(" [")[0]: np.array(cells, dtype=float)
-        for head, cells in columns
-        if "phase" not in head
-    }
-
-
 def by_mujoco(time: Any, ground: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
     """Time, cap beam displacement and drift of the lowest storey, after each few steps."""
     import mujoco
@@ -44,8 +31,7 @@ def by_mujoco(time: Any, ground: Any, start: dict[str, float]) -> tuple[Any, Any
     joints = {model.joint(i).name: int(model.joint(i).qposadr[0]) for i in range(model.njnt)}
     across = [place for name, place in joints.items() if name.startswith("across")]
     for name, place in joints.items():
-        kind = name.rpartition(" ")[0] if name[-1].isdigit() else name
-        data.qpos[place] = start.get(kind, 0.0)
+        data.qpos[place] = start.get(name.rstrip("0123456789 "), 0.0)
     if not any(start.values()):
         mujoco.mj_step(model, data, round(SETTLING / model.opt.timestep))
     interval = STEPS_TOGETHER * model.opt.timestep
@@ -65,7 +51,7 @@ def by_opensees(time: Any, ground: Any, start: dict[str, float]) -> tuple[Any, A
     """The same at the samples of the record."""
     model = runpy.run_path(str(HERE / "model.py"))
     ops, dt = model["ops"], float(time[1] - time[0])
-    model["build"](ground.tolist(), dt, start["beam across"])
+    model["build"](ground.tolist(), dt, float(start["beam across"]))
     parts = int(np.ceil(dt / AT_ONCE))
     found = np.zeros((len(time), 2))
     for i in range(len(time)):
@@ -78,31 +64,26 @@ def by_opensees(time: Any, ground: Any, start: dict[str, float]) -> tuple[Any, A
 
 def main() -> None:
     """Run, write, draw."""
-    ours = history()
-    beam, lift = ours["cap_beam_displacement"], ours["lift"][0]
-    start = {
-        "across": 0.5 * beam[0], "up": 0.5 * lift, "tilt": ours["rotation"][0],
-        "beam across": beam[0], "beam up": lift,
-    }  # fmt: skip
+    as_they_are: dict[str, Any] = {"names": True, "deletechars": "", "replace_space": " "}
+    ours = np.genfromtxt(HERE / "timehistory.csv", delimiter=",", **as_they_are)
+    names = ["cap_beam_displacement [m]", "storey_1_drift [m]"]
+    u, v, theta = (ours[name][0] for name in (names[0], "lift [m]", "rotation [rad]"))
+    start = {"across": 0.5 * u, "up": 0.5 * v, "tilt": theta, "beam across": u, "beam up": v}
     program = by_mujoco if (HERE / "model.xml").exists() else by_opensees
-    time, *theirs = program(ours["time"], ours["ground_acceleration"], start)
-    heads = "time [s],cap_beam_displacement [m],storey_1_drift [m]"
-    rows = np.column_stack((time, *theirs))
-    np.savetxt(HERE / "rerun.csv", rows, "%.9g", ",", header=heads, comments="")
+    found = program(ours["time [s]"], ours["ground_acceleration [m/s2]"], start)
+    heads = ",".join(["time [s]", *names])
+    np.savetxt(HERE / "rerun.csv", np.array(found).T, "%.9g", ",", header=heads, comments="")
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.0, 4.5), layout="constrained")
-    for axes, name, other in zip(
-        figure.subplots(2, sharex=True), ("cap_beam_displacement", "storey_1_drift"), theirs,
-        strict=True,
-    ):  # fmt: skip
-        mine = ours.get(name, 0.0 * beam)
+    for axes, name, other in zip(figure.subplots(2, sharex=True), names, found[1:], strict=True):
+        mine = ours[name] if name in (ours.dtype.names or ()) else np.zeros(len(ours))
         largest = np.abs(mine).max(), np.abs(other).max()
-        sys.stdout.write("largest {}: rps {:.5g} m, the other {:.5g} m\n".format(name, *largest))
-        axes.plot(ours["time"], mine, label="rps")
-        axes.plot(time, other, "--", label=program.__name__.removeprefix("by_"))
-        axes.set(xlabel="time [s]", ylabel=f"{name} [m]")
-        axes.legend()
+        sys.stdout.write("largest {}: rps {:.5g}, the other {:.5g}\n".format(name, *largest))
+        axes.plot(ours["time [s]"], mine, label="rps")
+        axes.plot(found[0], other, "--", label=program.__name__.removeprefix("by_"))
+        axes.set(xlabel="time [s]", ylabel=name)
+        axes.legend(loc="upper right")
     figure.savefig(HERE / "rerun.png", dpi=150)
 
 
