@@ -33,6 +33,8 @@ SETTLED = 0.02
 """Move at which a fit ends, over the steps of differences: the next one would be its square."""
 WIDE = 4.0
 """Steps of differences of ensembles, over the standard errors."""
+SHARED = ((0.9, 0.003), (0.6, 0.01), (0.3, 0.03))
+"""Parts of what is lost at impacts, and levers over B that take the rest: where fits begin."""
 PARTING = 0.3
 """Scatter of an ensemble over the error of measurement from which it counts."""
 
@@ -145,9 +147,10 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
     span = swings[-1].time + 0.5 * (swings[-1].time - swings[-2].time)
     of = _Release(structure, dt, min(span, float(time[-1])), noise, side, swings)
     errors = np.array([value for swing in swings for value in swing[2:]])
-    q, steps, bounds = _start(of, first)
+    starts, steps, bounds = _starts(of, first)
     try:
-        q, gain, misfit = _fitted(of.tops, q, steps, bounds, of.measured, errors)
+        fits = (_fitted(of.tops, q, steps, bounds, of.measured, errors) for q in starts)
+        q, gain, misfit = min(fits, key=lambda fit: fit[2])
         covariance = (gain * errors**2) @ gain.T
         reach = 3.0 * max(1.0, misfit) * math.sqrt(covariance[0, 0]) / q[0]
         releases = 1.0 + reach * np.linspace(-1.0, 1.0, ENSEMBLE)
@@ -183,7 +186,7 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
     return Rocking(e, kappa, lever, swings, of.tops(q).reshape(-1, 2), misfit, ensembles)
 
 
-def _start(of: _Release, first: Swing) -> tuple[Array, Array, Array]:
+def _starts(of: _Release, first: Swing) -> tuple[list[Array], Array, Array]:
     """First values, steps of differences, and least and largest values."""
     law, b, s = of.structure.impact_law, of.structure.bearing, of.structure
     lifts = s.path(np.array([swing.amplitude for swing in of.swings]))[2]
@@ -193,14 +196,18 @@ def _start(of: _Release, first: Swing) -> tuple[Array, Array, Array]:
     else:
         full = max(1.0 - replace(law, loss=1.0).ratio(b, s.gamma, s.eta), 1e-6)
         rows = [(lost / full, 5e-3, 1e-6, 0.98 / full)]
-    if of.place is not None:  # it takes a part of what is lost
-        rows[0] = (0.7 * rows[0][0] + 0.3 * (law.kind == "value"), *rows[0][1:])
-        rows.append((2e-3 * b.half_width, 1e-3 * b.half_width, 1e-9, 0.2 * b.half_width))
+    if of.place is not None:
+        rows.append((0.0, 1e-3 * b.half_width, 1e-9, 0.2 * b.half_width))
     late = of.swings[0].time
     first_rows = [(first.amplitude, 2e-3 * first.amplitude, 0.0, s.critical_rotation),
                   (0.0, 1e-3 * late, -late, late)]  # fmt: skip
     q, steps, low, high = np.array([*first_rows, *rows]).T
-    return q, steps, np.array([low, high])
+    starts = [q]
+    if of.place is not None:
+        own = float(law.kind == "value")  # which is 1 where nothing is lost
+        starts = [np.array([*q[:2], own + part * (q[2] - own), lever * b.half_width])
+                  for part, lever in SHARED]  # fmt: skip
+    return starts, steps, np.array([low, high])
 
 
 def swings_of(time: Array, rotation: Array, noise: float, least: float) -> list[Swing]:
@@ -240,7 +247,7 @@ def _fitted(
         r = misses(q)
         sides = [(misses(q - step), misses(q + step)) for step in np.diag(steps)]
         J = np.column_stack([(a - b) / (2.0 * h) for (a, b), h in zip(sides, steps, strict=True)])
-        inverse = np.linalg.inv((J * steps).T @ (J * steps)) * steps[:, None]
+        inverse = np.linalg.pinv((J * steps).T @ (J * steps)) * steps[:, None]
         move = inverse @ (J * steps).T @ r
         parts = ((part, np.clip(q + part * move, *bounds)) for part in (1.0, 0.5, 0.25, 0.1))
         better = (each for each in parts if np.sum(misses(each[1]) ** 2) < np.sum(r**2))

@@ -75,7 +75,7 @@ def main() -> None:
     np.savetxt(HERE / "rerun.csv", np.array(found).T, "%.9g", ",", header=heads, comments="")
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     for axes, name, other in zip(figure.subplots(2, sharex=True), names, found[1:], strict=True):
         mine = ours[name] if name in (ours.dtype.names or ()) else np.zeros(len(ours))
         largest = np.abs(mine).max(), np.abs(other).max()
@@ -83,7 +83,7 @@ def main() -> None:
         axes.plot(ours["time [s]"], mine, label="rps")
         axes.plot(found[0], other, "--", label=program.__name__.removeprefix("by_"))
         axes.set(xlabel="time [s]", ylabel=name)
-        axes.legend(loc="upper right")
+    figure.axes[0].legend(loc="upper right")
     figure.savefig(HERE / "rerun.png", dpi=150)
 
 
