@@ -208,8 +208,6 @@ def _vibration(structure: PodiumStructure, columns: Columns, test: str) -> Found
     told = f"period_ratio is over {shown(fixed)} s, the period of the case on a fixed base"
     keys: dict[str, str] = {}
     if ratio.low > 1.0:
-        from rpscli.case.schema.case_file import CaseFile
-        from rpscli.case.schema.keys import field_at
         from rpscli.model.contact import Contact
 
         try:
@@ -221,10 +219,10 @@ def _vibration(structure: PodiumStructure, columns: Columns, test: str) -> Found
         estimates["stiffness", "N/m"] = Estimate(*both)
         if None not in (sunk := [bed.settlement for bed in (best, stiffest, softest)]):
             estimates["settlement", "m"] = Estimate(*(each for each in sunk if each is not None))
-        if field_at(CaseFile, ("podium", "contact")) is not None:
-            keys = {"podium.contact.kind": "plane",
-                    "podium.contact.period_ratio": f"{ratio.value:.4g}"}  # fmt: skip
-        told += "; stiffness of the storey in full contact; settlement of a joint if it is `plane`"
+        keys["podium.contact.period_ratio"] = f"{ratio.value:.4g}"
+        keys["podium.contact.kind"] = "plane"
+        told += "; stiffness of the storey in full contact; a period does not tell whether ends are"
+        told += " `plane`, which the settlement is for, or `edges`: try both"
     else:
         told += "; 1, which is rigid contact, is not excluded"
     return estimates, {"misfit": found.misfit, "ensembles": False, "residuals": []}, [told], keys

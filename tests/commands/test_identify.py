@@ -90,7 +90,8 @@ def test_a_longer_period_tells_how_the_columns_bear(
     lines = [f"{t:.3f},{a:.6f}" for t, a in zip(times, floor, strict=True)]
     text = "\n".join(["time [s],floor_acceleration [g]", *lines])
     (workplace / "floor.csv").write_text(text, encoding="utf-8")
-    found = rps_json("identify", "paper.yaml", "floor.csv", "release")
+    found = rps_json("identify", "paper.yaml", "floor.csv", "release", "-o", "soft.yaml")
+    assert "  contact: {kind: plane, period_ratio: 1.2}\n" in Path("soft.yaml").read_text("utf-8")
     by_name = {each["name"]: each["value"] for each in found["estimates"]}
     assert by_name["period_ratio"] == pytest.approx(1.2, rel=1e-4)
     assert by_name["stiffness"] == pytest.approx(63.4e6, rel=2e-3)
