@@ -15,7 +15,8 @@ After the axes come
 
 - a `TimeHistoryResult` for `ground_acceleration`, `rotation`, `events`, `displacements`,
   `elastic_displacements`, `energy`, `moment`, `storey_shears`, `storey_drifts`,
-  `floor_accelerations`, and `device`, which takes the number of the device too, from 0;
+  `floor_accelerations`, and `device`, which takes the number of the device too, from 0; under both
+  horizontal components also `orbit` and `azimuth`, and displacements take ``"x"`` or ``"y"``;
 - a `PushoverResult` for `storey_curve`, `lift` and `capacity`;
 - a `ModalResult`, ``"rolling"`` or ``"rocking"``, and the number of the mode, for `mode`;
 - a `PodiumStructure` for `structure`, and for `bearing`, which takes a rotation [rad] too; a
@@ -38,6 +39,7 @@ from rpscli.report.figures.floors import draw_accelerations as floor_acceleratio
 from rpscli.report.figures.floors import draw_floor_spectrum as floor_spectrum
 from rpscli.report.figures.floors import draw_shears as storey_shears
 from rpscli.report.figures.floors import draw_storey_drifts as storey_drifts
+from rpscli.report.figures.history import draw_azimuth as azimuth
 from rpscli.report.figures.history import draw_displacements as displacements
 from rpscli.report.figures.history import draw_drifts as elastic_displacements
 from rpscli.report.figures.history import draw_energy as energy
@@ -49,6 +51,7 @@ from rpscli.report.figures.look import FIGURES
 from rpscli.report.figures.motions import draw_motion as motion
 from rpscli.report.figures.motions import draw_spectra as spectra
 from rpscli.report.figures.motions import draw_spectrum as spectrum
+from rpscli.report.figures.orbit import draw_orbit as orbit
 from rpscli.report.figures.pushover import draw_capacity as capacity
 from rpscli.report.figures.pushover import draw_force as storey_curve
 from rpscli.report.figures.pushover import draw_lift as lift
@@ -57,6 +60,7 @@ from rpscli.report.figures.structure import draw_structure as structure
 from rpscli.report.figures.style import in_style as style
 
 __all__ = [
+    "azimuth",
     "bearing",
     "bearing_end",
     "capacity",
@@ -72,6 +76,7 @@ __all__ = [
     "mode",
     "moment",
     "motion",
+    "orbit",
     "rotation",
     "spectra",
     "spectrum",

@@ -27,6 +27,7 @@ from rpscli.report.figures.history import (
 )
 from rpscli.report.figures.look import FIGURES, USUAL, Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, selection_figure
+from rpscli.report.figures.orbit import orbit_figure
 from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
 from rpscli.report.figures.structure import modes_figure
 from rpscli.report.files import Content
@@ -101,6 +102,7 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     figures: dict[str, Callable[..., bytes]] = {
         **({"storey_shears": profile_figure} if result.structure.storeys else {}),
         **({"devices": devices_figure} if result.structure.devices else {}),
+        **({"orbit": orbit_figure} if result.trace.y is not None else {}),
         "rotation": rotation_figure,
         "displacements": displacement_figure,
         "moment_rotation": moment_figure,

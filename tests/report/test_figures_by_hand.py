@@ -87,19 +87,19 @@ def test_results_over_the_direction() -> None:
 
     def pair(values: Sequence[float], worst: float, angle: float) -> directions.Curve:
         results = {
-            shear: directions.Worst(7.0, 0.0, 7.0),
-            way: directions.Worst(worst, angle, 0.2),
+            shear: directions.Worst(7.0, 0.0, 7.0, NAN),
+            way: directions.Worst(worst, angle, 0.2, 0.5),
         }
         return directions.Curve("pair", angles, np.array(values), results, 0, 0)
 
-    def spread(worst: float, rotd50: float) -> dict[Any, tuple[Array, Array]]:
-        medians = ((shear, 7.0, 7.0), (way, worst, rotd50))
-        return {q: (np.array([w, INF]), np.array([r, INF])) for q, w, r in medians}
+    def spread(worst: float, rotd50: float, both: float) -> dict[Any, tuple[Array, ...]]:
+        medians = ((shear, 7.0, 7.0, NAN), (way, worst, rotd50, both))
+        return {q: tuple(np.array([of, INF]) for of in each) for q, *each in medians}
 
     one, two = pair([0.1, 0.4, 0.2, 0.3], 0.4, 45.0), pair([0.5, 0.5, INF, 0.6], INF, 90.0)
     shown = (
-        directions.Panel((0.5,), [one, two], spread(0.4, 0.25)),
-        directions.Panel((0,), [two], spread(INF, 0.55)),
+        directions.Panel((0.5,), [one, two], spread(0.4, 0.25, 0.5)),
+        directions.Panel((0,), [two], spread(INF, 0.55, NAN)),
     )
     figure = drawn(directions.directions_figure, (RHO,), way, shown)
     labelled(figure, "angle from the first component [deg]", "cap beam displacement [m]")
@@ -114,11 +114,13 @@ def test_results_over_the_direction() -> None:
         same(curve(axes, "overturned"), ([90.0], [top]))
         same([*axes.get_xlim(), *axes.get_ylim()], (-4.0, 184.0, 0.0, top))
     same(curve(first, "worst direction"), ([45.0], [0.4]))
-    levels = ["worst direction, median of pairs", "RotD50, median of pairs"]
+    levels = [f"{of}, median of pairs" for of in ("worst direction", "RotD50", "both components")]
     is_level(first, levels[0], 0.4)
     is_level(first, levels[1], 0.25)
+    is_level(first, levels[2], 0.5)
     is_level(second, levels[1], 0.55)
-    assert not {"worst direction", levels[0]} & {line.get_label() for line in second.lines}
+    shown_there = {line.get_label() for line in second.lines}
+    assert not {"worst direction", levels[0], levels[2]} & shown_there
     assert set(legend(figure)) == {"pairs", "overturned", "worst direction", *levels}
     assert "medians are not drawn where so many overturned" in figure.get_suptitle()
 

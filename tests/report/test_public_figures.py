@@ -18,6 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from paper_structures import podium
 
+from report.made_up_pairs import turned
 from report.small_results import CURVED, curve, history, is_drawn, structure
 from rpscli import figures
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
@@ -40,10 +41,17 @@ def spectrum_of_record() -> Any:
     return response_spectrum(result().record, np.linspace(0.1, 2.0, 20))
 
 
+@cache
+def both() -> TimeHistoryResult:
+    return turned()
+
+
 TIME = "time [s]"
 PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
     "ground_acceleration": (lambda: (result(),), TIME, "ground\nacceleration [m/s²]"),
     "rotation": (lambda: (result(),), TIME, "rotation $\\theta$ [rad]"),
+    "azimuth": (lambda: (both(),), TIME, "azimuth\n$\\varphi$ [deg]"),
+    "orbit": (lambda: (both(),), "cap beam $u_{b,x}$ [m]", "cap beam $u_{b,y}$ [m]"),
     "events": (lambda: (result(),), TIME, ""),
     "displacements": (lambda: (result(),), TIME, "displacement relative\nto the ground [m]"),
     "elastic_displacements": (lambda: (result(),), TIME, "relative\nto the cap beam [m]"),

@@ -86,6 +86,31 @@ def test_worst_direction_and_median(study_of: Make) -> None:
 
 
 @pytest.mark.usefixtures("records")
+def test_both_components_beside_the_directions(study_of: Make) -> None:
+    """Each pair's own; a median only where every pair has them, over rotations of a pair."""
+    names = [f"{name}_x.txt?dt=0.01&units=g&second={name}_y.txt" for name in ("one", "two")]
+    more = [f"{names[0]}&both", f"{names[1]}&both", f"{names[1]}&both&rotation=30"]
+    told = dict(zip(more, (0.45, 0.5, 0.9), strict=True))
+
+    def found(sources: list[str]) -> Any:
+        text = "".join(f'\n  - "{source}"' for source in sources)
+        layout = lay_out(study_of(f"{STUDY.rstrip()}{text}\n"))
+        sources = [point.record.source for point in layout if point.record]
+        rows = [stored(rotation_ratio=told[s]) if s in told else answer(s) for s in sources]
+        return directions(results_of(tabulate(layout, rows)), DirectionsOptions())
+
+    report = found(more)
+    pairs, spread = cells(report, "_pairs"), cells(report)
+    at = [n for n, name in enumerate(pairs["result"]) if name == "rotation_ratio"][:2]
+    assert [pairs["both"][n] for n in at] == [0.45, pytest.approx(0.7)]
+    row = spread["result"].index("rotation_ratio")
+    assert (spread["both_median"][row], spread["both_84"][row]) == (0.45, pytest.approx(0.7))
+    assert spread["worst_median"][row] == 0.4
+    assert report.notes == ()
+    assert np.isnan(cells(found(more[:1]))["both_median"][row])
+
+
+@pytest.mark.usefixtures("records")
 def test_directions_that_are_not_even_are_named(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY, (str(list(ANGLES)), "[0, 90, 180]")))
     missing = results_of(tabulate(layout, [None] * len(layout)))

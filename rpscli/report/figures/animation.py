@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -9,9 +10,10 @@ from numpy.typing import NDArray
 
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.bearing import BearingView, frame_end, leaning_outline
+from rpscli.report.figures.bearing import BearingView, frame_end, half_width, leaning_outline
 from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.film import MOST_FRAMES, FilmRequest, Motion, Progress, film
+from rpscli.report.figures.planes import in_plane, lean_azimuth
 from rpscli.report.figures.structure import draw_modes, level_heights, modes_size
 
 if TYPE_CHECKING:
@@ -33,9 +35,10 @@ COLUMNS = 3
 
 
 class Scene:
-    """The structure at one instant; `show` moves it to another."""
+    """The structure at one instant; `show` moves it to another. Of pairs where columns lean."""
 
     def __init__(self, axes: Axes, result: TimeHistoryResult, title: str, speed: float) -> None:
+        of_pair, result = result.trace.y is not None, in_plane(result)
         self.result = result
         self.levels = level_heights(result.structure)
         self.magnification = _magnification(result, self.levels)
@@ -58,7 +61,8 @@ class Scene:
         axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
-        legend = f"bearings to scale{drifts}; {_pace(speed)}"
+        lean = "where the columns lean: " if of_pair else ""
+        legend = f"{lean}bearings to scale{drifts}; {_pace(speed)}"
         axes.set_xlabel(legend, fontsize=style.small())
         self._frame(axes)
 
@@ -105,6 +109,53 @@ class Scene:
         self.clock.set_text(f"t = {trace.time[sample]:.2f} s")
 
 
+class PlanView:
+    """A column from above under both components: its foot, its head and where the head was.
+
+    A line shows the plane in which it leans, and which end of it is on the right from the side.
+    """
+
+    def __init__(self, axes: Axes, result: TimeHistoryResult) -> None:
+        from matplotlib.patches import Circle
+
+        trace = result.trace
+        assert trace.y is not None, "both components act"
+        self.x, self.y = trace.cap_beam_displacement, trace.y.cap_beam_displacement
+        self.azimuth, self.memory = lean_azimuth(trace), round(MEMORY / result.record.dt)
+        radius = half_width(result.structure.bearing)
+        farthest = float(np.nanmax(trace.size("cap_beam_displacement")))
+        self.reach = 1.15 * (radius + farthest)
+        critical = float(
+            result.structure.path(np.array([result.structure.critical_rotation]))[1][0]
+        )
+        for size, colour, line in ((radius, style.BLACK, ":"), (critical, style.RED, "--")):
+            axes.add_patch(Circle((0.0, 0.0), size, fill=False, ec=colour, ls=line, lw=0.8))
+        self.plane = axes.plot([], [], color=style.BLACK, lw=0.6, ls=(0, (6, 3)))[0]
+        self.way = axes.plot([], [], color=style.BLUE, lw=1.0)[0]
+        self.head = Circle((0.0, 0.0), radius, fill=False, ec=style.BLUE, lw=1.6)
+        axes.add_patch(self.head)
+        self.middle = axes.plot([], [], "o", color=style.BLUE, ms=3.5)[0]
+        look: dict[str, Any] = {"bbox": {"fc": "white", "ec": "none", "pad": 0.5}}
+        self.right = axes.text(0.0, 0.0, "right", ha="center", va="center", **look)
+        self.right.set_fontsize(style.small())
+        axes.set(xlim=(-self.reach, self.reach), ylim=(-self.reach, self.reach))
+        axes.set_aspect("equal", adjustable="box")
+        axes.set(xlabel="x [m]", ylabel="y [m]")
+        axes.locator_params(nbins=5)
+        axes.set_title("a column from above", fontsize=style.small())
+        self.moving: list[Artist] = [self.plane, self.way, self.head, self.middle, self.right]
+
+    def show(self, sample: int) -> None:
+        """Move the head to where it is at a sample, and turn the plane in which columns lean."""
+        at = slice(max(sample - self.memory, 0), sample + 1)
+        self.way.set_data(self.x[at], self.y[at])
+        self.middle.set_data(self.x[[sample]], self.y[[sample]])
+        self.head.set_center((self.x[sample], self.y[sample]))
+        way = self.reach * np.array([np.cos(self.azimuth[sample]), np.sin(self.azimuth[sample])])
+        self.plane.set_data(*np.outer(way, (-2.0, 2.0)))
+        self.right.set_position((0.85 * way[0], 0.85 * way[1]))
+
+
 def _pace(speed: float) -> str:
     """How fast a film runs, in words."""
     if f"{speed:.2g}" == "1":
@@ -122,6 +173,8 @@ def _magnification(result: TimeHistoryResult, levels: Array) -> float:
     return float(next((m for m in (100, 50, 20, 10, 5, 2) if m <= wanted), 1))
 
 
+MEMORY = 2.0
+"""How long the way of a column's head is seen [s]."""
 USUAL_LENGTH = 9.0
 """Of a film whose speed nobody asked for, at most [s]."""
 SWING = 2.0
@@ -165,20 +218,26 @@ def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
 def history_film(
     result: TimeHistoryResult, title: str, wanted: FilmRequest, progress: Progress = lambda *_: None
 ) -> bytes:
-    """The structure, a column's end enlarged, and the record; storey drifts alone are magnified."""
+    """The structure, a column's end enlarged, and the record; storey drifts alone are magnified.
+
+    Under both components the structure is seen where its columns lean, beside a column from above.
+    """
     plan = frame_plan(result, wanted)
 
     def draw(figure: Figure) -> Motion:
         panels = figure.subplot_mosaic(
-            [["scene", "end"], ["record", "record"]], width_ratios=[1.7, 1.0],
+            [["scene", "detail"], ["record", "record"]], width_ratios=[1.7, 1.0],
             height_ratios=[4.2, 1.0],
         )  # fmt: skip
         scene = Scene(panels["scene"], result, title, plan.speed)
-        end = BearingView(panels["end"], result.structure)
-        frame_end(panels["end"], result.structure.bearing)
-        panels["end"].set_title("lower end of a column, enlarged", fontsize=style.small())
         trace, record = result.trace, panels["record"]
-        record.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.6)
+        show_detail, moving = _detail(panels["detail"], result)
+        if trace.y is not None:
+            record.plot(trace.time, trace.y.ground_acceleration, color=style.RED, lw=0.6, label="y")
+        name = None if trace.y is None else "x"
+        record.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.6, label=name)
+        if trace.y is not None:
+            record.legend(loc="upper right", ncols=2, borderaxespad=0.1)
         first, last = trace.time[plan.samples[[0, -1]]]
         record.set(xlim=(first, last), ylabel="$a_g$ [m/s²]", xlabel="time [s]")
         cursor = record.axvline(first, color=style.RED, lw=1.2)
@@ -186,12 +245,25 @@ def history_film(
         def show(frame: int) -> None:
             sample = int(plan.samples[frame])
             scene.show(sample)
-            end.show(float(trace.rotation[sample]))
+            show_detail(sample)
             cursor.set_xdata([trace.time[sample]] * 2)
 
-        return Motion(len(plan.samples), show, [*scene.moving, *end.moving, cursor])
+        return Motion(len(plan.samples), show, [*scene.moving, *moving, cursor])
 
     return film(draw, 6.2, 4.4, wanted, progress)
+
+
+def _detail(
+    axes: Axes, result: TimeHistoryResult
+) -> tuple[Callable[[int], object], Sequence[Artist]]:
+    """What shows what stands beside the scene at a sample, and what of it moves."""
+    if result.trace.y is not None:
+        above = PlanView(axes, result)
+        return above.show, above.moving
+    end, rotation = BearingView(axes, result.structure), result.trace.rotation
+    frame_end(axes, result.structure.bearing)
+    axes.set_title("lower end of a column, enlarged", fontsize=style.small())
+    return lambda sample: end.show(float(rotation[sample])), end.moving
 
 
 def modes_film(

@@ -15,6 +15,7 @@ from rpscli.analyses.result_quantities import (
     STOREY_SHEARS,
 )
 from rpscli.report.figures import style
+from rpscli.report.figures.planes import record_name
 from rpscli.report.tables.analyses import StoreyDemands, fixed_base_demands, isolated_demands
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Largest storey shears beside V_st, drifts and floor accelerations."""
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name)
+        resultants = "largest resultants" if result.trace.y is not None else ""
+        style.heading(figure, title, record_name(result), resultants)
         panels = figure.subplots(1, 3, sharey=True)
         for axes, draw_one in zip(
             panels, (draw_shears, draw_storey_drifts, draw_accelerations), strict=True
@@ -81,8 +83,11 @@ def draw_accelerations(axes: Axes, result: TimeHistoryResult) -> None:
     floors = np.arange(1, result.structure.storeys + 1)
     for demands, look in _series(result):
         axes.plot(demands.floor_accelerations, floors, marker="o", ms=3.5, **look)
-    label = f"PGA = {result.record.pga:.3g} m/s²"
-    axes.axvline(result.record.pga, color=style.GREY, lw=0.9, ls=":", label=label)
+    # The samples of a vertical component would stand behind those of both.
+    both = result.motion.samples[: 1 if result.motion.y is None else 2]
+    pga = float(np.linalg.norm(both, axis=0).max())
+    label = f"PGA = {pga:.3g} m/s²"
+    axes.axvline(pga, color=style.GREY, lw=0.9, ls=":", label=label)
     axes.set_xlabel(FLOOR_ACCELERATIONS.axis_label)
     _levels(axes, result.structure.storeys)
 

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.errors import UsageError
 from rpscli.report.figures import style
+from rpscli.report.figures.planes import WAYS, Way, component, in_plane, record_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,9 +50,12 @@ def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
         return result
     floors = [floor - 1 for floor in shown_floors(result.structure.storeys)]
     kept = extremes(
-        trace.ground_acceleration, trace.rotation, trace.phase, trace.cap_beam_displacement,
-        trace.driving_moment, trace.energy_input, trace.energy_stored,
-        *trace.floor_displacements.T[floors], *trace.devices.force.T, *trace.devices.displacement.T,
+        trace.rotation, trace.phase, trace.energy_input, trace.energy_stored,
+        *trace.devices.force.T, *trace.devices.displacement.T,
+        *(curve for of in (trace, trace.y) if of is not None for curve in (
+            of.ground_acceleration, of.cap_beam_displacement, of.driving_moment,
+            *of.floor_displacements.T[floors],
+        )),
     )  # fmt: skip
     few, fixed = trace.at(kept), result.fixed_base
     few = replace(few, floor_velocities=np.full_like(few.floor_velocities, np.nan))
@@ -67,37 +72,43 @@ PALE = "#B5B5B5"
 
 def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Roof and cap beam over the ground; below, roof and floors at mid-height over the cap beam."""
-    rows = 2 if result.structure.storeys else 1
+    draws = [draw_displacements, draw_drifts][: 2 if result.structure.storeys else 1]
+    ways = WAYS if result.trace.y is not None else WAYS[:1]
+    rows = [(draw_one, way) for draw_one in draws for way in ways]
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name, result.sampling)
-        panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
-        draw_displacements(panels[0], result)
-        if rows > 1:
-            draw_drifts(panels[1], result)
-            panels[0].label_outer()
+        style.heading(figure, title, record_name(result), result.sampling)
+        panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, (draw_one, way) in zip(panels, rows, strict=True):
+            draw_one(axes, result, way)
+            axes.label_outer()
         figure.align_ylabels()
 
-    return style.picture(draw, 4.8 if rows > 1 else 3.0)
+    return style.picture(draw, 1.2 + 1.8 * len(rows))
 
 
-def draw_displacements(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_displacements(axes: Axes, result: TimeHistoryResult, way: Way = "x") -> None:
     """Roof and cap beam, relative to the ground: the one thin upon the other."""
-    trace = result.trace
+    trace = component(result, way).trace
     base = "cap beam" if result.structure.cap_beam_mass > 0.0 else "top of the columns"
     wide: dict[str, Any] = {"color": PALE, "lw": 3.0} if result.structure.storeys else {}
     axes.plot(trace.time, trace.cap_beam_displacement, **{"color": style.BLACK} | wide, label=base)
     _draw_floors(axes, result, trace.floor_displacements, 1, lw=0.8)
-    axes.set_ylabel("displacement relative\nto the ground [m]")
+    axes.set_ylabel(f"{_in(result, way)}displacement relative\nto the ground [m]")
     style.legend_above(axes, 4)
 
 
-def draw_drifts(axes: Axes, result: TimeHistoryResult) -> None:
+def _in(result: TimeHistoryResult, way: Way) -> str:
+    """Begins a label where both components act."""
+    return "" if result.trace.y is None else f"{way}: "
+
+
+def draw_drifts(axes: Axes, result: TimeHistoryResult, way: Way = "x") -> None:
     """Floors relative to the cap beam."""
-    trace = result.trace
+    trace = component(result, way).trace
     drifts = trace.floor_displacements - trace.cap_beam_displacement[:, None]
     _draw_floors(axes, result, drifts, lw=0.8)
-    axes.set_ylabel("displacement relative\nto the cap beam [m]")
+    axes.set_ylabel(f"{_in(result, way)}displacement relative\nto the cap beam [m]")
     style.legend_above(axes, 4)
 
 
@@ -123,6 +134,7 @@ EventRow = tuple[tuple[str, ...], str, str]
 EVENT_ROWS: tuple[EventRow, ...] = (
     (("uplift",), "uplift", style.GREEN),
     (("impact",), "impact", style.BLACK),
+    (("pass",), "pass", style.BLACK),
     (("recontact",), "re-contact", style.GREY),
     (("rolling_to_rocking", "rocking_to_rolling"), "passing $\\beta$", style.PINK),
     (("critical_rotation_passed", "overturning"), "critical", style.RED),
@@ -136,23 +148,22 @@ NEAR = 8.0
 
 
 def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
-    """Ground acceleration, rotation with its phases, and events of a time history."""
-    rows = _rows(result)
+    """Ground acceleration, rotation with its phases, and events; of pairs the azimuth as well."""
+    rows, both = _rows(result), result.trace.azimuth is not None
+    draws = [draw_ground, draw_rotation, *([draw_azimuth] if both else []), draw_events]
+    heights = [1.3 if both else 1.0, 2.4, *([0.9] if both else []), 0.18 * max(len(rows), 1)]
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, result.record.name, result.sampling)
-        ground, rotation, events = figure.subplots(
-            3, 1, sharex=True, height_ratios=[1.0, 2.4, 0.18 * max(len(rows), 1)]
-        )
-        draw_ground(ground, result)
-        draw_rotation(rotation, result)
-        draw_events(events, result)
-        events.set_xlim(0.0, result.trace.time[-1])
-        for axes in (ground, rotation):
+        style.heading(figure, title, record_name(result), result.sampling)
+        panels = figure.subplots(len(draws), 1, sharex=True, height_ratios=heights)
+        for axes, draw_one in zip(panels, draws, strict=True):
+            draw_one(axes, result)
+        panels[-1].set_xlim(0.0, result.trace.time[-1])
+        for axes in panels[:-1]:
             axes.label_outer()
-        figure.align_ylabels((ground, rotation))
+        figure.align_ylabels(panels[:-1])
 
-    return style.picture(draw, 4.6 + 0.15 * len(rows))
+    return style.picture(draw, 4.6 + 0.15 * len(rows) + 1.3 * both)
 
 
 def _rows(result: TimeHistoryResult) -> list[EventRow]:
@@ -162,27 +173,58 @@ def _rows(result: TimeHistoryResult) -> list[EventRow]:
 
 def draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
     """Ground acceleration, and what uplifts quasi-statically."""
-    limit = result.structure.uplift_acceleration
-    axes.plot(result.trace.time, result.trace.ground_acceleration, color=style.BLACK, lw=0.7)
+    limit, trace = result.structure.uplift_acceleration, result.trace
+    name = None
+    if trace.y is not None:
+        name = "in x"
+        size = trace.size("ground_acceleration")
+        axes.fill_between(trace.time, -size, size, color="#DADADA", lw=0.0, label="± resultant")
+        axes.plot(trace.time, trace.y.ground_acceleration, color=style.RED, lw=0.7, label="in y")
+    axes.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.7, label=name)
     axes.set(ylabel="ground\nacceleration [m/s²]", xlabel="time [s]")
-    if limit == 0.0:
-        return
-    for sign in (1.0, -1.0):
-        axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
-    axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
-    style.legend_above(axes, 1)
+    if limit > 0.0:
+        for sign in (1.0, -1.0):
+            axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
+        axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
+    if limit > 0.0 or name:
+        style.legend_above(axes, 4)
+
+
+def draw_azimuth(axes: Axes, result: TimeHistoryResult) -> None:
+    """Towards which columns lean, from x towards y; half a turn further at each pass."""
+    azimuth, leans = result.trace.azimuth, result.trace.rotation > 0.0
+    if azimuth is None:
+        raise UsageError("a panel of azimuth: needs a history under both horizontal components")
+    shown = np.where(leans, np.degrees(azimuth), np.nan)
+    jumps = np.flatnonzero(np.abs(np.diff(shown)) > QUARTER) + 1
+    time = np.insert(result.trace.time, jumps, np.nan)
+    axes.plot(time, np.insert(shown, jumps, np.nan), color=style.BLUE, lw=0.9)
+    axes.set(ylim=(-190.0, 190.0), yticks=(-180, -90, 0, 90, 180))
+    axes.set(ylabel="azimuth\n$\\varphi$ [deg]", xlabel="time [s]")
+
+
+QUARTER = 90.0
+"""Turns between two samples that are larger are not drawn as a line [deg]."""
+
+Level = tuple[str, float, str, str]
+"""Symbol, rotation [rad], line and colour."""
+
+
+def levels(result: TimeHistoryResult, near: float = NEAR) -> tuple[list[Level], float]:
+    """beta and theta_cr, and how far to look to see the motion and those that are near [rad]."""
+    critical, beta = result.structure.critical_rotation, result.structure.bearing.beta
+    found = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
+    found.append(("\\theta_{cr}", critical, "--", style.RED))
+    largest = max(result.max_rotation, 1e-3 * critical)
+    return found, 1.12 * max(largest, *(v for _, v, *_ in found if v < near * largest), 0.0)
 
 
 def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
     """Rotation with its phases, beta and theta_cr; over theta_cr on the right."""
     trace, critical = result.trace, result.structure.critical_rotation
-    beta = result.structure.bearing.beta
-    levels = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
-    levels.append(("\\theta_{cr}", critical, "--", style.RED))
-    largest = max(result.max_rotation, 1e-3 * critical)
-    near = [value for _, value, *_ in levels if value < NEAR * largest]
-    top = 1.12 * max(largest, *near) if near else 1.12 * largest
-    axes.set_ylim(-top, top)
+    found, top = levels(result)
+    one_sided = trace.azimuth is not None
+    axes.set_ylim(0.0 if one_sided else -top, top)
     for code, name, shade in PHASES:
         if (inside := trace.phase == code).any():
             axes.fill_between(
@@ -190,14 +232,15 @@ def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
                 transform=axes.get_xaxis_transform(),
             )  # fmt: skip
     axes.plot(trace.time, trace.rotation, color=style.BLUE)
-    for symbol, value, line, colour in levels:
+    for symbol, value, line, colour in found:
         # Outside the axes, their value stands in the legend alone.
         label = f"${symbol}$ = {value:.3f} rad"
         if value > axes.get_ylim()[1]:
             axes.plot([], [], color=colour, ls=line, label=f"{label} (outside)")
             continue
         axes.axhline(value, color=colour, ls=line, label=label)
-        axes.axhline(-value, color=colour, ls=line)
+        if not one_sided:
+            axes.axhline(-value, color=colour, ls=line)
     axes.set(ylabel="rotation $\\theta$ [rad]", xlabel="time [s]")
     ratio = axes.secondary_yaxis("right", functions=style.over(critical))
     ratio.set_ylabel("$\\theta/\\theta_{cr}$ [-]")
@@ -221,26 +264,32 @@ def draw_events(axes: Axes, result: TimeHistoryResult) -> None:
 
 def moment_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Moment against rotation."""
-    return style.single(draw_moment, result, (title, result.record.name), 4.2, 6.0)
+    note = "" if result.trace.y is None else "along the tilt, where going round drives too"
+    return style.single(draw_moment, result, (title, record_name(result), note), 4.2, 6.0)
 
 
 def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
     """Driving moment of ground and building against rotation, and 2 R W s B of the weight."""
+    one_sided, result = result.trace.y is not None, in_plane(result, one_sided=True)
     trace, critical = result.trace, result.structure.critical_rotation
     reach = 1.1 * max(result.max_rotation, 0.02 * critical)
     factor, prefix = style.engineering(float(np.nanmax(np.abs(trace.driving_moment))))
+    # Upright there is no tilt that the moment of a pair could be along.
+    shown = np.where(one_sided & (trace.rotation == 0.0), np.nan, trace.driving_moment)
     axes.plot(
-        trace.rotation, factor * trace.driving_moment, color=PALE, lw=0.5,
+        trace.rotation, factor * shown, color=PALE, lw=0.5,
         label="driving moment (ground and building)",
     )  # fmt: skip
     _draw_longest(axes, result, factor)
-    for side, name in ((-1.0, "restoring moment of the weight"), (1.0, None)):
+    name: str | None = "restoring moment of the weight"
+    for side in (1.0,) if one_sided else (-1.0, 1.0):
         rotation = side * np.linspace(1e-9, reach, 300)
         static = factor * result.restoring_moment(rotation)
         axes.plot(rotation, static, color=style.RED, lw=2.5, zorder=1.5, label=name)
+        name = None
     axes.axhline(0.0, color=style.BLACK, lw=0.5)
     axes.axvline(0.0, color=style.BLACK, lw=0.5)
-    axes.set_xlim(-reach, reach)
+    axes.set_xlim(0.0 if one_sided else -reach, reach)
     axes.set_xlabel("rotation $\\theta$ [rad]")
     axes.set_ylabel(f"moment about the contact points [{prefix}N m]")
     style.legend_above(axes, 2)
@@ -250,7 +299,9 @@ def _draw_longest(axes: Axes, result: TimeHistoryResult, factor: float) -> None:
     """The swing to one side that turns the columns most, with its times and its direction."""
     time, rotation = result.trace.time, result.trace.rotation
     peak = int(np.nanargmax(np.abs(rotation)))
+    passes = [event.time for event in result.events if event.kind == "pass"]
     ends = np.flatnonzero(rotation * rotation[peak] <= 0.0)
+    ends = np.union1d(ends, np.searchsorted(time[:-1], passes))
     if rotation[peak] == 0.0 or not ends[ends < peak].size:
         return
     first, last = ends[ends < peak][-1] + 1, min([*ends[ends > peak], len(time)])
@@ -268,7 +319,7 @@ DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)
 
 def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Input and where it went."""
-    return style.single(draw_energy, result, (title, result.record.name), 3.4)
+    return style.single(draw_energy, result, (title, record_name(result)), 3.4)
 
 
 def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
@@ -277,8 +328,9 @@ def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
     factor, prefix = style.engineering(
         float(np.nanmax(np.abs([trace.energy_input, trace.energy_stored])))
     )
+    impacts = "impacts" if trace.y is None else "passes"
     parts = [
-        (trace.energy_impact, "lost at impacts (net)", style.ORANGE),
+        (trace.energy_impact, f"lost at {impacts} (net)", style.ORANGE),
         (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
     for index, device in enumerate(result.structure.devices):

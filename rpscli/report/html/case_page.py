@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
@@ -13,6 +14,7 @@ import numpy as np
 
 from rpscli.analyses.neighbours import Neighbour
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.trace import Event
 from rpscli.case.case import Case
 from rpscli.case.schema.keys import unit
 from rpscli.records.ground_motion import MotionComponents
@@ -23,6 +25,7 @@ from rpscli.report.documents import direction_note, versions
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
+from rpscli.report.figures.planes import record_name
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import (
     Block,
@@ -34,7 +37,7 @@ from rpscli.report.html.page import (
     pictures,
 )
 from rpscli.report.study.statistics import verdicts_in_short
-from rpscli.report.table import Column, Table
+from rpscli.report.table import Column, Table, shown
 from rpscli.report.tables.derivation import derivations, first_shape
 from rpscli.report.tables.motions import record_table
 from rpscli.report.tables.timehistory import (
@@ -126,6 +129,8 @@ CAPTIONS = {
     " one of its ends enlarged; and the horizontal force at the cap beam that holds it there."
     " R runs from the middle of the column to the edge of the flat part of its end; dots are"
     " contacts.",
+    "orbit": "From above: the way of the cap beam over the ground, and the moment of ground and"
+    " building about the contacts, beyond whose circle upright columns uplift; time in colour.",
     "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
     " the events.",
     "displacements": "Displacements to the ground against time.",
@@ -310,9 +315,11 @@ class History(NamedTuple):
         result = self.result
         building = result.structure.superstructure
         motions = [motion_pictures(each, look, building) for each in self.ground.named.values()]
-        measured = record_table(result.record, intensity_measures(result.record))
+        measured = [
+            record_table(each, intensity_measures(each)) for each in horizontal(self.ground)
+        ]
         response = Section("Response", self.response(*CAPTIONS))
-        return [Section("Ground motion", [measured, *motions]), response]
+        return [Section("Ground motion", [*measured, *motions]), response]
 
     def response(self, *figures: str) -> list[Block]:
         """Its tables, and some of its figures."""
@@ -321,7 +328,35 @@ class History(NamedTuple):
             outcome_table(self.result),
             *([storeys_table(self.result)] if storeys else []),
             *(Picture(files, CAPTIONS[stem]) for stem, files in drawn if stem in figures),
+            *passes_blocks(self.result.events, self.result.structure.bearing.alpha),
         ]
+
+
+def horizontal(ground: MotionComponents) -> list[GroundMotion]:
+    """Its horizontal components."""
+    return [motion for name, motion in ground.named.items() if name != "vertical"]
+
+
+def passes_blocks(events: Sequence[Event], alpha: float) -> Iterator[Block]:
+    """When a pair brought the columns nearest upright, how near, and what that took."""
+    passes = [event for event in events if event.kind == "pass"]
+    if not passes:
+        return
+    rows = []
+    for number, each in enumerate(passes[:MOST_ROWS], 1):
+        azimuth, least = math.degrees(each.azimuth or 0.0), (each.least_tilt or 0.0) / alpha
+        numbers = each.time, azimuth, least, each.nearness, each.loss_share, each.energy_lost
+        rows.append((str(number), *map(shown, numbers)))
+    cut = f" The first {MOST_ROWS} of {len(passes)}; events.csv has all." * (
+        len(passes) > MOST_ROWS
+    )
+    yield (
+        "Passes: where columns came nearest to upright, and the azimuth after it, from x towards y."
+        " s is the time they take there over that of a contact, l how much of what an impact would"
+        f" lose is lost.{cut}"
+    )
+    heads = ("pass", "time [s]", "azimuth [deg]", "θ_min/α", "s", "l", "lost [J]")
+    yield Table.of_texts(heads, rows)
 
 
 class Several(NamedTuple):
@@ -342,12 +377,12 @@ class Several(NamedTuple):
 
     def sections(self, look: Look) -> list[Section]:
         """Motions, and the response to the one that turns the columns most."""
-        name = self.worst.result.record.name
-        motions = [each.horizontal for each in self.grounds]
+        name = record_name(self.worst.result)
+        motions = [motion for each in self.grounds for motion in horizontal(each)]
         title = f"Response to the record that turns the columns most, {name}"
         return [
             motions_section(motions, [], f"{len(motions)} records", look, "as they were scaled"),
-            Section(title, self.worst.response("rotation", "storey_shears")),
+            Section(title, self.worst.response("orbit", "rotation", "storey_shears")),
         ]
 
 

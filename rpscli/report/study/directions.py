@@ -1,4 +1,4 @@
-"""Results of pairs of components over the direction of the structure: worst and RotD50."""
+"""Results of pairs over the direction of the structure, worst and RotD50, and both together."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic import Field
 
 from rpscli.analyses.result_quantities import DEMANDS, ResultQuantity
 from rpscli.case.study.reports import ReportOptions
-from rpscli.records.pair import HALF_TURN, Direction, direction_of
+from rpscli.records.pair import HALF_TURN, Direction, direction_of, together
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import by_values, left_out, panel_figure, remarks
@@ -43,13 +43,15 @@ class DirectionsOptions(ReportOptions):
 class Worst(NamedTuple):
     """One result of one pair over its directions; infinite where overturned.
 
-    The largest value over all directions, the smallest angle where it is [deg], and the median over
-    the directions.
+    The largest value over all directions, the smallest angle where it is [deg], the median over the
+    directions; and that under both components together, the median over their rotations; NaN
+    without.
     """
 
     worst: float
     angle: float
     rotd50: float
+    both: float
 
 
 class Curve(NamedTuple):
@@ -70,12 +72,13 @@ class Curve(NamedTuple):
 class Panel(NamedTuple):
     """All pairs under one system at one intensity, and fractiles (2,) over the pairs.
 
-    `spreads` have those of the worst direction and of RotD50 for each result.
+    `spreads` have those of the worst direction, of RotD50 and of both components for each result,
+    these NaN if they are not known of every pair.
     """
 
     values: tuple[object, ...]
     curves: list[Curve]
-    spreads: dict[ResultQuantity, tuple[Array, Array]]
+    spreads: dict[ResultQuantity, tuple[Array, ...]]
 
 
 def directions(study: StudyResults, options: DirectionsOptions) -> Found:
@@ -90,10 +93,10 @@ def directions(study: StudyResults, options: DirectionsOptions) -> Found:
     drawn = next(quantity for quantity in DEMANDS if quantity.name == options.result)
     panels = [_panel(group, known, drawn) for group in found.groups]
     spreads = [
-        (panel.values, q.name, q.unit, *counts, *map(reached, np.ravel(both).tolist()))
+        (panel.values, q.name, q.unit, *counts, *map(reached, np.ravel(all_three).tolist()))
         for panel in panels
         for counts in [(len(panel.curves), sum(curve.overturned > 0 for curve in panel.curves))]
-        for q, both in panel.spreads.items()
+        for q, all_three in panel.spreads.items()
     ]
     pairs = [
         (panel.values, *of_pair, quantity.name, quantity.unit, *map(reached, result))
@@ -103,12 +106,14 @@ def directions(study: StudyResults, options: DirectionsOptions) -> Found:
         for quantity, result in curve.results.items()
     ]
     spread_heads = dict.fromkeys(("result", "unit", "pairs", "overturned"), "-")
-    spread_heads |= dict.fromkeys(("worst_median", "worst_84", "rotd50_median", "rotd50_84"), "SI")
+    ends = [f"{of}_{end}" for of in ("worst", "rotd50", "both") for end in ("median", "84")]
+    spread_heads |= dict.fromkeys(ends, "SI")
     pair_heads = dict.fromkeys(
         ("pair", "directions", "overturned", "failed", "result", "unit"), "-"
-    ) | {"worst": "SI", "worst_angle": "deg", "rotd50": "SI"}
+    ) | {"worst": "SI", "worst_angle": "deg", "rotd50": "SI", "both": "SI"}
     drawable = any(panel.curves for panel in panels)
     layout = table.layout
+    acts_together = any(request and together(request.source) for request in layout.records)
     aim = f"scaled to {layout.scaled_to}" if layout.scaled_to and len(layout.scales) == 1 else ""
     return Found(
         {
@@ -116,23 +121,29 @@ def directions(study: StudyResults, options: DirectionsOptions) -> Found:
             "_pairs": keyed(found.keys, pair_heads, pairs),
         },
         partial(directions_figure, found.keys, drawn, panels, scaled=aim) if drawable else None,
-        (NO_BOUND, *_uneven(table.layout)),
+        (*([] if acts_together else [NO_BOUND]), *_uneven(layout)),
     )
 
 
 def _panel(group: Histories, known: dict[ResultQuantity, Array], drawn: ResultQuantity) -> Panel:
     members: dict[str, list[tuple[float, int]]] = {}
+    both: dict[str, list[int]] = {}
     for part in group.parts(["record"]):
-        direction = direction_of(str(part.values[0]))
-        if direction is not None:
-            members.setdefault(direction.pair, []).append((direction.angle, int(part.every[0])))
-    curves = [_curve(group, pair, sorted(at), known, drawn) for pair, at in members.items()]
+        source, place = str(part.values[0]), int(part.every[0])
+        if (direction := direction_of(source)) is not None:
+            members.setdefault(direction.pair, []).append((direction.angle, place))
+        elif (pair := together(source)) is not None:
+            both.setdefault(pair.pair, []).append(place)
+    curves = [
+        _curve(group, pair, sorted(at), both.get(pair, []), known, drawn)
+        for pair, at in members.items()
+    ]
     spreads = {}
     for quantity in dict.fromkeys(q for curve in curves for q in curve.results):
         results = [curve.results[quantity] for curve in curves if quantity in curve.results]
-        spreads[quantity] = (
-            fractiles(np.array([result.worst for result in results]), FRACTILES),
-            fractiles(np.array([result.rotd50 for result in results]), FRACTILES),
+        of = np.array([(each.worst, each.rotd50, each.both) for each in results]).T
+        spreads[quantity] = tuple(
+            fractiles(np.where(np.isnan(each).any(), np.nan, each), FRACTILES) for each in of
         )
     return Panel(group.values, curves, spreads)
 
@@ -141,6 +152,7 @@ def _curve(
     group: Histories,
     pair: str,
     at: Sequence[tuple[float, int]],
+    both: list[int],
     known: dict[ResultQuantity, Array],
     drawn: ResultQuantity,
 ) -> Curve:
@@ -154,7 +166,8 @@ def _curve(
             worst = int(np.argmax(values))
             # Not a fractile of histories, but by definition the middle of a curve over the angle.
             median = float(np.median(values))
-            results[quantity] = Worst(float(values[worst]), float(computed[worst]), median)
+            of_both = float(np.median(every[both])) if both else np.nan
+            results[quantity] = Worst(float(values[worst]), float(computed[worst]), median, of_both)
     shown = known[drawn][points] if drawn in known else np.full(len(points), np.nan)
     return Curve(pair, angles, shown, results, one.overturned.number, one.failed)
 
@@ -196,7 +209,7 @@ def directions_figure(
                 axes.axhline(level, ls=dashes, lw=1.4, color=style.BLACK, label=name)
 
     # A median is larger than any demand where half of the pairs overturn.
-    medians = [both[0] for p in panels for q, s in p.spreads.items() if q == quantity for both in s]
+    medians = [of[0] for p in panels for q, s in p.spreads.items() if q == quantity for of in s]
     beyond = "medians are not drawn where so many overturned" if np.isinf(medians).any() else ""
     return panel_figure(
         by_values(keys, panels),
@@ -212,7 +225,11 @@ def directions_figure(
     )
 
 
-LEVELS = {"worst direction, median of pairs": "--", "RotD50, median of pairs": ":"}
+LEVELS = {
+    "worst direction, median of pairs": "--",
+    "RotD50, median of pairs": ":",
+    "both components, median of pairs": "-",
+}
 """Medians over the pairs, as they are drawn."""
 
 

@@ -1,0 +1,176 @@
+"""Figures under both components: a motion in one plane, turned, looks as it does in its own."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from report.made_up_pairs import ANGLE, a_pass, turned
+from report.small_results import KINDS, curve, is_drawn, legend, prefix
+from rpscli import figures
+from rpscli.analyses.trace import Direction
+from rpscli.errors import UsageError
+from rpscli.report.figures.animation import PlanView, Scene, history_film
+from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.floors import draw_accelerations
+from rpscli.report.figures.history import displacement_figure, draw_moment, rotation_figure
+from rpscli.report.figures.orbit import orbit_figure
+from rpscli.report.figures.planes import component, in_plane, lean_azimuth
+from rpscli.report.html.case_page import MOST_ROWS, passes_blocks
+from rpscli.report.table import Table
+
+
+@pytest.fixture(params=["rolls", "overturns", "frame", "at rest"])
+def kind(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+def test_a_plane_motion_is_found_again(kind: str) -> None:
+    """In the plane of the tilt all is as it was, but for which side is called right."""
+    plane, pair = KINDS[kind]().trace, turned(kind)
+    seen = in_plane(pair).trace
+    peak = int(np.argmax(np.abs(plane.rotation)))
+    side = 1.0 if seen.rotation[peak] * plane.rotation[peak] >= 0.0 else -1.0
+    if not plane.rotation.any():  # it never leans, and is looked at along x
+        side = 1.0 / np.cos(ANGLE)
+    names = ["rotation", "rotation_rate", *(each.name for each in fields(Direction))]
+    for name in names:
+        was, found = getattr(plane, name), side * getattr(seen, name)
+        np.testing.assert_allclose(
+            found, was, rtol=0.0, atol=1e-12 * (1.0 + np.abs(was).max(initial=0.0))
+        )
+    assert seen.y is None
+    assert in_plane(KINDS[kind]()).trace.rotation is not None
+
+
+def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
+    """Columns that go round at 2 rad/s and pass upright each second lean in a plane that turns."""
+    pair = turned()
+    time = pair.trace.time
+    steady = turned("rolls", 2.0 * time)
+    leans = steady.trace.rotation > 0.0
+    found = lean_azimuth(steady.trace)
+    from_first = found[leans] - found[leans][0]
+    np.testing.assert_allclose(from_first, 2.0 * (time[leans] - time[leans][0]), atol=1e-9)
+    assert np.abs(np.diff(found)).max() < 2.0 * pair.record.dt + 1e-9
+
+
+def test_displacements_in_x_and_in_y(figures: list[Figure]) -> None:
+    pair, plane = turned(), KINDS["rolls"]().trace
+    displacement_figure(pair, "a title")
+    axes = figures[0].axes
+    assert [of.get_ylabel()[:2] for of in axes] == ["x:", "y:"] * 2
+    for of, part in zip(axes[:2], (np.cos(ANGLE), np.sin(ANGLE)), strict=True):
+        is_drawn(curve(of, "cap beam"), plane.time, part * plane.cap_beam_displacement)
+    assert "x: x, y: y" in figures[0].get_suptitle()
+    assert component(pair, "y").trace.y is None
+
+
+def test_rotation_and_azimuth(figures: list[Figure]) -> None:
+    pair = turned()
+    rotation_figure(pair, "a title")
+    ground, rotation, azimuth, events = figures[0].axes
+    assert legend(ground) == ["± resultant", "in y", "in x", "$g\\,\\tan\\alpha$ (uplift)"]
+    (band,) = ground.collections
+    resultant = np.asarray(band.get_paths()[0].vertices)[:, 1].max()
+    assert resultant == pytest.approx(np.abs(KINDS["rolls"]().trace.ground_acceleration).max())
+    assert rotation.get_ylim()[0] == 0.0
+    shown = np.asarray(azimuth.lines[0].get_ydata(), float)
+    towards = np.degrees(ANGLE)
+    assert set(np.round(shown[~np.isnan(shown)], 9)) <= {round(towards, 9), round(towards - 180, 9)}
+    passes = sum(event.kind == "pass" for event in pair.events)
+    assert passes
+    assert f"pass: {passes}" in [label.get_text() for label in events.get_yticklabels()]
+
+
+def circles(axes: Axes) -> list[float]:
+    return [float(patch.radius) for patch in axes.patches if isinstance(patch, Circle)]
+
+
+def test_orbit_and_its_circles(figures: list[Figure]) -> None:
+    pair, trace = turned("frame"), KINDS["frame"]().trace
+    orbit_figure(pair, "a title")
+    orbit, push, bar = figures[0].axes
+    assert bar.get_xlabel() == "time [s]"
+    made, critical = pair.structure, pair.structure.critical_rotation
+    # One block rolls about its edges: 2 R times what leaning moves the middle of a flat end.
+    alpha, diameter = made.bearing.alpha, 2.0 * made.bearing.semi_diagonal
+    moved = diameter * (np.sin(alpha) - np.sin(alpha - critical))
+    assert circles(orbit) == pytest.approx([moved])
+    weight = made.gravity * (0.5 * made.columns_mass + made.cap_beam_mass)
+    assert circles(push) == pytest.approx([1e-6 * weight * diameter * np.sin(alpha)])
+    (lines,) = (c for c in orbit.collections if isinstance(c, LineCollection))
+    points = np.concatenate([np.asarray(piece) for piece in lines.get_segments()])
+    across = points @ (-np.sin(ANGLE), np.cos(ANGLE))
+    assert np.abs(across).max() < 1e-12
+    assert np.hypot(*points.T).max() == np.abs(trace.cap_beam_displacement).max()
+    assert orbit.get_aspect() == 1.0
+    assert (orbit.get_xlabel(), orbit.get_ylabel()) == (
+        "cap beam $u_{b,x}$ [m]", "cap beam $u_{b,y}$ [m]",
+    )  # fmt: skip
+
+
+def test_the_moment_along_the_tilt_is_that_of_the_plane() -> None:
+    """Of a pair to one side: the driving moment away from upright, over the size of the tilt."""
+    trace, axes = KINDS["rolls"]().trace, Figure().subplots()
+    draw_moment(axes, turned())
+    rotation, moment = curve(axes, "driving moment (ground and building)")
+    leans = trace.rotation != 0.0
+    assert np.isnan(moment[~leans]).all()
+    away = prefix(axes.get_ylabel(), "N m") * np.sign(trace.rotation) * trace.driving_moment
+    np.testing.assert_allclose(moment[leans], away[leans], atol=1e-12 * np.abs(away).max())
+    np.testing.assert_allclose(rotation, np.abs(trace.rotation))
+    assert axes.get_xlim()[0] == 0.0
+
+
+def test_the_ground_beside_floors_is_the_resultant() -> None:
+    axes, peak = Figure().subplots(), KINDS["rolls"]().record.pga
+    draw_accelerations(axes, turned())
+    assert curve(axes, f"PGA = {peak:.3g} m/s²")[0][0] == pytest.approx(peak)
+
+
+def test_panels_of_pairs_refuse_one_component() -> None:
+    for panel in (figures.orbit, figures.azimuth):
+        with pytest.raises(UsageError, match="needs a history under both horizontal components"):
+            panel(Figure().subplots(), KINDS["frame"]())
+
+
+def test_film_from_the_side_and_from_above(tmp_path: Path) -> None:
+    pair, plane = turned(), KINDS["rolls"]().trace
+    sample = int(np.argmax(np.abs(plane.rotation)))
+    side, above = (Figure().subplots() for _ in range(2))
+    scene, view = Scene(side, pair, "a title", 1.0), PlanView(above, pair)
+    scene.show(sample)
+    view.show(sample)
+    middle = plane.cap_beam_displacement[sample]
+    beam = np.asarray(scene.beam.get_xy())[:, 0]
+    assert abs(0.5 * (beam.min() + beam.max())) == pytest.approx(abs(middle))
+    expected = middle * np.array([np.cos(ANGLE), np.sin(ANGLE)])
+    assert view.head.get_center() == pytest.approx(tuple(expected))
+    # What leans to the right there stands on that end of the line from above.
+    shift = 0.5 * (beam.min() + beam.max())
+    assert np.sign(shift) == np.sign(np.dot(view.right.get_position(), expected))
+    x, y = (np.asarray(of, float) for of in view.plane.get_data())
+    assert np.abs(x * np.sin(ANGLE) - y * np.cos(ANGLE)).max() < 1e-9
+    wanted = FilmRequest(tmp_path / "film.gif", size=300, first=0.2, last=0.4)
+    assert history_film(pair, "a title", wanted).startswith(b"GIF")
+
+
+def test_passes_on_pages() -> None:
+    text, table = passes_blocks([a_pass(n) for n in range(1, 4)], 0.15)
+    assert isinstance(table, Table)
+    assert "events.csv" not in str(text)
+    rows = list(zip(*(column.texts() for column in table.columns), strict=True))
+    assert rows[1] == ("2", "0.2000", "-90.00", "0.0002000", "0.2500", "0.5000", "1.500")
+    cut, table = passes_blocks([a_pass(n) for n in range(MOST_ROWS + 5)], 0.15)
+    assert f"The first {MOST_ROWS} of {MOST_ROWS + 5}; events.csv has all" in str(cut)
+    assert isinstance(table, Table)
+    assert len(table.columns[0].texts()) == MOST_ROWS
+    assert not [*passes_blocks(KINDS["frame"]().events, 0.15)]
