@@ -69,7 +69,7 @@ def test_displacements_in_x_and_in_y(figures: list[Figure]) -> None:
     assert [of.get_ylabel()[:2] for of in axes] == ["x:", "y:"] * 2
     for of, part in zip(axes[:2], (np.cos(ANGLE), np.sin(ANGLE)), strict=True):
         is_drawn(curve(of, "cap beam"), plane.time, part * plane.cap_beam_displacement)
-    assert "x: x, y: y" in figures[0].get_suptitle()
+    assert "x, y: y" in figures[0].get_suptitle()
     assert component(pair, "y").trace.y is None
 
 

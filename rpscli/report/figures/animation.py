@@ -61,8 +61,9 @@ class Scene:
         axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
-        lean = "where the columns lean: " if of_pair else ""
-        legend = f"{lean}bearings to scale{drifts}; {_pace(speed)}"
+        if of_pair:
+            axes.set_title("along the tilt", loc="left", fontsize=style.small())
+        legend = f"bearings to scale{drifts}; {_pace(speed)}"
         axes.set_xlabel(legend, fontsize=style.small())
         self._frame(axes)
 

@@ -19,7 +19,7 @@ WAYS: tuple[Way, ...] = get_args(Way)
 def record_name(result: TimeHistoryResult) -> str:
     """What shook it horizontally."""
     y = result.motion.y
-    return result.record.name if y is None else f"x: {result.record.name}, y: {y.name}"
+    return result.record.name if y is None else f"{result.record.name}, y: {y.name}"
 
 
 def lean_azimuth(trace: Trace) -> NDArray[np.float64]:
