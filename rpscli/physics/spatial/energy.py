@@ -1,4 +1,4 @@
-"""Energy of a lane, relative to the ground, and its flows (Theory, sections 8 and 14)."""
+"""Energy of a lane, relative to the ground, and its flows (Theory, sections 8 and 13)."""
 
 from __future__ import annotations
 
