@@ -170,7 +170,7 @@ def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -
 def test_alone_and_in_company() -> None:
     """The same bits, whatever goes on in other lanes.
 
-    In a process that finds its kernels compiled: in the one that compiles them last bits may differ.
+    In a process that finds kernels compiled: in the one that compiles them last bits may differ.
     """
     still = np.zeros(2)
     followed(frame(**THREE), pair(still, still, STEP))  # compiles
