@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from oracles.compliant_storey import CompliantStorey
 from paper_structures import Array, ground, needs_compiled_kernels, waves
+from scipy.optimize import brentq
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.results import TimeHistoryResult
@@ -93,6 +94,34 @@ def test_a_release(storeys: int, phi_u: float, loss: float, swing: float, shear:
     assert found.base_shear_ratio == pytest.approx(shear, abs=5e-4)
     # Steps may take 5e-6 of the energy of the fastest vibration, which impacts excite.
     assert abs(found.energy.residual) < 5e-6 * found.trace.energy_stored[0]
+
+
+ARCS = [
+    (1, 2.868200132581778e-05, 0.0, 0.39994, 2.649),
+    (1, 2.868200132581778e-05, 0.3, 0.38983, 4.297),
+    (3, 2.1e-4, 0.0, 0.39466, 4.071), (3, 2.1e-4, 0.3, 0.38607, 3.909),
+]  # fmt: skip
+"""The same on arcs, rho 0.5."""
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize(("storeys", "phi_u", "loss", "swing", "shear"), ARCS)
+def test_a_release_on_arcs(
+    storeys: int, phi_u: float, loss: float, swing: float, shear: float
+) -> None:
+    def of(stiffness: float) -> PodiumStructure:
+        contact = Contact("plane", stiffness=stiffness, damping=0.0)
+        return podium(storeys, contact, loss=loss, damping=UNDAMPED, profile="uniform", rho=RHO)
+
+    def lifts(stiffness: float) -> float:
+        bed = of(stiffness).bed
+        assert bed is not None
+        return bed.uplift_rotation - phi_u
+
+    structure = of(float(brentq(lifts, 1e6, 1e10, xtol=1e-3, rtol=1e-13)))
+    found = released(structure)
+    assert -found.trace.rotation.min() / structure.bearing.alpha == pytest.approx(swing, abs=2e-5)
+    assert found.base_shear_ratio == pytest.approx(shear, abs=1e-3)
 
 
 @needs_compiled_kernels
