@@ -299,7 +299,7 @@ class SpatialSimulation:
 
     def share_lost(self, tilt: float, rate: float) -> float:
         """l(s) of Theory, section 13."""
-        if self.contact_time == 0.0:
+        if self.contact_time == 0.0 or rate == 0.0:
             return 0.0
         s = tilt / (rate * self.contact_time)
         return float(1.0 / (1.0 + 3.5 * s**1.04 + 2.0 * s**2.7))

@@ -7,10 +7,12 @@ from collections.abc import Iterator
 from rpscli.analyses.verification.known import Comparison
 from rpscli.analyses.verification.motions import buildings, devices, free_rocking, histories
 from rpscli.analyses.verification.overturning import pulses
+from rpscli.analyses.verification.space import free_motion, one_component, passes
 from rpscli.analyses.verification.statics import geometry, modes
 
 
 def verification() -> Iterator[Comparison]:
-    """All comparisons, as they are computed; some 130 in a few seconds."""
-    for group in (geometry, modes, buildings, free_rocking, pulses, devices, histories):
+    """All comparisons, as they are computed; some 140 in a few seconds."""
+    plane = (geometry, modes, buildings, free_rocking, pulses, devices, histories)
+    for group in (*plane, free_motion, passes, one_component):
         yield from group()
