@@ -91,7 +91,8 @@ def as_the_program(case: Case, contact_time: float, accuracy: float, seconds: fl
         case, contact_time, accuracy, seconds, integrated_spin=True, begins_at=1e-9
     )
     assert run.max_tilt > 0.01
-    assert len(run.passes) == len(ours.passes)
+    # at rest p begins with rounding: some uplifts count as passes here
+    assert sum(passed.tilt > 1.01e-9 for passed in run.passes) == len(ours.passes)
     return float(np.max(gap))
 
 

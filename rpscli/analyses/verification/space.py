@@ -137,4 +137,4 @@ def one_component() -> Iterator[Comparison]:
             for moving in (MotionComponents(x), MotionComponents(x, y=still))
         )
         ends = f"rho = {rho:g}" if rho else "flat"
-        yield compare(ALONE, f"theta, n = 3, {ends}", "rad", within(plane, 1e-4), space)
+        yield compare(ALONE, f"theta, n = 3, {ends}", "rad", within(plane, 1e-5), space)
