@@ -47,7 +47,7 @@ RESIDUAL = 1e-6
 """Of the energy: what the step is made for."""
 
 PAIR_RESIDUAL = 1e-4
-"""Under both components 1.6 % are above 1e-6, the largest of 1,014 4.4e-5."""
+"""Under both components 1.5 % are above 1e-6, the largest of 1,014 4.4e-5."""
 
 MOST_SECONDS = 5.0
 """Of a history, as it is estimated; longer ones are not followed."""
