@@ -94,6 +94,7 @@ def _in_colours(
     from matplotlib.collections import LineCollection
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Circle
+    from matplotlib.patheffects import withStroke
 
     time = result.trace.time
     leans = np.flatnonzero(result.trace.rotation > 0.0)
@@ -110,7 +111,8 @@ def _in_colours(
     for radius, label, line, colour in circles:
         outside = " (outside)" * (radius > 1.4 * reach)
         axes.plot([], [], color=colour, ls=line, label=f"{label}{outside}")
-        look: dict[str, Any] = {"ec": colour, "ls": line, "lw": 1.2, "zorder": 3.0}
+        look: dict[str, Any] = {"ec": colour, "ls": line, "lw": 1.3, "zorder": 3.0}
+        look["path_effects"] = [withStroke(linewidth=3.0, foreground="white")]
         axes.add_patch(Circle((0.0, 0.0), radius, fill=False, **look))
     axes.axhline(0.0, color=style.GREY, lw=0.4)
     axes.axvline(0.0, color=style.GREY, lw=0.4)
