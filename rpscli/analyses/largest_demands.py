@@ -419,7 +419,8 @@ class Demand(Shown):
         "The same in y.", lambda h: h.of_roof("floor_acceleration_y", _largest)
     )
     passes = _Result[int](
-        "Number of passes near upright.", lambda h: h.left["events"][:, state.PASS]
+        "Closest approaches to upright between swings, however wide.",
+        lambda h: h.left["events"][:, state.PASS],
     )
     passes_as_impacts = _Optional(
         "Passes that lost more than half of what an impact would; None under one component.",
