@@ -271,11 +271,12 @@ def load_target(source: str) -> TargetSpectrum:
             " and are not those of sp14; give the spectrum as a CSV file"
         )
     place, _, options = source.partition("?")
-    path, known = Path(place), CODES.names()
-    if colon and scheme in known:
+    path = Path(place)
+    if colon and (scheme in CODES or scheme in CODES.names()):  # others are looked for last
         return CODES[scheme](rest, source)
     if path.is_file():
         return table_spectrum(path, options, source)
+    known = CODES.names()
     if colon and len(scheme) > 1:
         raise RecordError(
             f"{source}: {scheme!r} is not a known code; {hint(scheme, known)}, or a file"

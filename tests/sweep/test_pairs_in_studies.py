@@ -128,7 +128,7 @@ def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
         Bearing(1.5, 0.15, 0.3, 0.5), 1e4, 1e5, building, superstructure_y=across
     )
     x, y = (load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}") for seed in (1, 2))
-    time = np.arange(0.0, 6.0, 0.02)
+    time = np.arange(0.0, 6.0, 0.0005)  # the ground's acceleration is linear between its samples
     shears = []
     for motion, floors in ((x, building), (y, across)):
         w, k = float(floors.frequencies[0]), float(floors.stiffnesses[0])
@@ -136,7 +136,8 @@ def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
         system: Any = StateSpace([[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]])
         shears.append(lsim(system, ground, time)[1])
     (found,) = reference_shears(structure, MotionComponents(x, y=y))
-    assert found == pytest.approx(np.hypot(*shears).max(), rel=1e-9)
+    # Of cubics through samples, looked at in eighths of an interval.
+    assert found == pytest.approx(np.hypot(*shears).max(), rel=3e-4)
 
 
 def test_the_command_line_scales_a_pair_as_a_study_does(lay: Lay) -> None:

@@ -40,7 +40,7 @@ reports:
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
 def test_shipped_studies_are_valid_and_small(path: Path) -> None:
     layout = study_file(path).layout
-    assert 1 < len(layout) <= 600
+    assert 1 < len(layout) <= 900
     assert layout.study.reports
 
 

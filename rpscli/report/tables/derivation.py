@@ -29,6 +29,7 @@ SYMBOLS = {
     "theta_cr": "θ_cr", "tan_alpha": "tan α", "tan_alpha_w": "tan α′", "rho_cr": "ρ_cr",
     "height": "2H", "width": "2B", "radius": "r", "m_column": "m_c", "m_c": "N m_c", "M": "M_tot",
     "gamma_t": "γ(1 + η)", "pi": "π", "sum_m": "Σ m_i φ_i²", "sum_k": "Σ k_i (φ_i − φ_i₋₁)²",
+    "phi_u": "φ_u", "sum_M": "Σ M_i / (1 − (ω/ω_i)²)",
 }  # fmt: skip
 """Letters that are written otherwise than in an expression."""
 
@@ -105,6 +106,24 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "T1": "2 * pi * sqrt(sum_m / sum_k)",
         "e_edge": EDGES.get(structure.impact_law.kind, ""),
         "weight": "(m_c / 2 + m_b + M) * g",
+        **_of_bed(structure),
+    }
+
+
+def _of_bed(structure: PodiumStructure) -> dict[str, str]:
+    """Of ends that give way, whose phi_u is the root of its formula (Theory, section 12)."""
+    lost = "2 / 3 * sin(alpha)" if structure.contact.kind == "plane" else "0"
+    stiffness = f"W * (B_u - {lost}) / (2 * R * phi_u * C_u^2)"
+    return {
+        "period_ratio": "T_c / T_1",
+        "contact_period": "2 * pi * sqrt((m_0 + sum_M) / K_s)",
+        "contact_stiffness": stiffness,
+        "settlement": "phi_u * width / 2",
+        "joint_stiffness": "W / D_0",
+        "lifts_from": f"K_s = {stiffness}",
+        "lifts_from_ratio": "phi_u / alpha",
+        "contact_mass": "m_c * ((I - 1) / C_u^2 + 1 + 4 * gamma) / 4",
+        "contact_share": "sqrt(phi_u / (alpha / 10))",
     }
 
 
@@ -198,6 +217,16 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
         # With all of the loss and no factor, the law gives the restitution at the edges.
         edges = replace(law, factor=1.0, loss=1.0)
         letters["e_edge"] = edges.ratio(b, structure.gamma, structure.eta)
+    if (bed := structure.bed) is not None:
+        letters |= {
+            "phi_u": bed.uplift_rotation, "B_u": bed.lift_arm, "C_u": bed.height, "m_0": bed.mass,
+            "K_s": bed.stiffness, "D_0": bed.settlement or math.nan,
+        }  # fmt: skip
+    if bed is not None and building is not None and bed.period is not None:
+        w = 2.0 * math.pi / bed.period
+        shaken = building.participation**2 / (1.0 - (w / building.frequencies) ** 2)
+        letters |= {"T_c": bed.period, "sum_M": float(shaken.sum())}
+        letters["T_1"] = float(building.periods[0])
     if building is not None:
         shape = first_shape(building)
         steps = np.diff(shape, prepend=0.0)

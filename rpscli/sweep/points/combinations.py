@@ -90,7 +90,9 @@ def changes(section: PerturbSection | None) -> tuple[Change, ...]:
         return (UNCHANGED,)
     generator = np.random.default_rng(section.seed)
     drawn = generator.uniform(-1.0, 1.0, (section.members - 1, 2)).tolist()
-    turns = (section.rotation * generator.uniform(-1.0, 1.0, section.members - 1)).tolist()
+    # A sequence of their own: more members leave the earlier ones.
+    turning = np.random.default_rng([section.seed, 1])
+    turns = (section.rotation * turning.uniform(-1.0, 1.0, section.members - 1)).tolist()
     others = (
         Change(1.0 + section.scale * a, 1.0 + section.restitution * b, turn)
         for (a, b), turn in zip(drawn, turns, strict=True)
