@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rpscli.analyses.verification.contact import compliant_ends
 from rpscli.analyses.verification.known import Comparison
 from rpscli.analyses.verification.motions import buildings, devices, free_rocking, histories
 from rpscli.analyses.verification.overturning import pulses
@@ -12,7 +13,7 @@ from rpscli.analyses.verification.statics import geometry, modes
 
 
 def verification() -> Iterator[Comparison]:
-    """All comparisons, as they are computed; some 140 in a few seconds."""
+    """All comparisons, as they are computed; some 150 in a few seconds."""
     plane = (geometry, modes, buildings, free_rocking, pulses, devices, histories)
-    for group in (*plane, free_motion, passes, one_component):
+    for group in (*plane, compliant_ends, free_motion, passes, one_component):
         yield from group()
