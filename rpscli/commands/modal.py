@@ -86,11 +86,12 @@ def _tables(result: ModalResult, title: str) -> Iterator[Part]:
         yield f"Not linear, and left out: {listed(result.left_out, 'and')}."
     if (full := result.full_contact) is not None:
         yield _mode_table("full contact", full)
-        if result.fixed_base is not None:
+        if result.fixed_base is not None and (bed := result.structure.bed) is not None:
             ratio = full.periods[0] / result.fixed_base.periods[0]
             yield (
                 f"First period {shown(full.periods[0])} s in full contact, {ratio:.3f} of the fixed"
-                " base. Uplifted states are linearised as on rigid ends."
+                f" base, {bed.period_ratio:.3f} without damping. Uplifted states"
+                " are linearised as on rigid ends."
             )
     if (fixed := result.fixed_base) is None:
         return

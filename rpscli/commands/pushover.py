@@ -84,7 +84,9 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
     scalars = {q.name: (q.label, measured(getattr(result, q.name), q.unit)) for q in PUSHOVER}
     rows = [
         scalars["uplift_force"],
-        scalars["initial_stiffness"],
+        ("stiffness in full contact", scalars["initial_stiffness"][1])
+        if result.structure.bed
+        else scalars["initial_stiffness"],
         ("largest force", measured(float(result.curve.force.max()), "N")),
         scalars["critical_rotation"],
         scalars["critical_displacement"],

@@ -155,6 +155,12 @@ class PageDone:
     signed: DocumentSection
 
 
+def ends(case: Case) -> str:
+    """The kind of ends that give way, to follow in a heading."""
+    kind = case.structure.contact.kind
+    return "" if kind == "rigid" else f", {kind} contact"
+
+
 def case_page(
     given: CaseInput,
     motions: Sequence[MotionRequest],
@@ -178,9 +184,10 @@ def case_page(
     made = partial(case_sections, case, given.request.overrides, commands, look)
     if case.record is None and motions[0].record is None:
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
-        sections = made(case.warnings)
-        document = concluded(document, None)
-        return PageDone(case.title, "Structure", sections, document, None, case.file.document)
+        sections, document = made(case.warnings), concluded(document, None)
+        return PageDone(
+            case.title, f"Structure{ends(case)}", sections, document, None, case.file.document
+        )
     # A place for the files, which are not written there.
     requests = history_requests([given], motions, OutputRequest(Path(), force=True))
     announce_compilation(terminal)
@@ -200,8 +207,8 @@ def case_page(
         history = History(worst.ground, result, done.verdicts, _files(worst))
         grounds = [request.ground for request in requests]
         several = Several(grounds, found.verdicts, [*set_tables([found])][1:], history)
-        title, warnings = f"Time histories under {len(requests)} records", document["warnings"]
-        sections = made(warnings, several, stored)
+        title = f"Time histories under {len(requests)} records{ends(case)}"
+        sections = made(document["warnings"], several, stored)
         return PageDone(case.title, title, sections, document, error, case.file.document)
     (request,) = requests
     done, result = compute(request, conditions, page_look(look), terminal)
@@ -212,7 +219,7 @@ def case_page(
     history = History(request.ground, result, done.verdicts, _files(request), beside)
     return PageDone(
         case.title,
-        f"Time history under {result.record.name}",
+        f"Time history under {result.record.name}{ends(case)}",
         made(warnings, history, stored),
         done.document,
         done.error,

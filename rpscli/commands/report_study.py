@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rpscli.commands.design import designed
 from rpscli.commands.inputs import RESULTS
-from rpscli.commands.report_case import Earlier, PageDone, subject_words
+from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
@@ -92,9 +92,11 @@ def study_page(
         "warnings": notes,
     }
     terminal.warn(notes)
+    varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
+    contact = ", contact varied" if varied else ends(resolved(layout.plan, layout[0].values))
     return PageDone(
         study.title,
-        f"Study of {len(run.table)} points",
+        f"Study of {len(run.table)} points{contact}",
         _sections(study, run, found, notes, folder, look),
         concluded(document, error),
         error,
@@ -237,6 +239,6 @@ def design_page(
         [*repeated(["rps", "design", *words], ["rps", "report", *words]), stored],
         [f"Of {title}."],
     )
-    subtitle = f"Design: {len(answer.places)} looked at"
+    subtitle = f"Design: {len(answer.places)} looked at{ends(case)}"
     signed = answer.task.file.document
     return PageDone(study.title, subtitle, sections, done.document, done.error, signed)

@@ -73,7 +73,7 @@ def test_a_number_that_is_off_ends_with_6(short: None, monkeypatch: pytest.Monke
     result = CliRunner().invoke(program, ["verify"])
     assert result.exit_code == 6
     assert result.stdout.count("DIFFERS") == 1
-    assert "1 of 108 numbers differ" in result.stderr
+    assert "1 of 117 numbers differ" in result.stderr
     assert "theta_cr, tan a = 0.15, rho = 0.5: 0.2946034 instead of 0.2947" in result.stderr
 
 

@@ -1,7 +1,4 @@
-"""Ends that give way: the period asked for, releases, energy, and the limit of rigid ends.
-
-Releases and the second period were found by another program, releases with two integrators.
-"""
+"""Ends that give way: the period asked for, releases, energy, and the limit of rigid ends."""
 
 from __future__ import annotations
 
@@ -31,9 +28,8 @@ from rpscli.model.superstructure import ModalDamping, Superstructure, profile_st
 PERIODS = "Full contact of ends that give way, r = 1.2 (periods over T1)"
 RELEASES = "Release at 0.4 alpha, undamped building on plane ends that give way"
 SECOND_PERIOD = 0.4899030
-"""Of one storey, over T1."""
+"""Of one storey, over T1; by another program, as are the releases."""
 
-SECONDS = 2.4
 REFERENCES = (
     (1, 2.868200132581778e-05, 1.0, 0.35612, 5.649),
     (3, 2.1e-4, 0.0, 0.38034, 3.4081),
@@ -55,10 +51,9 @@ def of_paper(storeys: int, contact: Contact, loss: float = 1.0) -> PodiumStructu
 
 
 def released(structure: PodiumStructure) -> TimeHistoryResult:
-    """Let go at 0.4 alpha."""
-    start = 0.4 * structure.bearing.alpha
-    settings = TimeHistorySettings(free_vibration=0.0, initial_rotation=start)
-    still = motion(np.zeros(round(SECONDS / 1e-3) + 1), 1e-3)
+    """2.4 s after a release."""
+    settings = TimeHistorySettings(0.0, initial_rotation=0.4 * structure.bearing.alpha)
+    still = motion(np.zeros(2401), 1e-3)
     return time_history(structure, still, settings, with_fixed_base=False)
 
 
@@ -67,10 +62,9 @@ def compliant_ends() -> Iterator[Comparison]:
     for storeys, kind in ((6, "plane"), (6, "edges"), (1, "plane")):
         ends = Contact(kind, period_ratio=1.2, damping=0.0)  # type: ignore[arg-type]
         structure = of_paper(storeys, ends)
-        full, fixed = modal(structure).full_contact, structure.superstructure
+        full, where = modal(structure).full_contact, f"{kind}, n = {storeys}"
         assert full is not None, "its ends give way"
-        assert fixed is not None, "the paper's structures have buildings"
-        ratios, where = full.periods / fixed.periods[0], f"{kind}, n = {storeys}"
+        ratios = full.periods / (0.1 * storeys)
         yield compare(PERIODS, f"first, {where}", "-", within(1.2, 1e-9), ratios[0])
     # The reference has the C of rigid columns in the mass at the beam.
     yield compare(PERIODS, f"second, {where}", "-", within(SECOND_PERIOD, 1e-6), ratios[1])
@@ -81,11 +75,10 @@ def compliant_ends() -> Iterator[Comparison]:
         # Half of the last digit, and what lies between samples of 1 ms.
         known = Known(back, 1e-5), Known(shear, 5e-4)
         yield compare(RELEASES, f"back swing/alpha, {where}", "-", known[0], back_swing(found))
-        yield compare(RELEASES, f"V_b/V_st, {where}", "-", known[1], found.base_shear_ratio)
+        yield compare(RELEASES, f"V_b/V_st, {where}", "-", known[1], found.base_shear_ratio or 0.0)
         if loss == 0.0:
-            stored = found.trace.energy_stored
-            kept, name = float(stored[-1] / stored[0]), f"energy after {SECONDS:g} s"
-            yield compare(RELEASES, f"{name}, {where}", "-", within(1.0, 1e-6), kept)
+            kept = found.trace.energy_stored[-1] / found.trace.energy_stored[0]
+            yield compare(RELEASES, f"energy kept, {where}", "-", within(1.0, 1e-6), kept)
     stiff = Contact("edges", settlement=1e-5 * structure.bearing.alpha * half_width, damping=0.0)
     edges, rigid = (back_swing(released(of_paper(1, ends))) for ends in (stiff, Contact()))
     name = "back swing/alpha, stiff edges against rigid ends, n = 1"

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from rpscli.analyses.pushover import PushoverResult
     from rpscli.model.bearing import Bearing
+    from rpscli.model.contact import Bed
     from rpscli.model.podium import PodiumStructure
 
 
@@ -148,7 +149,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
             end, force = below.subplots(1, 2, width_ratios=[1.0, 2.0])
         for axes in cells[len(states) + 1 :]:
             axes.set_axis_off()
-        draw_end(end, structure.bearing)
+        draw_end(end, structure.bearing, structure.bed)
         draw_force(force, result)
         # As high as columns are with their titles: wide ones leave no gap.
         width = style.inches(figure)[0]
@@ -197,7 +198,7 @@ def draw_bearing(axes: Axes, structure: PodiumStructure, rotation: float = 0.0) 
     _arrow(axes, (at, height), (at, height + v), "$v_b$", (0.0, -2.0), at_end=True)
 
 
-def draw_end(axes: Axes, bearing: Bearing) -> None:
+def draw_end(axes: Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
     half, B = half_width(bearing), bearing.half_width
     x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
@@ -226,6 +227,14 @@ def draw_end(axes: Axes, bearing: Bearing) -> None:
             textcoords="offset points", fontsize=style.small(),
         )  # fmt: skip
         title = "an end, enlarged"
+    if bed is not None and bed.contact_share is not None:
+        x, y = B * (1.0 - 2.0 * bed.contact_share), -3.2 * step
+        axes.plot([x, B], [y, y], color=style.RED, lw=2.5, solid_capstyle="butt")
+        words = f"{1e3 * (B - x):.3g} mm in contact at α/10"
+        axes.annotate(
+            words, (B, y), (0.0, -4.0), va="top", ha="right",
+            textcoords="offset points", fontsize=style.small(),
+        )  # fmt: skip
     axes.set_title(title, fontsize=style.small())
 
 

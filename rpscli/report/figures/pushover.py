@@ -62,7 +62,7 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
         _mark(axes, u[at], F[at], f"$\\beta$ = {beta:.3f} rad", side)
     critical = f"$\\theta_{{cr}}$ = {result.critical_rotation:.3f} rad"
     _mark(axes, u[-1], F[-1], critical, (-44.0, 3.0))
-    low = min(0.0, back.min()) if returns else 0.0
+    low = min(0.0, back.min()) if returns or result.structure.bed else 0.0
     axes.set(xlim=(-0.02 * u[-1], 1.04 * u[-1]), ylim=(1.1 * low, 1.18 * F.max()))
     axes.set(xlabel=DISPLACEMENT, ylabel=f"force at the cap beam [{prefix}N]")
     if result.structure.uplift_force > 0.0:

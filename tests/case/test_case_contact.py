@@ -1,0 +1,185 @@
+"""`podium.contact`: what is read, what is refused and why, and what commands say of it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from matplotlib.figure import Figure
+
+from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.pushover import pushover
+from rpscli.case.case import Case, parse_case
+from rpscli.cli import program
+from rpscli.errors import CaseError, UsageError
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.report.figures.bearing import draw_end
+
+FLAT = (
+    "podium.bearing.wedge_slenderness=0.15", "podium.bearing.curvature_ratio=0",
+    "podium.impact.law=flexible", "podium.columns=4",
+)  # fmt: skip
+PLANE = "podium.contact={kind: plane, period_ratio: 1.2}"
+EDGES = "podium.contact={kind: edges, period_ratio: 1.2}"
+
+
+def case_of(building: str, *overrides: str) -> Case:
+    return parse_case(building, name="c.yaml", overrides=[*FLAT, *overrides])
+
+
+def structure_of(building: str, *overrides: str) -> PodiumStructure:
+    return case_of(building, *overrides).structure
+
+
+REFUSED = [
+    ((PLANE, "podium.devices=[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"), "tendons"),
+    ((EDGES, "podium.devices=[{kind: rolling_resistance, lever: 1 mm}]"), "rolling resistance"),
+    ((PLANE, "podium.devices=[{kind: stop, gap: 0, stiffness: 1 kN/mm}]"), "gap above"),
+    ((PLANE, "podium.impact.law=rigid"), "floors would jump"),
+    ((EDGES, "podium.impact={law: value, restitution: 0.9}"), "floors would jump"),
+    ((PLANE, "analysis.recontact_tolerance=1e-8"), "recontact_tolerance means nothing"),
+    ((EDGES, "analysis.recontact_rule=relative"), "recontact_rule means nothing"),
+    (
+        (
+            "podium.contact={kind: plane, settlement: 0.05 mm}",
+            "podium.bearing.wedge_slenderness=0.3", "podium.bearing.curvature_ratio=0.5",
+        ),
+        "curved ends bear wider than a settlement tells",
+    ),
+    (("podium.contact={period_ratio: 1.2}",), "does not tell whether ends are `plane` or `edges`"),
+    (("podium.contact={kind: plane}",), "takes one of period_ratio, stiffness, settlement; 0"),
+    (("podium.contact={kind: plane, period_ratio: 1.2, stiffness: 1 kN/mm}",), "2 are given"),
+    (("podium.contact={kind: rigid, settlement: 1 mm}",), "rigid contact takes no"),
+    (("podium.contact={kind: plane, period_ratio: 1}",), "must be > 1 (r = T/T_1)"),
+    (("podium.contact={kind: plane, settlement: 12 mm}",), "does not hold the weight upright"),
+    (("podium.contact={kind: soft, period_ratio: 1.2}",), "rigid, plane or edges"),
+    (("podium.contact={kind: plane, period_ratio: 1.2, dampin: 0.1}",), "contact.damping?"),
+    (
+        (
+            "superstructure={storeys: 0}",
+            ("podium={bearing: {semi_diagonal: 1, slenderness: 0.2, curvature_ratio: 0},"
+            " cap_beam_mass: 9 t, column_mass: 1 t, columns: 4,"
+            " contact: {kind: plane, period_ratio: 1.2}}"),
+        ),
+        "without one give stiffness or settlement",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("overrides", "reason"), REFUSED)
+def test_what_is_refused(building: str, overrides: tuple[str, ...], reason: str) -> None:
+    assert structure_of(building, PLANE).bed is not None  # nothing else is wrong
+    with pytest.raises(CaseError) as refused:
+        structure_of(building, *overrides)
+    message = str(refused.value)
+    assert reason in message
+    assert "podium.contact" in message or "podium.devices" in message or "analysis." in message
+
+
+def test_both_components_are_refused(building: str) -> None:
+    x = GroundMotion([0.0, 0.1, 0.0], 0.01, "made", "made", "made")  # type: ignore[arg-type]
+    pair = MotionComponents(x, y=x)
+    with pytest.raises((ValueError, UsageError), match="give way are followed under one component"):
+        demands([Request(structure_of(building, PLANE), pair)])
+
+
+def test_keys_and_their_defaults(building: str) -> None:
+    """The three sizes describe the same joint; without the key ends are rigid."""
+    assert structure_of(building).bed is None
+    first = structure_of(building, PLANE)
+    bed = first.bed
+    assert bed is not None
+    assert (first.contact.damping, first.impact_law.loss) == (0.03, 0.3)
+    assert structure_of(building, EDGES).impact_law.loss == 1.0
+    assert structure_of(building, PLANE, "podium.impact.loss=0.8").impact_law.loss == 0.8
+    for given in (f"stiffness: {bed.stiffness!r}", f"settlement: {bed.settlement!r}"):
+        other = structure_of(building, f"podium.contact={{kind: plane, {given}}}").bed
+        assert other is not None
+        assert other.period_ratio == pytest.approx(1.2, rel=1e-9)
+    units = structure_of(building, "podium.contact={kind: edges, stiffness: 60 MN/m}")
+    assert units.contact.stiffness == 6e7
+    written = case_of(building, PLANE, "analysis.recontact_tolerance=1e-6")
+    assert written.structure.bed is not None  # the default, as in a case that was written out whole
+
+
+def printed(building: str, command: str, contact: str, folder: Path) -> str:
+    """What a command prints, blanks as one."""
+    case = folder / "c.yaml"
+    case.write_text(building.replace("record: {source: motion.at2}\n", ""), encoding="utf-8")
+    words = [word for each in (*FLAT, contact) for word in ("--set", each)]
+    if command != "check":
+        words += ["-o", str(folder / f"{command} {contact}")]
+    result = CliRunner().invoke(program, [command, str(case), *words], env={"COLUMNS": "200"})
+    assert result.exit_code == 0, result.stderr
+    return " ".join(result.stdout.split())
+
+
+@pytest.fixture
+def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
+
+
+@pytest.mark.usefixtures("_no_pictures")
+def test_what_commands_print(building: str, tmp_path: Path) -> None:
+    """Each number from W, R, alpha and the law of one end, to the digits that are printed."""
+    check = printed(building, "check", PLANE, tmp_path)
+    assert "period in full contact over T1 r 1.200" in check
+    assert "first period in full contact T 0.3600 s" in check
+    structure = structure_of(building, PLANE)
+    alpha, W = math.atan(0.15), structure.weight
+    # To first order phi_u = tan(alpha)/(3 (1 + 2 H K_s/W)).
+    K = float(check.split(" K_s ")[1].split()[0]) * 1e3
+    phi_u = 0.15 / (3.0 * (1.0 + 3.0 * math.cos(alpha) * K / W))
+    told = float(check.split(" phi_u ")[1].split()[0])
+    assert told == pytest.approx(phi_u, rel=1e-3)
+    settled = float(check.split(" D_0 ")[1].split()[0])
+    assert settled == pytest.approx(phi_u * 1.5 * math.sin(alpha), rel=1e-3)
+    length = float(check.split("contact length at 0.1 alpha ")[1].split()[0])
+    assert length == pytest.approx(math.sqrt(10.0 * phi_u / alpha), rel=1e-3)
+    edges = printed(building, "check", EDGES, tmp_path)
+    assert float(edges.split(" phi_u ")[1].split()[0]) == pytest.approx(3.0 * told, rel=2e-3)
+    assert "contact length" not in edges
+
+    modes = printed(building, "modal", PLANE, tmp_path)
+    assert "full contact rad/s T s xi %" in modes
+    assert "1.200 without damping" in modes
+
+    push = printed(building, "pushover", PLANE, tmp_path)
+    uplift = push.split("uplift force ")[1].split()
+    force = float(uplift[0]) * {"MN": 1e6, "kN": 1e3}[uplift[1]]
+    # Where edges lift m = 1/3, and flat ends have B = sin(alpha - x), C = cos(alpha - x).
+    arm = math.sin(alpha - told) - 2.0 / 3.0 * math.sin(alpha)
+    assert force == pytest.approx(W * arm / math.cos(alpha - told), rel=3e-4)
+    assert "stiffness in full contact" in push
+    assert "stiffness after uplift" in printed(building, "pushover", "title=stiff", tmp_path)
+
+
+def test_the_drawing_has_the_length_in_contact(building: str) -> None:
+    def drawn(contact: str) -> list[str]:
+        axes, structure = Figure().subplots(), structure_of(building, contact)
+        draw_end(axes, structure.bearing, structure.bed)
+        return [text for each in axes.texts if "contact" in (text := each.get_text())]
+
+    bed = structure_of(building, PLANE).bed
+    assert bed is not None
+    alpha = math.atan(0.15)
+    length = 3000.0 * math.sin(alpha) * math.sqrt(10.0 * bed.uplift_rotation / alpha)
+    assert drawn(PLANE) == [f"{length:.3g} mm in contact at α/10"]
+    assert drawn(EDGES) == drawn("title=rigid") == []
+
+
+def test_moments_of_plane_joints_end_before_the_critical_rotation(building: str) -> None:
+    """Which stays that of rigid ends: alpha [1 - (2/3) sqrt(phi_u/alpha)] of slender columns."""
+    structure = structure_of(building, PLANE)
+    result, bed = pushover(structure), structure.bed
+    assert bed is not None
+    assert result.critical_rotation == structure_of(building).critical_rotation
+    curve = result.curve
+    last = curve.rotation[curve.force > 0.0].max() / math.atan(0.15)
+    end = 1.0 - 2.0 / 3.0 * math.sqrt(bed.uplift_rotation / math.atan(0.15))
+    step = 1.0 / 200  # of the curve's points, and what is of second order
+    assert last == pytest.approx(end, abs=2.0 * step)
+    assert curve.force[-1] < 0.0
