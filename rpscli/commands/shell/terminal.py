@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal, TextIO
 
@@ -76,12 +77,31 @@ def fitting(table: Table, console: Console) -> Iterator[RichTable]:
             # need: where that is too much, all of the room is to come from words, and heads of
             # numbers break into as few lines as do.
             ways = (None, 2, 3, MOST_LINES, *[ALL_FOLD] * (count == 1))
-            made = (_made(table, shown, lines) for lines in ways)
+            made = chain(
+                (_made(table, shown, lines) for lines in ways),
+                (_squeezed(table, shown, room) for room in [console.width]),
+            )
             part = next((each for each in made if _width(each, console) <= console.width), None)
             if part is not None:
                 break
         others = others[count:]
         yield part or _made(table, shown)
+
+
+def _squeezed(table: Table, columns: Sequence[int], room: int) -> RichTable:
+    """The widest columns give all that is missing, down to their longest word."""
+    made = _made(table, columns, MOST_LINES)
+    texts = [[table.heads[i], *(row[i] for row in table.rows)] for i in columns]
+    widths = [max(map(len, column), default=1) for column in texts]
+    least = [column.width or column.min_width or 1 for column in made.columns]
+    while sum(widths) > room - GAP * (len(widths) - 1):
+        free = [i for i, width in enumerate(widths) if width > least[i]]
+        if not free:
+            return made
+        widths[max(free, key=widths.__getitem__)] -= 1
+    for column, width in zip(made.columns, widths, strict=True):
+        column.width = width
+    return made
 
 
 def _width(made: RichTable, console: Console) -> int:
@@ -116,10 +136,10 @@ def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> Ric
             made.add_column(head, justify=justify, overflow="fold")
         elif index < table.words:
             word = max((len(word) for cell in cells for word in cell.split()), default=0)
-            least = max(min(word, LONGEST_WORD), in_head)
+            least = max(min(word, LONGEST_WORD), in_head, 1)
             made.add_column(head, overflow="fold", min_width=least)
         else:
-            least = max(in_head, *map(len, cells), 0)
+            least = max(in_head, *map(len, cells), 1)
             width = None
             if lines is not None:
                 wide = range(least, max(least, len(head)) + 1)
