@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -165,7 +166,7 @@ class TimeHistoryResult(Demand):
         arm = st.weight_arm(np.abs(theta))
         return 2.0 * st.bearing.semi_diagonal * st.weight * np.sign(theta) * arm
 
-    @property
+    @cached_property
     def floor_velocities(self) -> NDArray[np.float64]:
         """(n,) largest absolute velocities [m/s], from the bottom.
 

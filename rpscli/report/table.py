@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 if TYPE_CHECKING:
@@ -154,11 +155,20 @@ def csv_text(columns: Sequence[Column]) -> str:
 
 
 def csv_lines(columns: Sequence[Column]) -> Iterator[str]:
-    """The same line by line, for tables that are too long to be in memory as text."""
-    cells = [map(_cell, _one_by_one(column.values)) for column in columns]
+    """The same in pieces of some lines, for tables that are too long to be in memory as text."""
     yield ",".join(_cell(column.title) for column in columns) + "\n"
-    for row in zip(*cells, strict=True):
-        yield ",".join(row) + "\n"
+    cells = [iter(_one_by_one(column.values)) for column in columns]
+    while any(pieces := [list(islice(values, _PIECE)) for values in cells]):
+        forms, values = zip(*map(_formed, pieces), strict=True)
+        line = ",".join(forms) + "\n"
+        yield "".join(line % row for row in zip(*values, strict=True))
+
+
+def _formed(values: list[Any]) -> tuple[str, list[Any]]:
+    """A form for each of some cells, and what is to be put into it; numbers as `_cell` has them."""
+    if set(map(type, values)) == {float} and math.isfinite(sum(values)):  # then each is finite
+        return "%.10g", [value + 0.0 for value in values]
+    return "%s", list(map(_cell, values))
 
 
 def records(columns: Sequence[Column]) -> list[dict[str, Any]]:
