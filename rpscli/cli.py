@@ -29,6 +29,7 @@ COMMANDS = {
     "report": Member(
         "rpscli.commands.report", "one page to check, print and keep, from all of these"
     ),
+    "budget": Member("rpscli.commands.budget", "what moves each limited result, and its verdict"),
     "compare": Member(
         "rpscli.commands.compare", "what differs between two cases or folders of results"
     ),

