@@ -10,6 +10,7 @@ from paper_structures import ground, podium
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import MotionComponents
@@ -25,5 +26,7 @@ def _compiled() -> None:
                 [Request(structure, MotionComponents(record), settings)],
                 worth_lanes=worth_lanes,
             )
+    soft = replace(podium(1), impact_law=ImpactLaw(), contact=Contact("plane", period_ratio=1.2))
+    demands([Request(soft, MotionComponents(record), settings)])
     both = MotionComponents(record, y=record)
     demands([Request(replace(podium(1), impact_law=ImpactLaw()), both, settings)])

@@ -114,6 +114,34 @@ def test_devices(long: bool) -> None:
     hunt("devices", trial, 40, 3000 if long else None)
 
 
+@shares
+def test_contact(long: bool) -> None:
+    """Ends that give way: each kind with sizes, right and wrong, below other laws and devices."""
+    sizes = {"period_ratio": ("1.2", "1.01"), "stiffness": ("60 MN/m", "9 kN/mm"),
+             "settlement": ("0.05 mm", "5 mm"), "damping": ("0", "0.1")}  # fmt: skip
+    soft = (CASES / "measured_period.yaml").read_text(encoding="utf-8").split("record:")[0]
+
+    def trial(random: Random) -> str:
+        text = random.choice([soft, soft, soft, *CASE_TEXTS])
+        Path("case.yaml").write_text(text, encoding="utf-8")
+        kind = random.choice([*["plane", "edges"] * len(VALUES), "rigid", *VALUES])
+        keys = random.sample([*sizes], random.choice([0, 1, 1, 1, 2, 3]))
+        inside = "".join(
+            f", {key}: {random.choice([*VALUES, *sizes[key] * len(VALUES)])}" for key in keys
+        )
+        changes = [f"podium.contact={{kind: {kind}{inside}}}"]
+        if random.random() < 0.3:
+            changes.append(random.choice([f"podium.impact.law={random.choice(LAWS)}",
+                                          "analysis.recontact_tolerance=1e-8"]))  # fmt: skip
+        options = [word for change in changes for word in ("--set", change)]
+        command = random.choice(["check", "check", "modal", "pushover"])
+        places = ("case.yaml", "--set")
+        return judged(command, "case.yaml", *options, "--json", places=places)
+
+    hunt("contact", trial, 30, 2000 if long else None)
+
+
+LAWS = ("flexible", "rigid", "value", "x")
 NAMES = ["..", "a", "#", "?b=c", " ", "\x1b", "\n", "\u202e", "\udce4", ",", "'", "="]
 NAMES += ["&factor=2", "x:"]
 
