@@ -13,6 +13,7 @@ from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import Case, parse_case
 from rpscli.cli import program
+from rpscli.commands.report_case import ends
 from rpscli.errors import CaseError, UsageError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -183,3 +184,9 @@ def test_moments_of_plane_joints_end_before_the_critical_rotation(building: str)
     step = 1.0 / 200  # of the curve's points, and what is of second order
     assert last == pytest.approx(end, abs=2.0 * step)
     assert curve.force[-1] < 0.0
+
+
+def test_headings_of_reports_name_the_kind(building: str) -> None:
+    assert ends(case_of(building, PLANE)) == ", plane contact"
+    assert ends(case_of(building, EDGES)) == ", edges contact"
+    assert ends(case_of(building)) == ""
