@@ -45,7 +45,8 @@ def test_memory_is_what_the_ceiling_counts(
     try:
         result = time_history(structure, record, SHORT)
         files = dict(timehistory_files(result, "", Look(formats=())))
-        assert len(list(islice(files["timehistory.csv"], 5000))) == 5000
+        pieces = list(islice(files["timehistory.csv"], 3))
+        assert "".join(pieces).count("\n") > 5000
         held, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
