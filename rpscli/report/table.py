@@ -62,7 +62,7 @@ def percent(part: float, whole: float) -> str:
     return f"{100.0 * part / whole:.1f} %" if whole else "-"
 
 
-_PIECE = 4096  # rows
+_PIECE = 512  # rows
 _QUOTED = re.compile(r'[,"\n\r]')
 
 

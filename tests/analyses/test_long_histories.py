@@ -45,7 +45,7 @@ def test_memory_is_what_the_ceiling_counts(
     try:
         result = time_history(structure, record, SHORT)
         files = dict(timehistory_files(result, "", Look(formats=())))
-        pieces = list(islice(files["timehistory.csv"], 3))
+        pieces = [str(piece) for piece in islice(files["timehistory.csv"], 11)]
         assert "".join(pieces).count("\n") > 5000
         held, peak = tracemalloc.get_traced_memory()
     finally:
