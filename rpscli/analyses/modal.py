@@ -137,6 +137,11 @@ class ModalResult(Shown):
         return {name: modes for name, modes in states.items() if modes is not None}
 
     @property
+    def fixed_base_state(self) -> str:
+        """What the building on its fixed base is as a state: full contact of rigid ends."""
+        return "fixed_base" if self.full_contact else "full_contact"
+
+    @property
     def both_orders(self) -> dict[str, tuple[UpliftedModes, UpliftedModes]]:
         """The same, exact and to first order."""
         orders = {name: (modes, modes.first_order) for name, modes in self.uplifted.items()}

@@ -95,7 +95,7 @@ def _tables(result: ModalResult, title: str) -> Iterator[Part]:
             )
     if (fixed := result.fixed_base) is None:
         return
-    yield _mode_table("fixed base" if full else "full contact", fixed)
+    yield _mode_table(result.fixed_base_state.replace("_", " "), fixed)
     heads = "rad/s", "first order", "of fixed base", "xi %", "first order", "of fixed base"
     yield Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
 

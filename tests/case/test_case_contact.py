@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import Case, parse_case
 from rpscli.cli import program
@@ -18,6 +20,7 @@ from rpscli.errors import CaseError, UsageError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.report.figures.bearing import draw_end
+from rpscli.report.figures.structure import draw_mode
 
 FLAT = (
     "podium.bearing.wedge_slenderness=0.15", "podium.bearing.curvature_ratio=0",
@@ -190,3 +193,13 @@ def test_headings_of_reports_name_the_kind(building: str) -> None:
     assert ends(case_of(building, PLANE)) == ", plane contact"
     assert ends(case_of(building, EDGES)) == ", edges contact"
     assert ends(case_of(building)) == ""
+
+
+def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact(building: str) -> None:
+    result, figure = modal(structure_of(building, PLANE)), Figure()
+    draw_mode(figure.subplots(), result, "rocking", 1)
+    dashed = next(line for line in figure.axes[0].lines if line.get_label() == "full contact")
+    assert result.full_contact is not None
+    shape = [0.0, *result.full_contact.shapes[:, 0].tolist()]
+    assert np.asarray(dashed.get_xdata()).tolist() == shape
+    assert result.full_contact.shapes[0, 0] > 0.05  # on a fixed base it would not move

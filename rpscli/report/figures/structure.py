@@ -146,6 +146,8 @@ def draw_mode(axes: Axes, result: ModalResult, state: str, mode: int) -> None:
     shape = modes.shapes[:, mode]
     if mode and result.fixed_base is not None:
         full = np.concatenate([[0.0, 0.0], result.fixed_base.shapes[:, mode - 1]])
+        if result.full_contact is not None:  # in which the cap beam moves as well
+            full = np.concatenate([[0.0], result.full_contact.shapes[:, mode - 1]])
         axes.plot(
             full, levels, color=style.BLACK, ls="--", marker="o", ms=2.5, label="full contact"
         )

@@ -32,10 +32,10 @@ def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, 
         for i, (w, xi) in enumerate(zip(full.frequencies, full.damping, strict=True)):
             yield "full_contact", i + 1, float(w), 2.0 * math.pi / w, float(xi), *4 * (None,)
     if (fixed := result.fixed_base) is not None:
-        name = "fixed_base" if full else "full_contact"
         for i, (w, xi) in enumerate(zip(fixed.frequencies, fixed.damping, strict=True)):
             of_itself = (1.0, 1.0, None, None)
-            yield name, i + 1, float(w), 2.0 * math.pi / w, float(xi), *of_itself
+            state = result.fixed_base_state
+            yield state, i + 1, float(w), 2.0 * math.pi / w, float(xi), *of_itself
     for name, (modes, first) in result.both_orders.items():
         for i, (w, xi) in enumerate(zip(modes.frequencies, modes.damping, strict=True)):
             ratios = float(modes.frequency_ratio[i]), float(modes.damping_ratio[i])
@@ -49,7 +49,7 @@ def shape_columns(result: ModalResult) -> list[Column]:
     full = result.full_contact
     if result.fixed_base is not None:
         fixed = result.fixed_base.profiles()["shapes"]
-        profiles = {("fixed_base" if full else "full_contact", 1): [fixed, fixed], **profiles}
+        profiles = {(result.fixed_base_state, 1): [fixed, fixed], **profiles}
     if full is not None:
         elastic = full.shapes.T - full.shapes[0][:, None]
         profiles = {("full_contact", 1): [full.shapes.T, elastic], **profiles}
