@@ -34,7 +34,7 @@ from rpscli.report.figures.look import Look
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.records.ground_motion import MotionComponents
-    from rpscli.sweep.budget import Row
+    from rpscli.sweep.budget import Effect, Row
 
 PERIOD_RATIO = 1.2
 LOSSES = (0.3, 0.6, 0.9, 1.2)
@@ -72,17 +72,37 @@ def command(
     which `rps timehistory CASE` gives its numbers. Exit code 0 whatever the verdicts are.
     """
     from rpscli.report.budget import budget_document, budget_files, budget_tables
-    from rpscli.sweep.budget import effects
 
     given = read_case(request, terminal)
     motions = list(single_motions(records, motion))
     grounds = all_made(partial(load_motion, given.case), motions, RpsError)
-    bed = given.case.structure.bed
-    ratio = period_ratio or (bed and bed.period_ratio) or PERIOD_RATIO
+    ratio = period_ratio or usual_period_ratio(given.case)
     inputs = {"record": motion_inputs(grounds[0]), "records": records, "period_ratio": ratio}
     source = motion_source(given.case, motions[0])
     folder = case_folder(given, output, "budget", record_source=source, **inputs)
     announce_compilation(terminal)
+    found = case_budget(given, motions, grounds, ratio, terminal)
+    folder.add_all(budget_files(*found, given.case.title, look))
+    document, plane = budget_document(*found), grounds[0].y is None
+    conclude(given, folder, document, budget_tables(*found), terminal, plane=plane)
+
+
+def usual_period_ratio(case: Case) -> float:
+    """Of the rows edges and plane: that of the case if it has one."""
+    bed = case.structure.bed
+    return (bed and bed.period_ratio) or PERIOD_RATIO
+
+
+def case_budget(
+    given: CaseInput,
+    motions: Sequence[MotionRequest],
+    grounds: Sequence[MotionComponents],
+    ratio: float,
+    terminal: Terminal,
+) -> tuple[list[Row], list[Effect]]:
+    """All rows of a case under the first of its motions, and what they do to each result."""
+    from rpscli.sweep.budget import effects
+
     wishes = [("as it is", (), motions[0]), *_wishes(given.case, motions, grounds, ratio)]
     rows = []
     with counted(f"{len(wishes)} histories", terminal) as tell:
@@ -91,12 +111,7 @@ def command(
             tell(len(rows), len(wishes))
     if rows[0].refused:
         raise AnalysisError(rows[0].refused)
-    found = [*effects([row for row in rows if not row.refused], given.case)]
-    folder.add_all(budget_files(rows, found, given.case.title, look))
-    document = budget_document(rows, found)
-    conclude(
-        given, folder, document, budget_tables(rows, found), terminal, plane=grounds[0].y is None
-    )
+    return rows, [*effects([row for row in rows if not row.refused], given.case)]
 
 
 def _row(given: CaseInput, cause: str, sets: tuple[str, ...], motion: MotionRequest | str) -> Row:
@@ -111,11 +126,12 @@ def _row(given: CaseInput, cause: str, sets: tuple[str, ...], motion: MotionRequ
     for name in ("record", "vertical", "scale", "scale_to"):
         if (value := getattr(motion, name)) is not None:
             words += [f"--{name.replace('_', '-')}", str(value)]
-    change = re.sub(r"^[\w.]*\.", "", sets[0]) if sets else " ".join(words)
+    change = re.sub(r"^[\w.]*\.|contact=|kind: |[{}]", "", sets[0]) if sets else " ".join(words)
     row, case = Row(cause, change, shlex.join(words), "", {}, "", ""), given.case
     try:
         if sets:
-            case = case_from_mapping(case.written, case.source, case.folder, sets)
+            written = case.written or case.document
+            case = case_from_mapping(written, case.source, case.folder, sets)
         ground = load_motion(case, motion)
         result = time_history(case.structure, ground, case.analysis)
         if result.failure:
@@ -182,11 +198,15 @@ def _direction(case: Case, motion: MotionRequest, ground: MotionComponents) -> W
     from rpscli.records.pair import direction_of
     from rpscli.records.source import parts_of, split_factor
 
-    source = motion.record or (case.record.source if case.record else "")
+    own = case.record if motion.record is None else None
+    source, alike = own.source if own else motion.record or "", _scaled(motion, ground.scale)
     (plain, factor), parts = split_factor(source), parts_of(source)
+    unturned = ("record.rotation=null",) if ground.y is not None else ()
+    if own and own.y is not None:
+        alone = (f"record.source={source}", "record.x=null", "record.y=null", *unturned)
+        return "first component alone", alone, alike
     if parts.pair is None:
-        why = "not known: the source names no second component"
-        return "other component", (), "record.y: take it out by hand" if ground.y else why
+        return "other component", (), "not known: the source names no second component"
     cause, other = "first component alone", parts.pair[0]
     if ground.y is None:
         pair, angle = direction_of(plain) or (re.sub(r"/[ab](?=$|\?)", "", plain), 0.0)
@@ -194,10 +214,8 @@ def _direction(case: Case, motion: MotionRequest, ground: MotionComponents) -> W
         options = ("both", f"rotation={-angle:g}" if angle else "", factor)
         mark = "&" if "?" in pair else "?"
         cause, other = "both components", f"{pair}{mark}{'&'.join(filter(None, options))}"
-    alike = _scaled(motion, ground.scale)
     if motion.record is not None:
         return cause, (), replace(alike, record=other, pair=None)
-    unturned = ("record.rotation=null",) if ground.y is not None else ()
     return cause, (f"record.source={other}", *unturned), alike
 
 

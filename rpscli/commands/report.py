@@ -54,6 +54,12 @@ from rpscli.report.files import require_writable, write_whole
 @click.option("--project", metavar="TEXT", help="Name or number of the project, for the page.")
 @click.option("--author", metavar="NAME", help="Who made the page and signs it.")
 @click.option("--checker", metavar="NAME", help="Who checks the page and signs it.")
+@click.option(
+    "--budget",
+    "with_budget",
+    is_flag=True,
+    help="Add what moves each limited result of a CASE, as `rps budget` tells it.",
+)
 @style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
 @terminal_options
@@ -70,6 +76,7 @@ def command(
     terminal: Terminal,
     motion: MotionRequest,
     *,
+    with_budget: bool,
     force: bool,
 ) -> None:
     """One page about a CASE, a STUDY, a DESIGN or a FOLDER of results.
@@ -85,6 +92,8 @@ def command(
     earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None
     kind = kind_of(subject) if earlier is None else earlier.run["command"]
     _require_sense(subject, (records, asked), overrides, kind, stored=earlier is not None)
+    if with_budget and kind != HISTORY:
+        raise UsageError(f"{subject}: --budget is about one history; name a case")
     name: str
     make: Callable[[], PageDone]
     if kind == DESIGN:
@@ -109,7 +118,8 @@ def command(
             given, motions = read_case(request, terminal), [*single_motions(records, asked)]
             typed = [(records, asked)]
         name = given.case.name
-        make = partial(case_page, given, motions, typed, conditions, look, earlier, terminal)
+        told = (given, motions, typed, conditions, look, earlier, terminal)
+        make = partial(case_page, *told, with_budget=with_budget)
     file = place or RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()

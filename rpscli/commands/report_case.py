@@ -169,6 +169,8 @@ def case_page(
     look: Look,
     earlier: Earlier | None,
     terminal: Terminal,
+    *,
+    with_budget: bool = False,
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
     from rpscli.commands.timehistory_set import (
@@ -180,9 +182,11 @@ def case_page(
     )
     from rpscli.report.html.case_page import History, Several, case_sections
 
-    case, commands = given.case, _commands(given, asked)
+    case, commands = given.case, _commands(given, asked, with_budget=with_budget)
     made = partial(case_sections, case, given.request.overrides, commands, look)
     if case.record is None and motions[0].record is None:
+        if with_budget:
+            raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
         document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
         sections, document = made(case.warnings), concluded(document, None)
         return PageDone(
@@ -202,13 +206,15 @@ def case_page(
 
         # That of a history that failed is none, and counts as 0.
         turned = [np.nan_to_num(each.demands["rotation_ratio"]) for each in found.histories]
-        worst = requests[int(np.argmax(turned))]
+        first = int(np.argmax(turned))
+        worst = requests[first]
         done, result = compute(worst, conditions, page_look(look), terminal)
         history = History(worst.ground, result, done.verdicts, _files(worst))
         grounds = [request.ground for request in requests]
         several = Several(grounds, found.verdicts, [*set_tables([found])][1:], history)
         title = f"Time histories under {len(requests)} records{ends(case)}"
-        sections = made(document["warnings"], several, stored)
+        more = _budget(requests, motions, first, look, terminal) if with_budget else []
+        sections = made(document["warnings"], several, stored, more)
         return PageDone(case.title, title, sections, document, error, case.file.document)
     (request,) = requests
     done, result = compute(request, conditions, page_look(look), terminal)
@@ -217,14 +223,32 @@ def case_page(
     terminal.warn(warnings)
     stored = () if earlier is None else _stored(earlier, requests, done.document)
     history = History(request.ground, result, done.verdicts, _files(request), beside)
+    more = _budget(requests, motions, 0, look, terminal) if with_budget else []
     return PageDone(
         case.title,
         f"Time history under {result.record.name}{ends(case)}",
-        made(warnings, history, stored),
+        made(warnings, history, stored, more),
         done.document,
         done.error,
         case.file.document,
     )
+
+
+def _budget(
+    requests: Sequence[HistoryRequest],
+    motions: Sequence[MotionRequest],
+    first: int,
+    look: Look,
+    terminal: Terminal,
+) -> list[Section]:
+    """What `rps budget` says of one of the histories, the others as its records."""
+    from rpscli.commands.budget import case_budget, usual_period_ratio
+    from rpscli.report.budget import budget_section
+
+    given, order = requests[0].given, [first, *(n for n in range(len(motions)) if n != first)]
+    ratio, grounds = usual_period_ratio(given.case), [requests[n].ground for n in order]
+    found = case_budget(given, [motions[n] for n in order], grounds, ratio, terminal)
+    return [budget_section(*found, given.case.title, look, requests[first].label)]
 
 
 def _files(request: HistoryRequest) -> list[tuple[str, object]]:
@@ -236,13 +260,19 @@ def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
     return [source, *(word for override in overrides for word in ("--set", override))]
 
 
-def _commands(given: CaseInput, asked: Sequence[Asked]) -> list[list[str]]:
+def _commands(given: CaseInput, asked: Sequence[Asked], *, with_budget: bool) -> list[list[str]]:
     """That make the same again."""
     words = subject_words(given.request.source, given.request.overrides)
     if given.case.record is None and not any(records for records, _ in asked):
         return [["rps", "report", *words]]
     return [
-        ["rps", command, *words, *_motion_words(*each)]
+        [
+            "rps",
+            command,
+            *words,
+            *_motion_words(*each),
+            *["--budget"] * (with_budget and command == "report"),
+        ]
         for command in ("timehistory", "report")
         for each in asked
     ]

@@ -13,7 +13,8 @@ from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.report.bundles import Files
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look, figure_files
-from rpscli.report.table import Part, Table, columns_of, csv_text, headed, large, shown
+from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
+from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown
 from rpscli.sweep.budget import FACTOR, RECORDS, SHARES, Effect, Row
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ REMARK = (
     "one input at a time, and no error of the model itself; without podium.impact.loss the loss of"
     " plane contact is 0.3, of edges 1"
 )
+
+CAPTION = "orange: factor 2, red: other verdict, dots: records; overturned at the right end"
 
 
 def sentences(rows: Sequence[Row], effect: Effect) -> str:
@@ -41,7 +44,7 @@ def sentences(rows: Sequence[Row], effect: Effect) -> str:
     return f"{first} {told}" if effect.quantity else first
 
 
-def budget_tables(rows: Sequence[Row], found: Sequence[Effect]) -> Iterator[Part]:
+def budget_tables(rows: Sequence[Row], found: Sequence[Effect]) -> Iterator[Table | str]:
     """Of each result; options, and what gave no number, once at the end."""
     known = [row for row in rows if not row.refused]
     for effect in found:
@@ -112,6 +115,17 @@ def budget_files(rows: Sequence[Row], found: Sequence[Effect], title: str, look:
     yield from figure_files(draws, look).items()
 
 
+def budget_section(
+    rows: Sequence[Row], found: Sequence[Effect], title: str, look: Look, record: str
+) -> Section:
+    """Of a page: pictures above the tables, sentences and options."""
+    drawn = pictures(budget_files(rows, found, title, page_look(look)))
+    blocks: list[Block] = [
+        Picture(files, f"What moves {name} under {record}; {CAPTION}.") for name, files in drawn
+    ]
+    return Section("What moves the results", [*blocks, *budget_tables(rows, found)])
+
+
 def budget_figure(rows: Sequence[Row], effect: Effect, title: str) -> bytes:
     """Bars from the value as it is to that of each change, records as points, the limit as line."""
     assert effect.quantity is not None, "events have no picture"
@@ -123,8 +137,7 @@ def budget_figure(rows: Sequence[Row], effect: Effect, title: str) -> bytes:
     factor, places = large(1.0, unit)[0] or 1.0, np.arange(len(names))
 
     def draw(figure: Figure) -> None:
-        style.heading(figure, title, "orange: factor 2, red: other verdict, dots: records;"
-                      " overturned at the right end")  # fmt: skip
+        style.heading(figure, title, CAPTION)
         axes, kind = figure.subplots(), np.array([style.BLUE, style.ORANGE, style.RED])
         kinds = np.where(effect.turned, 2, effect.moved)[~others]
         ends, points = (factor * np.clip(v, -far, far) for v in (values, effect.values[others]))

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
 from paper_structures import needs_compiled_kernels
 
 from rpscli.records.source import load_components
@@ -77,3 +78,22 @@ def test_the_other_component_and_what_is_not_known(workplace: Path, rps_json: Js
     assert vertical["refused"].startswith("not known")
     edges = [row["options"] for row in rows if "kind: edges" in row["options"]]
     assert "period_ratio: 1.4" in edges[0]
+
+
+def test_the_other_component_that_a_case_names(
+    workplace: Path, rps: Invoke, rps_json: Json, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As many words as it takes to leave it out, which do so by hand too."""
+    for others in ("_values", "_records"):
+        monkeypatch.setattr(f"rpscli.commands.budget.{others}", lambda *_: ())
+    x, y = (f"pulse:sine?amplitude={peak}g&period=0.8" for peak in ("0.3", "0.2"))
+    written = SMALL_CASE.partition("record:")[0] + "analysis: {free_vibration: 1.0}\n"
+    motion = f'record: {{x: "{x}", y: "{y}", rotation: 30, scale: 1.25}}\n'
+    (workplace / "limited.yaml").write_text(written + motion, encoding="utf-8")
+    rows = rps_json("budget", "limited.yaml", *NONE)["rows"]
+    (alone,) = (row for row in rows if row["cause"] == "first component alone")
+    hand = _by_hand(rps, alone["options"])
+    assert hand["record"]["source"] == x
+    assert alone["values"]["rotation_ratio"] == hand["rotation_ratio"]
+    direct = rps_json("timehistory", "small.yaml", "--record", x, "--scale", "1.25", *NONE)
+    assert hand["rotation_ratio"] == direct["rotation_ratio"]

@@ -160,6 +160,8 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
         (("empty",), "has no run.json of rps"),
         (("above",), "name one of the folders in it"),
         (("modes",), "holds results of `rps modal`"),
+        (("study.yaml", "--budget"), "--budget is about one history"),
+        (("small.yaml", "--set", "record=null", "--budget"), "--budget needs a ground motion"),
     ],
 )
 def test_what_makes_no_page_is_said(
@@ -219,6 +221,33 @@ def test_several_records_are_on_one_page(rps: Invoke, rps_json: Callable[..., An
     assert same
     assert int(same[1]) == int(same[2]) > 4
     assert again.count("--scale 1.1") == 4  # two commands for each record
+
+
+def test_what_moves_the_worst_history_stands_on_its_page(
+    rps: Invoke, rps_json: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As `rps budget` tells it of the record that turns the columns most."""
+    Path("small.yaml").write_text(
+        Path("small.yaml").read_text("utf-8") + "limits: {rotation_ratio: 0.2}\n", encoding="utf-8"
+    )
+    weak, strong = (f"pulse:sine?amplitude=0.{peak}g&period=0.8" for peak in (2, 4))
+    given = ("--record", weak, "--record", strong)
+    assert rps("report", "small.yaml", *given, "--budget", "-o", "out.html").exit_code == 10
+    found = rps_json("budget", "small.yaml", *given[2:], *given[:2], "--figures", "none")
+    text = text_of("out.html")
+    assert "What moves rotation_ratio under sine_T0.8s_a0.4g" in text
+    for result in found["results"]:
+        assert result["sentences"] in text
+    assert re.search(r"rps report small.yaml --record '.*0.2g.*0.4g.*' --budget", text)
+    assert rps("report", "small.yaml", *given, "-o", "plain.html").exit_code == 10
+    assert "What moves" not in text_of("plain.html")
+
+    # A folder is asked like the case that it came from.
+    monkeypatch.setattr("rpscli.commands.budget._records", lambda *_: ())
+    rps("timehistory", "small.yaml", *given[2:], "-o", "old", "--figures", "none")
+    assert rps("report", "old", "--budget", "-o", "old.html").exit_code == 10
+    of_case = rps_json("budget", "small.yaml", *given[2:], "--figures", "none")
+    assert of_case["results"][1]["sentences"] in text_of("old.html")
 
 
 def test_a_single_history_says_that_it_is_one(rps_json: Callable[..., Any]) -> None:

@@ -394,6 +394,7 @@ def case_sections(
     warnings: Sequence[str],
     history: History | Several | None = None,
     stored: Sequence[Block] = (),
+    more: Sequence[Section] = (),
 ) -> list[Section]:
     """Everything about a case, and its histories if there are any; `stored`: what was before."""
     short: Iterable[Block] = [
@@ -401,7 +402,8 @@ def case_sections(
     ]
     results, grounds = list[Section](), list[MotionComponents]()
     if history is not None:
-        short, results, grounds = history.short(), history.sections(look), [*history.grounds]
+        short, grounds = history.short(), [*history.grounds]
+        results = [*history.sections(look), *more]
     inputs, repeat = _input(case, overrides, grounds), [*repeated(*commands), *stored]
     short = chain(short, notices(warnings))
     return page_sections(case, case.title, look, short, inputs, results, repeat)
