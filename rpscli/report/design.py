@@ -336,7 +336,7 @@ def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
     colours = colormaps[rcParams["image.cmap"]]
     for name, marker, _ in MARKS[1:]:
         chosen = answer.valid & (answer.passes == (name == "passes"))
-        x, y = answer.values[chosen].T
+        x, y = answer.values[chosen, :2].T  # linked keys stand behind the two
         filled = axes.scatter(
             x, y, c=answer.passing_share[chosen], marker=marker, s=18.0,
             cmap=colours, norm=BoundaryNorm(SHARES, colours.N), lw=0.0, clip_on=False,

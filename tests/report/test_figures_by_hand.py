@@ -344,6 +344,7 @@ def answer_of(
     demands: Sequence[Any] = (),
     valid: object = True,
     least: Sequence[dict[str, Term]] = ({ALPHA: Term()},),
+    linked: int = 0,
 ) -> Answer:
     """An answer of a search.
 
@@ -353,12 +354,14 @@ def answer_of(
         (designs, keys), and (weightings, designs): under the records as they are and resampled.
     aims, demands
         (aims, designs) of all weightings, and (requirements, weightings, designs).
+    linked
+        How many of the last keys follow from the others.
     """
     at, met = np.array(values), np.array(passes, dtype=bool)
     low, high = at.min(axis=0), at.max(axis=0)
     task: Any = SimpleNamespace(
         keys=keys,
-        unknowns=keys,
+        unknowns=keys[: len(keys) - linked],
         study=SimpleNamespace(sources=["a", "b", "c", "d"]),
         clusters=(0, 1, 2, 3),
         file=SimpleNamespace(minimise=least, independent="recordings"),
@@ -448,11 +451,12 @@ def test_the_front_of_two_aims() -> None:
 
 
 def test_the_region_that_passes() -> None:
-    corners = [[0.1, 0.8], [0.1, 2.0], [0.3, 0.8], [0.3, 2.0], [0.2, 1.2]]
+    corners = [(x, y, 2.0 * x) for x, y in ((0.1, 0.8), (0.1, 2), (0.3, 0.8), (0.3, 2), (0.2, 1.2))]
     passes = [[0, 0, 1, 1, 0], [0, 0, 1, 1, 0], [0, 0, 1, 0, 0]]
     answer = answer_of(
-        [ALPHA, SIZE], corners, passes, [[1, 1, 3, 2, 1]], valid=[True, False, True, True, True]
-    )
+        [ALPHA, SIZE, "podium.bearing.wedge_slenderness"], corners, passes, [[1, 1, 3, 2, 1]],
+        valid=[True, False, True, True, True], linked=1,
+    )  # fmt: skip
     figure = drawn(region_figure, answer)
     assert "2 of 5 designs pass" in figure.get_suptitle()
     axes, scale = figure.axes
