@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,8 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.analyses.result_quantities import plain
-from rpscli.commands.inputs import MotionRequest, read_case, single_motions
-from rpscli.commands.report_case import HISTORY, SUMMARY, kind_of
+from rpscli.commands.inputs import RESULTS, MotionRequest, read_case, single_motions
+from rpscli.commands.report_case import DESIGN, HISTORY, SUMMARY, SWEEP, kind_of
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
@@ -48,30 +49,30 @@ NOT_DRAWN = Look(formats=())
 def command(
     a: str, b: str, records: tuple[str, ...], tolerance: float | None, terminal: Terminal
 ) -> None:
-    """What differs between A and B: each a case, a folder of results, or its run.json.
+    """What differs between A and B: each a case, a study, a folder of results, or its run.json.
 
     Inputs are compared with all defaults written out, then versions, then every result, beside what
     1 % less or more of the motion does to it. Of a case the history is computed, or what `rps
-    check` says if neither names a record. Nothing is written.
+    check` says if neither names a record; of a study the points that are not stored yet, which is
+    all that is written.
     """
     from rpscli.report.differences import comparison_document, differences, tables
 
-    stored = [_folder(source) is not None for source in (a, b)]
-    made = []
-    for source, is_stored in zip((a, b), stored, strict=True):
-        if is_stored and records:
-            raise UsageError(f"{source}: stored results have their records; leave --record out")
-        if not is_stored and (kind := kind_of(source)) != HISTORY:
+    known = [_of_folder(source) if _folder(source) else None for source in (a, b)]
+    kinds = [of[0] if of else kind_of(source) for source, of in zip((a, b), known, strict=True)]
+    for source, kind, of in zip((a, b), kinds, known, strict=True):
+        if kind == DESIGN and of is None:
             remedy = f"run both by `rps {kind}`, and compare the folders of their results"
-            raise UsageError(f"{source}: is not a case; {remedy}")
-        of_case = partial(_of_case, source, records, terminal, alone=any(stored))
-        made.append(_of_folder(source) if is_stored else of_case())
-    (of_a, first), (of_b, second) = made
-    if of_a != of_b:
-        raise UsageError(
-            f"{a} is of `rps {of_a}`, {b} of `rps {of_b}`: compare two of one kind, cases under one"
-            " motion by --record"
-        )
+            raise UsageError(f"{source}: is a design; {remedy}")
+        if records and (kind != HISTORY or of):
+            raise UsageError(f"{source}: has records of its own; leave --record out")
+    _require_alike(a, b, kinds)
+    of_case = partial(_of_case, records=records, terminal=terminal, alone=any(known))
+    (of_a, first), (of_b, second) = (
+        of or (_of_study(source, terminal) if kind == SWEEP else of_case(source))
+        for source, kind, of in zip((a, b), kinds, known, strict=True)
+    )
+    _require_alike(a, b, (of_a, of_b))
     for side in (first, second):
         terminal.warn(f"{side.source}: {text}" for text in side.warnings)
     found = differences(first, second)
@@ -85,6 +86,14 @@ def command(
     document |= comparison_document(first, second, found)
     terminal.result(concluded(document, error), tables(first, second, found, tolerance))
     leave(error)
+
+
+def _require_alike(a: str, b: str, kinds: Sequence[str]) -> None:
+    if kinds[0] != kinds[1]:
+        raise UsageError(
+            f"{a} is of `rps {kinds[0]}`, {b} of `rps {kinds[1]}`: compare two of one kind, cases"
+            " under one motion by --record"
+        )
 
 
 def _folder(source: str) -> Path | None:
@@ -124,6 +133,21 @@ def _of_case(
     side.add_table("records.csv", csv_text(rows))
     side.add_table("statistics.csv", csv_text(demand_columns(found.together)))
     return HISTORY, side
+
+
+def _of_study(source: str, terminal: Terminal) -> tuple[str, Side]:
+    from rpscli.commands.study import read, stored_study
+    from rpscli.report.differences import Side, leaves
+    from rpscli.report.study.folder import study_inputs
+
+    study = read(CaseRequest(source, ()), (), terminal)
+    folder = RESULTS / study.layout.study.name / SWEEP
+    run, found = stored_study("compare", study, folder, NOT_DRAWN, terminal)
+    side = Side(source, versions(), dict(leaves(plain(study_inputs(run.layout, study.overrides)))))
+    for name, content in found.files.items():
+        if name.endswith(".csv"):
+            side.add_table(name, str(content))
+    return SWEEP, side
 
 
 def _of_folder(source: str) -> tuple[str, Side]:

@@ -12,13 +12,11 @@ from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
 from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
     SweepChoices,
-    begin,
-    compute,
     of_first_system,
     read,
+    stored_study,
     study_heading,
     summary_tables,
     verdict_table,
@@ -69,19 +67,13 @@ def study_page(
     terminal: Terminal,
 ) -> PageDone:
     """Compute the points that are not stored yet, and put all in order."""
-    from rpscli.report.study.folder import study_folder
-    from rpscli.sweep.store import Store
-
     look, layout = page_look(look), study.layout
     folder = place or RESULTS / layout.study.name / "sweep"
-    study_folder(layout, folder, study.overrides)
-    with Store(folder) as store:
-        run = study.opened(store, conditions=conditions)
-        # What is in a folder is shown, not added to.
-        begin(run, terminal, report_only=place is not None)
-        compute("report", run, terminal)
-        with passing_time("making reports", terminal):
-            found = run.collect(folder, look)
+    # What is in a folder is shown, not added to.
+    only = place is not None
+    run, found = stored_study(
+        "report", study, folder, look, terminal, conditions=conditions, report_only=only
+    )
     notes = [*study.warnings, *found.notes]
     error = run.error(found)
     document = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -22,11 +23,12 @@ from rpscli.commands.shell.waiting import (
 )
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
+from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, headed, large, shown
 
 if TYPE_CHECKING:
     from rpscli.studies import Study
-    from rpscli.study_run import StudyRun
+    from rpscli.study_run import Collected, StudyRun
     from rpscli.sweep.points.layout import StudyPoints
     from rpscli.sweep.run.runner import Finish
     from rpscli.sweep.statistics.fractiles import Spread
@@ -123,6 +125,29 @@ def compute(command: str, run: StudyRun, terminal: Terminal) -> Finish:
             f"computed {finish.computed} points in {duration(finish.seconds)}, {rate:.3g} points/s"
         )
     return finish
+
+
+def stored_study(
+    command: str,
+    study: Study,
+    folder: Path,
+    look: Look,
+    terminal: Terminal,
+    *,
+    conditions: Iterable[Condition] = (),
+    report_only: bool = False,
+) -> tuple[StudyRun, Collected]:
+    """A study whose points are stored in a folder, after those that lack were computed."""
+    from rpscli.report.study.folder import study_folder
+    from rpscli.sweep.store import Store
+
+    study_folder(study.layout, folder, study.overrides)
+    with Store(folder) as store:
+        run = study.opened(store, conditions=conditions)
+        begin(run, terminal, report_only=report_only)
+        compute(command, run, terminal)
+        with passing_time("making reports", terminal):
+            return run, run.collect(folder, look)
 
 
 def study_heading(layout: StudyPoints) -> dict[str, str]:

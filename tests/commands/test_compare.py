@@ -81,12 +81,16 @@ def test_folders_of_two_versions(workplace: Path, rps: Invoke, rps_json: Json) -
 def test_points_are_matched_by_what_they_are(workplace: Path, rps: Invoke, rps_json: Json) -> None:
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
     (workplace / "turned.yaml").write_text(STUDY.replace("0.1, 0.15", "0.15, 0.1"), "utf-8")
-    for name in ("study", "turned"):
-        assert rps("sweep", f"{name}.yaml", *NONE).exit_code == 0
     folders = [f"results/{name}/sweep" for name in ("study", "turned", "other")]
-    found = rps_json("compare", *folders[:2], "--tolerance", "0")
+    found = rps_json("compare", "study.yaml", "turned.yaml", "--tolerance", "0")
+    for name in ("study", "turned"):
+        assert not (workplace / f"results/{name}/sweep/run.json").exists()
+        assert rps("sweep", f"{name}.yaml", *NONE).exit_code == 0
+        same = rps_json("compare", f"{name}.yaml", f"results/{name}/sweep", "--tolerance", "0")
+        assert [same[key] for key in ("inputs", "results", "only_a", "only_b")] == [[]] * 4
+    assert rps_json("compare", *folders[:2])["compared"] == found["compared"]
     assert found["results"] == []
-    assert len(found["inputs"]) == 1
+    assert [each["name"] for each in found["inputs"]] == ["study.vary.0.podium.bearing.slenderness"]
     steeper = STUDY.replace("small.yaml\n", "steeper.yaml\n")
     (workplace / "other.yaml").write_text(steeper, encoding="utf-8")
     (workplace / "steeper.yaml").write_text(SMALL_CASE.replace("storeys: 3\n", "storeys: 3\n"
@@ -130,7 +134,8 @@ def test_cases_without_a_record_are_compared_by_what_follows(
         (("small.yaml", "."), "cannot be compared: No such file"),
         (("small.yaml", "damaged"), "it is damaged"),
         (("design.yaml", "small.yaml"), "run both by `rps design`"),
-        (("study.yaml", "small.yaml"), "run both by `rps sweep`"),
+        (("study.yaml", "small.yaml"), "study.yaml is of `rps sweep`, small.yaml of"),
+        (("study.yaml", "study.yaml", "--record", "x.at2"), "leave --record out"),
         (("modes", "stored", "--record", "x.at2"), "leave --record out"),
         (("modes", "stored"), "is of `rps modal`, stored of `rps timehistory`"),
     ],
