@@ -62,8 +62,9 @@ def command(
     from importlib import resources
 
     from rpscli.analyses.timehistory import time_history
+    from rpscli.analyses.trace import prolonged
     from rpscli.commands.shell.waiting import announce_compilation
-    from rpscli.report.table import csv_lines
+    from rpscli.report.table import Column, csv_lines
     from rpscli.report.tables.analyses import history_columns
 
     given = read_case(request, terminal)
@@ -72,13 +73,15 @@ def command(
         raise UsageError(f"--record: a model has one motion, not {len(motions)}; name one of them")
     ground = load_motion(given.case, motions[0])
     structure = given.case.structure
-    kept = {"podium.devices": structure.devices, "record.vertical": ground.vertical,
-            "record.y": ground.y, "podium.contact": structure.bed}  # fmt: skip
-    if left := [key for key, what in kept.items() if what]:
-        raise UsageError(
-            f"{given.case.source}: {left[0]} is not exported; take it out, by --set {left[0]}=null,"
-            " so that both programs compute the same"
-        )
+    vertical = ground.vertical if program == "opensees" else None
+    left = {"podium.devices": structure.devices, "record.vertical": vertical,
+            "podium.contact": structure.bed}  # fmt: skip
+    why = [f"{key} is not exported; take it out by --set {key}=null" for key in left if left[key]]
+    if ground.y is not None:
+        why.append("a model has one plane; name one of both components by --record")
+    if why:
+        text = f"{given.case.source}: {why[0]}, so that both programs compute the same"
+        raise UsageError(text)
     own = RESULTS / given.case.name / "export" / program
     place = OutputRequest(output.place or own, output.force)
     inputs = {"program": program, "record": motion_inputs(ground)}
@@ -90,7 +93,11 @@ def command(
         raise AnalysisError(result.failure)
     text, limits = _model(program, result, given.case.title)
     folder.add(PROGRAMS[program], text)
-    folder.add("timehistory.csv", csv_lines(history_columns(result)))
+    columns = history_columns(result)
+    if ground.vertical is not None:
+        up = prolonged(ground.vertical.acceleration, len([*columns[0].values]))
+        columns.append(Column("ground_acceleration_up", "m/s2", up))
+    folder.add("timehistory.csv", csv_lines(columns))
     folder.add(RERUN, resources.files("rpscli.report.export").joinpath(RERUN).read_text("utf-8"))
     document = {"program": program, "limits": limits}
     conclude(given, folder, document, [limits, f"next: python {folder.folder / RERUN}"], terminal)

@@ -16,6 +16,8 @@ import pytest
 from paper_structures import needs_compiled_kernels
 from scipy.integrate import solve_ivp
 
+from rpscli.records.source import load_record
+
 from .conftest import SMALL_CASE, Invoke
 
 pytestmark = needs_compiled_kernels
@@ -59,10 +61,16 @@ def gap(of: str, ours: dict[str, Any], theirs: dict[str, Any]) -> float:
     return float(np.abs(other - mine).max() / np.abs(mine).max())
 
 
+UP = "record.vertical=pulse:half_sine?amplitude=0.4g&period=0.6&dt=0.01"
+
+
 @pytest.mark.long
-def test_mujoco_finds_the_same(workplace: Path, rps: Invoke) -> None:
+@pytest.mark.parametrize("vertical", ["record.vertical=null", UP])
+def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> None:
     pytest.importorskip("mujoco", reason="pip install rpscli[contact]")
-    short = ("--set", "analysis.free_vibration=0.3")
+    case = SMALL_CASE.replace("period=0.6", "period=0.6&dt=0.01")
+    (workplace / "small.yaml").write_text(case, encoding="utf-8")
+    short = ("--set", "analysis.free_vibration=0.3", "--set", vertical)
     assert rps("export", "small.yaml", "mujoco", "-o", "m", *short).exit_code == 0
     ours, theirs = rerun(workplace / "m")
     # contacts close within 0.1 ms, a part of a thousand of the period; the rest are its corners
@@ -122,11 +130,32 @@ def test_the_damper_takes_as_much_as_an_impact(
 
 
 def test_what_a_model_lacks_is_refused(workplace: Path, rps: Invoke) -> None:
-    devices = "podium.devices=[{kind: viscous, coefficient: 1e5}]"
-    result = rps("export", "small.yaml", "mujoco", "--set", devices)
-    assert result.exit_code == 2
-    assert "--set podium.devices=null" in result.stderr
-    pulses = (f"pulse:sine?amplitude=0.1g&period={period}" for period in (1, 2))
-    two = [word for pulse in pulses for word in ("--record", pulse)]
-    assert rps("export", "small.yaml", "opensees", *two).exit_code == 2
-    assert not (workplace / "results").exists()
+    """With a remedy that works."""
+    pulse = "pulse:sine?amplitude=0.1g&period=1&dt=0.01"
+    two = ("--record", pulse, "--record", pulse.replace("period=1", "period=2"))
+    for given, remedy in {
+        "podium.devices=[{kind: viscous, coefficient: 1e5}]": "--set podium.devices=null",
+        "podium.contact={kind: edges, period_ratio: 1.2}": "--set podium.contact=null",
+        f"record={{source: '{pulse}', vertical: '{pulse}'}}": "--set record.vertical=null",
+        f"record={{x: '{pulse}', y: '{pulse}'}}": "name one of both components by --record",
+    }.items():
+        result = rps("export", "small.yaml", "opensees", "--set", given)
+        assert result.exit_code == 2
+        assert remedy in result.stderr
+        found = remedy.split()[1:] if "--set" in remedy else [pulse]
+        rest = ("--set", *found) if "--set" in remedy else ("--record", *found)
+        words = ("--set", given, *rest, "--force")
+        assert rps("export", "small.yaml", "opensees", *words).exit_code == 0
+    assert rps("export", "small.yaml", "opensees", *two, "-o", "two").exit_code == 2
+    assert not (workplace / "two").exists()
+
+
+def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> None:
+    pulse = SMALL_CASE.replace("period=0.6", "period=0.6&dt=0.01")
+    (workplace / "small.yaml").write_text(pulse, encoding="utf-8")
+    assert rps("export", "small.yaml", "mujoco", "-o", "m", "--set", UP).exit_code == 0
+    rows = (workplace / "m" / "timehistory.csv").read_text(encoding="utf-8").splitlines()
+    up = [float(row["ground_acceleration_up [m/s2]"]) for row in csv.DictReader(rows)]
+    motion = load_record(UP.partition("=")[2]).acceleration
+    assert up[: len(motion)] == pytest.approx(motion.tolist(), rel=1e-8)  # ten digits are written
+    assert not any(up[len(motion) :])

@@ -18,11 +18,12 @@ STEPS_TOGETHER = 10
 """Of mujoco, under one value of the ground acceleration, that of their middle."""
 SETTLING = 0.02
 """Time at rest before the ground moves [s], in which contacts take up the weight."""
+UP = "ground_acceleration_up [m/s2]"
 AT_ONCE = 5e-4
 """Longest step of OpenSees [s]."""
 
 
-def by_mujoco(time: Any, ground: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
+def by_mujoco(time: Any, ground: Any, up: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
     """Time, cap beam displacement and drift of the lowest storey, after each few steps."""
     import mujoco
 
@@ -37,18 +38,19 @@ def by_mujoco(time: Any, ground: Any, start: dict[str, float]) -> tuple[Any, Any
     interval = STEPS_TOGETHER * model.opt.timestep
     count = round(time[-1] / interval)
     found = np.zeros((count + 1, 2))
-    pushes = np.interp((np.arange(count) + 0.5) * interval, time, ground)
+    middles, weight = (np.arange(count) + 0.5) * interval, model.opt.gravity[2]
+    pushes, lifts = (np.interp(middles, time, each) for each in (ground, up))
     for i in range(count + 1):
         if i:
-            model.opt.gravity[0] = -pushes[i - 1]
+            model.opt.gravity[[0, 2]] = -pushes[i - 1], weight - lifts[i - 1]
             mujoco.mj_step(model, data, STEPS_TOGETHER)
         found[i, 0] = 2.0 * data.qpos[across].mean()  # a centre moves half as far as the beam
         found[i, 1] = data.qpos[joints["floor 0"]] if "floor 0" in joints else 0.0
     return np.arange(count + 1) * interval, found[:, 0], found[:, 1]
 
 
-def by_opensees(time: Any, ground: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
-    """The same at the samples of the record."""
+def by_opensees(time: Any, ground: Any, _: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
+    """The same at the samples of the record, without vertical motion."""
     model = runpy.run_path(str(HERE / "model.py"))
     ops, dt = model["ops"], float(time[1] - time[0])
     model["build"](ground.tolist(), dt, float(start["beam across"]))
@@ -70,14 +72,16 @@ def main() -> None:
     u, v, theta = (ours[name][0] for name in (names[0], "lift [m]", "rotation [rad]"))
     start = {"across": 0.5 * u, "up": 0.5 * v, "tilt": theta, "beam across": u, "beam up": v}
     program = by_mujoco if (HERE / "model.xml").exists() else by_opensees
-    found = program(ours["time [s]"], ours["ground_acceleration [m/s2]"], start)
+    known = ours.dtype.names or ()
+    up = ours[UP] if UP in known else np.zeros(len(ours))
+    found = program(ours["time [s]"], ours["ground_acceleration [m/s2]"], up, start)
     heads = ",".join(["time [s]", *names])
     np.savetxt(HERE / "rerun.csv", np.array(found).T, "%.9g", ",", header=heads, comments="")
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     for axes, name, other in zip(figure.subplots(2, sharex=True), names, found[1:], strict=True):
-        mine = ours[name] if name in (ours.dtype.names or ()) else np.zeros(len(ours))
+        mine = ours[name] if name in known else np.zeros(len(ours))
         largest = np.abs(mine).max(), np.abs(other).max()
         sys.stdout.write("largest {}: rps {:.5g}, the other {:.5g}\n".format(name, *largest))
         axes.plot(ours["time [s]"], mine, label="rps")
