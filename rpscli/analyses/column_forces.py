@@ -1,4 +1,4 @@
-"""What one column carries: weight, overturning moment, shock of impacts (Theory, section 8)."""
+"""What one column carries: weight, overturning moment, shock of impacts (Theory (8.7), (8.8))."""
 
 from __future__ import annotations
 

@@ -384,7 +384,7 @@ class Demand(Shown):
     duration = _Result[float]("Length of the history with its free vibration [s].")
     energy_impact = _Result[float]("Net energy lost at impacts and re-contacts [J].")
     energy_created = _Result[float](
-        "Energy gained where the impact law sets floors in motion [J] (Theory, section 4)."
+        "Energy gained where the impact law sets floors in motion [J] (Theory (4.11))."
     )
     creating_impacts = _Result[int]("Number of impacts that gained energy.")
 

@@ -172,7 +172,7 @@ class ModalResult(Shown):
 
 
 def modal(structure: PodiumStructure) -> ModalResult:
-    """Modal analysis in full contact, rolling and rocking (Theory, section 6; paper, section 3).
+    """Modal analysis in full contact, rolling and rocking (Theory (6.1) to (6.7); paper, 3).
 
     Exact where a state begins; the paper's first-order values are in `first_order` of each state.
     """
@@ -230,7 +230,7 @@ def linearised_matrices(
 ) -> tuple[Array, Array, Array]:
     """M_L, C_L, K_L in [2 R theta, u_t], each (n + 1, n + 1), about a state at rest."""
     # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a larger radius
-    # would soften the storey (Theory, section 9). Dampers, elastic tendons: Theory, section 11.
+    # would soften the storey (Theory (6.3)). Dampers, elastic tendons: Theory, section 11.
     n = structure.storeys
     M, C, K = (np.zeros((n + 1, n + 1)) for _ in range(3))
     M[0, 0] = _base_mass(structure, state) + structure.superstructure_mass * state.arm**2

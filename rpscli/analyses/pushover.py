@@ -127,7 +127,7 @@ def pushover(
     Notes
     -----
     F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the floors
-    stand at 1 u_b + lambda K^-1 p (Theory, section 5; paper, Figure 1c).
+    stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure 1c).
     """
     require_structure(structure)
     end, beta = structure.critical_rotation, structure.bearing.beta

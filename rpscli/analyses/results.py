@@ -52,7 +52,7 @@ class Energy:
         Dissipated in the building, in devices, and in what the ends bear on in full contact.
     impact, created
         Net loss at impacts and re-contacts; and the part of it that was gained where the rigid
-        impact law sets floors in motion (Theory, section 4).
+        impact law sets floors in motion (Theory (4.11)).
     stored
         At the end.
     residual

@@ -193,7 +193,7 @@ class Trace(Shown):
         a_g) [N m]; in slow motion without devices it equals the restoring moment 2 R W s B(x).
     shear_top, shear_bottom, normal_top, normal_bottom
         Forces at the ends of all columns together [N]: F to the right on what is above, N upwards
-        on it (Theory, section 8).
+        on it (Theory (8.4), (8.5)).
     energy_input, energy_damped, energy_impact, energy_bed, energy_stored
         [J] (Theory, sections 8 and 12).
     devices
@@ -476,7 +476,7 @@ def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
 
 
 def turning_inertia(structure: PodiumStructure, x: Array, path: Array) -> Array:
-    """N m_c R^2 J(x) along a path u = |u_b|/2R (samples,) [kg m2] (Theory, section 13)."""
+    """N m_c R^2 J(x) along a path u = |u_b|/2R (samples,) [kg m2] (Theory (13.3))."""
     b = structure.bearing
     y, (sin_alpha, _, k, _, _) = np.minimum(x, b.beta), b.rolling
     spin = k * (y - np.sin(y)) / (sin_alpha + k * np.sin(y)) if b.beta > 0.0 else 0.0

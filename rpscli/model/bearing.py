@@ -226,14 +226,14 @@ class Bearing:
 
     @property
     def critical_curvature_ratio_of_paper(self) -> float:
-        """rho_cr to first order, as the paper has it (Eq. 1)."""
+        """rho_cr to first order, as the paper has it (Theory (1.15))."""
         return first_order_critical_curvature_ratio(self.slenderness, math.tan(self.alpha_wedge))
 
     @cached_property
     def critical_curvature_ratio(self) -> float:
         """The rho at which theta_cr = beta exactly; above it the column overturns rocking.
 
-        Solves tan alpha/(1 - 2 rho) = tan beta(rho) (Theory, section 9). 0 for flat ends.
+        Solves tan alpha/(1 - 2 rho) = tan beta(rho), Theory (1.14). 0 for flat ends.
         """
         rise = math.tan(self.alpha_wedge) - self.slenderness
         if rise <= 0.0 or self.is_spherical:
@@ -246,12 +246,12 @@ class Bearing:
         return 0.5 * float(min(admissible)) if admissible else math.nan
 
     def tendon_elongation(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How much a tendon in the axis is longer at |theta| [m] (Theory, section 11)."""
+        """How much a tendon in the axis is longer at |theta| [m] (Theory (11.9))."""
         across, upwards, _ = self._end_displacement(rotation)
         return 2.0 * np.hypot(across, upwards)
 
     def tendon_lever(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-        """de/dx, the arm of a tendon's tension about the contacts at |theta| [m]."""
+        """de/dx, the arm of a tendon about the contacts at |theta| [m] (Theory (11.10))."""
         _, _, reach = self._end_displacement(rotation)
         _, cos_psi = self.tendon_direction(rotation)
         return 2.0 * cos_psi * reach

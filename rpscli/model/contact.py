@@ -47,7 +47,7 @@ class Contact:
 
     Notes
     -----
-    Theory, section 12.
+    Theory, section 12; its period ratio is that of Theory (12.9).
     """
 
     kind: ContactKind = "rigid"
@@ -109,7 +109,7 @@ class BedPath(NamedTuple):
 
 
 class Bed(NamedTuple):
-    """Full contact that gives way, of a structure (Theory, section 12).
+    """Full contact that gives way, of a structure (Theory (12.5) to (12.9)).
 
     Parameters
     ----------

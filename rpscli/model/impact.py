@@ -42,7 +42,7 @@ class ImpactLaw:
 
     Notes
     -----
-    Theory, section 4. The paper's coefficient c is e^2.
+    Theory (4.5), (4.9). The paper's coefficient c is e^2.
     """
 
     kind: ImpactKind = "flexible"
@@ -95,7 +95,7 @@ class ImpactLaw:
 
 
 def rigid_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
-    """e if the floors move with the cap beam (paper, Eq. 6, where c = e^2).
+    """e if the floors move with the cap beam (Theory (4.6); paper, Eq. 6, c = e^2).
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def rigid_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
 
 
 def flexible_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
-    """e if only the vertical momentum of the floors takes part (Theory, section 4).
+    """e if only the vertical momentum of the floors takes part (Theory (4.8)).
 
     Parameters
     ----------

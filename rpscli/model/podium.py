@@ -75,7 +75,7 @@ class PodiumStructure(Shown):
 
     Notes
     -----
-    Theory, section 2 and 5.
+    Theory (2.3), (5.1).
     """
 
     bearing: Bearing
@@ -234,7 +234,7 @@ class PodiumStructure(Shown):
 
     @property
     def static_base_shear(self) -> float:
-        """V_st = M_tot g tan(alpha), the superstructure's base shear at quasi-static uplift [N]."""
+        """V_st = M_tot g tan(alpha), the base shear at quasi-static uplift [N] (Theory (5.4))."""
         return self.superstructure_mass * self.uplift_acceleration
 
     @property
@@ -242,7 +242,7 @@ class PodiumStructure(Shown):
         """dF/du_b at u_b = 0+ [N/m], exact.
 
         F = W B/C and du_b = 2 R C dx, so it is W (B'C - B^2)/(2 R C^3) at x = 0; to first order in
-        alpha W (2 rho - 1)/(2 R) (Theory, section 5).
+        alpha W (2 rho - 1)/(2 R) (Theory (5.2)).
         """
         phase = self.bearing.rocking if self.bearing.is_flat else self.bearing.rolling
         B = geometry.contact_arm(phase, 1.0, 0.0)
@@ -252,13 +252,13 @@ class PodiumStructure(Shown):
 
     @property
     def turning_inertia(self) -> float:
-        """K(0), the limit of J/theta^2 over N m_c R^2: inertia against turns of the azimuth."""
+        """K(0), limit of J/theta^2 over N m_c R^2: inertia against turns (Theory (13.12))."""
         cosine = math.cos(self.bearing.alpha)
         return self.bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * self.gamma) * cosine**2
 
     @property
     def pass_turn(self) -> float:
-        """Delta phi = pi sqrt(A(0)/K(0)): turn of the azimuth in a pass near upright [rad].
+        """Delta phi = pi sqrt(A(0)/K(0)): turn in a pass near upright [rad] (Theory (13.13)).
 
         A(0) - K(0) = (1 + 4 gamma (1 + eta)) sin^2(alpha): falling moves masses up and down, going
         round does not, so the turn exceeds pi however near the pass is.
@@ -271,7 +271,7 @@ class PodiumStructure(Shown):
         """T of small rolling under a rigid building [s]; None where a flat part makes it jump.
 
         2 pi sqrt(M/K) with M = N m_c Io/4 + m_b + M_tot and K = W (2 rho - 1)/(2 H), exact as the
-        swing vanishes (Theory, section 6).
+        swing vanishes (Theory (6.4)).
         """
         if not self.bearing.is_spherical:
             return None
@@ -281,7 +281,7 @@ class PodiumStructure(Shown):
 
     @cached_property
     def rigid_frequency_parameter(self) -> float:
-        """p_hat of the rigid flat-ended frame with gamma_total [rad/s] (Theory, section 6)."""
+        """p_hat of the rigid flat-ended frame with gamma_total [rad/s] (Theory (6.8))."""
         carried = self.gamma_total
         ratio = (1.0 + 2.0 * carried) / (self.bearing.inertia_ratio + 4.0 * carried)
         return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)

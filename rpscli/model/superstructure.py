@@ -103,7 +103,7 @@ Profile = Literal["sine", "uniform", "linear", "flexural"]
 def profile_shape(storeys: int, profile: Profile) -> NDArray[np.float64]:
     """First fixed-base mode that a profile asks for, (n,), 1 at the roof.
 
-    ``sine`` is the usual shear profile sin(pi i/2n) (Theory, section 7).
+    ``sine`` is the usual shear profile sin(pi i/2n) (Theory (7.1)).
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def profile_stiffnesses(
     Notes
     -----
     k_i (Phi_i - Phi_{i-1}) = w1^2 sum_{j>=i} m_j Phi_j: the storey shear of free vibration in the
-    mode Phi (Theory, section 7).
+    mode Phi (Theory (7.1)).
 
     Examples
     --------

@@ -157,9 +157,9 @@ def test_empty_sections_are_left_out_and_the_others_numbered() -> None:
 def test_what_the_model_leaves_out_is_read_from_the_theory() -> None:
     table = hidden_table()
     assert isinstance(table, Table)
-    assert list(table.heads) == ["assumed", "so the model cannot tell"]
+    assert list(table.heads) == ["assumed", "what it hides", "size"]
     assert len(table.rows) >= 8
-    assert all(len(row) == 2 and all(row) for row in table.rows)
+    assert all(len(row) == 3 and all(row) for row in table.rows)
     assert any("friction_demand" in row[1] for row in table.rows)
 
 

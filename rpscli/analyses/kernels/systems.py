@@ -187,7 +187,7 @@ def fill_settings(
 def bounces_left_out(structure: PodiumStructure) -> float:
     """What impacts after re-contact would add to each floor's relative velocity, over u_b'."""
     # The beam stops, floors keep their velocity but for its jumps: 2/(1 + e) with it, else 1
-    # (Theory, section 3).
+    # (Theory (3.5)).
     return 2.0 / (1.0 + structure.restitution) if structure.impact_law.floors_jump else 1.0
 
 
@@ -343,7 +343,7 @@ def contact_rate(structure: PodiumStructure) -> float:
 def highest_frequency(structure: PodiumStructure) -> float:
     """A bound on the frequencies of the uplifted structure [rad/s]."""
     # A free beam of at least N m_c Io/4 + m_b adds at most the first storey's spring over that
-    # (Theory, section 6; Weyl's inequality).
+    # (Theory (10.7); Weyl's inequality).
     square = (structure.gravity / structure.bearing.semi_diagonal) * (
         1.0 + abs(2.0 * structure.bearing.curvature_ratio - 1.0)
     )

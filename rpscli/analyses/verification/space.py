@@ -56,7 +56,7 @@ def released(structure: PodiumStructure, tilt: float, turning: float, seconds: f
 
 
 def inertia(structure: PodiumStructure, x: float) -> float:
-    """J of the azimuth over N m_c R^2 (Theory, section 13)."""
+    """J of the azimuth over N m_c R^2 (Theory (13.3))."""
     b = structure.bearing
     y, k = min(x, b.beta), 2.0 * b.curvature_ratio * math.cos(b.alpha)
     out = float(structure.path(np.array([x]))[1][0]) / (2.0 * b.semi_diagonal)
@@ -95,7 +95,7 @@ def free_motion() -> Iterator[Comparison]:
             yield compare(FREE, f"{name}, {ends}", unit, within(known, EXACT), found)
     structure = of_paper(0, FLAT)
     b, gamma, x = structure.bearing, structure.gamma, STEADY
-    # phi'^2 H = (g/R)(1 + 2 gamma) B with flat ends (Theory, section 13)
+    # phi'^2 H = (g/R)(1 + 2 gamma) B with flat ends (Theory (13.17))
     H = (b.inertia_ratio - 1.0) * math.cos(x) + b.inertia_ratio_axial * (1.0 - math.cos(x))
     out = math.sin(b.alpha) - math.sin(b.alpha - x)
     H = H * math.sin(x) + (1.0 + 4.0 * gamma) * out * math.cos(b.alpha - x)

@@ -85,7 +85,7 @@ def _small_sphere(case: PartialCase, shape: Shape) -> Fault:
 
 
 def _arc(case: PartialCase, shape: Shape) -> Iterator[Fault]:
-    """0 <= sin(beta) = (tan alpha' - tan alpha)/(2 rho) <= 1 (Theory, section 1)."""
+    """0 <= sin(beta) = (tan alpha' - tan alpha)/(2 rho) <= 1 (Theory (1.1))."""
     rise = shape.wedge_slenderness - shape.slenderness
     sizes = case.bearing.dimensions if case.bearing else None
     if rise < 0.0:
@@ -252,7 +252,7 @@ def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
 
 
 def largest_slenderness(law: ImpactLaw, inertia_ratio: float, gamma: float, eta: float) -> float:
-    """tan(alpha) at which a law's restitution is zero (Theory, section 4); Housner: sin^2 = 2/3."""
+    """tan(alpha) at which a law's restitution is 0 (Theory (4.6), (4.8)); Housner: sin^2 = 2/3."""
     beam, floors = 4.0 * gamma, 4.0 * gamma * eta
     # kappa (1 - e_edge) = 1 with 1 - e_edge = 2 sin^2 (1 + beam + floors)/(Io + ...)
     if law.kind == "rigid":

@@ -256,8 +256,8 @@ def hidden_table() -> Table:
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
     lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
     head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
-    bare = [[cell.replace("`", "") for cell in row] for row in rows]
-    return Table.of_texts(head, bare, words=2)
+    bare = [[cell.replace("`", "") for cell in row[:3]] for row in rows]
+    return Table.of_texts(head[:3], bare, words=3)
 
 
 def _leaves(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -86,7 +86,7 @@ EDGES = {
     ),
     "rigid": "1 - 2 * sin(alpha)^2 * (1 + 4 * gamma_t) / (I + 4 * gamma_t)",
 }
-"""Restitution beside an impulse at the edges of the flat part (Theory, section 4)."""
+"""Restitution beside an impulse at the edges of the flat part (Theory (4.6), (4.8))."""
 
 
 def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
@@ -111,7 +111,7 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
 
 
 def _of_bed(structure: PodiumStructure) -> dict[str, str]:
-    """Of ends that give way, whose phi_u is the root of its formula (Theory, section 12)."""
+    """Of ends that give way, whose phi_u is the root of its formula (Theory (12.8))."""
     lost = "2 / 3 * sin(alpha)" if structure.contact.kind == "plane" else "0"
     stiffness = f"W * (B_u - {lost}) / (2 * R * phi_u * C_u^2)"
     return {

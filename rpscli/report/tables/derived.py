@@ -56,7 +56,7 @@ GEOMETRY = (
     ),
 )  # fmt: skip
 """Shape of the columns. `rho_cr_paper` is the first-order formula of the paper, `rho_cr_exact` the
-curvature ratio at which theta_cr = beta (Theory, section 9)."""
+curvature ratio at which theta_cr = beta (Theory (1.14))."""
 
 DYNAMICS = (
     Derived("columns_mass", "all columns", "N m_c", "kg"),

@@ -1,0 +1,81 @@
+"""The theory as a reference: formulas are numbered, citations of them are right."""
+
+from __future__ import annotations
+
+import re
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.model.superstructure import profile_stiffnesses
+
+ROOT = Path(__file__).parents[1]
+THEORY = ROOT / "rpscli" / "THEORY.md"
+TEXT = re.sub(r"^```.*?^```$", "", THEORY.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
+LABEL = re.compile(r"^(?: {4,6}|\|).* \((\d+)\.(\d+)\)(?: \|)?$", re.MULTILINE)
+"""At the right of a formula, or in the last column of a table of formulas."""
+
+LABELS = [(int(section), int(number)) for section, number in LABEL.findall(TEXT)]
+CITED = re.compile(r"\((\d+\.\d+)\)")
+CITATION = re.compile(r"T(?:heory|HEORY\.md),? (\(\d+\.\d+\)(?:(?:, | and | to )\(\d+\.\d+\))*)")
+
+
+def cited_by(text: str) -> list[str]:
+    """Numbers after "Theory", also over the ends of lines of docstrings and comments."""
+    joined = re.sub(r"\s*\n\s*(?:#:? ?)?", " ", text)
+    return [number for group in CITATION.findall(joined) for number in CITED.findall(group)]
+
+
+SOURCES = sorted(
+    path
+    for folder in ("rpscli", "tests", "cases")
+    for path in (ROOT / folder).rglob("*")
+    if path.suffix in {".py", ".yaml", ".md"} and path not in {Path(__file__), THEORY}
+)
+
+
+def test_formulas_are_numbered_in_order() -> None:
+    expected = [
+        (section, number)
+        for section, group in groupby(LABELS, key=lambda label: label[0])
+        for number in range(1, len(list(group)) + 1)
+    ]
+    assert expected == LABELS
+    assert len(LABELS) > 100
+    headings = [int(n) for n in re.findall(r"^## (\d+)\. ", TEXT, re.MULTILINE)]
+    parts = re.split(r"^## \d+\. .*$", TEXT, flags=re.MULTILINE)[1:]
+    for section, part in zip(headings, parts, strict=True):
+        assert {int(found[0]) for found in LABEL.findall(part)} <= {section}
+
+
+def test_every_displayed_formula_has_a_number() -> None:
+    """An indented block ends with one; lines above may be parts of the same formula."""
+    blocks = re.findall(r"\n\n((?: {4}.*\n)+)", TEXT)
+    assert len(blocks) > 60
+    assert [block for block in blocks if not LABEL.search(block.splitlines()[-1])] == []
+
+
+def test_formulas_that_are_cited_exist() -> None:
+    known = {f"{section}.{number}" for section, number in LABELS}
+    assert set(CITED.findall(TEXT)) <= known
+    cited = {path: cited_by(path.read_text("utf-8")) for path in SOURCES}
+    assert sum(path.suffix == ".py" for path, numbers in cited.items() if numbers) > 10
+    assert {
+        path.name: sorted(set(numbers) - known)
+        for path, numbers in cited.items()
+        if set(numbers) - known
+    } == {}
+
+
+@pytest.mark.parametrize(("storeys", "per_cent"), [(3, 0.5), (9, 1.7)])
+def test_weight_on_drifting_storeys(storeys: int, per_cent: float) -> None:
+    """Weight above over height and stiffness of the softest storey, buildings of section 7."""
+    masses = np.full(storeys, 2e5)
+    stiffnesses = profile_stiffnesses(masses, storeys / 10)
+    weights = STANDARD_GRAVITY * np.cumsum(masses[::-1])[::-1]
+    share = float((weights / (3.0 * stiffnesses)).max())
+    assert 100.0 * share == pytest.approx(per_cent, abs=0.05)
+    assert f"{per_cent} %" in TEXT
