@@ -1,4 +1,4 @@
-"""Energy of a lane, relative to the ground, and its flows (Theory, section 8)."""
+"""Energy of a lane, relative to the ground, and its flows (Theory (8.1), (8.2))."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The equation of motion: tilt of the storey, modes of the building (Theory, sections 2 and 10).
+"""The equation of motion: tilt of the storey, building modes (Theory (2.3), (10.1) to (10.6)).
 
 The tilt is x = |theta| >= 0 and s = sign(theta); a motion to the left is the mirror image of one
 to the right, so only the horizontal action carries s. The building is followed in the modes of its
@@ -106,7 +106,7 @@ def cap_beam_acceleration(
     theta_dot: Number,
     theta_ddot: Number,
 ) -> tuple[Number, Number]:
-    """u_b'' and v_b'' relative to the ground [m/s2] (Theory, section 8); numbers or arrays."""
+    """u_b'' and v_b'' relative to the ground [m/s2] (Theory (8.6)); numbers or arrays."""
     square = theta_dot * theta_dot
     across = side * diameter * (C * theta_ddot + B * square)
     return across, diameter * (B * theta_ddot + (c - C) * square)
@@ -294,7 +294,7 @@ def lifted_mass(s: Record, l: int) -> float:
 def uplift_push(ground_factor: float, shear_share: float, a_g: float, V: float) -> float:
     """q = -a_g (1 + 2 gamma) + 2 gamma eta V/M_tot, which uplifts beyond +- the limit [m/s2].
 
-    It is -R times `horizontal_action` of the side to the right, at x = 0 (Theory, section 3);
+    It is -R times `horizontal_action` of the side to the right, at x = 0 (Theory (3.1));
     linear in a_g and V, so that it serves their derivatives too.
     """
     return shear_share * V - ground_factor * a_g
@@ -314,7 +314,7 @@ def contact_forces(
 ) -> tuple[float, float, float, float]:
     """Forces of all columns together on the beam, and of the ground on the columns [N].
 
-    Returns: F_top, F_bot, N_top, N_bot (Theory, section 8).
+    Returns: F_top, F_bot, N_top, N_bot (Theory (8.4), (8.5)).
     """
     shear_top = cap_beam * (across + a_g) - V
     shear_bottom = shear_top + columns * (0.5 * across + a_g)

@@ -17,7 +17,7 @@ Expanding sin(alpha - x), cos(alpha - x), ... in sin x and cos x leaves, in both
     B(x) = p cos x + q sin x               lever arm of the weight, over R
     C(x) = c + p sin x - q cos x           height of the cap beam's path, over R
 
-with  C' = B  and  B' = c - C, so one sine and one cosine give everything else (Theory, section 1):
+with  C' = B  and  B' = c - C, so one sine and one cosine give the rest, Theory (1.9) to (1.11):
 
     S = B^2 + C^2 = p^2 + q^2 - c^2 + 2 c C
     u_b / 2R = u0 + c x - q sin x - p cos x        (odd in theta)
@@ -68,12 +68,12 @@ def rocking_phase(alpha: float, rho: float, beta: float) -> Phase:
 
 
 def contact_arm(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """B(x): horizontal distance of the weight from the contact point, over R."""
+    """B(x): horizontal distance of the weight from the contact, over R (Theory (1.6))."""
     return phase.p * cos_x + phase.q * sin_x
 
 
 def contact_height(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """C(x): du_b/dtheta = 2 R C."""
+    """C(x): du_b/dtheta = 2 R C (Theory (1.7), (1.8))."""
     return phase.c + phase.p * sin_x - phase.q * cos_x
 
 
@@ -83,12 +83,12 @@ def squared_distance(phase: Phase, C: float) -> float:
 
 
 def cap_beam_displacement(phase: Phase, x: Value, cos_x: Value, sin_x: Value) -> Value:
-    """|u_b| / 2R [x rad]."""
+    """|u_b| / 2R [x rad] (Theory (1.4))."""
     return phase.u0 + phase.c * x - phase.q * sin_x - phase.p * cos_x
 
 
 def cap_beam_lift(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
-    """v_b / 2R."""
+    """v_b / 2R (Theory (1.5))."""
     return phase.v0 + phase.p * sin_x - phase.q * cos_x
 
 

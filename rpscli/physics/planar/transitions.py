@@ -1,4 +1,4 @@
-"""Impact at theta = 0, and re-contact (Theory, sections 3 and 4)."""
+"""Impact at theta = 0, and re-contact (Theory (3.3), (4.7))."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def change_edge(s: Record, l: int, system: Record) -> float:
     """Impact: from the edge on one side to the other; returns the energy lost [J].
 
     theta'+ = e theta'-, and floors that move with the cap beam jump by
-    -2 R cos(alpha) (1 - e) theta'- (Theory, section 4; paper, Eq. 6); those that do not keep their
+    -2 R cos(alpha) (1 - e) theta'- (Theory (4.7); paper, Eq. 6); those that do not keep their
     own velocity. The tilt x = |theta| starts again from exactly zero, upwards.
     """
     e, arm = system.restitution, 2.0 * system.R * math.cos(system.alpha)
@@ -67,7 +67,7 @@ def bounces_left_out(s: Record, l: int, system: Record) -> float:
     """What the bounces left out add to the floors' velocity, over u_b', as the rule asks for.
 
     Friction lets the beam come back with k of the rate with which it left: k = 1 without it, 0 if
-    it holds the beam where it turns (Theory, section 11).
+    it holds the beam where it turns (Theory (11.17), (11.18)).
     """
     bounces = system.bounces
     if (

@@ -1,4 +1,4 @@
-"""Energy of a lane, relative to the ground, and its flows (Theory, sections 8 and 13)."""
+"""Energy of a lane, relative to the ground, and its flows (Theory (13.2), (13.7))."""
 
 from __future__ import annotations
 

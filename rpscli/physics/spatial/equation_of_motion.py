@@ -1,4 +1,4 @@
-"""The equation of motion of a tilt to any side, with its Taylor terms (Theory, section 13).
+"""The equation of motion of a tilt to any side, with its Taylor terms (Theory (13.4), (13.5)).
 
 The tilt x >= 0 leans towards the azimuth phi; p = x', w = phi', e_r and e_t are the directions of
 the azimuth and across it. Over N m_c R^2, with A, B, C as in one plane and u = |u_b|/2R,

@@ -1,4 +1,4 @@
-"""What happens near the upright position, and how a tilt begins and ends (Theory, section 13).
+"""What happens near the upright position, and how a tilt begins and ends (Theory (13.11), (13.16)).
 
 As x goes to 0 the motion is one on a cone: A and J/x^2 = K stay, and what passes near upright turns
 its azimuth by pi/kappa in all, kappa = sqrt(K(0)/A(0)), however near. A real contact takes a time
@@ -28,7 +28,7 @@ SLOW = 20.0
 
 @compiled
 def loss_share(nearness: float) -> float:
-    """l(s): of what an impact loses, what a pass of s = theta_min/(|q| t_c) does.
+    """l(s): of what an impact loses, what a pass of s = theta_min/(|q| t_c) does (Theory (13.14)).
 
     Fitted within .04 to passes of single columns on plastic contacts of t_c from 80 us to 8 ms.
     """

@@ -1,4 +1,4 @@
-"""A bed in the equation of motion, and its Taylor terms (Theory, section 12).
+"""A bed in the equation of motion, and its Taylor terms (Theory (12.5), (12.6)).
 
 The constants of a lane tell what it stands on: `bed_k`, `bed_c` > 0 in full contact, where its
 phase is B = 0, C = C(phi_u); `sink`, `root` > 0 while a plane end lifts gradually; none of them on

@@ -1,4 +1,4 @@
-"""What devices do at a given motion (Theory, section 11).
+"""What devices do at a given motion (Theory (11.1) to (11.6)).
 
 A horizontal device acts on the cap beam with P = -s times its resistance, a tendon with its tension
 against the opening of both ends, rolling resistance with its moment against the tilt's rate. Which
@@ -100,7 +100,7 @@ def set_devices_at_ends(s: Record) -> None:
             set_devices(s, l, s.next_theta[l], s.next_theta_dot[l])
 
 
-# How a tendon in the axis of a column is stretched by the tilt (Theory, section 11).
+# How a tendon in the axis of a column is stretched by the tilt (Theory (11.7) to (11.10)).
 #
 # The middle of either end moves by (M_1, M_2) from where it stood; with E its distance from there a
 # tendon is longer by e = 2 E. Seen from the contact, which lies B + r x from that place along the

@@ -141,7 +141,7 @@ def mobilised_friction(s: Record, l: int) -> float:
     """Share of its friction that a storey at rest asks for, against growing tilts: -1 to 1.
 
     In full contact the columns hold what they can, and friction dampers the rest: no less, or the
-    columns would turn (Theory, section 11). Reads V and the ground in `next_V`, `next_a_g` and
+    columns would turn (Theory (11.13)). Reads V and the ground in `next_V`, `next_a_g` and
     `next_g_up`.
     """
     B, C = arms(s, l)

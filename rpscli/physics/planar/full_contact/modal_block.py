@@ -129,7 +129,7 @@ def keep_state(block: Record, k: int) -> None:
         block.q[r], block.dq[r] = block.qs[r, k], block.dqs[r, k]
 
 
-# What flows in a block of exact steps in full contact (Theory, section 8).
+# What flows in a block of exact steps in full contact (Theory (8.2)).
 
 GROWTH = 1.5
 """Ratio of the ends of the parts over which a strongly damped velocity is integrated: four nodes in

@@ -5,7 +5,7 @@ The storey uplifts to the side s when the margin
     f(t) = (g + a_v) tan(alpha) (1 + 2 gamma + 2 gamma eta) - s q(t),
     q(t) = -a_g (1 + 2 gamma) + 2 gamma eta V/M_tot
 
-leaves zero downwards (Theory, section 3): exactly where s theta'' of the uplifted equation would
+leaves zero downwards (Theory (3.1), (3.2)): exactly where s theta'' of the uplifted equation would
 become positive. Devices at rest add to the limit; a storey that friction holds tilted has another
 limit on either side (section 11). Steps that surely keep it positive are told by the quintic
 through the push q and its derivatives, for a whole block at once; the instant itself is found on
