@@ -1,0 +1,164 @@
+"""The paper has the form of its journal, and each number in it is computed again.
+
+``python -m pytest tests/test_paper.py -m "long or not long"`` computes all of them, in some ten
+seconds beyond the compilation. Two come from elsewhere: counts of the study of impact laws, and
+the outcome of the shaking-table tests, whose data are not shipped; both are read from where they
+are documented.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from oracles.reference_systems import podium as oracle_podium
+from oracles.second_integrator import simulate
+from oracles.test_earthquakes import ROWS, recorded
+from paper_structures import RecordLoader, block, needs_compiled_kernels, podium
+from physics.test_overturning_pulses import SINE, least_amplitude
+from reproduction.test_histories import PRINTED
+
+import rpscli
+from rpscli.model.bearing import Bearing
+
+ROOT = Path(__file__).parents[1]
+PAPER = ROOT / "rpscli" / "paper.md"
+_, HEAD, BODY = re.split(r"^---\n", PAPER.read_text("utf-8"), maxsplit=2, flags=re.MULTILINE)
+TEXT = " ".join(BODY.split())
+
+REQUIRED = (
+    "Summary", "Statement of need", "State of the field", "Software design",
+    "Research impact statement", "AI usage disclosure", "Acknowledgements", "References",
+)  # fmt: skip
+"""Sections that the Journal of Open Source Software asks for, in its order."""
+
+NUMBERS = {
+    "six storeys": ("undergo 106 impacts", "by 36 % of", "shear is 19 % of", "acceleration 53 %"),
+    "energy": ("within 1e-8 of the energy",),
+    "errors in print": (
+        "jumps by 1.0, 2.2 and 3.9 % at slendernesses of 0.10, 0.15 and 0.20", "three errors",
+    ),
+    "a published pulse": ("a block of 1 m by 3 m is 0.46873 g",),
+    "second integrator": ("motion of 223 impacts", "less than 1e-9 of"),
+    "Table 3": (
+        "36 probabilities of overturning from 3600 histories", "mean difference of 0.016",
+        "44 % of all impacts",
+    ),
+    "documented": ("in 90 % of the half", "44 motions for 576 buildings"),
+}  # fmt: skip
+"""The phrases that hold numbers, by the test that computes them."""
+
+
+def test_form() -> None:
+    head = yaml.safe_load(HEAD)
+    assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} <= set(head)
+    assert re.fullmatch(r"\d{1,2} [A-Z][a-z]+ \d{4}", head["date"])
+    sections = re.findall(r"^# (.*)$", BODY, re.MULTILINE)
+    assert [name for name in sections if name in REQUIRED] == list(REQUIRED)
+    assert 750 <= len(re.sub(r"!?\[|\]\([^)]*\)|\[?-?@[\w;, @-]+\]?", " ", BODY).split()) <= 1750
+    figures = re.findall(r"\]\((\S+\.png)\)", BODY)
+    assert len(figures) == 2
+    assert all((PAPER.parent / figure).is_file() for figure in figures)
+
+
+def test_references_are_cited_and_citations_have_references() -> None:
+    bibliography = PAPER.with_suffix(".bib").read_text("utf-8")
+    entries = re.findall(r"^@\w+\{(\w+),", bibliography, re.MULTILINE)
+    cited = set(re.findall(r"@(\w+)", BODY))
+    assert len(entries) == len(set(entries))
+    assert set(entries) == cited
+
+
+def test_each_number_belongs_to_a_test() -> None:
+    text = TEXT
+    for phrase in (phrase for phrases in NUMBERS.values() for phrase in phrases):
+        assert text.count(phrase) == 1, phrase
+        text = text.replace(phrase, "")
+    names = r"@\w+|FEMA P695|Table 3|\]\([^)]*\)"
+    assert re.findall(r"\S*\d\S*", re.sub(names, "", text)) == []
+
+
+def said(of: str, numbers: tuple[str, ...]) -> None:
+    """The phrases hold these numbers, in this order."""
+    joined = " ".join(NUMBERS[of])
+    assert re.findall(r"\d[\d.]*(?:e-\d+)?", joined) == list(numbers)
+
+
+@needs_compiled_kernels
+def test_six_storeys(fema_record: RecordLoader) -> None:
+    case = rpscli.load_case(ROOT / "cases" / "six_storey.yaml")
+    record = fema_record("farfield/1/b")
+    result = rpscli.time_history(case.structure, record, case.analysis)
+    fixed = result.fixed_base
+    assert fixed is not None
+    said(
+        "six storeys",
+        (
+            f"{result.impacts}",
+            f"{100.0 * result.max_rotation / case.structure.critical_rotation:.0f}",
+            f"{100.0 * result.max_base_shear / max(fixed.storey_shears):.0f}",
+            f"{100.0 * result.max_floor_acceleration / max(fixed.floor_accelerations):.0f}",
+        ),
+    )
+    assert abs(result.energy.residual) < 1e-8 * result.energy.input
+
+
+def test_errors_in_print() -> None:
+    said("errors in print", ("1.0", "2.2", "3.9", "0.10", "0.15", "0.20"))
+    for tan_alpha, jump in ((0.10, 1.0), (0.15, 2.2), (0.20, 3.9)):
+        at = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, 0.5).critical_curvature_ratio_of_paper
+        below, above = (
+            Bearing(1.5, tan_alpha, 2.0 * tan_alpha, at + shift).critical_rotation_of_paper
+            for shift in (-1e-9, 1e-9)
+        )
+        assert f"{100.0 * abs(above / below - 1.0):.1f}" == f"{jump:.1f}"
+
+
+@needs_compiled_kernels
+def test_a_published_pulse() -> None:
+    structure = replace(block(0.5, 1.5), gravity=9.81)
+    least = least_amplitude(structure, structure.gravity * SINE, 0.4, 0.7)
+    said("a published pulse", ("1", "3", f"{least:.5f}"))
+
+
+@needs_compiled_kernels
+@pytest.mark.long
+def test_second_integrator(fema_record: RecordLoader) -> None:
+    row = ROWS[4]
+    other = simulate(oracle_podium(row.storeys, row.tan_alpha, row.rho), *recorded(row))
+    settings = rpscli.TimeHistorySettings(
+        free_vibration=10.0, recontact_rule="relative", accuracy=16.0
+    )
+    ours = rpscli.demand(
+        podium(row.storeys, row.tan_alpha, row.rho), fema_record("farfield/17/a"), settings
+    )
+    said("second integrator", (f"{ours.impacts}", "1e-9"))
+    assert other.impacts == ours.impacts
+    assert ours.max_rotation == pytest.approx(other.max_rotation, rel=1e-9)
+
+
+@needs_compiled_kernels
+@pytest.mark.long
+def test_table_3(tmp_path: Path, fema_record: RecordLoader) -> None:
+    points = rpscli.load_study(ROOT / "cases" / "compdyn2021" / "table_3.yaml").run(tmp_path)
+    fallen = np.char.startswith(np.asarray(points["outcome"], dtype=str), "overturned")
+    counts = fallen.reshape((*PRINTED.shape, 100)).sum(axis=-1)
+    difference = np.mean(np.abs(counts - PRINTED)) / 100.0
+    creating = np.sum(points["creating_impacts"]) / np.sum(points["impacts"])
+    said(
+        "Table 3",
+        (f"{PRINTED.size}", f"{fallen.size}", f"{difference:.3f}", f"{100.0 * creating:.0f}"),
+    )
+
+
+def test_what_is_documented() -> None:
+    granite = (ROOT / "cases" / "granite" / "README.md").read_text("utf-8")
+    law = " ".join((ROOT / "cases/studies/impact_law/README.md").read_text("utf-8").split())
+    assert re.search(r"nine runs within 3 % .*\| 90\.1 % \|", granite)
+    assert "The same 576 buildings" in law
+    assert "under the 44 far-field motions" in law
+    said("documented", ("90", "44", "576"))
