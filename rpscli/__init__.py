@@ -109,7 +109,7 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module  # not every import of rpscli needs it
 
     if name == "__version__":
-        return import_module("rpscli.report.documents").program_version()
+        return import_module("rpscli.version").VERSION
     if name == "figures":
         return import_module("rpscli.figures")
     if name in _RENAMED:

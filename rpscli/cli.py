@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 import click
 
 from rpscli.commands.shell.lazy import LazyGroup, Member
+from rpscli.version import VERSION
 
 COMMANDS = {
     "init": Member("rpscli.commands.init", "write a commented case or study to start from"),
@@ -42,6 +43,8 @@ COMMANDS = {
         "rpscli.commands.init", "let your shell complete what you type", "completion"
     ),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
+    "doctor": Member("rpscli.commands.doctor", "what rps finds on this machine, what is missing"),
+    "clean": Member("rpscli.commands.doctor", "delete what rps keeps and can make again", "clean"),
 }
 
 
@@ -72,9 +75,7 @@ class Program(LazyGroup):
 def _show_version(ctx: click.Context, option: click.Parameter, value: object) -> None:
     del option
     if value and not ctx.resilient_parsing:
-        from rpscli.report.documents import program_version
-
-        click.echo(f"rps {program_version()}")
+        click.echo(f"rps {VERSION}")
         ctx.exit()
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.case.conditions import Condition
 from rpscli.errors import LimitExceeded, Refused, RpsError, StudyIncomplete, UsageError
+from rpscli.machine import available_cores
 from rpscli.report.figures.look import Look
 from rpscli.report.study.registry import REPORTS, lacking, not_judged, requirement_faults
 from rpscli.report.study.report import add_notes
@@ -31,7 +32,7 @@ from rpscli.sweep.points_csv import points_csv
 from rpscli.sweep.run.cluster import Cluster
 from rpscli.sweep.run.resume import all_keys, remember, resume
 from rpscli.sweep.run.runner import Finish, Progress, run
-from rpscli.sweep.run.threads import Threads, available_cores
+from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, judged, rate_notes
 from rpscli.sweep.store import Store

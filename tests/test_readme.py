@@ -19,6 +19,7 @@ from paper_structures import needs_compiled_kernels
 from rpscli.cli import COMMANDS as COMMANDS_OF_PROGRAM
 from rpscli.cli import program
 from rpscli.user_cache import VARIABLE
+from rpscli.version import VERSION
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
@@ -202,9 +203,12 @@ def test_the_citation_is_of_this_version() -> None:
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert {"cff-version", "message", "title", "authors"} <= set(citation)  # what the format needs
-    same = ("version", "license", "keywords")
+    same = ("license", "keywords")
     assert [citation[name] for name in same] == [project[name] for name in same]
-    assert f"version {project['version']}," in README.read_text("utf-8")
+    assert citation["repository-code"] == project["urls"]["Source"]
+    assert citation["version"] == VERSION
+    assert f"version {VERSION}," in README.read_text("utf-8")
+    assert f"\n## [{VERSION}]" in DOCUMENTS[-1].read_text("utf-8")
 
 
 def test_the_tests_run_on_the_systems_of_users() -> None:

@@ -386,7 +386,7 @@ def _overrides_in_new_words(overrides: Sequence[str]) -> tuple[list[str], list[s
 
 
 def _note(word: str) -> str:
-    return f"{word} is an old word; write {OLD_WORDS[word]}, the next version knows that alone"
+    return f"{word} is an old word; write {OLD_WORDS[word]}, version 2 knows that alone"
 
 
 def _used_and_held_out(

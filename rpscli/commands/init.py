@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import click
 from click.shell_completion import BashComplete, FishComplete, ShellComplete, ZshComplete
 
-from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
-from rpscli.errors import Refused, UsageError
+from rpscli.errors import Refused, UsageError, hint, listed
 from rpscli.report.documents import heading, json_text
 from rpscli.report.files import write_whole
+from rpscli.report.table import Table
+from rpscli.shipped import FOLDER, example_files, examples
 
 
 @click.command("init")
 @click.argument("file", required=False, type=click.Path(path_type=Path))
 @click.option("--study", is_flag=True, help="A study in place of a case.")
+@click.option(
+    "--example",
+    is_flag=False,
+    flag_value="",
+    metavar="[NAME]",
+    **completing(examples),
+    help="A case or study that comes with rps, and the files that it names, into the folder FILE"
+    " (cases by default); without NAME, what there is.",
+)
 @click.option(
     "--editor",
     is_flag=True,
@@ -28,9 +40,22 @@ from rpscli.report.files import write_whole
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 @terminal_options
 def command(
-    file: Path | None, *, study: bool, editor: bool, force: bool, terminal: Terminal
+    file: Path | None,
+    example: str | None,
+    *,
+    study: bool,
+    editor: bool,
+    force: bool,
+    terminal: Terminal,
 ) -> None:
     """Write a commented case to FILE (case.yaml or study.yaml by default; - prints it)."""
+    if example is not None:
+        if study or editor or str(file) == "-":
+            raise UsageError(
+                "--example writes files as they are, into a folder; leave out the rest"
+            )
+        _example(example, file or Path(FOLDER), terminal, force=force)
+        return
     from rpscli.case.text.files import starter_text
 
     text = starter_text(study=study)
@@ -46,12 +71,39 @@ def command(
         schema = file.with_name(f"rps-{kind}.schema.json")
         files[file] = f"# yaml-language-server: $schema={schema.name}\n{text}"
         files[schema] = json_text(schema_of(kind))
+    _write({each: content.encode() for each, content in files.items()}, terminal, force=force)
+
+
+def _example(name: str, folder: Path, terminal: Terminal, *, force: bool) -> None:
+    known = examples()
+    name = name.removesuffix(".yaml").removeprefix(f"{FOLDER}/")
+    if not name:
+        document = {**heading(), "command": "init", "files": [], "examples": known}
+        terminal.result(document, [Table.listing(known.items())])
+        return
+    if name not in known:
+        meant = hint(name, known, "`rps init --example` lists all")
+        raise UsageError(f"--example {name}: there is none of this name; {meant}")
+    files = {folder / path: content for path, content in example_files(name).items()}
+    # Examples share files: what another one left as it is may stay.
+    for each in list(files)[1:]:
+        if each.is_file() and each.read_bytes() == files[each]:
+            del files[each]
+    _write(files, terminal, force=force)
+
+
+def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> None:
+    """All of the files, of which the first is what was asked for."""
     for each in files:
         if each.exists() and not force:
             raise Refused(f"{each} exists; name another file, or overwrite it with --force")
-    write_whole({each: content.encode() for each, content in files.items()})
-    check = f"rps sweep {file} --dry-run" if study else f"rps check {file}"
-    terminal.note(f"written to {file}; next: {check}")
+    write_whole(files)
+    first, *others = files
+    # What names a base is a study, or a design.
+    verb = "design" if b"\nminimise:" in files[first] else "sweep"
+    check = f"{verb} {first} --dry-run" if b"\nbase:" in files[first] else f"check {first}"
+    also = f" with {listed(map(str, others), 'and')}" if others else ""
+    terminal.note(f"written to {first}{also}; next: rps {check}")
     if terminal.as_json:
         terminal.result({**heading(), "command": "init", "files": [str(each) for each in files]})
 

@@ -32,10 +32,10 @@ from rpscli.commands.shell.options import (
 )
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import Refused, UsageError
-from rpscli.report.documents import program_version
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
 from rpscli.report.files import require_writable, write_whole
+from rpscli.version import VERSION
 
 
 @click.command("report")
@@ -170,7 +170,7 @@ def _write(
     from rpscli.report.html.page import MOST_BYTES, page
 
     made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
-    subtitle = f"{done.subtitle}. Made by rps {program_version()} on {made}."
+    subtitle = f"{done.subtitle}. Made by rps {VERSION} on {made}."
     content = page(done.title, subtitle, done.sections, name, signed)
     write_whole({file: content})
     if len(content) > MOST_BYTES:

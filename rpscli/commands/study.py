@@ -160,9 +160,9 @@ def study_heading(layout: StudyPoints) -> dict[str, str]:
 def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> None:
     """Count, first and last points, and an estimate of the time."""
     from rpscli.analyses.kernels.compilation import is_ready
+    from rpscli.machine import available_cores
     from rpscli.sweep.points.layout import described
     from rpscli.sweep.run.schedule import estimated_seconds
-    from rpscli.sweep.run.threads import available_cores
 
     terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
     layout, count = study.layout, len(study)

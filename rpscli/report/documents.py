@@ -9,6 +9,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rpscli.analyses.result_quantities import SAMPLED, STOREYS, plain, values_of
+from rpscli.version import VERSION
 
 if TYPE_CHECKING:
     from rpscli.analyses.pushover import PushoverResult
@@ -34,22 +35,18 @@ def _text(value: Any, indent: str) -> str:
     return json.dumps(value, allow_nan=False)
 
 
-def program_version() -> str:
-    """Version of rps; ``0+unknown`` where it runs from a source tree that is not installed."""
-    return _installed("rpscli") or "0+unknown"
-
-
 def versions() -> dict[str, str | None]:
     """Versions of rps, Python, numpy and numba, without importing any of them."""
     return {
-        "rps": program_version(),
+        "rps": VERSION,
         "python": platform.python_version(),
-        "numpy": _installed("numpy"),
-        "numba": _installed("numba"),
+        "numpy": installed("numpy"),
+        "numba": installed("numba"),
     }
 
 
-def _installed(package: str) -> str | None:
+def installed(package: str) -> str | None:
+    """Version of a package; None if it is not there."""
     from importlib import metadata
 
     try:
@@ -77,7 +74,7 @@ def direction_note(pairs: Iterable[bool]) -> str:
 
 def heading(status: str = "ok") -> Document:
     """The keys with which every document begins."""
-    return {"schema_version": SCHEMA_VERSION, "rps_version": program_version(), "status": status}
+    return {"schema_version": SCHEMA_VERSION, "rps_version": VERSION, "status": status}
 
 
 def failure_document(kind: str, message: str, exit_code: int) -> Document:

@@ -123,7 +123,7 @@ _POINTS = {"total": int, "failed": int}
 _FAILURE = {"point": int, "message": str, "command": str}
 
 DOCUMENTS: dict[str, Mapping[str, Shape]] = {
-    "init": _FILES,
+    "init": {**_FILES, "examples?": dict[str, str]},
     "explain": {
         "word": str, "keys": [KeyReference], "results": [{"name": str, "label": str}],
         "words": [{"word": str, "meaning": str}], "reports": [{"report": str, "meaning": str}],
@@ -207,6 +207,8 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
         "compared": int, "mismatches": int, "comparisons": [{**_keys(Comparison), "holds": bool}],
         **_ENDED,
     },
+    "doctor": {"findings": [dict.fromkeys(("subject", "found", "remedy"), str)], **_ENDED},
+    "clean": {"folder": str, "dry_run": bool, "bytes": dict[str, int]},
 }  # fmt: skip
 """What each command that succeeds, or finds a limit exceeded, says at least; `?`: not always."""
 

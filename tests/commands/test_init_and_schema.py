@@ -194,3 +194,54 @@ def test_options_inside_reports_are_explained(rps: Invoke, rps_json: InvokeJson)
     assert "of the reports fragility, risk" in rps("explain", "dispersion").stdout
     limits = [o for o in rps_json("explain", "risk")["options"] if o["key"].startswith("limits")]
     assert [o["key"] for o in limits] == ["limits"]
+
+
+def test_every_example_is_written_with_what_it_names(rps: Invoke, rps_json: InvokeJson) -> None:
+    names = rps_json("init", "--example")["examples"]
+    files = sorted((ROOT / "cases").rglob("*.yaml"))
+    assert sorted(names) == sorted(
+        file.relative_to(ROOT / "cases").with_suffix("").as_posix() for file in files
+    )
+    assert all(10 < len(about) < 250 for about in names.values())
+    for name in names:
+        result = rps("init", "--example", name, name.replace("/", "-"))
+        assert result.exit_code == 0, result.stderr
+        for path in Path(name.replace("/", "-")).rglob("*.*"):
+            same = ROOT / "cases" / Path(*path.parts[1:])
+            assert path.read_bytes() == same.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "others", "then"),
+    [
+        ("rigid_frame", ["records/synthetic_far_field.at2"], "check cases/rigid_frame.yaml"),
+        ("studies/ida_fragility", ["acceptance.yaml", "studies/hazard_pgv.csv"], "sweep"),
+        ("friction_dampers", ["studies/devices.yaml"], "check cases/friction_dampers.yaml"),
+    ],
+)
+def test_an_example_goes_on_working(rps: Invoke, name: str, others: list[str], then: str) -> None:
+    result = rps("init", "--example", name)
+    assert f"next: rps {then}" in result.stderr
+    assert all(Path("cases", each).is_file() for each in others)
+    if then == "sweep":
+        return  # what a dry run does is tested where studies are
+    words = result.stderr.strip().rpartition("next: rps ")[2].split()
+    done = rps(*words)
+    assert done.exit_code == 0, done.stderr
+
+
+def test_examples_share_files_and_overwrite_none(rps: Invoke) -> None:
+    assert rps("init", "--example", "compdyn2021/figure_8").exit_code == 0
+    assert rps("init", "--example", "cases/compdyn2021/figure_3.yaml").exit_code == 0
+    Path("cases/compdyn2021/system.yaml").write_text("mine", encoding="utf-8")
+    assert rps("init", "--example", "compdyn2021/figure_9").exit_code == 7
+    assert not Path("cases/compdyn2021/figure_9.yaml").exists()
+    assert rps("init", "--example", "compdyn2021/figure_9", "--force").exit_code == 0
+
+
+def test_an_example_that_is_not_there_is_told(rps: Invoke) -> None:
+    result = rps("init", "--example", "six_story")
+    assert result.exit_code == 2
+    assert "did you mean six_storey?" in result.stderr
+    assert rps("init", "--example", "six_storey", "--study").exit_code == 2
+    assert "compdyn2021/table_3" in rps("init", "--example").stdout

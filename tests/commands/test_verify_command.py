@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -24,8 +23,6 @@ from rpscli.analyses.verification.motions import (
 from rpscli.analyses.verification.overturning import least_amplitude
 from rpscli.cli import program
 from rpscli.records.source import load_record
-
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
@@ -108,12 +105,6 @@ def test_a_least_pulse_that_is_not_near_is_no_number(near: float) -> None:
 def test_what_is_no_number_does_not_agree() -> None:
     assert compare("made", "one", "-", Known(1.0, 0.0), 1.0).holds
     assert not compare("made", "one", "-", Known(1.0, math.inf), math.nan).holds
-
-
-@pytest.mark.parametrize("name", sorted({row.record for row in REFERENCES}))
-def test_the_shipped_motions_are_those_of_the_cases(name: str) -> None:
-    same = ROOT / "cases" / "records" / f"{name}.at2"
-    assert Path(shipped_record(name)).read_bytes() == same.read_bytes()
 
 
 @pytest.mark.parametrize(

@@ -11,13 +11,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-import rpscli.records
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -39,6 +37,7 @@ from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
+from rpscli.shipped import shipped_cases
 
 CONTACT = "Full contact (exact solution for a load that is linear between samples)"
 IMPACT = "One storey after its first well separated impact (closed form)"
@@ -219,7 +218,7 @@ REFERENCES = (
 
 def shipped_record(name: str) -> str:
     """Source of a motion that comes with the program."""
-    return str(Path(rpscli.records.__file__).with_name("shipped") / f"{name}.at2")
+    return str(shipped_cases() / "records" / f"{name}.at2")
 
 
 def histories() -> Iterator[Comparison]:

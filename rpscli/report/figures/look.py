@@ -131,6 +131,14 @@ def quiet_matplotlib() -> None:
         os.environ["MPLCONFIGDIR"] = str(place / "matplotlib")
 
 
+def font_file() -> str:
+    """The font of figures, matplotlib's own where there is none of the wanted ones."""
+    quiet_matplotlib()
+    from matplotlib.font_manager import FontProperties, findfont
+
+    return str(findfont(FontProperties(family=["sans-serif"])))
+
+
 def read_style(path: Path) -> dict[str, Any]:
     """matplotlib's settings in a style file."""
     quiet_matplotlib()

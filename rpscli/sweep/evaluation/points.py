@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cache
-from importlib import metadata
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,6 +12,7 @@ from rpscli.case.study.schema import Analysis, MeasureScale
 from rpscli.records.clusters import Pair
 from rpscli.records.pair_measure import USUAL, Of
 from rpscli.records.source import parts_of
+from rpscli.version import VERSION
 
 
 class RecordRequest(NamedTuple):
@@ -98,11 +98,7 @@ SOLVING = (
 @cache
 def solver_version() -> str:
     """Version of rps and a digest of the sources that compute."""
-    try:
-        version = metadata.version("rpscli")
-    except metadata.PackageNotFoundError:
-        version = "0+unknown"
-    return f"{version}+{digest_of_sources(Path(__file__).parents[2])[:16]}"
+    return f"{VERSION}+{digest_of_sources(Path(__file__).parents[2])[:16]}"
 
 
 def digest_of_sources(package: Path) -> str:

@@ -6,7 +6,6 @@ of a record, and start at once.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from queue import Empty, SimpleQueue
@@ -23,13 +22,6 @@ HEARING = 0.2
 A Ctrl-C that comes between the last look and the beginning of the wait, or that is given to another
 thread, wakes nobody; on Windows none does.
 """
-
-
-def available_cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 class Threads:

@@ -1,0 +1,118 @@
+"""`rps doctor` and `rps clean`: what rps finds on this machine, and what it keeps there."""
+
+from __future__ import annotations
+
+import locale
+import platform
+import re
+import shutil
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import click
+
+from rpscli.commands.shell.failure import concluded, leave
+from rpscli.commands.shell.options import terminal_options
+from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import TIMES_FILE
+from rpscli.errors import VerificationMismatch
+from rpscli.machine import available_cores
+from rpscli.report.documents import heading, installed
+from rpscli.report.figures.film import ENCODER
+from rpscli.report.figures.look import font_file
+from rpscli.report.table import Table
+from rpscli.shipped import shipped_cases
+from rpscli.user_cache import VARIABLE, user_cache
+from rpscli.version import VERSION
+
+EXTRAS = {
+    "records": "the ground motions of FEMA P695",
+    "cluster": "studies on a Dask cluster",
+    "contact": "bodies in contact, rps export CASE mujoco",
+    "losses": "losses from the report demand_sample",
+}
+"""What packages add that users may do without."""
+KEPT = {"compiled kernels": "kernels-*", "times of compilation": TIMES_FILE, "fonts": "matplotlib"}
+"""What rps keeps, and can make again."""
+
+
+@click.command("doctor")
+@terminal_options
+def command(terminal: Terminal) -> None:
+    """What rps finds on this machine, what is missing, and the remedy.
+
+    The exit code is 6 if something is missing that rps cannot do without.
+    """
+    needed = _packages(None)
+    optional = [row for extra in EXTRAS for row in _packages(extra)]
+    rows = [*_surroundings(), *needed, *optional]
+    table = Table.of_texts(("subject", "found", "remedy, or what it adds"), rows, words=3)
+    findings = [dict(zip(("subject", "found", "remedy"), row, strict=True)) for row in rows]
+    lacking = "\n".join(f"{name}: {found}; {remedy}" for name, found, remedy in needed if remedy)
+    error = VerificationMismatch(lacking) if lacking else None
+    document = {**heading(), "command": "doctor", "findings": findings}
+    # Without rich there are no tables: then the errors say it.
+    terminal.result(concluded(document, error), [table] if installed("rich") else ())
+    leave(error)
+
+
+def _surroundings() -> list[tuple[str, str, str]]:
+    anew = "" if installed("rpscli") == VERSION else "pip install rpscli: this runs from a folder"
+    place, encoder = user_cache(), shutil.which(ENCODER)
+    nowhere = f"name a folder that is yours alone in {VARIABLE}, where kernels stay compiled"
+    return [
+        ("rps", f"{VERSION}, cases in {shipped_cases()}", anew),
+        ("Python", f"{platform.python_version()}, {sys.executable}", ""),
+        ("system", f"{platform.platform()}, text in {locale.getencoding()}", ""),
+        ("cores", str(available_cores()), ""),
+        ("cache", f"{place}, {_size(_bytes(place))}" if place else "-", "" if place else nowhere),
+        ("font of figures", font_file() if installed("matplotlib") else "-", ""),
+        (ENCODER, encoder or "-", "" if encoder else "animations as MP4"),
+    ]
+
+
+def _packages(extra: str | None) -> list[tuple[str, str, str]]:
+    """What rps needs, or what one of its extras brings: name, version, and what to do."""
+    rows = []
+    for text in metadata.requires("rpscli") or [] if installed("rpscli") else []:
+        said = re.match(r"([\w.-]+)>=([\d.]+)(?:.*extra == .(\w+))?", text)
+        if said and said[3] == extra:
+            version = installed(said[1]) or "-"
+            adds = f'pip install "rpscli[{extra}]": {EXTRAS[extra]}' if extra else ""
+            lacks = _numbers(version) < _numbers(said[2])
+            remedy = adds or f'pip install "{said[1]}>={said[2]}"'
+            rows.append((said[1], version, remedy if lacks else ""))
+    return rows
+
+
+def _numbers(version: str) -> list[int]:
+    return [int(number) for number in re.findall(r"\d+", version)]
+
+
+@click.command("clean")
+@click.option("--dry-run", is_flag=True, help="Only say what would be deleted.")
+@terminal_options
+def clean(terminal: Terminal, *, dry_run: bool) -> None:
+    """Delete what rps keeps on this machine and can make again: compiled kernels, lists of fonts.
+
+    Results are never touched. The next time history compiles its kernel anew.
+    """
+    place, sizes = user_cache() or Path(), {}
+    for what, pattern in KEPT.items():
+        found = sorted(place.glob(pattern)) if user_cache() else []
+        sizes[what] = sum(map(_bytes, found))
+        for path in [] if dry_run else found:
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+    document = {"command": "clean", "folder": str(place), "dry_run": dry_run, "bytes": sizes}
+    head = f"{'would be deleted' if dry_run else 'deleted'} from {place}"
+    table = Table.of_texts((head, "size"), [(what, _size(size)) for what, size in sizes.items()])
+    terminal.result({**heading(), **document}, [table])
+
+
+def _bytes(path: Path) -> int:
+    return sum(each.lstat().st_size for each in (path, *path.rglob("*")))
+
+
+def _size(count: float) -> str:
+    return f"{count / 1e6:.1f} MB"

