@@ -138,10 +138,12 @@ def specialised(function: Function) -> Function:
     return cast("Function", numba.njit(function, **OPTIONS))
 
 
-def compiled_with(field: str, *, otherwise: object = None) -> Callable[[Function], Function]:
+def compiled_with(
+    field: str, *, otherwise: object = None, anew: bool = False
+) -> Callable[[Function], Function]:
     """Compile for records (the first argument) with a field; others get a constant or a function.
 
-    So a kernel is compiled without what its records have no fields for.
+    So a kernel is compiled without what its records have no fields for; `anew` as `specialised`.
     """
 
     def constant(*_: object) -> object:
@@ -154,7 +156,7 @@ def compiled_with(field: str, *, otherwise: object = None) -> Callable[[Function
         def chosen(record: Any, *others: Any) -> Any:
             return (function if field in record.dtype.names else nothing)(record, *others)
 
-        @overload(chosen, jit_options=cast("Any", OPTIONS), strict=False)
+        @overload(chosen, jit_options=cast("Any", OPTIONS), strict=False, prefer_literal=anew)
         def choose(record: Any, *_: Any) -> Callable[..., Any]:
             return function if field in record.fields else nothing
 

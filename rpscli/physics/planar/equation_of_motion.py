@@ -36,7 +36,12 @@ from rpscli.physics.core.compile import compiled, inlined
 from rpscli.physics.core.records import Record
 from rpscli.physics.core.series import Terms, sine_cosine
 from rpscli.physics.planar import geometry
-from rpscli.physics.planar.bed.terms import accelerate_on_bed, bear, inertia_on_bed
+from rpscli.physics.planar.bed.terms import (
+    accelerate_on_bed,
+    bear,
+    inertia_on_bed,
+    lift_product,
+)
 from rpscli.physics.planar.geometry import Phase
 
 Number = TypeVar("Number", float, NDArray[np.float64])
@@ -205,19 +210,20 @@ def extend_rotation(s: Record, lanes: int, m: int) -> None:
         B, C, c = s.B_terms[0, l], s.C_terms[0, l], s.phase_c[l]
         first, last = s.dtheta_terms[0, l], s.dtheta_terms[k, l]
         sum_B, sum_C, sum_action = 0.0, 0.0, -s.device_terms[k, l]
-        square, inertial, beam = 0.0, 0.0, 0.0
+        square, lifted, inertial, beam = 0.0, 0.0, 0.0, 0.0
         for j in range(1, m):
             sum_B += s.C_terms[j, l] * s.dtheta_terms[k - j, l]
             sum_C += s.B_terms[j, l] * s.dtheta_terms[k - j, l]
             sum_action += s.C_terms[j, l] * s.action_terms[k - j, l]
             square += s.B_terms[j, l] * s.B_terms[m - j, l]
+            lifted += lift_product(s, l, j, m - j)
             inertial += (0.5 * (m + j) / m) * s.A_terms[m - j, l] * s.dtheta_terms[j, l]
             beam += s.C_terms[j, l] * s.dtheta_terms[m - j, l]
         B_m = -part * ((C - c) * last + sum_B)
         C_m = part * (B * last + sum_C)
         squares = 2.0 * B * B_m + square
         A_m = 2.0 * c * s.one_4gamma[l] * C_m + s.four_gamma_eta[l] * squares
-        A_m, sum_action = bear(s, l, m, A_m, B_m, squares, sum_action)
+        A_m, sum_action = bear(s, l, m, A_m, B_m, squares, lifted, sum_action)
         s.B_terms[m, l], s.C_terms[m, l], s.A_terms[m, l] = B_m, C_m, A_m
         g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
         before = s.B_terms[k - 1, l] if m > 1 else 0.0

@@ -11,6 +11,6 @@ from collections.abc import Callable
 from rpscli.physics.core.compile import Function, compiled_with
 
 
-def with_bed(*, otherwise: object = None) -> Callable[[Function], Function]:
+def with_bed(*, otherwise: object = None, anew: bool = False) -> Callable[[Function], Function]:
     """Compile for a state with a bed; without it the function is `otherwise`, or returns it."""
-    return compiled_with("bed_k", otherwise=otherwise)
+    return compiled_with("bed_k", otherwise=otherwise, anew=anew)

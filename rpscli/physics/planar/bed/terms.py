@@ -93,7 +93,7 @@ def begin_bed(s: Record) -> None:
         s.lift_terms[0, l] = s.B[l] - s.root[l] * s.patch_terms[0, l]
 
 
-@with_bed()
+@with_bed(anew=True)
 def extend_bed(s: Record, lanes: int, m: int) -> None:
     """Terms of order m of x and w: those of x' before m are known."""
     for l in range(lanes):
@@ -121,26 +121,31 @@ def extend_bed(s: Record, lanes: int, m: int) -> None:
         s.patch_terms[m, l] = w
 
 
+@with_bed(otherwise=0.0)
+def lift_product(s: Record, l: int, j: int, k: int) -> float:
+    """Of two terms of B_v, for the sum over them."""
+    # Not summed in `bear`: a loop there is compiled before m is known, and keeps lanes apart.
+    return float(s.lift_terms[j, l] * s.lift_terms[k, l])
+
+
 def _rigid(
-    _s: Record, _l: int, _m: int, A: float, _B: float, _squares: float, action: float
+    _s: Record, _l: int, _m: int, A: float, _B: float, _squares: float, _: float, action: float
 ) -> tuple[float, float]:
     return A, action
 
 
 @with_bed(otherwise=_rigid)
 def bear(
-    s: Record, l: int, m: int, A: float, B: float, squares: float, action: float
+    s: Record, l: int, m: int, A: float, B: float, squares: float, lifted: float, action: float
 ) -> tuple[float, float]:
     """Add what a bed does to the term of order m of A, and to what acts of the order before.
 
-    B is the term of order m, `squares` that of B^2.
+    B is the term of order m, `squares` that of B^2, `lifted` that of B_v^2 but for its ends.
     """
     k, root, sink = m - 1, s.root[l], s.sink[l]
     lift = B - root * s.patch_terms[m, l]
     s.lift_terms[m, l] = lift
-    lifted = 2.0 * s.lift_terms[0, l] * lift
-    for j in range(1, m):
-        lifted += s.lift_terms[j, l] * s.lift_terms[m - j, l]
+    lifted += 2.0 * s.lift_terms[0, l] * lift
     a_v = s.g_up[l] + s.g_up_slope[l] * s.time[l] - s.gravity[l]
     missing = (sink * s.gravity[l] + root * a_v) * s.patch_terms[k, l]
     if m > 1:
