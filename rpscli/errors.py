@@ -83,7 +83,7 @@ def renamed(old: str, new: str) -> None:
     """Tell the caller's caller that a Python name is an old one; the one way to do so."""
     import warnings  # needed by those who use one only
 
-    text = f"{old} is the old name of {new}; version 2 knows that alone"
+    text = f"{old} is the old name of {new}; version 2 knows only the new one"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
 
 

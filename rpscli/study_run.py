@@ -51,8 +51,8 @@ class StudyInterrupted(KeyboardInterrupt):
 
     def __init__(self, stored: int, total: int, path: Path) -> None:
         super().__init__(
-            f"interrupted: {stored} of {total} points are stored in {path}; the same command goes"
-            " on from there"
+            f"interrupted: {stored} of {total} points are stored in {path}; the same command"
+            " continues from there"
         )
         self.points = {"total": total, "stored": stored}
 
@@ -152,7 +152,7 @@ class StudyRun:
     def reopened(self) -> Iterator[StudyResults]:
         """The results with the store open no longer than it is read: others may go on in it."""
         if not self.store.path.is_file():
-            raise Refused(f"{self.store.path}: is not there any more; run the study again")
+            raise Refused(f"{self.store.path}: no longer exists; run the study again")
         with Store(self.store.path.parent) as store:
             self.results = replace(self.results, store=store)
             yield self.results

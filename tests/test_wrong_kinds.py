@@ -93,7 +93,7 @@ def test_a_case_is_what_a_mapping_says() -> None:
     assert case.structure.bearing.semi_diagonal == 1.5
     assert case.structure.columns_mass == 8000.0
     assert case.digest
-    with pytest.raises(rpscli.RpsError, match="<case>: cannot stand in a file"):
+    with pytest.raises(rpscli.RpsError, match="<case>: cannot be written to a file"):
         rpscli.load_case({**CASE, "title": object()})
 
 

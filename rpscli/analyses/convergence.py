@@ -40,7 +40,7 @@ def steps_warning(result: TimeHistoryResult) -> str | None:
         before = after
     if not first:
         return None
-    return f"{first}, and it goes on with shorter ones: this is one of many; judge by many records"
+    return f"{first}, and shorter ones change it again: this is one of many; judge by many records"
 
 
 def steps_left(found: Demand, most: int) -> bool:

@@ -251,7 +251,7 @@ PAIR = (
     ResultQuantity("energy_passes", "J", "energy lost in passes", kernel="energy_passes"),
     ResultQuantity(
         "torsion_lever", "m", "torsion in a contact over its weight", kernel="torsion_lever",
-        meaning="what friction in the contacts must hold, lest columns roll out of their place",
+        meaning="what friction in the contacts must hold, to keep columns in their place",
     ),
 )  # fmt: skip
 """What a history besides has where both horizontal components act: its other results are those of

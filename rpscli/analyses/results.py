@@ -390,5 +390,5 @@ class TimeHistoryResult(Demand):
             yield (
                 f"the columns slide{when}: the friction demand {self.friction_demand:.3g} exceeds"
                 f" podium.friction = {self.structure.friction:g}; the model assumes that they do"
-                " not, so the motion is not to be trusted from there on"
+                " not, so the motion is unreliable from then on"
             )

@@ -353,8 +353,8 @@ def _in_new_words(document: Document) -> tuple[Document, list[str]]:
     document.refuse(
         Fault(
             (word,),
-            f"{word} is the old word for {OLD_WORDS[word]}, which stands here as well"
-            f"{document.where((OLD_WORDS[word],))}; take one of them out",
+            f"{word} is the old word for {OLD_WORDS[word]}, which is given here as well"
+            f"{document.where((OLD_WORDS[word],))}; remove one of them",
             at_key=True,
         )
         for word in old
@@ -386,7 +386,7 @@ def _overrides_in_new_words(overrides: Sequence[str]) -> tuple[list[str], list[s
 
 
 def _note(word: str) -> str:
-    return f"{word} is an old word; write {OLD_WORDS[word]}, version 2 knows that alone"
+    return f"{word} is an old word; write {OLD_WORDS[word]}, version 2 knows only that"
 
 
 def _used_and_held_out(
@@ -443,7 +443,7 @@ def _name_faults(file: DesignFile) -> Iterator[Fault]:
             suggestion = hint(name, [*keys, *results], f"use {listed(keys)}, or a result")
             text = f"{name} is neither a result nor a key that `variables` changes; {suggestion}"
         elif name in keys and any(n == name and "fractile" in t.model_fields_set for n, t in terms):
-            text = f"{name} is a key, without fractiles; take it out"
+            text = f"{name} is a key, without fractiles; remove it"
         else:
             continue
         yield Fault(("minimise",), f"minimise: {text}")

@@ -43,7 +43,7 @@ NOT_DRAWN = Look(formats=())
     type=click.FloatRange(min=0.0),
     metavar="SHARE",
     help="End with exit code 10 if a result differs by more than this share of its largest value:"
-    " 0 wants the same to the last digit, 0.01 one percent.",
+    " 0 requires equality to the last digit, 0.01 one percent.",
 )
 @terminal_options
 def command(

@@ -45,12 +45,12 @@ def command(
     """Find the values of DESIGN that meet its limits and minimise its objective.
 
     The file has a base case, `variables`, records and `limits` as a study, and `minimise`. An
-    even sample comes first, then designs where the verdict changes. What is recommended is the best
-    design of a region in which all that were examined hold, within their tolerances. The answer has
-    the least that passes as well, what binds, and how far the choice of records moves it.
+    even sample comes first, then designs where the verdict changes. The recommended design is the
+    best one of a region in which all designs examined pass, within their tolerances. The answer has
+    the least that passes as well, what governs, and how far the choice of records moves it.
 
-    Every point is stored as it ends: after an interruption the same command goes on. The exit code
-    is 10 if no design passes, or if the recommended one does not keep the limits in its validation.
+    Every point is stored as it ends: after an interruption the same command continues. The exit
+    code is 10 if no design passes, or if the recommended one fails the limits in its validation.
     """
     done = designed(design, overrides, SweepChoices(**choices), output, look, terminal)
     if done is None:

@@ -122,7 +122,7 @@ class Rounds:
         if (place := answer.robust) != NONE and not answer.sure and answer.resamples:
             share = f"{100.0 * answer.tolerated.share[place]:.0f} %"
             yield (
-                f"no design holds in {100.0 * ROBUST:g} % of the resamples of the records; what is"
+                f"no design passes in {100.0 * ROBUST:g} % of the resamples of the records; what is"
                 f" recommended does so in {share} of them"
             )
         if len(self.search.checked) >= self.search.most:
@@ -322,7 +322,7 @@ def _region(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, str
     if islands := document["islands"]:
         names = "; ".join(_name_of(island, document) for island in islands[:RECORDS_SHOWN])
         more = f" and {len(islands) - RECORDS_SHOWN} more" * (len(islands) > RECORDS_SHOWN)
-        yield "islands, between which and it others fail", names + more
+        yield "islands, separated from it by failing designs", names + more
 
 
 def _records(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, str]]:
@@ -331,7 +331,7 @@ def _records(document: dict[str, Any], answer: Answer) -> Iterator[tuple[str, st
     if ends := [f"{end:.10g}" for end in document["bracket"] or () if end is not None]:
         unit = unit_of(answer.task.unknowns[0].key).removesuffix("-")
         found = f"{' and '.join(ends)} {unit}".rstrip()
-        yield "next to the least that passes fail", f"{found}, of those looked at"
+        yield "nearest designs that fail", f"{found}, among those examined"
     if not records["resamples"]:
         return
     share = 100.0 * records["passing_share_of_best"]

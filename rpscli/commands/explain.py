@@ -108,7 +108,7 @@ def _offers(word: str) -> Iterator[Offer]:
 
 def _plugins(word: str, offers: Sequence[Offer]) -> Iterator[Part]:
     if word == PLUGINS and not offers:
-        yield "no package that is installed adds anything; help(rpscli.plugins) says how one does"
+        yield "no installed package adds anything; help(rpscli.plugins) explains how to write one"
     elif offers:
         heads = ("group", "name", "package", "is")
         rows = [(f"rpscli.{o.kind}", o.name, o.package, o.fault or o.meaning) for o in offers]
@@ -183,8 +183,8 @@ def _names(entry: str) -> list[str]:
 def _hint(word: str) -> str:
     close = nearest(word, _words())
     if close:
-        return f"nothing is called so; did you mean {close}?"
-    return "nothing is called so; `rps explain podium` and the like list the keys of a section"
+        return f"there is no such name; did you mean {close}?"
+    return "there is no such name; `rps explain podium` and the like list the keys of a section"
 
 
 def _tables(
@@ -231,7 +231,7 @@ def _lines(key: KeyReference) -> Table:
     """What is known of a key."""
     from rpscli.report.study.registry import REPORTS
 
-    needed = "cannot be, where its section stands" if key.required else ""
+    needed = "not if its section is given" if key.required else ""
     names = f"{', '.join(REPORTS.names())}; `rps explain NAME` lists the options of one"
     rows = {
         "means": key.meaning,

@@ -35,10 +35,10 @@ TESTS = ("rocking", "ambient", "release", "earthquake")
 @case_options
 @click.argument("data", metavar="DATA.csv", type=FILE)
 @click.argument("test", metavar="|".join(TESTS), type=click.Choice(TESTS))
-@click.option("--from", "first", type=float, metavar="S", help="Leave out what is before.")
-@click.option("--to", "last", type=float, metavar="S", help="Leave out what comes after.")
+@click.option("--from", "first", type=float, metavar="S", help="Ignore samples before this time.")
+@click.option("--to", "last", type=float, metavar="S", help="Ignore samples after this time.")
 @click.option("-o", "--output", "place", type=click.Path(path_type=Path), metavar="FILE.yaml",
-              help="A copy of CASE with what was found, comments and all.")  # fmt: skip
+              help="A copy of CASE with the identified values; comments are kept.")  # fmt: skip
 @click.option("--force", is_flag=True, help="Overwrite that file.")
 @terminal_options
 def command(
@@ -81,7 +81,7 @@ def command(
     files = []
     if place is not None:
         if not values:
-            raise UsageError(f"-o {place}: nothing was found that a case has a key for")
+            raise UsageError(f"-o {place}: nothing was identified that has a key in a case")
         from rpscli.case.text.edit import edited
         from rpscli.case.text.files import read_text
 
@@ -181,9 +181,9 @@ def _rocking(structure: PodiumStructure, columns: Columns, _: str) -> Found:
     table = Table.of_texts(heads, texts, words=0)
     told = f"residuals are {shown(found.misfit, 3)} times what noise alone would leave"
     if found.misfit > 2.0:
-        told += ": the model lacks something, such as rolling resistance; intervals hold that"
+        told += ": the model lacks something, such as rolling resistance; intervals include that"
     if found.ensembles:
-        told += "; neighbouring releases part ways, so that means of ensembles were fitted"
+        told += "; neighbouring releases diverge, so means of ensembles were fitted"
     document = {"misfit": found.misfit, "ensembles": found.ensembles, "residuals": swings}
     return estimates, document, [table, told], keys
 
@@ -221,7 +221,7 @@ def _vibration(structure: PodiumStructure, columns: Columns, test: str) -> Found
             estimates["settlement", "m"] = Estimate(*(each for each in sunk if each is not None))
         keys["podium.contact.period_ratio"] = f"{ratio.value:.4g}"
         keys["podium.contact.kind"] = "plane"
-        told += "; stiffness of the storey in full contact; a period does not tell whether ends are"
+        told += "; stiffness of the storey in full contact; a period does not show whether ends are"
         told += " `plane`, which the settlement is for, or `edges`: try both"
     else:
         told += "; 1, which is rigid contact, is not excluded"

@@ -104,7 +104,7 @@ def _targets() -> list[str]:
 @click.option(
     "--rules",
     type=click.Choice(RULES),
-    help="What a code asks of the set, which the common factor brings about if it can: by default"
+    help="What a code asks of the set, which the common factor achieves if it can: by default"
     " that of the target's code, and mean90 for others, 0.9 of the target at all periods.",
 )
 @click.option(
@@ -259,7 +259,7 @@ def _structure(source: str, terminal: Terminal) -> tuple[Periods, str]:
     ] or [(USUAL_ROTATION * critical, f"{USUAL_ROTATION:g} theta_cr, as the case has no limit")]
     rotation, told = min(limits)
     if rotation >= critical:
-        raise UsageError(f"--case {source}: {told} is no secant; it must be below theta_cr")
+        raise UsageError(f"--case {source}: {told} has no secant; it must be below theta_cr")
     building = structure.superstructure
     fixed = None if building is None else float(building.periods[0])
     return Periods(fixed, secant_period(structure, rotation)), told

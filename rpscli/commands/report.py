@@ -58,7 +58,7 @@ from rpscli.version import VERSION
     "--budget",
     "with_budget",
     is_flag=True,
-    help="Add what moves each limited result of a CASE, as `rps budget` tells it.",
+    help="Add what moves each limited result of a CASE, as in `rps budget`.",
 )
 @style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
@@ -85,7 +85,7 @@ def command(
     tables and figures, and the command that repeats it. It needs no network and no scripts, and
     prints on A4. Histories of a CASE are computed, with mean and largest of several records; so are
     points of a STUDY or DESIGN that are not stored yet. Those of a FOLDER are computed again and
-    held against what is stored.
+    compared with what is stored.
     """
     look = Look(style={} if style_file is None else drawable_style(style_file))
     request, asked = CaseRequest(subject, overrides), motion

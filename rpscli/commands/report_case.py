@@ -297,7 +297,7 @@ def _stored(
         if any(
             record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record.get(n)
         ):
-            text = f"The record {request.label} is not the one of the stored results any more."
+            text = f"The record {request.label} is no longer that of the stored results."
             found.append(Notice(text))
     if file is not None:
         try:
@@ -324,12 +324,12 @@ def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
     differing = [(n, as_text(before[n]), as_text(now[n])) for n in names if before[n] != now[n]]
     same = len(names) - len(differing)
     text = (
-        f"The results in {folder} were computed anew from what {folder / 'run.json'} says:"
+        f"The results in {folder} were computed again from what {folder / 'run.json'} says:"
         f" {same} of {len(names)} stored results are the same to the last digit."
     )
     if not differing:
         return [text]
-    warning = f"{text} {len(differing)} differ; this page shows what was computed anew."
+    warning = f"{text} {len(differing)} differ; this page shows what was computed again."
     return [
         Notice(warning),
         Table.of_texts(("result", "stored", "computed anew"), differing, words=1),

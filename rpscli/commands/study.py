@@ -56,7 +56,7 @@ class SweepChoices:
     def __post_init__(self) -> None:
         if self.report_only and (self.fresh or self.retry_failed or self.scheduler):
             raise UsageError(
-                "--report-only computes no points; take --fresh, --retry-failed and --scheduler out"
+                "--report-only computes no points; remove --fresh, --retry-failed and --scheduler"
             )
         if self.scheduler and self.jobs:
             raise UsageError("--jobs counts threads of this machine; --scheduler has its own")
@@ -97,7 +97,7 @@ def compute(command: str, run: StudyRun, terminal: Terminal) -> Finish:
 
     start, total = run.start, len(run.keys)
     if start.pending and start.kept:
-        terminal.note(f"going on: {start.kept} of {total} points are stored already")
+        terminal.note(f"continuing: {start.kept} of {total} points are stored already")
     if start.pending and run.layout.plan.analysis == "timehistory" and not run.scheduler:
         announce_compilation(terminal)
 

@@ -55,7 +55,7 @@ OF_A_REPORT = 12
 @fail_on_option(
     "End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
     " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
-    " units), or not-shown if too few records show that a limit is kept; repeatable. The limits of"
+    " units), or not-shown if too few records show that a limit is met; repeatable. The limits of"
     " study and case count as well."
 )
 @click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
@@ -71,7 +71,7 @@ def command(
 ) -> None:
     """Compute all points of STUDY, and draw its reports.
 
-    Every point is stored as it ends: after an interruption the same command goes on. If points
+    Every point is stored as it ends: after an interruption the same command continues. If points
     failed the exit code is 5, and failed.csv has the command that computes each of them alone. It
     is 10 if a limit of the study, of its base case or of --fail-on is exceeded.
     """

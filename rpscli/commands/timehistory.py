@@ -46,7 +46,7 @@ from rpscli.report.figures.look import Look, drawn_with
 @fail_on_option(
     "End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
     f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units), or"
-    " not-shown if several records are too few to show that a limit is kept; repeatable."
+    " not-shown if several records are too few to show that a limit is met; repeatable."
 )
 @history_film_options
 @click.option(

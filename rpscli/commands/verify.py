@@ -79,7 +79,7 @@ def _mismatch(found: Sequence[Comparison]) -> VerificationMismatch | None:
         return None
     first = (
         f"{len(off)} of {len(found)} numbers differ from what is known: do not trust results of"
-        " this installation; install rps anew, and report it if they still differ"
+        " this installation; install rps again, and report it if they still differ"
     )
     lines = [
         f"{line.quantity}: {computed} instead of {expected} {line.unit}, tolerance {tolerance}"

@@ -325,7 +325,7 @@ def _refuse_combinations(structure: Standing) -> None:
         "a period_ratio is that of a building, without one give stiffness or settlement": (
             contact.period_ratio is not None and without
         ),
-        "curved ends bear wider than a settlement tells, give period_ratio or stiffness": (
+        "curved ends bear on more than a settlement describes; give period_ratio or stiffness": (
             contact.settlement is not None and curved
         ),
         "tendons would load the bed, which is not followed; leave them out": "tendon" in devices,

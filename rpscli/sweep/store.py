@@ -163,8 +163,8 @@ class Store:
         if row is not None and row[0] != FORMAT.encode():
             raise Refused(
                 f"{self.path} was written by another version of rps (format"
-                f" {row[0].decode(errors='replace')}); use --fresh to begin anew, or another folder"
-                " with -o"
+                f" {row[0].decode(errors='replace')}); use --fresh to start again, or another"
+                " folder with -o"
             )
 
     def meta(self, name: str) -> str | None:
@@ -298,7 +298,7 @@ def _explained(path: Path, error: sqlite3.Error) -> RpsError:
     if code == sqlite3.SQLITE_FULL:
         return OutputError(
             f"{path}: the disk is full; what was stored is safe. Make room and run the same"
-            " command again: it goes on where it stopped"
+            " command again: it continues where it stopped"
         )
     if code in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}:
         return OutputError(f"{path} cannot be written ({error}); name another folder with -o")
@@ -311,7 +311,7 @@ def _explained(path: Path, error: sqlite3.Error) -> RpsError:
 
 
 def _damaged(path: Path, what: str) -> Refused:
-    return Refused(f"{path} is damaged ({what}); begin anew with --fresh, or restore the file")
+    return Refused(f"{path} is damaged ({what}); start again with --fresh, or restore the file")
 
 
 def _signed(*fields: bytes | str | None) -> tuple[bytes | str | None, ...]:

@@ -119,7 +119,7 @@ def test_nothing_is_told_of_a_file_that_is_no_case() -> None:
 @pytest.mark.parametrize("text", ["- " * 60, "\n".join(" " * n + "a:" for n in range(60))])
 def test_nesting_is_named_for_what_it_is(text: str) -> None:
     message = text_refusal(text)
-    assert "a case is five levels deep: close brackets, or take indentation out" in message
+    assert "a case is five levels deep: close brackets, or remove indentation" in message
 
 
 def test_a_nested_list_is_not_called_empty(building: str) -> None:

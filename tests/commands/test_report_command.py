@@ -55,7 +55,7 @@ def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: Callable[
     text = text_of("out.html")
     for title in ("In short", "The structure", "Input", "Derived quantities", "Ground motion"):
         assert title in text
-    for part in ("superstructure.storey_height 3", "atan(0.15)", "no sliding at either end"):
+    for part in ("superstructure.storey_height 3", "atan(0.15)", "columns never slide"):
         assert part in text
     assert "rps timehistory small.yaml --set limits.drift_ratio=0.9" in text
     assert Path("out.html").stat().st_size < 1_000_000
@@ -192,7 +192,7 @@ def test_a_study_that_is_stopped_goes_on(
         patch.setattr("rpscli.study_run.run", lambda *_: Finish(1, 0, 1.0, interrupted=True))
         result = rps("report", study, "-o", "out.html")
     assert result.exit_code == 130
-    assert "the same command goes on" in result.stderr
+    assert "the same command continues" in result.stderr
     assert not Path("out.html").exists()
     assert rps("report", study, "-o", "out.html").exit_code in {0, 10}
 

@@ -101,7 +101,7 @@ CIRCLE.append(CIRCLE)
 
 @pytest.mark.parametrize("value", [CIRCLE, object(), {1, 2}, 1j, b"x", {(1, 2): 3}])
 def test_studies_that_no_file_could_say(value: object) -> None:
-    with pytest.raises(CaseError, match="cannot stand in a file"):
+    with pytest.raises(CaseError, match="cannot be written to a file"):
         load_study(STUDY | {"title": value})
 
 

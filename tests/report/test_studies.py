@@ -240,7 +240,7 @@ def test_folders_of_others_are_left_alone(
 def test_a_store_that_is_gone_is_not_made_anew(tmp_path: Path) -> None:
     result = rpscli.load_study(SMALL).run(tmp_path / "gone", jobs=1)
     rmtree(tmp_path / "gone")
-    with pytest.raises(rpscli.RpsError, match="is not there any more; run the study again"):
+    with pytest.raises(rpscli.RpsError, match="no longer exists; run the study again"):
         _ = result.statistics
     assert not (tmp_path / "gone").exists()
 

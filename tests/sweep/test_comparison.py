@@ -179,7 +179,7 @@ def test_a_threshold_counts_best_among_those_that_agree_as_well() -> None:
         ("record,overturned", "a,1,2", "has 3 cells and 2 titles"),
         ("record,max_rotation [m]", "a,1", "must be an angle"),
         ("record,max_rotation", "a,-1", "must be a number >= 0"),
-        ("record,overturned,overturned", "a,1,1", "stands twice"),
+        ("record,overturned,overturned", "a,1,1", "appears twice"),
     ],
 )
 def test_faults_of_the_file_have_their_line(study_of: Make, head: str, row: str, told: str) -> None:
@@ -194,7 +194,7 @@ def test_a_line_twice_and_a_missing_file_are_told(study_of: Make) -> None:
     with pytest.raises(CaseError, match=r"observed: .*there is no such file"):
         study_of(STUDY)
     seen("a,left,1", "a,left,0")
-    with pytest.raises(CaseError, match=r"seen\.csv:3:1: 'a' of this system stands in line 2"):
+    with pytest.raises(CaseError, match=r"seen\.csv:3:1: 'a' of this system is already in line 2"):
         study_of(STUDY)
 
 
@@ -218,7 +218,7 @@ def test_keys_that_tell_observations_apart_are_not_chosen(study_of: Make) -> Non
     seen(*half("left", 4))
     options = ComparisonOptions.model_validate({"fit": {"keys": ["title"]}})
     (told,) = uncomparable(lay_out(study_of(STUDY)), options)
-    assert told.startswith("fit: title tells what was observed, and cannot be chosen")
+    assert told.startswith("fit: title says what was observed, and cannot be chosen")
     with pytest.raises(CaseError, match=r"fit\.keys: scale does not vary"):
         study_of(STUDY.replace("[comparison]", "[{comparison: {fit: {keys: [scale]}}}]"))
 

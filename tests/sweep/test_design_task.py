@@ -294,7 +294,7 @@ def test_values_are_printed_as_they_were_judged(design: StudyPoints, workplace: 
         recommended, best = (f"{found[of]['values'][key]:.10g}" for of in ("robust", "best"))
         assert f" {recommended} {best} " in text
         assert len(recommended) <= 8
-    assert "next to the least that passes fail" in text
+    assert "nearest designs that fail" in text
 
 
 @needs_compiled_kernels
@@ -444,7 +444,7 @@ def test_old_words_are_understood_and_noted(design: StudyPoints) -> None:
     assert "find is an old word" in design(old, "--dry-run").stderr
     faults = design(f"{new}find: {{}}\n", "--dry-run")
     assert faults.exit_code == 3
-    assert "find is the old word for variables, which stands here as well" in faults.stderr
+    assert "find is the old word for variables, which is given here as well" in faults.stderr
 
 
 def test_cases_studies_and_designs_are_told_apart(design: StudyPoints, workplace: Path) -> None:

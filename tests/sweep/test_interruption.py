@@ -77,7 +77,7 @@ def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
     code, out, err = interrupted(signal.SIGINT, workplace)
     assert code == 130
     assert "Ctrl-C again" in err
-    assert "the same command goes on" in err
+    assert "the same command continues" in err
     document = json.loads(out)
     assert document["error"]["type"] == "Interrupted"
     # The batch under way was finished and stored.

@@ -44,7 +44,7 @@ def test_a_changed_study_keeps_what_applies_and_says_what_changed(
     assert "curvature_ratio drops [0.5, 0]" in notes
     assert "adds [1.5]" in notes
     assert "12 points still apply, 12 are to be computed" in notes
-    assert "24 stored points are not in the study any more" in notes
+    assert "24 stored points are no longer in the study" in notes
     # Nothing was thrown away: the first study is whole again at once.
     rewrite(workplace)
     assert sweep_json("study.yaml")["points"]["computed"] == 0

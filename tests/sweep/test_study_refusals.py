@@ -48,12 +48,12 @@ def sampled(distribution: str) -> tuple[str, str]:
         (
             "  - podium.bearing.curv",
             "  - podium.bearing.slenderness: [0.1]\n  - podium.bearing.curv",
-            ("varies already in another axis", "line 5", "take one of them out"),
+            ("varies already in another axis", "line 5", "remove one of them"),
         ),
         (
             "  - podium.bearing.curv",
             "  - record.scale: [1, 2]\n  - podium.bearing.curv",
-            ("record.scale must not vary beside", "take one of them out"),
+            ("record.scale must not vary beside", "remove one of them"),
         ),
         # results
         (

@@ -136,7 +136,7 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
     every = swings_of(time, rotation, noise, SEEN * noise)
     if len(every) < 4:
         raise AnalysisError(
-            f"{len(every)} swings stand out of the noise of {noise:.2g} rad, and four are needed:"
+            f"{len(every)} swings exceed the noise of {noise:.2g} rad, and four are needed:"
             " release it from a larger rotation, or choose a part of the motion by --from and --to"
         )
     if structure.bearing.is_spherical:
@@ -173,7 +173,7 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
             # Swings that part ways do so together, which the gain adds up.
             covariance = (gain * errors**2) @ gain.T + gain @ scatter @ gain.T
     except (ValueError, np.linalg.LinAlgError) as error:
-        raise AnalysisError(f"no structure like this one rocks so: {error}") from None
+        raise AnalysisError(f"no structure of this kind rocks in this way: {error}") from None
     spread = max(1.0, misfit) * np.sqrt(np.diag(covariance))
     # The scatter of an ensemble is known from so few motions.
     freedoms = ENSEMBLE - 2 if ensembles else 2 * len(swings) - len(q)

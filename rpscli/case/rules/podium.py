@@ -138,7 +138,7 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
         if case.document.has((*IMPACT, "loss")) and case.document.at((*IMPACT, "loss")) != 1.0:
             text = (
                 "podium.impact.loss does not go with law value: a measured restitution holds what"
-                " was lost; take it out, or scale the restitution by factor"
+                " was lost; remove it, or scale the restitution by factor"
             )
             yield Fault((*IMPACT, "loss"), text, at_key=True)
     elif case.document.has(path):
@@ -147,7 +147,7 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
         yield Fault(
             path,
             f"podium.impact.restitution does not go with law {law}{case.where((*IMPACT, 'law'))},"
-            " which gives its own; take it out, write law: value, or change the law by loss or"
+            " which gives its own; remove it, write law: value, or change the law by loss or"
             " factor",
             at_key=True,
         )
@@ -161,7 +161,7 @@ def contact_rules(case: PartialCase) -> Iterator[Fault]:
                 continue  # of a case that was written out whole
             text = (
                 f"analysis.{name} means nothing with podium.contact"
-                f"{case.where((*CONTACT, 'kind'))}: ends that give way do not bounce; take it out"
+                f"{case.where((*CONTACT, 'kind'))}: ends that give way do not bounce; remove it"
             )
             yield Fault(("analysis", name), text, at_key=True)
 
@@ -304,7 +304,7 @@ def _keys_of(case: PartialCase, path: Path, kind: str) -> Iterator[Fault]:
     for key in case.written(path, *DeviceSection.model_fields):
         if key not in ("kind", *needed, *optional):
             known = listed((*needed, *optional), "and")
-            text = f"{name}.{key} is not a key of kind: {kind}, which has {known}; take it out"
+            text = f"{name}.{key} is not a key of kind: {kind}, which has {known}; remove it"
             yield Fault((*path, key), text, at_key=True)
 
 

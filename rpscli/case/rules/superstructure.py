@@ -179,7 +179,7 @@ def _twice(case: PartialCase, what: str, given: list[str]) -> Fault:
     *others, last = [n for _, n in sorted(order, key=lambda o: (o[0].rank, o[0].line, o[0].column))]
     named = listed((f"podium.{name}{case.where(_path(name))}" for name in others), "and")
     both = "both" if len(others) == 1 else "together"
-    text = f"podium.{last} and {named} {both} fix {what}; take one of them out"
+    text = f"podium.{last} and {named} {both} fix {what}; remove one of them"
     return Fault(_path(last), text, at_key=True)
 
 

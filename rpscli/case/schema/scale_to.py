@@ -55,7 +55,7 @@ MeasuredValue = Annotated[
 def _at_period(period: float | None, info: ValidationInfo) -> float | None:
     if not needs_period(measure := info.data.get("measure", "Sa")):
         known = ", ".join(name for name, each in MEASURES.items() if each.at_period)
-        refuse(f"belongs to measures such as {known}; {measure} has none, take it out")
+        refuse(f"belongs to measures such as {known}; {measure} has none, remove it")
     return period
 
 

@@ -118,7 +118,7 @@ def _title_faults(
         )
     for place, (column, unit) in enumerate(titles):
         if column in names[:place]:
-            yield _fault(name, line, f"the column {shown(column)} stands twice; take one out")
+            yield _fault(name, line, f"the column {shown(column)} appears twice; remove one")
         if column not in (*known, *results):
             varied = f"the study varies {listed(known, 'and')}"
             suggestion = hint(column, (*known, *results), varied)
@@ -140,7 +140,7 @@ def _wrong_unit(column: str, unit: str) -> str | None:
         return None
     si = _unit(column)
     if si not in KINDS:
-        return "must have no unit; take it out"
+        return "must have no unit; remove it"
     try:
         si_value(f"1 {unit}", si)
     except ValueError as error:
@@ -190,5 +190,5 @@ def _twice(name: str, rows: Sequence[Observation]) -> Iterator[Fault]:
     for row in rows:
         before = seen.setdefault((row.record, row.system), row.line)
         if before != row.line:
-            text = f"{shown(row.record)} of this system stands in line {before} already"
-            yield _fault(name, row.line, f"{text}; take one out, or add a column that differs")
+            text = f"{shown(row.record)} of this system is already in line {before}"
+            yield _fault(name, row.line, f"{text}; remove one, or add a column that differs")

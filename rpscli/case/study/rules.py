@@ -54,7 +54,7 @@ def twice(document: Document) -> Iterator[Fault]:
     for key, path in _varied(document):
         if key in seen:
             axis = " in another axis" if path[0] == seen[key][0] == "vary" else ""
-            text = f"{key} varies already{axis}{document.where(seen[key])}; take one of them out"
+            text = f"{key} varies already{axis}{document.where(seen[key])}; remove one of them"
             yield Fault(path, text, at_key=True)
         seen[key] = path
     names = sorted(seen)
@@ -83,7 +83,7 @@ def analysis_rules(
         return
     for key in OF_HISTORIES:
         if document.has((key,)):
-            text = f"{key} has no meaning with analysis: {analysis}; take it out"
+            text = f"{key} has no meaning with analysis: {analysis}; remove it"
             yield Fault((key,), text, at_key=True)
     suitable = listed(name for name, kind in kinds.items() if analysis in kind.analyses)
     for request in requests:
@@ -102,7 +102,7 @@ def record_rules(document: Document) -> Iterator[Fault]:
             owner = "scale"
         if owner:
             where = document.where((owner,))
-            text = f"{key} must not vary beside {owner}{where}; take one of them out"
+            text = f"{key} must not vary beside {owner}{where}; remove one of them"
             yield Fault(path, text, at_key=True)
 
 

@@ -196,6 +196,6 @@ def text_of_values(values: Mapping[str, Any], name: str) -> str:
         return json.dumps(values, default=plain)
     except (TypeError, ValueError, RecursionError) as error:
         raise CaseError(
-            f"{name}: cannot stand in a file: {str(error)[:200]}; use text, numbers, lists, arrays"
-            " and mappings"
+            f"{name}: cannot be written to a file: {str(error)[:200]}; use text, numbers, lists,"
+            " arrays and mappings"
         ) from None

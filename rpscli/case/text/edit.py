@@ -25,7 +25,7 @@ def edited(text: str, name: str, values: Mapping[str, str]) -> str:
         document = read_yaml(text, name)
         changed = _replaced(text, document, path, value) or _inserted(text, document, path, value)
         if read_yaml(changed, name).at(path) != read_value(value, name):
-            raise CaseError(f"{name}: {key} cannot be written there; put it in by hand: {value}")
+            raise CaseError(f"{name}: {key} cannot be written there; enter it by hand: {value}")
         text = changed
     return text
 

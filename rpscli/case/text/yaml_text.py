@@ -15,7 +15,7 @@ from rpscli.case.text.document import Document, Fault, Path, Place, dotted, show
 from rpscli.errors import CaseError
 
 REMEDIES = {
-    "\\t' that cannot start": "a tab stands here; indent with spaces",
+    "\\t' that cannot start": "there is a tab here; indent with spaces",
     "mapping values are not allowed": "a colon is not expected here; indent the keys of one"
     " mapping alike, and put text that holds a colon and a blank in quotes",
     "could not find expected ':'": "a key without its colon; write `key: value`, with a blank"
@@ -23,11 +23,11 @@ REMEDIES = {
     "expected <block end>": "the indentation does not fit; the keys of one mapping begin in the"
     " same column",
     "expected ',' or": "a bracket or brace is not closed, or a comma is missing before this",
-    "found undefined alias": "no anchor of this name stands before; text that begins with * needs"
-    " quotes",
+    "found undefined alias": "no anchor of this name is defined before; text that begins with *"
+    " needs quotes",
     "found unexpected end of stream": "a quotation mark is not closed",
     "cannot start any token": "text that begins with this character needs quotes",
-    "nested over": "a case is five levels deep: close brackets, or take indentation out",
+    "nested over": "a case is five levels deep: close brackets, or remove indentation",
     "nodes": "no case or study has so many values",
 }
 """What to do, by a part of PyYAML's message; the first that fits counts."""
@@ -133,7 +133,7 @@ def read_value(text: str, name: str) -> Any:
     """Value of one YAML scalar or flow collection (``0.2``, ``[1, 2]``), without positions."""
     root = _root(text, name)
     if root is None:
-        raise CaseError(f"{name}: no value; write null to take the key out")
+        raise CaseError(f"{name}: no value; write null to remove the key")
     reader = _Reader(name)
     value = reader.value(root, ())
     if reader.faults:
@@ -151,7 +151,7 @@ def _root(text: str, name: str) -> Node | None:
     if second is not None:
         raise CaseError(
             f"{name}:{second.start_mark.line + 1}:1: a second document begins here; one file"
-            " holds one document: take the `---` line out, or split the file"
+            " holds one document: remove the `---` line, or split the file"
         )
     return root
 
@@ -191,7 +191,7 @@ class _Reader:
         tag = node.tag.removeprefix(TAG)
         if isinstance(node, ScalarNode) and tag in {*PATTERNS, "str"}:
             return self.scalar(node, tag, path)
-        self.fault(path, node, f"the YAML tag {node.tag} is not used here; take it out")
+        self.fault(path, node, f"the YAML tag {node.tag} is not used here; remove it")
         return None
 
     def scalar(self, node: ScalarNode, tag: str, path: Path) -> Any:

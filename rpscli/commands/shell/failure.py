@@ -79,7 +79,7 @@ def _message(error: BaseException) -> str:
         named = f"{str(error.filename)[:200]}: " if error.filename else ""
         return f"{named}{error.strerror or error}; check the path, its permissions and the disk"
     if isinstance(error, MemoryError | RecursionError):
-        return "more memory is needed than there is; take fewer points, samples or storeys"
+        return "there is not enough memory; use fewer points, samples or storeys"
     place = traceback.extract_tb(error.__traceback__)[-1:]
     where = f" ({Path(place[0].filename).name}:{place[0].lineno})" if place else ""
     return (

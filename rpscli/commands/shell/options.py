@@ -60,7 +60,7 @@ def _condition_names() -> dict[str, str | None]:
 
     return {
         **{name: f"records that {verb}" for name, verb in EVENTS.items()},
-        NOT_SHOWN: "limits that so few records cannot show to be kept",
+        NOT_SHOWN: "limits that so few records cannot show to be met",
         **{name: f"{quantity.label} [{quantity.unit}]" for name, quantity in LIMITS.items()},
     }
 

@@ -332,7 +332,7 @@ def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[st
     keys = _fit_keys(layout, observed, options.fit)
     named = [key for key in observed.keys if set(axis_keys(layout, key)) & set(keys)]
     if not keys or named:
-        which = f"{listed(named, 'and')} tells what was observed" if named else "no key is left"
+        which = f"{listed(named, 'and')} says what was observed" if named else "no key is left"
         yield f"fit: {which}, and cannot be chosen; vary another key, and name it in fit.keys"
     elif len(np.unique(layout.recordings[observed_pairs(layout, observed).points])) < 2:
         yield "fit: less than two recordings are observed, and one part must be held out"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 FRACTILES = (0.50, HIGH)
 
 NO_BOUND = (
-    "even the worst direction is no bound: both components together may turn columns further;"
+    "even the worst direction is not a bound: both components together may turn columns further;"
     " write ?both behind the pair in place of an angle"
 )
 

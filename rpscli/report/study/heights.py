@@ -378,7 +378,7 @@ def _calibration_notes(samples: Sequence[DemandSample]) -> Iterator[str]:
         families = {kind: {"DistributionFamily": family} for kind, family in wanted.items()}
         yield (
             f"{', '.join(sorted(constant))} are constant, and no distribution can be calibrated to"
-            f" them: leave CoupledDemands, or take it out for Calibration: {json.dumps(families)}"
+            f" them: leave CoupledDemands, or remove it for Calibration: {json.dumps(families)}"
         )
 
 

@@ -303,7 +303,7 @@ def unknown_results(
         if quantity(analysis, name) is None:
             path: Path = (*request.path, request.kind, option)
             meant = hint(name, KNOWN[analysis], f"known are {listed(KNOWN[analysis])}")
-            text = f"{dotted(path)} = {name} is no result of {analysis}"
+            text = f"{dotted(path)} = {name} is not a result of {analysis}"
             yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {meant}")
 
 

@@ -365,8 +365,8 @@ def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
     scheme, _, rest = source.partition(":")
     if scheme != "pulse":
         raise CaseError(
-            f"{source} is no pulse with a period, as pulse:sine?amplitude=1g&period=1 is; say what"
-            f" a file holds: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
+            f"{source} is not a pulse with a period such as pulse:sine?amplitude=1g&period=1; give"
+            f" that of a file: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
         )
     query: Query = parse_query(rest.partition("?")[2], source, PULSE_OPTIONS)
     return PulseSection.model_construct(period=query.quantity("period", "time"))

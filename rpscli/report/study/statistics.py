@@ -183,7 +183,7 @@ def verdict_text(verdict: Verdict) -> str:
 
 
 def shown_by_text(verdict: Verdict) -> str:
-    """How many recordings, or events, would show that a limit is kept: with no more beyond."""
+    """How many recordings, or events, would show that a limit is met: with no more beyond."""
     return f"{verdict.shown_by} would show it"
 
 
@@ -210,7 +210,7 @@ def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = ""
     lines = []
     for verdict in verdicts:
         if verdict.fails:
-            what = "limit exceeded" if verdict.exceeded else "limit not shown to be kept"
+            what = "limit exceeded" if verdict.exceeded else "limit not shown to be met"
             system = labels(keys, verdict.values)
             asked = f"{verdict.condition.name}: {condition_text(verdict.condition)}"
             where = f" ({system})" if system else ""

@@ -110,7 +110,7 @@ def contact_text(structure: PodiumStructure) -> str | None:
     if bed.settlement is not None:
         parts.append(f"a joint settles {shown(1e3 * bed.settlement, 2)} mm")
     other = "edges" if kind == "plane" else "plane"
-    return f"{', '.join(parts)}; a period does not tell the kind: compare with {other}"
+    return f"{', '.join(parts)}; a period does not reveal the kind: compare with {other}"
 
 
 def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> Iterator[str]:
@@ -260,7 +260,7 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         f"{result.passes} passes by the upright, however wide, of which {lost} lose like an impact"
         " (l > 0.5);"
         f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
-        " how the end of the motion dies, hardly how large it gets"
+        " how the end of the motion dies, and hardly how large it becomes"
     )
 
 

@@ -46,7 +46,7 @@ def balance_note(section: SampleSection) -> str | None:
     if section.method != "sobol" or size & (size - 1) == 0:
         return None
     better = 1 << (size.bit_length() - 1)
-    return f"sample.size = {size} is no power of 2, where Sobol samples are even: {better} is"
+    return f"sample.size = {size} is not a power of 2; Sobol samples are even at {better}"
 
 
 def _values(unit: Array, given: RangeSection) -> Array:

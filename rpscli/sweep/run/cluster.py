@@ -121,7 +121,7 @@ class Cluster:
             raise error
         raise RpsError(
             f"the cluster gave up ({type(error).__name__}: {error}); what was stored is safe, the"
-            " same command goes on"
+            " same command continues"
         )
 
 

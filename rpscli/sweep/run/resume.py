@@ -60,7 +60,7 @@ class Resume:
     failed: int
     """Points that are stored, and those of them that failed and are not tried again."""
     unused: int
-    """Stored points that are not in the study any more. They stay in the file, for the case
+    """Stored points that are no longer in the study. They stay in the file, for the case
     that the study is changed back."""
     notes: tuple[str, ...]
     """What changed since the last run, for the user."""
@@ -103,7 +103,7 @@ def _refuse_other_study(layout: StudyPoints, store: Store) -> None:
     if name != layout.study.name:
         raise Refused(
             f"{store.path} holds the results of another study ({name}); name another folder with"
-            " -o, or throw them away with --fresh"
+            " -o, or discard them with --fresh"
         )
 
 
@@ -121,7 +121,7 @@ def _notes(
     if changed or unused:
         yield f"{kept} points still apply, {added} are to be computed"
     if unused:
-        yield f"{unused} stored points are not in the study any more; they stay in {store.path}"
+        yield f"{unused} stored points are no longer in the study; they stay in {store.path}"
 
 
 def _differences(old: Any, new: Any, path: str) -> Iterator[str]:
