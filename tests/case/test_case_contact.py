@@ -51,7 +51,7 @@ REFUSED = [
             "podium.contact={kind: plane, settlement: 0.05 mm}",
             "podium.bearing.wedge_slenderness=0.3", "podium.bearing.curvature_ratio=0.5",
         ),
-        "curved ends bear wider than a settlement tells",
+        "curved ends bear on more than a settlement describes",
     ),
     (("podium.contact={period_ratio: 1.2}",), "does not tell whether ends are `plane` or `edges`"),
     (("podium.contact={kind: plane}",), "takes one of period_ratio, stiffness, settlement; 0"),

@@ -146,8 +146,8 @@ def test_a_fault_of_ours_says_so(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -
     ("error", "words"),
     [
         (PermissionError(13, "Permission denied", "a/b"), "a/b: Permission denied; check the path"),
-        (MemoryError(), "more memory is needed than there is"),
-        (RecursionError("too deep"), "more memory is needed than there is"),
+        (MemoryError(), "there is not enough memory"),
+        (RecursionError("too deep"), "there is not enough memory"),
     ],
 )
 def test_what_the_machine_refuses_is_no_fault_of_ours(

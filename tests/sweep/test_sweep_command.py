@@ -186,7 +186,7 @@ def test_a_report_that_cannot_be_drawn_is_refused_before_anything_runs(
         result = sweep("study.yaml", *options)
         assert result.exit_code == 3
         assert "study.yaml:11:24" in result.stderr
-        assert "is no pulse with a period" in result.stderr
+        assert "is not a pulse with a period" in result.stderr
     assert not (workplace / "results").exists()
 
 
