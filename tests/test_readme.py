@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import re
 import shlex
 import shutil
 import subprocess
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
+import click
 import pytest
 import yaml
 from click.testing import CliRunner, Result
@@ -26,7 +29,15 @@ README = ROOT / "README.md"
 GUIDE = ROOT / "rpscli" / "GUIDE.md"
 WORKFLOW = ROOT / ".github" / "workflows" / "acceptance.yml"
 THEORY = ROOT / "rpscli" / "THEORY.md"
-DOCUMENTS = [README, GUIDE, THEORY, ROOT / "rpscli" / "VERIFICATION.md", ROOT / "CHANGELOG.md"]
+GALLERY = ROOT / "cases" / "README.md"
+DOCUMENTS = [
+    README,
+    GUIDE,
+    THEORY,
+    ROOT / "rpscli" / "VERIFICATION.md",
+    ROOT / "CHANGELOG.md",
+    *sorted((ROOT / "cases").rglob("README.md")),
+]
 SOURCES = sorted(
     path
     for folder in ("rpscli", "tests", "cases")
@@ -118,10 +129,10 @@ def test_commands_run_in_their_order(here: Path, monkeypatch: pytest.MonkeyPatch
     assert written == {".png", ".csv", ".json"}
 
 
-def shown_outputs() -> list[tuple[str, str]]:
+def shown_outputs(document: Iterable[Block]) -> list[tuple[str, str]]:
     """Each output that is shown, and the command before it."""
     found, last = [], ""
-    for block in BLOCKS:
+    for block in document:
         if block.language == "sh":
             last = block.text.splitlines()[-1].rpartition("rps ")[2]
         elif block.language == "text":
@@ -130,13 +141,67 @@ def shown_outputs() -> list[tuple[str, str]]:
 
 
 @needs_compiled_kernels
-@pytest.mark.parametrize(("line", "shown"), shown_outputs())
+@pytest.mark.parametrize(("line", "shown"), shown_outputs(BLOCKS))
 def test_the_output_that_is_shown_is_the_output(here: Path, line: str, shown: str) -> None:
-    # columns are as wide as their widest number, of which the residual's has the digits of rounding
     output = run(f"{line.partition('#')[0]} --figures none").output
+    assert not not_printed(shown, output), output
+
+
+def not_printed(shown: str, output: str) -> list[str]:
+    """Lines that are shown and not printed, whatever the spaces between their columns.
+
+    Columns are as wide as their widest number, of which the residual's has the digits of rounding.
+    """
     printed = [" ".join(row.split()) for row in output.splitlines()]
-    missing = [row for row in shown.splitlines() if " ".join(row.split()) not in printed]
-    assert not missing, "\n".join(printed)
+    return [row for row in shown.splitlines() if " ".join(row.split()) not in printed]
+
+
+@pytest.mark.long
+@needs_compiled_kernels
+def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
+    """Outputs of all commands, the pictures of the site, and medians that no output shows."""
+    blocks_of_gallery = blocks(GALLERY)
+    outputs = {}
+    for block in blocks_of_gallery:
+        for line in block.text.splitlines() if block.language == "sh" else ():
+            result = run(line)
+            assert result.exit_code == command(line).exit_code, result.output
+            outputs[f"rps {line.rpartition('rps ')[2]}"] = result.output
+    for line, shown in shown_outputs(blocks_of_gallery):
+        assert not not_printed(shown, outputs[line]), outputs[line]
+    pictures = re.findall(r"^<!-- picture: (\S+) -->$", GALLERY.read_text("utf-8"), re.MULTILINE)
+    assert len(pictures) >= 10
+    assert [picture for picture in pictures if not (here / picture).is_file()] == []
+    folder = here / "results/both_components/sweep"
+    with (folder / "directions.csv").open(encoding="utf-8") as file:
+        (curved, *_) = (row for row in csv.DictReader(file) if "rotation_ratio" in row.values())
+    names = ("both", "worst", "rotd50")
+    medians = [f"{float(curved[f'{name}_median [SI]']):.2f}" for name in names]
+    said = re.search(
+        r"columns to ([\d.]+) of.*against\s+([\d.]+) in.*and ([\d.]+) in",
+        GALLERY.read_text("utf-8"),
+        re.DOTALL,
+    )
+    assert said is not None
+    assert medians == list(said.groups())
+
+
+def test_commands_of_all_pages_can_be_parsed() -> None:
+    """Those of the cases and of the verification too, which take longer: options and files."""
+    pages = [page for page in DOCUMENTS if page not in {README, GUIDE}]
+    shown = "\n".join(block.text for page in pages for block in blocks(page))
+    lines = re.findall(r"^rps .*$", shown, re.MULTILINE)
+    for page in pages:
+        lines += re.findall(r"`(rps [a-z]+ [^`]+)`", re.sub(r"\s+", " ", page.read_text("utf-8")))
+    names = [line for line in lines if line.split()[1] in COMMANDS_OF_PROGRAM]
+    assert len(names) > 25
+    for line in names:
+        name, *words = command(line).words
+        found = program.get_command(click.Context(program), name)
+        assert found is not None, line
+        found.make_parser(click.Context(found, resilient_parsing=True)).parse_args(words)
+        files = [word for word in words if word.startswith("cases/")]
+        assert [file for file in files if not (ROOT / file).exists()] == [], line
 
 
 @needs_compiled_kernels
@@ -228,11 +293,11 @@ def test_the_readme_is_short() -> None:
     assert len(README.read_text("utf-8").splitlines()) < 220
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_relative_links_exist(document: Path) -> None:
     links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", document.read_text("utf-8"))
     relative = [link for link in links if not re.match(r"https?:", link)]
-    assert relative or document == DOCUMENTS[-1]
+    assert relative or document.name == "CHANGELOG.md" or document.parent.name == "compdyn2021"
     missing = [link for link in relative if not (document.parent / link).exists()]
     assert not missing
 

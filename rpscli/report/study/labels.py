@@ -55,16 +55,18 @@ def labels(keys: Iterable[str], values: Values) -> str:
 
 
 def plain(value: object) -> str:
-    """A value as text: numbers short, devices by their kinds, lists as the study has them."""
+    """A value as text: numbers short, devices and contacts by their kinds, lists as written."""
     if isinstance(value, float):
         return as_written(value, "-")
     if isinstance(value, list) and all(isinstance(item, dict) and "kind" in item for item in value):
         return ", ".join(_device(item) for item in value) or "none"
+    if isinstance(value, dict) and "kind" in value:
+        return _device(value)
     return value if isinstance(value, str) else json.dumps(value)
 
 
 def _device(device: dict[str, object]) -> str:
-    """The kind of a device and the first of its values, with its unit."""
+    """The kind of a device or a contact and the first of its values, with its unit."""
     values = [
         _with_unit(f"podium.devices.{key}", value) for key, value in device.items() if key != "kind"
     ]

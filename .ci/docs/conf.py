@@ -1,0 +1,94 @@
+"""Sphinx for the site; `build` stages the pages and calls it."""
+
+import re
+
+from docutils import nodes
+from latex2mathml.converter import convert
+from sphinx.application import Sphinx
+from sphinx.writers.html5 import HTML5Translator
+
+from rpscli import __version__
+
+project = "rps"
+author = "The rps developers"
+release = version = __version__
+html_title = f"rps {release}"
+copyright = author
+
+extensions = [
+    "myst_parser", "sphinx.ext.autodoc", "numpydoc", "sphinx_copybutton", "sphinx_design",
+]  # fmt: skip
+myst_enable_extensions = ["colon_fence", "dollarmath", "amsmath"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+highlight_language = "text"
+nitpicky = True
+nitpick_ignore_regex = [
+    ("py:obj", r".*"),  # single backticks of docstrings: a link if there is one, else code
+    (
+        "py:.*",
+        r"rpscli\.(case|physics|report|sweep|study_run|studies\._\w+|records\.(quantities|recording)|model\.contact\.Bed)\b.*",
+    ),
+    (
+        "py:.*",
+        r"(Record|Way|Standing|Target|Measure|Of|ReportRequest|Bed|tuple\[.*)",
+    ),  # names of types
+    ("py:.*", r"(numpy|np|collections|pathlib|typing|types|matplotlib|pandas|pydantic)\..*"),
+    (
+        "py:.*",
+        r"(NDArray|Array|Axes|Figure|Path|Any|Callable|Mapping|Sequence|Iterable|Iterator|optional)",
+    ),
+]
+default_role = "py:obj"
+autodoc_default_options = {"members": True, "member-order": "bysource", "inherited-members": False}
+autodoc_typehints_format = "short"
+python_use_unqualified_type_names = True
+python_maximum_signature_line_length = 80
+numpydoc_show_class_members = False
+
+html_theme = "pydata_sphinx_theme"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+html_copy_source = False
+html_theme_options = {
+    "logo": {"text": project},
+    "header_links_before_dropdown": 7,
+    "navbar_align": "left",
+    "show_toc_level": 2,
+    "navigation_with_keys": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": ["sphinx-version"],
+}
+html_sidebars = {
+    name: [] for name in ("index", "gallery", "guide", "theory", "verification", "changelog")
+}
+copybutton_selector = "div.highlight-sh pre, div.highlight-yaml pre, div.highlight-python pre"
+html_math_renderer = "mathml"
+
+
+def _mathml(translator: HTML5Translator, node: nodes.math | nodes.math_block) -> None:
+    """Formulas as MathML, which browsers draw without a script or a network."""
+    block = isinstance(node, nodes.math_block)
+    formula = re.sub(r"_\{([a-z]{2,})", r"_{\\mathrm{\1}", node.astext())
+    text = convert(formula, display="block" if block else "inline")
+    translator.body.append(f'<div class="math">{text}</div>' if block else text)
+    raise nodes.SkipNode
+
+
+def _escape(
+    app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]
+) -> None:
+    """Bars and stars of formulas in docstrings are no markup; examples and code stay."""
+    for i, line in enumerate(lines):
+        if not line.lstrip().startswith((">>>", "...")):
+            parts = re.split(r"(`+[^`]*`+)", line)
+            parts[::2] = [re.sub(r"(?<!\\)([|*])", r"\\\1", part) for part in parts[::2]]
+            lines[i] = "".join(parts)
+
+
+def setup(app: Sphinx) -> None:
+    """Own renderer of formulas; docstrings as plain text with sections."""
+    app.connect("autodoc-process-docstring", _escape, priority=400)  # before numpydoc
+    app.add_html_math_renderer("mathml", (_mathml, None), (_mathml, None))
