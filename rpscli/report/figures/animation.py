@@ -136,9 +136,8 @@ class PlanView:
         self.head = Circle((0.0, 0.0), radius, fill=False, ec=style.BLUE, lw=1.6)
         axes.add_patch(self.head)
         self.middle = axes.plot([], [], "o", color=style.BLUE, ms=3.5)[0]
-        look: dict[str, Any] = {"bbox": {"fc": "white", "ec": "none", "pad": 0.5}}
-        self.right = axes.text(0.0, 0.0, "right", ha="center", va="center", **look)
-        self.right.set_fontsize(style.small())
+        look: dict[str, Any] = {"fontsize": style.small(), "ha": "center", "va": "center"}
+        self.right = axes.text(0.0, 0.0, "right", **look)
         axes.set(xlim=(-self.reach, self.reach), ylim=(-self.reach, self.reach))
         axes.set_aspect("equal", adjustable="box")
         axes.set(xlabel="x [m]", ylabel="y [m]")
@@ -154,7 +153,8 @@ class PlanView:
         self.head.set_center((self.x[sample], self.y[sample]))
         way = self.reach * np.array([np.cos(self.azimuth[sample]), np.sin(self.azimuth[sample])])
         self.plane.set_data(*np.outer(way, (-2.0, 2.0)))
-        self.right.set_position((0.85 * way[0], 0.85 * way[1]))
+        # Beside the line, by more than half of the word where the line stands upright.
+        self.right.set_position((0.8 * way[0] - 0.2 * way[1], 0.8 * way[1] + 0.2 * way[0]))
 
 
 def _pace(speed: float) -> str:

@@ -18,8 +18,12 @@ WAYS: tuple[Way, ...] = get_args(Way)
 
 def record_name(result: TimeHistoryResult) -> str:
     """What shook it horizontally."""
-    y = result.motion.y
-    return result.record.name if y is None else f"{result.record.name}, y: {y.name}"
+    name, y = result.record.name, result.motion.y
+    pair, found, turned = name.partition("_both")
+    if y is None or not found:
+        return name if y is None else f"{name}, y: {y.name}"
+    rest = "both components" if y.name.startswith(pair) else f"y: {y.name}"
+    return f"{pair}{turned}, {rest}"
 
 
 def lean_azimuth(trace: Trace) -> NDArray[np.float64]:
