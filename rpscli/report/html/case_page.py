@@ -208,6 +208,8 @@ def _storeys(structure: PodiumStructure) -> Table:
         "stiffness k_i [kN/m]": building.stiffnesses * 1e-3,
         "first mode φ_i": shape,
     }
+    if (across := structure.superstructure_y) is not None:
+        columns["stiffness in y [kN/m]"] = across.stiffnesses * 1e-3
     return Table([Column(name, "-", each[::-1], name, _number) for name, each in columns.items()])
 
 
@@ -313,8 +315,12 @@ class History(NamedTuple):
     def sections(self, look: Look) -> list[Section]:
         """Motion and response."""
         result = self.result
-        building = result.structure.superstructure
-        motions = [motion_pictures(each, look, building) for each in self.ground.named.values()]
+        structure = result.structure
+        building, across = structure.superstructure, structure.superstructure_y
+        motions = [
+            motion_pictures(each, look, (name == "y" and across) or building)
+            for name, each in self.ground.named.items()
+        ]
         measured = [
             record_table(each, intensity_measures(each)) for each in horizontal(self.ground)
         ]
