@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.analyses.trace import Trace
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.trace import Trace
 
 Way = Literal["x", "y"]
 WAYS: tuple[Way, ...] = get_args(Way)

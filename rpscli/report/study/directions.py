@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -22,9 +22,6 @@ from rpscli.sweep.statistics.fractiles import HIGH, LOW, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 FRACTILES = (LOW, 0.50, HIGH)
 
@@ -184,7 +181,7 @@ def directions_figure(
     every = np.concatenate([*drawn, np.zeros(1)])
     top = 1.08 * float(every[np.isfinite(every)].max()) or 1.0
 
-    def draw(axes: Axes, panel: Panel) -> None:
+    def draw(axes: style.Axes, panel: Panel) -> None:
         for curve in panel.curves:
             stood = np.isfinite(curve.drawn)
             worst = curve.results.get(quantity)
