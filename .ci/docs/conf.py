@@ -2,6 +2,8 @@
 
 import re
 
+import formulas
+import pages
 from docutils import nodes
 from latex2mathml.converter import convert
 from sphinx.application import Sphinx
@@ -22,6 +24,8 @@ myst_enable_extensions = ["colon_fence", "dollarmath", "amsmath"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 highlight_language = "text"
+smartquotes = False  # options have two dashes, derivatives have primes
+toc_object_entries = False
 nitpicky = True
 nitpick_ignore_regex = [
     ("py:obj", r".*"),  # single backticks of docstrings: a link if there is one, else code
@@ -77,6 +81,11 @@ def _mathml(translator: HTML5Translator, node: nodes.math | nodes.math_block) ->
     raise nodes.SkipNode
 
 
+def _theory(shown: str, anchor: str) -> str:
+    """A link to the theory from a page of the Python reference."""
+    return f"`{shown} <../../theory.html#{anchor}>`__"
+
+
 def _escape(
     app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]
 ) -> None:
@@ -85,7 +94,7 @@ def _escape(
         if not line.lstrip().startswith((">>>", "...")):
             parts = re.split(r"(`+[^`]*`+)", line)
             parts[::2] = [re.sub(r"(?<!\\)([|*])", r"\\\1", part) for part in parts[::2]]
-            lines[i] = "".join(parts)
+            lines[i] = formulas.cite("".join(parts), _theory, pages.THEORY)
 
 
 def setup(app: Sphinx) -> None:

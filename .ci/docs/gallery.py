@@ -11,7 +11,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from pages import ROOT, slug
+from formulas import slug
+from pages import ROOT
 
 PICTURE = re.compile(r"^<!-- picture: (\S+) -->$", re.MULTILINE)
 HEADING = re.compile(r"^## (.+)$", re.MULTILINE)

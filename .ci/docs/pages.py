@@ -9,6 +9,8 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
+import formulas
+
 ROOT = Path(__file__).parents[2]
 PAGES = {
     "README.md": "index",
@@ -24,6 +26,17 @@ PAGES = {
     "cases/studies/impact_law/README.md": "cases/impact_law",
 }
 """Files that are pages, and their names on the site."""
+
+SET = {
+    "theory",
+    "verification",
+    "reference/glossary",
+    *filter(re.compile("cases/").match, PAGES.values()),
+}
+"""Pages whose code is mostly formulas."""
+
+THEORY = formulas.anchors_of((ROOT / "rpscli/THEORY.md").read_text(encoding="utf-8"))
+"""The anchors of its sections and formulas by their numbers."""
 
 PICTURES = {".png", ".svg", ".gif"}
 LANGUAGES = {".py": "python", ".yaml": "yaml", ".yml": "yaml", ".cff": "yaml", ".toml": "toml"}
@@ -63,6 +76,16 @@ class Stage:
         return "".join([*parts, self._linked(text[last:], source)])
 
     def _linked(self, text: str, source: str) -> str:
+        name = PAGES[source]
+        theory = "../" * name.count("/") + "theory.html"
+        if name in SET:
+            text = formulas.set_formulas(text)
+        if name == "theory":
+            text = formulas.cite_here(text, THEORY)
+        else:
+            text = formulas.cite(
+                text, lambda said, at: f'<a href="{theory}#{at}">{said}</a>', THEORY
+            )
         text = WORD.sub(self._named, text)
         return LINK.sub(lambda link: f"]({self._target(link[1], source)}{link[2] or ''})", text)
 
@@ -110,11 +133,6 @@ class Stage:
             elif path.is_dir() or said:
                 lines.append(f"- `{path.name}`{said}")
         return "\n".join(lines) + "\n"
-
-
-def slug(heading: str) -> str:
-    """The anchor of a heading, as GitHub and MyST make it."""
-    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
 
 
 def _shown(path: Path) -> str:

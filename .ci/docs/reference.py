@@ -9,6 +9,7 @@ from itertools import groupby
 from pathlib import Path
 
 import click
+import formulas
 
 import rpscli
 from rpscli.case.design import DesignFile
@@ -99,6 +100,8 @@ def _command_page(name: str, command: click.Command, ctx: click.Context) -> str:
     parts = [f"# {name}\n", f"```text\n{usage}\n```\n", f"{plain(said)}\n"]
     parts.append(f"```{{program}} {name}\n```\n")
     for parameter in command.get_params(ctx):
+        if isinstance(parameter, click.Argument):
+            continue  # told by the usage
         record = parameter.get_help_record(ctx)
         if record is not None:
             names, meaning = record
@@ -109,31 +112,46 @@ def _command_page(name: str, command: click.Command, ctx: click.Context) -> str:
 # -- keys
 
 
+def _symbol(text: str) -> str:
+    formula = formulas.is_formula(text)
+    return f'<span class="formula">{formulas.typeset(text)}</span>' if formula else plain(text)
+
+
 def _key(key: KeyReference, theory: Mapping[str, str], *, index: bool) -> str:
-    kind = ", ".join(
-        filter(
-            None,
-            (
-                f"a value in {key.unit}" if key.unit not in {"", "-"} else "",
-                "a number" if key.unit == "-" else "",
-                plain(key.bounds),
-                " or ".join(f"`{word}`" for word in key.words),
-            ),
-        )
+    facts = (
+        f"required{' in its section' * ('.' in key.key)}" if key.required else "",
+        f"in {key.unit}" if key.unit not in {"", "-"} else "a number" * (key.unit == "-"),
+        plain(key.bounds),
+        " or ".join(f"`{word}`" for word in key.words),
+        f"default `{key.default}`" if key.default is not None else "",
+        f"symbol {_symbol(key.symbol)}" if key.symbol else "",
     )
-    lines = [f"::::{{confval}} {key.key}", *([] if index else [":no-index:"])]
-    if kind:
-        lines.append(f":type: {kind}")
-    if key.default is not None:
-        lines.append(f":default: `{key.default}`")
-    needed = " Must stand where its section stands." if key.required else ""
-    symbol = f" Symbol {plain(key.symbol)}." if key.symbol else ""
+    known = ", ".join(filter(None, facts))
     sections = [f"[{n}](/theory.md#{theory[n]})" for n in key.sections.split(", ") if n in theory]
-    enters = f" Enters Theory {', '.join(sections)}." if sections else ""
-    below = f" Keys: {', '.join(f'`{name}`' for name in key.keys)}." if key.keys else ""
+    enters = f" Theory, section {', '.join(sections)}." if sections else ""
     said = plain(key.meaning)
     said = said[:1].upper() + said[1:] + "." * (not said.endswith("."))
-    return "\n".join([*lines, "", f"{said}{symbol}{needed}{enters}{below}", "::::", ""])
+    head = f":::{{confval}} {key.key}" + "\n:no-index:" * (not index)
+    return (
+        f"{head}\n\n{said}{enters}"
+        + f"\n\n{known[:1].upper()}{known[1:]}." * bool(known)
+        + "\n:::\n"
+    )
+
+
+def _sections(
+    keys: Iterable[KeyReference], theory: Mapping[str, str], known: Mapping[str, KeyReference]
+) -> Iterator[str]:
+    """A heading for each key that holds keys, and below it those that hold none."""
+    members = list(keys)
+    first = members[0].key
+    for parent in (key for key in members if key.keys or key.key == first):
+        if parent.key != first:
+            yield f"### {parent.key}\n"
+        yield _key(parent, theory, index=parent.key not in known)
+        for key in members:
+            if not key.keys and key.key.rpartition(".")[0] == parent.key:
+                yield _key(key, theory, index=key.key not in known)
 
 
 def _limits(
@@ -159,20 +177,20 @@ def keys(theory: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
         parts = [f"# {title}\n", " ".join((model.__doc__ or "").split("\n\n")[0].split()) + "\n"]
         parts.append("An editor completes and checks them by its [JSON schema](/schemas.md).\n")
         shared = []
-        for section, group in groupby(key_references(model), lambda key: key.key.split(".")[0]):
-            members = list(group)
+        groups = groupby(key_references(model), lambda key: key.key.split(".")[0])
+        sections = [(section, list(group)) for section, group in groups]
+        for section, members in sorted(sections, key=lambda each: len(each[1]) > 1):
             if name != "case" and all(known.get(key.key) == key for key in members):
                 shared.append(section)
                 continue
-            parts.append(f"## {section}\n")
+            if len(members) > 1:
+                parts.append(f"## {section}\n")
             index = section not in {key.split(".")[0] for key in known}
             if section == "limits":
                 parts.append(_key(members[0], theory, index=index))
                 parts += _limits(members[1:], theory, index=index)
             else:
-                parts += [
-                    _key(key, theory, index=index and key.key not in known) for key in members
-                ]
+                parts += _sections(members, theory, known)
             for key in members:
                 if "." in key.key:
                     limit = f"[`{key.key}`](/reference/{name}.md#limits)"
@@ -211,7 +229,7 @@ def results() -> dict[str, str]:
     """The page of the table of results."""
     rows = []
     for each in _results():
-        symbol = f" {each.symbol}" if each.symbol else ""
+        symbol = " " + each.symbol.replace("|", r"\vert ") if each.symbol else ""
         said = f"{plain(each.label)}{symbol}" + (f": {plain(each.meaning)}" if each.meaning else "")
         least = " at least" if each.from_below else ""
         limit = f"`{each.name}: {each.limit}`{least}" if each.limit else ""

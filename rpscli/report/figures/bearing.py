@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.pushover import PushoverResult
 from rpscli.errors import UsageError
 from rpscli.model.bearing import Bearing
-from rpscli.model.contact import Bed
-from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
 from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.pushover import draw_force
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rpscli.analyses.pushover import PushoverResult
+    from rpscli.model.bearing import Bearing
+    from rpscli.model.contact import Bed
+    from rpscli.model.podium import PodiumStructure
+
 
 Array = NDArray[np.float64]
 
@@ -74,7 +82,7 @@ ROOM = (0.16, 0.10, 0.03, 0.13)
 class BearingView:
     """A column between ground and cap beam, to scale; `show` leans it."""
 
-    def __init__(self, axes: style.Axes, structure: PodiumStructure) -> None:
+    def __init__(self, axes: Axes, structure: PodiumStructure) -> None:
         self.structure, bearing = structure, structure.bearing
         self.height = 2.0 * bearing.half_height
         self.half = (1.0 + 2.0 * BESIDE) * half_width(bearing)
@@ -92,7 +100,7 @@ class BearingView:
         axes.grid(visible=False)
 
     @property
-    def moving(self) -> list[style.Artist]:
+    def moving(self) -> list[Artist]:
         """What `show` moves."""
         beam = [] if self.beam is None else [self.beam]
         return [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
@@ -128,7 +136,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
     narrow = style.narrow()
     rows, columns = (2, 2) if narrow else (1, 3)
 
-    def draw(figure: style.Figure) -> None:
+    def draw(figure: Figure) -> None:
         style.heading(figure, title)
         grid = figure.add_gridspec(2, 1)
         above, below = (figure.add_subfigure(grid[row]) for row in (0, 1))
@@ -153,7 +161,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
     return style.picture(draw, 6.2)
 
 
-def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
+def draw_bearing(axes: Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
     """A column at a rotation [rad]: its dimensions at rest, displacement and lift if it leans."""
     if not abs(rotation) < 0.5 * math.pi:
         raise UsageError(f"rotation = {rotation:g} rad must be less than a quarter turn, 1.57 rad")
@@ -190,7 +198,7 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
     _arrow(axes, (at, height), (at, height + v), "$v_b$", (0.0, -2.0), at_end=True)
 
 
-def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
+def draw_end(axes: Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
     half, B = half_width(bearing), bearing.half_width
     x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
@@ -230,7 +238,7 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
     axes.set_title(title, fontsize=style.small())
 
 
-def frame_end(axes: style.Axes, bearing: Bearing, below: float = 0.1) -> None:
+def frame_end(axes: Axes, bearing: Bearing, below: float = 0.1) -> None:
     """Bring the lower end of a column into view; `below` the ground, as a part of the picture."""
     half = half_width(bearing)
     _frame(axes, (-half, half, 0.0, 0.0), (0.2, 0.2, below, 1.0 - below), END_ASPECT)
@@ -253,7 +261,7 @@ def _state(bearing: Bearing, critical: float, rotation: float, u: float, v: floa
     return f"{name}\n$u_b$ = {u:.3g} m, $v_b$ = {1e3 * v:.3g} mm"
 
 
-def _draw_dimensions(axes: style.Axes, bearing: Bearing) -> None:
+def _draw_dimensions(axes: Axes, bearing: Bearing) -> None:
     """R from the middle of the column to the edge, and the height."""
     H, B = bearing.half_height, bearing.half_width
     axes.plot([0.0, B], [H, 0.0], color=style.RED, lw=1.0)
@@ -270,7 +278,7 @@ def _draw_dimensions(axes: style.Axes, bearing: Bearing) -> None:
 
 
 def _frame(
-    axes: style.Axes,
+    axes: Axes,
     content: tuple[float, float, float, float],
     room: tuple[float, float, float, float],
     aspect: float,
@@ -289,7 +297,7 @@ def _frame(
 
 
 def measure(
-    axes: style.Axes,
+    axes: Axes,
     start: tuple[float, float],
     end: tuple[float, float],
     text: str,
@@ -302,7 +310,7 @@ def measure(
 
 
 def _arrow(
-    axes: style.Axes,
+    axes: Axes,
     start: tuple[float, float],
     end: tuple[float, float],
     text: str,
