@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 
 DAMPING = 0.05
+BOTH = "_both"
+"""In the name of a pair."""
 MADE = ("synthetic", "pulse")
 """What may be made of a description."""
 FORMATS = {"at2": ".at2", "text": ".txt"}
@@ -38,7 +41,7 @@ ENDINGS = {ending: form for form, ending in FORMATS.items()}
 
 
 def source_options(function: Command) -> Command:
-    """SRC, --dt, --units and --scale, as `motion`; the record's warnings go to the terminal."""
+    """SRC, --dt, --units, --scale as `motions`, those of a pair x and y; warnings are told."""
 
     @click.argument("source", metavar="SRC", type=FILE)
     @click.option("--dt", type=float, metavar="S", help="Time step of a file that states none [s].")
@@ -58,57 +61,68 @@ def source_options(function: Command) -> Command:
         terminal: Terminal,
         **rest: Any,
     ) -> None:
-        from rpscli.records.source import load_record
+        from rpscli.records.source import load_components
 
-        motion = load_record(source, dt=dt, units=units)
+        found = load_components(source, dt=dt, units=units)
         if scale != 1.0:
-            motion = motion.scaled(scale)
-        terminal.warn(motion.warnings)
-        function(motion=motion, terminal=terminal, **rest)
+            found = found.scaled(scale)
+        stem = found.horizontal.name.replace(BOTH, "", 1)
+        motions = (
+            [found.horizontal]
+            if found.y is None
+            else [
+                replace(each, name=f"{stem}_{way}")
+                for way, each in (("x", found.horizontal), ("y", found.y))
+            ]
+        )
+        terminal.warn(dict.fromkeys(text for each in motions for text in each.warnings))
+        function(motions=motions, terminal=terminal, **rest)
 
     return command
 
 
 def record_folder(
-    motion: GroundMotion, output: OutputRequest, command: str, **inputs: Any
+    motions: Sequence[GroundMotion], output: OutputRequest, command: str, **inputs: Any
 ) -> OutputFolder:
     """The folder of a command's results; a record that is no file is known by its samples."""
     from rpscli.records.source import file_and_options
 
+    motion, *others = motions
     place = Path(file_and_options(motion.source)[0])
-    run = Run(
-        f"record {command}",
-        motion.name,
-        place if place.is_file() else None,
-        motion.digest,
-        {"source": motion.source, **inputs},
-    )
-    folder = output.place or RESULTS / motion.name / f"record_{command}"
+    name = f"{motion.name.removesuffix('_x')}{BOTH}" if others else motion.name
+    inputs |= {"source": motion.source} | ({"y": others[0].digest} if others else {})
+    file = place if place.is_file() else None
+    run = Run(f"record {command}", name, file, motion.digest, inputs)
+    folder = output.place or RESULTS / name / f"record_{command}"
     return OutputFolder(folder, run, force=output.force)
 
 
 def _result(
-    command: str, motion: GroundMotion, terminal: Terminal, files: Sequence[str] | None = None
+    command: str,
+    motions: Sequence[GroundMotion],
+    terminal: Terminal,
+    files: Sequence[str] | None = None,
 ) -> None:
     """What was read and how strong it is, as document or table."""
     from rpscli.records.measures import intensity_measures
     from rpscli.report.tables.motions import record_document, record_table
 
-    measures = intensity_measures(motion)
-    document = {
-        **heading(), "command": f"record {command}", **record_document(motion, measures),
-    }  # fmt: skip
+    found = [(motion, intensity_measures(motion)) for motion in motions]
+    own, *others = (record_document(*each) for each in found)
+    document = {**heading(), "command": f"record {command}", **own}
+    if others:
+        document["y"] = others[0]
     if files is not None:
         document["files"] = files
-    terminal.result(document, [record_table(motion, measures)])
+    terminal.result(document, [record_table(*each) for each in found])
 
 
 @click.command("info")
 @terminal_options
 @source_options
-def info(motion: GroundMotion, terminal: Terminal) -> None:
+def info(motions: Sequence[GroundMotion], terminal: Terminal) -> None:
     """What was understood of SRC, and its intensity measures in SI units."""
-    _result("info", motion, terminal)
+    _result("info", motions, terminal)
 
 
 @click.command("plot")
@@ -116,28 +130,35 @@ def info(motion: GroundMotion, terminal: Terminal) -> None:
 @source_options
 @figure_options
 @output_options
-def plot(motion: GroundMotion, output: OutputRequest, terminal: Terminal, look: Look) -> None:
+def plot(
+    motions: Sequence[GroundMotion], output: OutputRequest, terminal: Terminal, look: Look
+) -> None:
     """Draw SRC: acceleration, velocity, displacement and its response spectrum at 5 % damping.
 
-    Writes record.csv, spectrum.csv and the figure record.
+    Writes record.csv, spectrum.csv and the figure record; of a pair x_record.csv, y_record.csv, ...
     """
     import numpy as np
 
     from rpscli.records.spectrum import response_spectrum
     from rpscli.report.bundles import record_files
 
-    folder = record_folder(motion, output, "plot")
+    folder = record_folder(motions, output, "plot")
     periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
-    spectrum = response_spectrum(motion, periods, DAMPING)
-    folder.add_all(record_files(motion, spectrum, look))
+    for motion, way in zip(motions, ("x_", "y_") if len(motions) > 1 else ("",), strict=True):
+        files = record_files(motion, response_spectrum(motion, periods, DAMPING), look)
+        folder.add_all((f"{way}{name}", content) for name, content in files)
     write(folder, terminal)
-    _result("plot", motion, terminal, folder.files)
+    _result("plot", motions, terminal, folder.files)
 
 
 def write_record(
-    command: str, motion: GroundMotion, output: OutputRequest, terminal: Terminal, form: str | None
+    command: str,
+    motions: Sequence[GroundMotion],
+    output: OutputRequest,
+    terminal: Terminal,
+    form: str | None,
 ) -> None:
-    """Write the motion into the folder, or the file, that the command line names."""
+    """Write the motions into the folder, or the file, that the command line names."""
     from rpscli.records.formats.at2 import at2_text
     from rpscli.report.tables.motions import two_column_text
 
@@ -145,20 +166,25 @@ def write_record(
     named = None if place is None or place.is_dir() else ENDINGS.get(place.suffix.lower())
     if named and form not in {None, named}:
         raise UsageError(f"--to {form}: contradicts the file name {place}")
+    if named and len(motions) > 1:
+        raise UsageError(f"-o {place}: both components are two files; name a folder, and --to")
     wanted = named or form or "at2"
-    content = at2_text(motion) if wanted == "at2" else two_column_text(motion)
+    contents = [
+        at2_text(motion) if wanted == "at2" else two_column_text(motion) for motion in motions
+    ]
     if named and place is not None:
         if place.exists() and not output.force:
             raise Refused(f"{place} exists; name another file, or overwrite it with --force")
-        write_whole({place: encoded(content)})
+        write_whole({place: encoded(contents[0])})
         terminal.note(f"written to {place}")
         files = [str(place)]
     else:
-        folder = record_folder(motion, output, command, format=wanted)
-        folder.add(f"{motion.name}{FORMATS[wanted]}", content)
+        folder = record_folder(motions, output, command, format=wanted)
+        for motion, content in zip(motions, contents, strict=True):
+            folder.add(f"{motion.name}{FORMATS[wanted]}", content)
         write(folder, terminal)
         files = folder.files
-    _result(command, motion, terminal, files)
+    _result(command, motions, terminal, files)
 
 
 @click.command("convert")
@@ -176,7 +202,7 @@ def write_record(
 )
 @output_options
 def convert(
-    motion: GroundMotion,
+    motions: Sequence[GroundMotion],
     output: OutputRequest,
     terminal: Terminal,
     form: str | None,
@@ -184,31 +210,33 @@ def convert(
 ) -> None:
     """Write SRC as a PEER AT2 file or as two columns of text, with another time step if asked.
 
-    The name after -o may also be that of a file: -o motion.at2, -o motion.txt.
+    The name after -o may also be that of a file: -o motion.at2, -o motion.txt. Of a pair each
+    component has a file.
     """
     if resample is not None:
-        known = motion.warnings
-        motion = motion.resampled(resample)
-        terminal.warn(text for text in motion.warnings if text not in known)
-    write_record("convert", motion, output, terminal, form)
+        known = {text for motion in motions for text in motion.warnings}
+        motions = [motion.resampled(resample) for motion in motions]
+        terminal.warn({text for motion in motions for text in motion.warnings} - known)
+    write_record("convert", motions, output, terminal, form)
 
 
 @click.command("synth")
 @terminal_options
 @source_options
 @output_options
-def synth(motion: GroundMotion, output: OutputRequest, terminal: Terminal) -> None:
+def synth(motions: Sequence[GroundMotion], output: OutputRequest, terminal: Terminal) -> None:
     """Make the motion that SRC describes, and write it as an AT2 file that says so.
 
     SRC is synthetic:?pga=0.4g&seed=1 (also duration, dt, ground_frequency, ground_damping,
     cut_frequency, cut_damping, pulse_velocity, pulse_period, pulse_cycles) or a pulse such as
     pulse:ricker?amplitude=0.4g&period=1. The same seed gives the same motion.
     """
+    motion = motions[0]
     if motion.format not in MADE:
         raise UsageError(
             f"{motion.source}: is {motion.format}, not made here; use `rps record convert`"
         )
-    write_record("synth", motion, output, terminal, "at2")
+    write_record("synth", motions, output, terminal, "at2")
 
 
 MEMBERS = {

@@ -180,6 +180,7 @@ def case_page(
         set_error,
         set_tables,
     )
+    from rpscli.report.figures.planes import record_name
     from rpscli.report.html.case_page import History, Several, case_sections
 
     case, commands = given.case, _commands(given, asked, with_budget=with_budget)
@@ -226,7 +227,7 @@ def case_page(
     more = _budget(requests, motions, 0, look, terminal) if with_budget else []
     return PageDone(
         case.title,
-        f"Time history under {result.record.name}{ends(case)}",
+        f"Time history under {record_name(result)}{ends(case)}",
         made(warnings, history, stored, more),
         done.document,
         done.error,

@@ -258,13 +258,16 @@ def summary_tables(summary: Summary) -> Iterator[Part]:
 
 
 def of_first_system(layout: StudyPoints) -> str:
-    """What counts as overturned, and the restitution: of the first system, others differ."""
+    """Overturning and restitution of the first system, others differ; limits that do not count."""
     from rpscli.report.tables.timehistory import overturned_text, restitution_text
 
     first = layout.system(0)
     text = overturned_text(first.structure, first.settings)
     text = f"{text}; {restitution_text(first.structure)}"
-    return text + " (the first system)" * (len(layout.combinations) > 1)
+    text += " (the first system)" * (len(layout.combinations) > 1)
+    of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
+    replaced = "" if not of_base else f"; own limits replace all of the base: {', '.join(of_base)}"
+    return text + replaced
 
 
 def _of_systems(

@@ -9,7 +9,8 @@ numbers sources so that those that hang together have one number, by their *reco
   `second`, all channels of one file, and files of one folder whose names differ in the component
   alone: `RSN953_NORTHR_MUL009.AT2` and `RSN953_NORTHR_MUL279.AT2` (number of the PEER flatfile),
   `MUL009.AT2` and `MUL279.AT2`, `TCU045-E.AT2` and `TCU045-N.AT2` (two such files, 90 deg apart),
-  `AOM001.EW` and `AOM001.NS` (K-NET), `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc` (codes of ESM);
+  `AOM001.EW` and `AOM001.NS` (K-NET), `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc` (codes of ESM),
+  `motion_x.at2` and `motion_y.at2`;
 * synthetic motions of one seed.
 
 Any other source is a recording of its own. Of one event are recordings whose files name an
@@ -22,11 +23,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Literal
 
 from rpscli.errors import RecordError
-from rpscli.records import sets, synthetic
+from rpscli.records.families import OTHER_SCHEME, VERTICAL, family, right_angles
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.pair_measure import Of
 from rpscli.records.source import SourceParts, load_components, parts_of
@@ -37,48 +38,15 @@ By = Literal["recordings", "events"]
 Pair = tuple[str, str]
 """Sources of two components."""
 
-_SEED = re.compile(r"[?&]seed=([^&]*)")
-_OTHER_SCHEME = re.compile(r"[A-Za-z][\w.+-]+:")  # two letters at least: C: is a drive
-_PEER_NUMBER = re.compile(r"(RSN\d+)_.*", re.IGNORECASE)
-_CHANNEL_CODE = re.compile(r"(?<=[._])([A-Z]{2})[ENXY12](?=[._])")
-_KNET = re.compile(r"\.(?:EW|NS)([12]?)$", re.IGNORECASE)
-_AZIMUTH = re.compile(r"(.*\D)(\d{3}|(?<=-)[NESW])(\.at2)", re.IGNORECASE)
-_COMPASS = {"N": 0, "E": 90, "S": 180, "W": 270}
-_VERTICAL = re.compile(r".*(?:UP|UD|DWN|VER|V|Z)(?:\.\w+)?", re.IGNORECASE)
-
 
 def _families(sources: Sequence[str]) -> list[set[str]]:
     """Of each source the names of its recording: one, or those of both files of a pair."""
     plain = [parts_of(source) for source in sources]
-    files = {name for p in plain for name in (p.place, p.second) if name}
-    by_azimuth: dict[str, list[int]] = {}
-    for match in filter(None, map(_AZIMUTH.fullmatch, sorted(files))):
-        azimuth = _COMPASS.get(match[2].upper())
-        by_azimuth.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
-    pairs = {
-        stem for stem, at in by_azimuth.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90
-    }
+    apart = right_angles(name for p in plain for name in (p.place, p.second) if name)
     return [
-        {_family(name, source, pairs) for name in (p.place, p.second) if name}
+        {family(name, source, apart) for name in (p.place, p.second) if name}
         for source, p in zip(sources, plain, strict=True)
     ]
-
-
-def _family(place: str, source: str, pairs: set[str]) -> str:
-    """The name of a recording: a place without what tells its components apart."""
-    if place.startswith(f"{sets.SCHEME}:"):
-        return re.sub("/[ab]$", "", place)
-    if place.startswith(f"{synthetic.SCHEME}:"):
-        seed = _SEED.search(source)
-        return f"{synthetic.SCHEME}:{seed[1] if seed else place}"
-    if _OTHER_SCHEME.match(place):
-        return source
-    folder, name = PurePath(place).parent, PurePath(place).name
-    if (azimuth := _AZIMUTH.fullmatch(place)) and azimuth[1] in pairs:
-        return azimuth[1]
-    if number := _PEER_NUMBER.fullmatch(name):
-        return str(folder / number[1].upper())
-    return str(folder / _KNET.sub(r".\1", _CHANNEL_CODE.sub(r"\1", name)))
 
 
 def _numbered(families: Sequence[set[str]]) -> list[int]:
@@ -186,8 +154,8 @@ def _components(plain: SourceParts, members: Sequence[SourceParts]) -> Pair | No
     both = next((m for m in members if m.second and plain.place in (m.place, m.second)), None)
     if both is not None and both.second is not None:
         return plain.component(both.place), plain.component(both.second)
-    files = {m.place: m for m in members if not _VERTICAL.fullmatch(m.place)}
-    if len(files) != 2 or plain.place not in files or _OTHER_SCHEME.match(plain.place):
+    files = {m.place: m for m in members if not VERTICAL.fullmatch(m.place)}
+    if len(files) != 2 or plain.place not in files or OTHER_SCHEME.match(plain.place):
         return None
     first, second = (
         file._replace(factor=plain.factor).component(place) for place, file in sorted(files.items())

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from rpscli.errors import RecordError, beginning, nearest, require_kind, require_visible
 from rpscli.records import pulses, sets, synthetic
+from rpscli.records.families import two_by_two
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import angle_of, direction_of, rotated, together, turned
 from rpscli.records.quantities import (
@@ -312,6 +313,10 @@ def _expanded(source: str, folder: Path | None) -> list[str]:
         return [source]
     if not found:
         raise RecordError(f"{source}: no record file there that can be read")
+    parts = parts_of(source)
+    if (parts.both or parts.turned) and parts.second is None:
+        pairs = two_by_two(found, source)
+        return [f"{first}?second={second}&{options}" for first, second in pairs]
     return [f"{name}{suffix}" for name in found]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,9 +16,6 @@ from rpscli.report.figures.look import Look, figure_files
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown
 from rpscli.sweep.budget import FACTOR, RECORDS, SHARES, Effect, Row
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 REMARK = (
     "one input at a time, and no error of the model itself; without podium.impact.loss the loss of"
@@ -136,7 +133,7 @@ def budget_figure(rows: Sequence[Row], effect: Effect, title: str) -> bytes:
     far = 1.15 * np.max([v for v in (*effect.values, *lines) if np.isfinite(v)], initial=0.0)
     factor, places = large(1.0, unit)[0] or 1.0, np.arange(len(names))
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, CAPTION)
         axes, kind = figure.subplots(), np.array([style.BLUE, style.ORANGE, style.RED])
         kinds = np.where(effect.turned, 2, effect.moved)[~others]

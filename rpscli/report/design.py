@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,10 +21,6 @@ from rpscli.report.table import Column
 from rpscli.sweep.design.answer import NONE, Answer, Requirement
 from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.table import Array, Indices
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 def requirement_label(requirement: Requirement) -> str:
@@ -230,7 +226,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
     order = np.argsort(answer.values[:, 0])
     key, requirements = answer.values[order, 0], answer.judged.requirements
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, _counts(answer))
         grid = figure.subplots(len(requirements), 1, squeeze=False, sharex=True)[:, 0]
         for row, (axes, requirement) in enumerate(zip(grid, requirements, strict=True)):
@@ -269,7 +265,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
     return style.picture(draw, 1.9 + 2.3 * len(requirements))
 
 
-def _draw_regions(axes: Axes, answer: Answer, row: int) -> None:
+def _draw_regions(axes: style.Axes, answer: Answer, row: int) -> None:
     """One unknown: regions of designs that hold, and what is recommended."""
     for number, region in enumerate(answer.regions):
         ends = answer.values[region, 0].min(), answer.values[region, 0].max()
@@ -305,7 +301,7 @@ def region_figure(answer: Answer, title: str) -> bytes:
     columns = 1 if narrow else min(3, len(shown))
     rows = math.ceil(len(shown) / columns)
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         more = f"{MOST_PAIRS} of {len(pairs)} pairs" if len(pairs) > MOST_PAIRS else ""
         style.heading(figure, title, _counts(answer), more)
         grid = figure.subplots(rows, columns, squeeze=False)
@@ -328,7 +324,7 @@ def region_figure(answer: Answer, title: str) -> bytes:
     return style.picture(draw, 1.1 + (4.2 if len(pairs) == 1 else 2.6) * rows)
 
 
-def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
+def _draw_shares(figure: style.Figure, axes: style.Axes, answer: Answer) -> None:
     """The share of the resamples in which each design passes; nothing is said of those between."""
     from matplotlib import colormaps, rcParams
     from matplotlib.colors import BoundaryNorm
@@ -345,7 +341,7 @@ def _draw_shares(figure: Figure, axes: Axes, answer: Answer) -> None:
 
 
 def _draw_designs(
-    axes: Axes, answer: Answer, at: Array, marks: Sequence[tuple[str, str, str]], **look: Any
+    axes: style.Axes, answer: Answer, at: Array, marks: Sequence[tuple[str, str, str]], **look: Any
 ) -> None:
     """What became of the designs, at their rows of (designs, 2)."""
     became = np.where(answer.passes, "passes", np.where(answer.valid, "fails", "no valid case"))
@@ -371,7 +367,7 @@ def front_figure(answer: Answer, title: str) -> bytes:
         objectives[place] *= factor
         labels.append(f"{objective_label(objective)} [{prefix}{unit}]")
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, f"{len(answer.front)} designs on the Pareto front")
         axes = figure.subplots()
         _draw_designs(axes, answer, objectives.T, MARKS[1:2], ms=2.2, alpha=0.35)
@@ -385,7 +381,7 @@ def front_figure(answer: Answer, title: str) -> bytes:
     return style.picture(draw, 4.2, 6.0)
 
 
-def _mark(axes: Axes, answer: Answer, at: Array) -> None:
+def _mark(axes: style.Axes, answer: Answer, at: Array) -> None:
     """The best design, the recommended one and islands, at their rows of (designs, 2)."""
     if answer.islands:
         axes.plot(*at[answer.islands].T, **BEST | RINGED | {"marker": "s", "label": "islands"})

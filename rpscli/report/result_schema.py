@@ -194,8 +194,9 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
         "keys": dict[str, str], **_TOLD, **_FILES,
     },
     "report": {**_TOLD, **_FILES, **_ENDED},
-    "record info": _RECORD,
-    **{f"record {verb}": {**_RECORD, **_FILES} for verb in ("plot", "convert", "synth")},
+    "record info": {**_RECORD, "y?": _RECORD},
+    **{f"record {verb}": {**_RECORD, "y?": _RECORD, **_FILES} for verb in ("plot", "convert")},
+    "record synth": {**_RECORD, **_FILES},
     "record select": {
         "target": {"name": str, "source": str, "edition": str, "checked": str},
         "periods": [float], "common_factor": float, "misfit": float, "least_ratio": float,

@@ -216,7 +216,7 @@ def test_every_example_is_written_with_what_it_names(rps: Invoke, rps_json: Invo
     [
         ("rigid_frame", ["records/synthetic_far_field.at2"], "check cases/rigid_frame.yaml"),
         ("studies/ida_fragility", ["acceptance.yaml", "studies/hazard_pgv.csv"], "sweep"),
-        ("friction_dampers", ["studies/devices.yaml"], "check cases/friction_dampers.yaml"),
+        ("measured_column", [], "check cases/measured_column.yaml"),
     ],
 )
 def test_an_example_goes_on_working(rps: Invoke, name: str, others: list[str], then: str) -> None:

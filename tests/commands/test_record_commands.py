@@ -12,7 +12,7 @@ from click.testing import Result
 
 import rpscli
 from rpscli.records.measures import intensity_measures
-from rpscli.records.source import expand_sources, load_record
+from rpscli.records.source import expand_sources, load_components, load_record
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]
@@ -39,6 +39,33 @@ def test_a_file_that_states_neither_step_nor_unit(rps: Invoke, rps_json: InvokeJ
     document = rps_json("record", "info", "bare.txt", "--dt", "0.02", "--units", "g")
     assert document["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
     assert document["duration"] == pytest.approx(0.06, rel=1e-12)
+
+
+def test_both_components_are_told_drawn_and_written(rps: Invoke, rps_json: InvokeJson) -> None:
+    """What is written is a pair again; turned by 90 deg, what acted along x acts along y."""
+    for name, seed in (("a.txt", 6), ("b.txt", 7)):
+        rps("record", "convert", NOISE.replace("seed=5", f"seed={seed}"), "-o", name)
+    source = "a.txt?second=b.txt&both&rotation=90"
+    told = rps_json("record", "info", source, "--scale", "2")
+    along, across = -load_record("b.txt").acceleration, load_record("a.txt").acceleration
+    peaks = [2.0 * np.abs(values).max() for values in (along, across)]
+    assert [told["pga"], told["y"]["pga"]] == peaks
+    drawn = rps_json("record", "plot", source, "-o", "drawn", "--figures", "none")
+    assert sorted(Path(file).name for file in drawn["files"]) == [
+        "run.json", "x_record.csv", "x_spectrum.csv", "y_record.csv", "y_spectrum.csv"
+    ]  # fmt: skip
+    written = rps_json("record", "convert", source, "-o", "both", "--resample", "0.005")
+    names = sorted(Path(file).name for file in written["files"])
+    assert names == ["a_90deg_x.at2", "a_90deg_y.at2", "run.json"]
+    (again,) = expand_sources(["both?both"])
+    pair = load_components(again)
+    assert pair.y is not None
+    for values, read in ((along, pair.horizontal), (across, pair.y)):
+        # AT2 has seven digits of g
+        np.testing.assert_allclose(read.acceleration[: 2 * len(values) : 2], values, atol=2e-6)
+    result = rps("record", "convert", source, "-o", "both.at2")
+    assert result.exit_code == 2
+    assert "name a folder" in result.stderr
 
 
 @pytest.mark.usefixtures("figures")

@@ -169,6 +169,34 @@ def test_refuses_pairs(station: Path, source: str, message: str) -> None:
             read(source, folder=station)
 
 
+NAMES = (
+    ("RSN953_A_MUL009.AT2", "RSN953_A_MUL279.AT2"), ("MUL009.AT2", "MUL279.AT2"),
+    ("TCU045-E.AT2", "TCU045-N.AT2"), ("AOM001.EW", "AOM001.NS"), ("quake_x.at2", "quake_y.at2"),
+    ("IT.NRC..HGE.D.asc", "IT.NRC..HGN.D.asc"),
+)  # fmt: skip
+
+
+def test_names_tell_both_components_of_a_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rpscli.records.formats.is_record", lambda _: True)
+    folder = tmp_path / "all"
+    folder.mkdir()
+    for name in (*(name for pair in NAMES for name in pair), "RSN953_A_MUL-UP.AT2", "MULV.at2"):
+        (folder / name).touch()
+    expected = sorted(
+        f"all/{first}?second={second}&both&rotation=30&factor=2" for first, second in NAMES
+    )
+    found = expand_sources(["all?both&rotation=30&factor=2"], folder=tmp_path)
+    assert sorted(found) == expected
+    assert len(set(clusters([each for pair in NAMES for each in pair]))) == len(NAMES)
+    (one,) = expand_sources(["all/AOM*?angle=30"], folder=tmp_path)
+    assert one == "all/AOM001.EW?second=AOM001.NS&angle=30"
+    (folder / "other.at2").touch()
+    with pytest.raises(RecordError, match=r"all/other.at2: names do not tell two .* leave it out"):
+        expand_sources(["all?both"], folder=tmp_path)
+
+
 def test_one_component_is_wanted(station: Path) -> None:
     with pytest.raises(RecordError, match="holds two components, and one is wanted here"):
         load_record(TOGETHER, folder=station)

@@ -129,7 +129,7 @@ def test_a_study_judges_the_annual_rate_of_each_system(study_of: Make, tmp_path:
     assert len(verdict_lines(summary(table, {}).keys, [first, *others])) == 5
     strictly = judged(table, summary(table, {}), [parse_condition("not-shown")])
     line, *_ = lines = verdict_lines(summary(table, {}).keys, strictly)
-    assert (line[:34], len(lines)) == ("limit not shown to be met: annual", 6)
+    assert (line[:33], len(lines)) == ("limit not shown to be met: annual", 6)
 
 
 def test_rates_of_the_motion_are_those_of_the_curve() -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
 from rpscli.analyses.kernels import compilation
 from rpscli.analyses.kernels.compilation import Listener
@@ -12,7 +14,9 @@ from rpscli.case.schema.keys import unit
 from rpscli.commands.shell import waiting as sweep_progress
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, progress_line, progress_report
+from rpscli.commands.study import of_first_system
 from rpscli.report.study.labels import labels
+from rpscli.studies import load_study
 from rpscli.sweep.run.runner import Progress
 
 
@@ -110,3 +114,17 @@ def test_units_come_from_the_case_format() -> None:
     assert unit("superstructure.stiffness.0") == "N/m"
     assert unit("podium.bearing.slenderness") == "-"
     assert unit("record") == "-"
+
+
+def test_limits_of_the_base_that_do_not_count_are_named() -> None:
+    case = Path(__file__).parents[2] / "cases" / "six_storey.yaml"
+    base: dict[str, Any] = yaml.safe_load(case.read_text(encoding="utf-8"))
+    del base["limits"], base["analysis"]  # whose 1e-6 is text to this reader
+    study: dict[str, Any] = {"rps": 1, "vary": [{"superstructure.period": [0.3, 0.4]}]}
+    study["records"] = ["pulse:sine?amplitude=0.3g&period=0.8"]
+    said = []
+    of_base, own = {"limits": {"drift_ratio": 0.01}}, {"limits": {"overturning": 0.1}}
+    for first, second in ((of_base, own), (of_base, {}), ({}, own)):
+        layout = load_study(study | {"base": base | first} | second).layout
+        said.append(of_first_system(layout).partition("; own limits")[2])
+    assert said == [" replace all of the base: drift_ratio", "", ""]

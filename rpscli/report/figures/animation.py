@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.modal import ModalResult
+from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
 from rpscli.report.figures.bearing import BearingView, frame_end, half_width, leaning_outline
@@ -15,15 +17,6 @@ from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.film import MOST_FRAMES, FilmRequest, Motion, Progress, film
 from rpscli.report.figures.planes import in_plane, lean_azimuth
 from rpscli.report.figures.structure import draw_modes, level_heights, modes_size
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rpscli.analyses.modal import ModalResult
-    from rpscli.analyses.results import TimeHistoryResult
-
 
 Array = NDArray[np.float64]
 
@@ -37,7 +30,9 @@ COLUMNS = 3
 class Scene:
     """The structure at one instant; `show` moves it to another. Of pairs where columns lean."""
 
-    def __init__(self, axes: Axes, result: TimeHistoryResult, title: str, speed: float) -> None:
+    def __init__(
+        self, axes: style.Axes, result: TimeHistoryResult, title: str, speed: float
+    ) -> None:
         of_pair, result = result.trace.y is not None, in_plane(result)
         self.result = result
         self.levels = level_heights(result.structure)
@@ -68,12 +63,12 @@ class Scene:
         self._frame(axes)
 
     @property
-    def moving(self) -> list[Artist]:
+    def moving(self) -> list[style.Artist]:
         """What `show` moves."""
         parts = [*self.columns, self.beam, *self.sides, *self.floors, *self.devices.moving]
         return [*parts, self.clock]
 
-    def _frame(self, axes: Axes) -> None:
+    def _frame(self, axes: style.Axes) -> None:
         trace = self.result.trace
         shift = float(np.nanmax(np.abs(trace.cap_beam_displacement)))
         reach = 0.5 * self.width + shift + 0.12 * float(self.levels[-1])
@@ -116,7 +111,7 @@ class PlanView:
     A line shows the plane in which it leans, and which end of it is on the right from the side.
     """
 
-    def __init__(self, axes: Axes, result: TimeHistoryResult) -> None:
+    def __init__(self, axes: style.Axes, result: TimeHistoryResult) -> None:
         from matplotlib.patches import Circle
 
         trace = result.trace
@@ -136,15 +131,14 @@ class PlanView:
         self.head = Circle((0.0, 0.0), radius, fill=False, ec=style.BLUE, lw=1.6)
         axes.add_patch(self.head)
         self.middle = axes.plot([], [], "o", color=style.BLUE, ms=3.5)[0]
-        look: dict[str, Any] = {"bbox": {"fc": "white", "ec": "none", "pad": 0.5}}
-        self.right = axes.text(0.0, 0.0, "right", ha="center", va="center", **look)
-        self.right.set_fontsize(style.small())
+        look: dict[str, Any] = {"fontsize": style.small(), "ha": "center", "va": "center"}
+        self.right = axes.text(0.0, 0.0, "right", **look)
         axes.set(xlim=(-self.reach, self.reach), ylim=(-self.reach, self.reach))
         axes.set_aspect("equal", adjustable="box")
         axes.set(xlabel="x [m]", ylabel="y [m]")
         axes.locator_params(nbins=5)
         axes.set_title("a column from above", fontsize=style.small())
-        self.moving: list[Artist] = [self.plane, self.way, self.head, self.middle, self.right]
+        self.moving: list[style.Artist] = [self.plane, self.way, self.head, self.middle, self.right]
 
     def show(self, sample: int) -> None:
         """Move the head to where it is at a sample, and turn the plane in which columns lean."""
@@ -154,7 +148,8 @@ class PlanView:
         self.head.set_center((self.x[sample], self.y[sample]))
         way = self.reach * np.array([np.cos(self.azimuth[sample]), np.sin(self.azimuth[sample])])
         self.plane.set_data(*np.outer(way, (-2.0, 2.0)))
-        self.right.set_position((0.85 * way[0], 0.85 * way[1]))
+        # Beside the line, by more than half of the word where the line stands upright.
+        self.right.set_position((0.8 * way[0] - 0.2 * way[1], 0.8 * way[1] + 0.2 * way[0]))
 
 
 def _pace(speed: float) -> str:
@@ -225,7 +220,7 @@ def history_film(
     """
     plan = frame_plan(result, wanted)
 
-    def draw(figure: Figure) -> Motion:
+    def draw(figure: style.Figure) -> Motion:
         panels = figure.subplot_mosaic(
             [["scene", "detail"], ["record", "record"]], width_ratios=[1.7, 1.0],
             height_ratios=[4.2, 1.0],
@@ -255,8 +250,8 @@ def history_film(
 
 
 def _detail(
-    axes: Axes, result: TimeHistoryResult
-) -> tuple[Callable[[int], object], Sequence[Artist]]:
+    axes: style.Axes, result: TimeHistoryResult
+) -> tuple[Callable[[int], object], Sequence[style.Artist]]:
     """What shows what stands beside the scene at a sample, and what of it moves."""
     if result.trace.y is not None:
         above = PlanView(axes, result)
@@ -272,7 +267,7 @@ def modes_film(
 ) -> bytes:
     """The figure of the modes, its shapes swinging, all at one pace."""
 
-    def draw(figure: Figure) -> Motion:
+    def draw(figure: style.Figure) -> Motion:
         draw_modes(figure, result, f"{title}   |   all modes at one pace")
         lines = [line for axes in figure.axes for line in axes.lines]
         shapes = [np.asarray(line.get_xdata(), dtype=float) for line in lines]

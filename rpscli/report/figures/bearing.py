@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.pushover import PushoverResult
 from rpscli.errors import UsageError
 from rpscli.model.bearing import Bearing
+from rpscli.model.contact import Bed
+from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
 from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.pushover import draw_force
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rpscli.analyses.pushover import PushoverResult
-    from rpscli.model.bearing import Bearing
-    from rpscli.model.contact import Bed
-    from rpscli.model.podium import PodiumStructure
-
 
 Array = NDArray[np.float64]
 
@@ -82,7 +74,7 @@ ROOM = (0.16, 0.10, 0.03, 0.13)
 class BearingView:
     """A column between ground and cap beam, to scale; `show` leans it."""
 
-    def __init__(self, axes: Axes, structure: PodiumStructure) -> None:
+    def __init__(self, axes: style.Axes, structure: PodiumStructure) -> None:
         self.structure, bearing = structure, structure.bearing
         self.height = 2.0 * bearing.half_height
         self.half = (1.0 + 2.0 * BESIDE) * half_width(bearing)
@@ -100,7 +92,7 @@ class BearingView:
         axes.grid(visible=False)
 
     @property
-    def moving(self) -> list[Artist]:
+    def moving(self) -> list[style.Artist]:
         """What `show` moves."""
         beam = [] if self.beam is None else [self.beam]
         return [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
@@ -136,7 +128,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
     narrow = style.narrow()
     rows, columns = (2, 2) if narrow else (1, 3)
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title)
         grid = figure.add_gridspec(2, 1)
         above, below = (figure.add_subfigure(grid[row]) for row in (0, 1))
@@ -161,7 +153,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
     return style.picture(draw, 6.2)
 
 
-def draw_bearing(axes: Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
+def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
     """A column at a rotation [rad]: its dimensions at rest, displacement and lift if it leans."""
     if not abs(rotation) < 0.5 * math.pi:
         raise UsageError(f"rotation = {rotation:g} rad must be less than a quarter turn, 1.57 rad")
@@ -198,7 +190,7 @@ def draw_bearing(axes: Axes, structure: PodiumStructure, rotation: float = 0.0) 
     _arrow(axes, (at, height), (at, height + v), "$v_b$", (0.0, -2.0), at_end=True)
 
 
-def draw_end(axes: Axes, bearing: Bearing, bed: Bed | None = None) -> None:
+def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
     half, B = half_width(bearing), bearing.half_width
     x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
@@ -238,7 +230,7 @@ def draw_end(axes: Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     axes.set_title(title, fontsize=style.small())
 
 
-def frame_end(axes: Axes, bearing: Bearing, below: float = 0.1) -> None:
+def frame_end(axes: style.Axes, bearing: Bearing, below: float = 0.1) -> None:
     """Bring the lower end of a column into view; `below` the ground, as a part of the picture."""
     half = half_width(bearing)
     _frame(axes, (-half, half, 0.0, 0.0), (0.2, 0.2, below, 1.0 - below), END_ASPECT)
@@ -261,7 +253,7 @@ def _state(bearing: Bearing, critical: float, rotation: float, u: float, v: floa
     return f"{name}\n$u_b$ = {u:.3g} m, $v_b$ = {1e3 * v:.3g} mm"
 
 
-def _draw_dimensions(axes: Axes, bearing: Bearing) -> None:
+def _draw_dimensions(axes: style.Axes, bearing: Bearing) -> None:
     """R from the middle of the column to the edge, and the height."""
     H, B = bearing.half_height, bearing.half_width
     axes.plot([0.0, B], [H, 0.0], color=style.RED, lw=1.0)
@@ -278,7 +270,7 @@ def _draw_dimensions(axes: Axes, bearing: Bearing) -> None:
 
 
 def _frame(
-    axes: Axes,
+    axes: style.Axes,
     content: tuple[float, float, float, float],
     room: tuple[float, float, float, float],
     aspect: float,
@@ -297,7 +289,7 @@ def _frame(
 
 
 def measure(
-    axes: Axes,
+    axes: style.Axes,
     start: tuple[float, float],
     end: tuple[float, float],
     text: str,
@@ -310,7 +302,7 @@ def measure(
 
 
 def _arrow(
-    axes: Axes,
+    axes: style.Axes,
     start: tuple[float, float],
     end: tuple[float, float],
     text: str,

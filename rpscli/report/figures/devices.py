@@ -8,16 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.results import TimeHistoryResult
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device
 from rpscli.report.figures import style
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
-
-    from rpscli.analyses.results import TimeHistoryResult
 
 BRACE, POSTS, CABLES, NOWHERE = range(4)
 """What stands for a device in a picture of the structure."""
@@ -48,7 +45,7 @@ def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
     columns = min(count, 3)
     rows = -(-count // columns)
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, result.record.name, result.sampling)
         panels = figure.subplots(rows, columns, squeeze=False).ravel()
         for index, axes in enumerate(panels[:count]):
@@ -59,7 +56,7 @@ def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
     return style.picture(draw, 0.5 + 2.7 * rows, max(2.6 * columns, 4.0))
 
 
-def draw_device(axes: Axes, result: TimeHistoryResult, index: int) -> None:
+def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None:
     """Resistance of a device against displacement, of tendons tension against elongation."""
     style.require("devices", index, range(len(result.structure.devices)))
     trace, device = result.trace.devices, result.structure.devices[index]
@@ -84,7 +81,7 @@ class SceneDevices:
 
     def __init__(
         self,
-        axes: Axes,
+        axes: style.Axes,
         devices: Sequence[Device],
         feet: NDArray[np.float64],
         half: float,

@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.floor_spectra import FloorSpectra
 from rpscli.analyses.result_quantities import (
     FLOOR_ACCELERATIONS,
     STOREY_DRIFT_RATIOS,
     STOREY_DRIFTS,
     STOREY_SHEARS,
 )
+from rpscli.analyses.results import TimeHistoryResult
 from rpscli.report.figures import style
 from rpscli.report.figures.planes import record_name
 from rpscli.report.tables.analyses import StoreyDemands, fixed_base_demands, isolated_demands
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rpscli.analyses.floor_spectra import FloorSpectra
-    from rpscli.analyses.results import TimeHistoryResult
-
 
 Array = NDArray[np.float64]
 
@@ -36,7 +30,7 @@ FIXED: dict[str, Any] = {"color": style.BLACK, "ls": "--", "label": "fixed base"
 def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Largest storey shears beside V_st, drifts and floor accelerations."""
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         resultants = "largest resultants" if result.trace.y is not None else ""
         style.heading(figure, title, record_name(result), resultants)
         panels = figure.subplots(1, 3, sharey=True)
@@ -53,7 +47,7 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
     return style.picture(draw, 4.2)
 
 
-def draw_shears(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_shears(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Largest storey shears, and V_st."""
     series = [*_series(result)]
     factor, prefix = style.engineering(max(float(of.storey_shears.max()) for of, _ in series))
@@ -67,7 +61,7 @@ def draw_shears(axes: Axes, result: TimeHistoryResult) -> None:
     _levels(axes, result.structure.storeys)
 
 
-def draw_storey_drifts(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_storey_drifts(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Largest storey drifts, as a part of the storey heights where these are known."""
     for demands, look in _series(result):
         values, label = demands.storey_drifts * 1e3, STOREY_DRIFTS.in_unit("mm")
@@ -78,7 +72,7 @@ def draw_storey_drifts(axes: Axes, result: TimeHistoryResult) -> None:
     _levels(axes, result.structure.storeys)
 
 
-def draw_accelerations(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_accelerations(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Largest absolute floor accelerations, and the ground's."""
     floors = np.arange(1, result.structure.storeys + 1)
     for demands, look in _series(result):
@@ -98,12 +92,12 @@ def _series(result: TimeHistoryResult) -> Iterator[tuple[StoreyDemands, dict[str
         yield fixed, FIXED
 
 
-def _stairs(axes: Axes, values: Array, look: dict[str, Any]) -> None:
+def _stairs(axes: style.Axes, values: Array, look: dict[str, Any]) -> None:
     # The shear is the same all the way up a storey: storey i reaches from level i - 1 to i.
     axes.stairs(values, np.arange(len(values) + 1), orientation="horizontal", **look, lw=1.3)
 
 
-def _levels(axes: Axes, storeys: int) -> None:
+def _levels(axes: style.Axes, storeys: int) -> None:
     step = max(1, storeys // 10)
     axes.set_ylim(0.0, storeys + 0.15)
     axes.set_yticks(range(0, storeys + 1, step))
@@ -131,7 +125,7 @@ def floor_spectra_figure(
     """Pseudo-acceleration above, displacement below; one column a floor."""
     floors = shown_floors(len(isolated.displacement))
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         damping = f"{style.percent(isolated.damping)} damping"
         style.heading(figure, title, record, damping, "steps of 1 ms or less")
         grid = figure.subplots(2, len(floors), squeeze=False, sharex=True, sharey="row")
@@ -152,7 +146,7 @@ def floor_spectra_figure(
 
 
 def draw_floor_spectrum(
-    axes: Axes,
+    axes: style.Axes,
     isolated: FloorSpectra,
     fixed: FloorSpectra | None,
     floor: int,

@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
 from rpscli.report.figures.planes import WAYS, Way, component, in_plane, record_name
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rpscli.analyses.results import TimeHistoryResult
-
 
 MOST = 50_000
 """Samples that are drawn as they are."""
@@ -76,7 +70,7 @@ def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
     ways = WAYS if result.trace.y is not None else WAYS[:1]
     rows = [(draw_one, way) for draw_one in draws for way in ways]
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, record_name(result), result.sampling)
         panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
         for axes, (draw_one, way) in zip(panels, rows, strict=True):
@@ -87,7 +81,7 @@ def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
     return style.picture(draw, 1.2 + 1.8 * len(rows))
 
 
-def draw_displacements(axes: Axes, result: TimeHistoryResult, way: Way = "x") -> None:
+def draw_displacements(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> None:
     """Roof and cap beam, relative to the ground: the one thin upon the other."""
     trace = component(result, way).trace
     base = "cap beam" if result.structure.cap_beam_mass > 0.0 else "top of the columns"
@@ -103,7 +97,7 @@ def _in(result: TimeHistoryResult, way: Way) -> str:
     return "" if result.trace.y is None else f"{way}: "
 
 
-def draw_drifts(axes: Axes, result: TimeHistoryResult, way: Way = "x") -> None:
+def draw_drifts(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> None:
     """Floors relative to the cap beam."""
     trace = component(result, way).trace
     drifts = trace.floor_displacements - trace.cap_beam_displacement[:, None]
@@ -113,7 +107,11 @@ def draw_drifts(axes: Axes, result: TimeHistoryResult, way: Way = "x") -> None:
 
 
 def _draw_floors(
-    axes: Axes, result: TimeHistoryResult, values: NDArray[np.float64], most: int = 3, **look: Any
+    axes: style.Axes,
+    result: TimeHistoryResult,
+    values: NDArray[np.float64],
+    most: int = 3,
+    **look: Any,
 ) -> None:
     """Some columns of (samples, n), the roof's first, with time below."""
     time, storeys = result.trace.time, result.structure.storeys
@@ -153,7 +151,7 @@ def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
     draws = [draw_ground, draw_rotation, *([draw_azimuth] if both else []), draw_events]
     heights = [1.3 if both else 1.0, 2.4, *([0.9] if both else []), 0.18 * max(len(rows), 1)]
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, record_name(result), result.sampling)
         panels = figure.subplots(len(draws), 1, sharex=True, height_ratios=heights)
         for axes, draw_one in zip(panels, draws, strict=True):
@@ -171,7 +169,7 @@ def _rows(result: TimeHistoryResult) -> list[EventRow]:
     return [row for row in EVENT_ROWS if any(event.kind in row[0] for event in result.events)]
 
 
-def draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_ground(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Ground acceleration, and what uplifts quasi-statically."""
     limit, trace = result.structure.uplift_acceleration, result.trace
     name = None
@@ -190,7 +188,7 @@ def draw_ground(axes: Axes, result: TimeHistoryResult) -> None:
         style.legend_above(axes, 4)
 
 
-def draw_azimuth(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_azimuth(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Towards which columns lean, from x towards y; half a turn further at each pass."""
     azimuth, leans = result.trace.azimuth, result.trace.rotation > 0.0
     if azimuth is None:
@@ -219,7 +217,7 @@ def levels(result: TimeHistoryResult, near: float = NEAR) -> tuple[list[Level], 
     return found, 1.12 * max(largest, *(v for _, v, *_ in found if v < near * largest), 0.0)
 
 
-def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_rotation(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Rotation with its phases, beta and theta_cr; over theta_cr on the right."""
     trace, critical = result.trace, result.structure.critical_rotation
     found, top = levels(result)
@@ -247,7 +245,7 @@ def draw_rotation(axes: Axes, result: TimeHistoryResult) -> None:
     style.legend_above(axes, 4)
 
 
-def draw_events(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_events(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Marks at the times of the events, one row a kind, with their number: marks may merge."""
     rows = _rows(result)
     axes.tick_params(axis="y", length=0.0, labelsize=0.9 * style.small())
@@ -268,7 +266,7 @@ def moment_figure(result: TimeHistoryResult, title: str) -> bytes:
     return style.single(draw_moment, result, (title, record_name(result), note), 4.2, 6.0)
 
 
-def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Driving moment of ground and building against rotation, and 2 R W s B of the weight."""
     one_sided, result = result.trace.y is not None, in_plane(result, one_sided=True)
     trace, critical = result.trace, result.structure.critical_rotation
@@ -295,7 +293,7 @@ def draw_moment(axes: Axes, result: TimeHistoryResult) -> None:
     style.legend_above(axes, 2)
 
 
-def _draw_longest(axes: Axes, result: TimeHistoryResult, factor: float) -> None:
+def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) -> None:
     """The swing to one side that turns the columns most, with its times and its direction."""
     time, rotation = result.trace.time, result.trace.rotation
     peak = int(np.nanargmax(np.abs(rotation)))
@@ -322,7 +320,7 @@ def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
     return style.single(draw_energy, result, (title, record_name(result)), 3.4)
 
 
-def draw_energy(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Input against what is stored and lost on the way, one on top of the other."""
     trace = result.trace
     factor, prefix = style.engineering(

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import UsageError
+from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import displacement, velocity
 from rpscli.records.requirements import COMPONENTS
+from rpscli.records.selection import Selection
+from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.figures import style
 from rpscli.report.figures.history import extremes
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.selection import Selection
-    from rpscli.records.spectrum import ResponseSpectrum
-
 
 LOOKS = [
     (line, colour)
@@ -48,7 +42,7 @@ def record_figure(
 ) -> bytes:
     """Time histories, and the spectrum with the first period of a building [s] if it is known."""
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, motion.name, motion.description[:90])
         rows, columns = (2, 1) if style.narrow() else (1, 2)
         left, right = figure.subfigures(
@@ -68,7 +62,9 @@ def record_figure(
     return style.picture(draw, 6.4 if style.narrow() else 4.2, 8.0)
 
 
-def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "acceleration") -> None:
+def draw_motion(
+    axes: style.Axes, motion: GroundMotion, quantity: Quantity = "acceleration"
+) -> None:
     """Acceleration, velocity or displacement of the ground against time, and the peak."""
     style.require("quantities of a motion", quantity, QUANTITIES)
     unit, colour = QUANTITIES[quantity]
@@ -87,13 +83,13 @@ def draw_motion(axes: Axes, motion: GroundMotion, quantity: Quantity = "accelera
     axes.set_title(text, loc="right", fontsize=style.small())
 
 
-def draw_spectrum(axes: Axes, spectrum: ResponseSpectrum) -> None:
+def draw_spectrum(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
     """Pseudo-acceleration against period."""
     axes.plot(spectrum.periods, spectrum.pseudo_acceleration, color=style.RED, lw=1.3)
     _frame(axes, spectrum)
 
 
-def _frame(axes: Axes, spectrum: ResponseSpectrum) -> None:
+def _frame(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
     axes.set_xlabel("period [s]")
     room = "\n" if style.narrow() else " "
     damping = style.percent(spectrum.damping)
@@ -107,7 +103,7 @@ def spectra_figure(spectra: Sequence[ResponseSpectrum], title: str) -> bytes:
     return style.single(draw_spectra, spectra, (title,), 3.2)
 
 
-def draw_spectra(axes: Axes, spectra: Sequence[ResponseSpectrum]) -> None:
+def draw_spectra(axes: style.Axes, spectra: Sequence[ResponseSpectrum]) -> None:
     """Pseudo-acceleration against period: each record thin, the median thick."""
     if not spectra:
         raise UsageError("no spectra to be drawn; give `response_spectrum` of a record at least")
@@ -129,7 +125,7 @@ def selection_figure(selection: Selection, title: str) -> bytes:
         f" {selection.misfit:.3f}, factors at a bound: {selection.clamped}"
     )
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, note)
         if style.narrow():
             left, right = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
@@ -147,7 +143,7 @@ def selection_figure(selection: Selection, title: str) -> bytes:
     return style.picture(draw, (6.0 if style.narrow() else 3.6) + 0.17 * rows, 8.0)
 
 
-def _draw_spectra(axes: Axes, selection: Selection) -> None:
+def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
     from matplotlib.ticker import FuncFormatter
 
     periods, wanted = selection.periods, selection.wanted
@@ -190,7 +186,7 @@ def _second_tick(value: float) -> str:
     return f"{value:g}" if f"{value:e}"[0] in "235" else ""
 
 
-def _draw_peaks(axes: Axes, selection: Selection) -> None:
+def _draw_peaks(axes: style.Axes, selection: Selection) -> None:
     velocities = [one.factor * one.pgv for one in selection.chosen]
     displacements = [one.factor * one.pgd for one in selection.chosen]
     axes.plot(velocities, displacements, "o", ms=4.0, color=style.GREY, label="motions")

@@ -8,17 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
 from rpscli.report.figures.history import levels
 from rpscli.report.figures.planes import record_name
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.collections import LineCollection
-    from matplotlib.figure import Figure
-
-    from rpscli.analyses.results import TimeHistoryResult
 
 Array = NDArray[np.float64]
 
@@ -34,7 +31,7 @@ def orbit_figure(result: TimeHistoryResult, title: str) -> bytes:
     """The orbit of the cap beam beside that of the driving moment, time in colour."""
     narrow = style.narrow()
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, record_name(result), result.sampling)
         panels = figure.subplots(*((2, 1) if narrow else (1, 2)))
         lines = draw_path(panels[0], result)
@@ -45,12 +42,12 @@ def orbit_figure(result: TimeHistoryResult, title: str) -> bytes:
     return style.picture(draw, 7.6 if narrow else 4.7)
 
 
-def draw_orbit(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_orbit(axes: style.Axes, result: TimeHistoryResult) -> None:
     """The orbit of the cap beam with the circles of beta and theta_cr, and what colours mean."""
     axes.figure.colorbar(draw_path(axes, result), ax=axes, label="time [s]")
 
 
-def draw_path(axes: Axes, result: TimeHistoryResult) -> LineCollection:
+def draw_path(axes: style.Axes, result: TimeHistoryResult) -> LineCollection:
     """The orbit, without what its colours mean."""
     trace = result.trace
     if trace.y is None:
@@ -67,7 +64,7 @@ def draw_path(axes: Axes, result: TimeHistoryResult) -> LineCollection:
     return lines
 
 
-def draw_push(axes: Axes, result: TimeHistoryResult) -> None:
+def draw_push(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Moment of ground and building about the contacts, x against y, with the uplift circle."""
     trace, structure = result.trace, result.structure
     assert trace.y is not None, "both components act"
@@ -83,7 +80,7 @@ def draw_push(axes: Axes, result: TimeHistoryResult) -> None:
 
 
 def _in_colours(
-    axes: Axes,
+    axes: style.Axes,
     result: TimeHistoryResult,
     path: tuple[Array, Array],
     reach: float,

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.analyses.trace import Trace
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.trace import Trace
 
 Way = Literal["x", "y"]
 WAYS: tuple[Way, ...] = get_args(Way)
@@ -18,8 +17,12 @@ WAYS: tuple[Way, ...] = get_args(Way)
 
 def record_name(result: TimeHistoryResult) -> str:
     """What shook it horizontally."""
-    y = result.motion.y
-    return result.record.name if y is None else f"{result.record.name}, y: {y.name}"
+    name, y = result.record.name, result.motion.y
+    pair, found, turned = name.partition("_both")
+    if y is None or not found:
+        return name if y is None else f"{name}, y: {y.name}"
+    rest = "both components" if y.name.startswith(pair) else f"y: {y.name}"
+    return f"{pair}{turned}, {rest}"
 
 
 def lean_azimuth(trace: Trace) -> NDArray[np.float64]:

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.pushover import PushoverResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rpscli.analyses.pushover import PushoverResult
-
 
 DISPLACEMENT = "cap beam displacement $u_b$ [m]"
 
@@ -24,7 +17,7 @@ DISPLACEMENT = "cap beam displacement $u_b$ [m]"
 def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
     """Force and lift of the cap beam against its displacement, to the critical rotation."""
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, "storey of the bearings alone")
         force, lift = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, 1.0])
         draw_force(force, result)
@@ -35,7 +28,7 @@ def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
     return style.picture(draw, 4.8, 5.8)
 
 
-def draw_force(axes: Axes, result: PushoverResult) -> None:
+def draw_force(axes: style.Axes, result: PushoverResult) -> None:
     """Force against displacement, rolling and rocking, and back where the way back is another."""
     curve, beta = result.curve, result.structure.bearing.beta
     factor, prefix = style.engineering(float(np.max(curve.force)))
@@ -73,7 +66,7 @@ def draw_force(axes: Axes, result: PushoverResult) -> None:
     style.legend_above(axes, 3 + returns)
 
 
-def draw_lift(axes: Axes, result: PushoverResult) -> None:
+def draw_lift(axes: style.Axes, result: PushoverResult) -> None:
     """Lift against displacement."""
     for inside, colour, _ in _phases(result):
         axes.plot(
@@ -93,7 +86,7 @@ def _phases(result: PushoverResult) -> Iterator[tuple[NDArray[np.bool_], str, st
             yield inside, colour, name
 
 
-def _mark(axes: Axes, x: float, y: float, text: str, offset: tuple[float, float]) -> None:
+def _mark(axes: style.Axes, x: float, y: float, text: str, offset: tuple[float, float]) -> None:
     """A point with its name, offset [pt] to the side on which no curve runs."""
     axes.plot(x, y, "o", color=style.BLACK, ms=5.0, zorder=5, clip_on=False)
     axes.annotate(
@@ -108,7 +101,7 @@ LOOKS = ((style.SKY, "-"), (style.RED, "-"), (style.BLACK, "-"), (style.PINK, ":
 def capacity_figure(result: PushoverResult, title: str) -> bytes:
     """Sum of floor forces against roof displacement, whole and close to the uplift."""
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, title, "floor forces pushed to the critical rotation")
         whole, close = figure.subplots(1, 2, sharey=True, width_ratios=[1.6, 1.0])
         for axes in (whole, close):
@@ -126,7 +119,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
     return style.picture(draw, 3.6)
 
 
-def draw_capacity(axes: Axes, result: PushoverResult) -> None:
+def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
     """Sum of floor forces against roof displacement by pattern, and where it uplifts.
 
     Curves may coincide: the first one drawn is the widest.

@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.modal import ModalResult
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
 from rpscli.report.figures.bearing import BEAM, COLUMN, leaning_outline, measure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rpscli.analyses.modal import ModalResult
-    from rpscli.model.podium import PodiumStructure
-
 
 STOREY_HEIGHT = 3.0
 """Where the case gives none [m]."""
@@ -45,7 +36,7 @@ def structure_figure(structure: PodiumStructure, title: str) -> bytes:
     return style.single(draw_structure, structure, (title,), 4.4, 5.0)
 
 
-def draw_structure(axes: Axes, structure: PodiumStructure) -> None:
+def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
     """Columns, cap beam and storeys at rest."""
     axes.set_aspect("equal")
     axes.axis("off")
@@ -115,7 +106,7 @@ def modes_size(result: ModalResult) -> tuple[float, float]:
     return max(width, 4.0), 0.9 + 2.1 * len(result.uplifted)
 
 
-def draw_modes(figure: Figure, result: ModalResult, title: str) -> None:
+def draw_modes(figure: style.Figure, result: ModalResult, title: str) -> None:
     """Fill an empty figure."""
     states = list(result.uplifted)
     vibrations = min(MOST_MODES, result.structure.storeys)
@@ -137,7 +128,7 @@ def draw_modes(figure: Figure, result: ModalResult, title: str) -> None:
         )
 
 
-def draw_mode(axes: Axes, result: ModalResult, state: str, mode: int) -> None:
+def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> None:
     """A mode, counted from 1, or 0 for the storey's own, `rolling` or `rocking`."""
     style.require("phases", state, result.uplifted)
     style.require("modes", mode, range(result.structure.storeys + 1))

@@ -26,8 +26,8 @@ from rpscli.report.figures.look import (
 )
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure, SubFigure
+    from matplotlib import artist, axes, figure
+    from matplotlib.figure import SubFigure
 
 # Okabe and Ito's colours: told apart by every kind of colour vision, and in grey.
 BLACK = "#000000"
@@ -72,6 +72,9 @@ STYLE: dict[str, Any] = {
 }
 
 Entry = TypeVar("Entry")
+Artist: TypeAlias = "artist.Artist"
+Axes: TypeAlias = "axes.Axes"
+Figure: TypeAlias = "figure.Figure"
 Target: TypeAlias = "Figure | SubFigure"
 
 SAVED: dict[str, dict[str, Any]] = {

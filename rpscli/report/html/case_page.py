@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
 from itertools import chain
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Event
 from rpscli.case.case import Case
 from rpscli.case.schema.keys import unit
-from rpscli.records.ground_motion import MotionComponents
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
+from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import ResponseSpectrum, response_spectrum
 from rpscli.report.bundles import bearing_files
@@ -49,13 +51,6 @@ from rpscli.report.tables.timehistory import (
     storeys_table,
 )
 from rpscli.sweep.statistics.verdicts import Verdict
-
-if TYPE_CHECKING:
-    from rpscli.case.case import Case
-    from rpscli.model.podium import PodiumStructure
-    from rpscli.model.superstructure import Superstructure
-    from rpscli.records.ground_motion import GroundMotion
-
 
 DAMPING = 0.05
 MOST_ROWS = 100
@@ -208,6 +203,8 @@ def _storeys(structure: PodiumStructure) -> Table:
         "stiffness k_i [kN/m]": building.stiffnesses * 1e-3,
         "first mode φ_i": shape,
     }
+    if (across := structure.superstructure_y) is not None:
+        columns["stiffness in y [kN/m]"] = across.stiffnesses * 1e-3
     return Table([Column(name, "-", each[::-1], name, _number) for name, each in columns.items()])
 
 
@@ -313,8 +310,12 @@ class History(NamedTuple):
     def sections(self, look: Look) -> list[Section]:
         """Motion and response."""
         result = self.result
-        building = result.structure.superstructure
-        motions = [motion_pictures(each, look, building) for each in self.ground.named.values()]
+        structure = result.structure
+        building, across = structure.superstructure, structure.superstructure_y
+        motions = [
+            motion_pictures(each, look, (name == "y" and across) or building)
+            for name, each in self.ground.named.items()
+        ]
         measured = [
             record_table(each, intensity_measures(each)) for each in horizontal(self.ground)
         ]

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -34,10 +34,6 @@ from rpscli.sweep.statistics.fractiles import Share, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping, own_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 FRACTILES = {"16 %": 0.16, "median": 0.50, "84 %": 0.84}
 SCALES = (2.0, 5.0, 10.0, 20.0, 30.0)
@@ -113,7 +109,7 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
     )
     against = label(key, reference.values[0])
 
-    def draw(axes: Axes, group: Histories) -> None:
+    def draw(axes: style.Axes, group: Histories) -> None:
         for place, each in enumerate(panels[group]):
             x, y = ratio[each.references], ratio[each.points]
             stood = np.isfinite(x) & np.isfinite(y)
@@ -279,7 +275,7 @@ def _maps(
     strongest = next((end for end in SCALES if end >= largest), SCALES[-1])
     ends: Literal["both", "neither"] = "both" if largest > strongest else "neither"
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         style.heading(figure, *words)
         grid = figure.subplots(len(names), len(panels), squeeze=False, sharex=True, sharey=True)
         for (line, place), axes in np.ndenumerate(grid):

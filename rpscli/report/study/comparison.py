@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -28,10 +28,6 @@ from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
 from rpscli.sweep.statistics.observations import Agreement, Maxima
 from rpscli.sweep.study_results import StudyResults
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 MOST_ROWS = 8
 """Systems in one figure; the CSV has them all."""
@@ -143,7 +139,7 @@ def comparison_figure(report: Comparison, title: str) -> bytes:
     across = 1 if len(shown) == 1 else 2
     down = -(-len(shown) // across)
 
-    def draw(figure: Figure) -> None:
+    def draw(figure: style.Figure) -> None:
         notes = [f"records: {judged[0].part}", f"bands: {style.percent(report.options.confidence)}"]
         if len(judged) > len(shown):
             notes.append(f"the first {len(shown)} of {len(judged)} panels")
@@ -160,12 +156,12 @@ def comparison_figure(report: Comparison, title: str) -> bytes:
     return style.picture(draw, 0.6 + 3.1 * down, style.WIDTH if across > 1 else 0.7 * style.WIDTH)
 
 
-def _head(axes: Axes, report: Comparison, each: Compared, line: str) -> None:
+def _head(axes: style.Axes, report: Comparison, each: Compared, line: str) -> None:
     system = labels((*report.systems.keys, *report.chosen_keys), (*each.values, *each.chosen))
     axes.set_title(f"{system}\n{line}" if system else line, fontsize=style.small())
 
 
-def _draw_outcomes(axes: Axes, report: Comparison, each: Compared, found: Outcomes) -> None:
+def _draw_outcomes(axes: style.Axes, report: Comparison, each: Compared, found: Outcomes) -> None:
     """Both fragilities through their data; below and above, the outcomes that differ."""
     for (name, curve), colour, marker in zip(
         _curves(found), (style.BLACK, style.BLUE), "os", strict=True
@@ -204,7 +200,7 @@ def _draw_outcomes(axes: Axes, report: Comparison, each: Compared, found: Outcom
     )
 
 
-def _draw_maxima(axes: Axes, report: Comparison, each: Compared, found: Maxima) -> None:
+def _draw_maxima(axes: style.Axes, report: Comparison, each: Compared, found: Maxima) -> None:
     """Computed over observed maxima; overturned histories at the upper edge."""
     observed, computed = each.observed, each.computed
     drawn = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)

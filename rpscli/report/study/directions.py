@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -18,15 +18,12 @@ from rpscli.report.study.panels import by_values, left_out, panel_figure, remark
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.report.study.statistics import reached
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import HIGH, demand, fractiles
+from rpscli.sweep.statistics.fractiles import HIGH, LOW, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-FRACTILES = (0.50, HIGH)
+FRACTILES = (LOW, 0.50, HIGH)
 
 NO_BOUND = (
     "even the worst direction is not a bound: both components together may turn columns further;"
@@ -70,7 +67,7 @@ class Curve(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """All pairs under one system at one intensity, and fractiles (2,) over the pairs.
+    """All pairs under one system at one intensity, and fractiles (3,) over the pairs.
 
     `spreads` have those of the worst direction, of RotD50 and of both components for each result,
     these NaN if they are not known of every pair.
@@ -106,7 +103,7 @@ def directions(study: StudyResults, options: DirectionsOptions) -> Found:
         for quantity, result in curve.results.items()
     ]
     spread_heads = dict.fromkeys(("result", "unit", "pairs", "overturned"), "-")
-    ends = [f"{of}_{end}" for of in ("worst", "rotd50", "both") for end in ("median", "84")]
+    ends = [f"{of}_{end}" for of in ("worst", "rotd50", "both") for end in ("16", "median", "84")]
     spread_heads |= dict.fromkeys(ends, "SI")
     pair_heads = dict.fromkeys(
         ("pair", "directions", "overturned", "failed", "result", "unit"), "-"
@@ -184,7 +181,7 @@ def directions_figure(
     every = np.concatenate([*drawn, np.zeros(1)])
     top = 1.08 * float(every[np.isfinite(every)].max()) or 1.0
 
-    def draw(axes: Axes, panel: Panel) -> None:
+    def draw(axes: style.Axes, panel: Panel) -> None:
         for curve in panel.curves:
             stood = np.isfinite(curve.drawn)
             worst = curve.results.get(quantity)
@@ -204,12 +201,14 @@ def directions_figure(
                 )  # fmt: skip
         axes.set_xticks(range(0, 181, 45))
         for place, (name, dashes) in enumerate(LEVELS.items()):
-            level = panel.spreads[quantity][place][0] if quantity in panel.spreads else np.nan
-            if np.isfinite(level):
+            spread = panel.spreads[quantity][place] if quantity in panel.spreads else [np.nan] * 3
+            low, level, high = np.minimum(spread, 2.0 * top)
+            axes.plot([BESIDE + 5.0 * place] * 2, [low, high], ls=dashes, lw=2.2, color=style.GREY)
+            if np.isfinite(spread[1]):
                 axes.axhline(level, ls=dashes, lw=1.4, color=style.BLACK, label=name)
 
     # A median is larger than any demand where half of the pairs overturn.
-    medians = [of[0] for p in panels for q, s in p.spreads.items() if q == quantity for of in s]
+    medians = [of[1] for p in panels for q, s in p.spreads.items() if q == quantity for of in s]
     beyond = "medians are not drawn where so many overturned" if np.isinf(medians).any() else ""
     return panel_figure(
         by_values(keys, panels),
@@ -218,9 +217,12 @@ def directions_figure(
         title=title,
         x_label="angle from the first component [deg]",
         y_label=quantity.axis_label,
-        limits=lambda axes: axes.set(xlim=(-4.0, 184.0), ylim=(0.0, top)),
+        limits=lambda axes: axes.set(xlim=(-4.0, BESIDE + 15.0), ylim=(0.0, top)),
         note=remarks(
-            scaled, beyond, left_out(sum(c.failed for panel in panels for c in panel.curves))
+            scaled,
+            "grey: 16 to 84 % of pairs",
+            beyond,
+            left_out(sum(c.failed for panel in panels for c in panel.curves)),
         ),
     )
 
@@ -231,6 +233,8 @@ LEVELS = {
     "both components, median of pairs": "-",
 }
 """Medians over the pairs, as they are drawn."""
+BESIDE = 184.0
+"""Angle beside which their bands stand [deg]."""
 
 
 def _turned(layout: StudyPoints) -> dict[str, list[Direction]]:

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ from rpscli.case.schema.scale_to import ScaleToSection, scale_to_of
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.errors import RecordError, listed
 from rpscli.records.measures import MEASURES, intensity_measures, needs_period
+from rpscli.report.figures import style
 from rpscli.report.study.fragility import (
     LimitState,
     LimitStates,
@@ -49,9 +50,6 @@ from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Indices
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 BITS = 1e-3
 """Half of the width in ln within which a response that is known is taken to lie."""
@@ -257,7 +255,7 @@ def efficiency_figure(
     groups = [*{str(row.values): row.values for row in rows}.values()]
     measures = list(dict.fromkeys(row.measure for row in rows))
 
-    def draw(axes: Axes, limit: LimitState) -> None:
+    def draw(axes: style.Axes, limit: LimitState) -> None:
         width = 0.8 / len(groups)
         for place, values in enumerate(groups):
             own = [row for row in rows if row.values == values and row.limit == limit.label]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,9 +37,6 @@ from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, gro
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Indices, Table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 CURVE_POINTS = 101
 MOST_BINS = 10
@@ -447,7 +444,7 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
     limits = [limit for limit in report.limits if report.fitted(limit)]
     panels = [report.fitted(limit) for limit in limits]
 
-    def draw(axes: Axes, curves: list[Fragility]) -> None:
+    def draw(axes: style.Axes, curves: list[Fragility]) -> None:
         for curve in curves:
             place, shade = curve.place, colour(curve.place, groups)
             dashes = "--" if curve.fit.method == "penalised" else "-"
@@ -500,7 +497,7 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
 BEYOND_COMPUTED = "grey: stronger than computed"
 
 
-def beyond_computed(axes: Axes, largest: float, end: float) -> None:
+def beyond_computed(axes: style.Axes, largest: float, end: float) -> None:
     """Shade what is beyond the largest intensity that was computed."""
     if largest < end:
         axes.axvspan(largest, end, color=style.GREY, alpha=0.15, lw=0, zorder=0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,9 +36,6 @@ from rpscli.sweep.statistics.fractiles import HIGH, LOW, fractiles
 from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Indices, groups
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 class StoreyShearOptions(ReportOptions):
@@ -104,7 +101,7 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
         )
     in_kn = options.unit == "kN"
 
-    def draw(axes: Axes, profile: Profile) -> None:
+    def draw(axes: style.Axes, profile: Profile) -> None:
         edges = np.arange(len(profile.shears[0]) + 1)
         for (_, name, colour, line), shear in zip(SHEARS, profile.shears, strict=True):
             values = shear
@@ -244,7 +241,7 @@ def floor_spectra_figure(
         for number in dict.fromkeys((1, one.fractiles.shape[3]))
     ]
 
-    def draw(axes: Axes, panel: Floors) -> None:
+    def draw(axes: style.Axes, panel: Floors) -> None:
         for state, (name, colour) in enumerate(STATES.values()):
             for row, dashes, words in ((1, "-", "median"), (2, "--", "84 % fractile")):
                 values = panel.fractiles[row, state]
@@ -253,7 +250,7 @@ def floor_spectra_figure(
                     color=colour, lw=1.3, label=f"{name}, {words}",
                 )  # fmt: skip
 
-    def limits(axes: Axes) -> None:
+    def limits(axes: style.Axes) -> None:
         # At the end: panels are given ticks for equal steps before they are drawn.
         axes.set_xscale("log")
         axes.set(xlim=(PERIODS[0], PERIODS[-1]), ylim=(0.0, None))
@@ -426,7 +423,7 @@ def demand_sample_figure(
 ) -> Callable[[str], bytes]:
     """Median and 84 % fractile of the accelerations from the ground to the roof."""
 
-    def draw(axes: Axes, sample: DemandSample) -> None:
+    def draw(axes: style.Axes, sample: DemandSample) -> None:
         axes.locator_params(axis="y", integer=True)
         reached = np.where(sample.overturned[:, None], np.inf, sample.accelerations)
         for share, dashes, name in ((0.5, "-", "median"), (HIGH, "--", "84 % fractile")):

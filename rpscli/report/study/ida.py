@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -22,9 +22,6 @@ from rpscli.sweep.statistics.fractiles import HIGH, LOW, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 FRACTILES = (LOW, 0.50, HIGH)
 MOST_CURVES = 200
@@ -76,7 +73,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
 
     numbers = sorted({str(len(panel.curves)) for panel in panels})
 
-    def draw(axes: Axes, panel: Panel) -> None:
+    def draw(axes: style.Axes, panel: Panel) -> None:
         levels = np.concatenate([[0.0], panel.heights])
         # Evenly through all of them: more would only blacken the panel.
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import Field, StrictBool
@@ -34,9 +34,6 @@ from rpscli.sweep.statistics.grouping import (
 )
 from rpscli.sweep.study_results import StudyResults
 from rpscli.units import in_si
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
 """Names of results that are compared in one figure, where the last word says too much."""
@@ -205,7 +202,7 @@ def _lines(values: Values, options: LinesOptions, series: Histories, name: str) 
 
 
 def _draw(
-    axes: Axes,
+    axes: style.Axes,
     panel: Panel,
     every: Sequence[Line],
     options: LinesOptions,
@@ -243,7 +240,7 @@ def _draw(
             (axes.set_yticks if options.upright else axes.set_xticks)(x, words_at)
 
 
-def _say_what_is_left_out(axes: Axes, line: Line, x: list[float]) -> None:
+def _say_what_is_left_out(axes: style.Axes, line: Line, x: list[float]) -> None:
     """Both counts beside every mean that leaves overturned histories out."""
     axes.margins(y=0.12)
     for at, y, counted, overturned in zip(x, line.y, line.counted, line.overturned, strict=True):

@@ -11,9 +11,7 @@ from rpscli.report.figures import style
 from rpscli.report.study.labels import labels
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.axis import Axis
-    from matplotlib.figure import Figure
 
 Place = Literal["lower center", "outside lower center"]
 
@@ -65,13 +63,13 @@ def by_values(keys: Sequence[str], panels: Sequence[Any]) -> Layout:
 def panel_figure(
     layout: Layout,
     panels: Sequence[Any],
-    draw: Callable[[Axes, Any], None],
+    draw: Callable[[style.Axes, Any], None],
     *,
     title: str,
     x_label: str,
     y_label: str,
     share: Literal["both", "x"] = "both",
-    limits: Callable[[Axes], object] | None = None,
+    limits: Callable[[style.Axes], object] | None = None,
     note: str = "",
 ) -> bytes:
     """A figure with one panel for each group."""
@@ -84,7 +82,7 @@ def panel_figure(
     if len(panels) > len(shown):
         note = f"{note}; " * bool(note) + f"the first {len(shown)} of {len(panels)} panels"
 
-    def draw_all(figure: Figure) -> None:
+    def draw_all(figure: style.Figure) -> None:
         style.heading(figure, title, note)
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
         for axes, panel, name in zip(grid.flat, shown, names, strict=False):
@@ -109,7 +107,10 @@ def panel_figure(
 
 
 def in_panels(
-    keys: Sequence[str], panels: Sequence[Any], draw: Callable[[Axes, Any], None], **words: Any
+    keys: Sequence[str],
+    panels: Sequence[Any],
+    draw: Callable[[style.Axes, Any], None],
+    **words: Any,
 ) -> Callable[[str], bytes]:
     """A figure that waits for its title, with a panel for each of those with `values` of keys."""
     return lambda title: panel_figure(by_values(keys, panels), panels, draw, title=title, **words)
@@ -130,7 +131,7 @@ def _label_outside(grid: Any, panels: int, x_label: str, y_label: str) -> None:
             axes.set_ylabel(style.typeset(y_label))
 
 
-def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
+def _legend_lines(figure: style.Figure, grid: Any, place: Place) -> int:
     """One legend for all panels, below them; returns its number of lines."""
     found = style.entries(grid.flat)
     if not found:
@@ -147,7 +148,7 @@ def _legend_lines(figure: Figure, grid: Any, place: Place) -> int:
     return math.ceil(len(found) / columns)
 
 
-def _arrange(figure: Figure, grid: Any, legend_lines: int, *, share_y: bool) -> None:
+def _arrange(figure: style.Figure, grid: Any, legend_lines: int, *, share_y: bool) -> None:
     """Place the axes by hand: the automatic layout would take longer than the drawing."""
     from matplotlib.ticker import FixedLocator
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -56,9 +56,6 @@ from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.verdicts import component_notes
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 BINS = 24
 """Of intensities, for what contributes."""
@@ -305,7 +302,7 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
     line = 0.075 if len(limits) == 3 else 0.075 * (1 + break_if_narrow().count("\n"))
     room = 0.03 + line * min(groups, MOST_BANDS)
 
-    def draw(axes: Axes, limit: LimitState) -> None:
+    def draw(axes: style.Axes, limit: LimitState) -> None:
         of_limit = [each for each in risks if each.fragility.limit == limit]
         for row, each in enumerate(of_limit):
             shade = colour(each.fragility.place, groups)
@@ -326,7 +323,7 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
                 )  # fmt: skip
         beyond_computed(axes, max(each.fragility.largest for each in of_limit), high)
 
-    def limit_axes(axes: Axes) -> None:
+    def limit_axes(axes: style.Axes) -> None:
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
         log_ticks(axes.xaxis)
         axes.set_xlim(low, high)

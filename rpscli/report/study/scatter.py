@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,9 +37,6 @@ from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, leading_keys
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 class DemandOptions(ReportOptions):
@@ -114,7 +111,7 @@ def _scatter(
     every = np.concatenate([cloud.shown.points for cloud in clouds])
     highest, top = (float(values[every].max(initial=0.0)) for values in (x, y))
 
-    def draw(axes: Axes, cloud: Cloud) -> None:
+    def draw(axes: style.Axes, cloud: Cloud) -> None:
         for place, part in enumerate(cloud.shown.parts(series)):
             axes.plot(
                 x[part.points], y[part.points], ls="", marker=marker(place), ms=3.0, alpha=0.7,
@@ -123,7 +120,7 @@ def _scatter(
         if curved:
             _draw_curve(axes, cloud.fit, x[cloud.shown.points], (highest, top), plain=plain)
 
-    def limits(axes: Axes) -> None:
+    def limits(axes: style.Axes) -> None:
         axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None))
 
     quantities = SCALARS["timehistory"]
@@ -166,7 +163,7 @@ def _scatter(
 
 
 def _draw_curve(
-    axes: Axes, fit: Bilinear | None, x: Array, room: tuple[float, float], *, plain: bool
+    axes: style.Axes, fit: Bilinear | None, x: Array, room: tuple[float, float], *, plain: bool
 ) -> None:
     """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
     highest, top = room
@@ -265,7 +262,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
         (table.outcomes == "survived") & (rotation < NEGLIGIBLE), "at_rest", table.outcomes
     )
 
-    def draw(axes: Axes, group: Histories) -> None:
+    def draw(axes: style.Axes, group: Histories) -> None:
         parts = clouds[group]
         for place, part in enumerate(parts):
             boundary = _boundary(part, frequency, amplitude)
@@ -290,7 +287,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
                     )  # fmt: skip
             axes.plot(*boundary, color=style.BLACK, lw=1.2, label="least that overturns")
 
-    def limits(axes: Axes) -> None:
+    def limits(axes: style.Axes) -> None:
         axes.set(xlim=(0.0, None), ylim=(0.0, None))
 
     heads = {

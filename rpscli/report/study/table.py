@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -21,9 +21,6 @@ from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.statistics.grouping import Histories, grouping, shown_keys, statistic_words
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Table, groups, leading_keys
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MOST_ROWS = 60
 MOST_COLUMNS = 12
@@ -165,7 +162,7 @@ def _table(table: Table, options: OverturningOptions, shown: Shown) -> Found:
         further = max((text.count("\n") for row in below for text in row), default=0)
         height = 0.34 + 0.11 * further  # of a row
 
-        def draw(figure: Figure) -> None:
+        def draw(figure: style.Figure) -> None:
             counts = (("rows", len(drawn), len(cells)), ("columns", len(heads), len(columns)))
             notes = [f"the first {n} of {all_} {name}" for name, n, all_ in counts if n < all_]
             notes.insert(0, left_out(rows.failed))

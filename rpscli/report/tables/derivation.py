@@ -10,17 +10,15 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.model.bearing import Bearing
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
 from rpscli.report.tables.derived import CONTACT, DYNAMICS, FIRST_PERIOD, GEOMETRY
-
-if TYPE_CHECKING:
-    from rpscli.model.bearing import Bearing
-    from rpscli.model.podium import PodiumStructure
-    from rpscli.model.superstructure import Superstructure
 
 DIGITS = 6
 

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
 from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.conditions import EVENTS
+from rpscli.model.podium import PodiumStructure
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
 from rpscli.report.tables.analyses import fixed_base_demands, isolated_demands
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.analyses.settings import TimeHistorySettings
-    from rpscli.model.podium import PodiumStructure
-    from rpscli.sweep.statistics.verdicts import Verdict
+from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
     "at_rest": "stays in full contact",
