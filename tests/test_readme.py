@@ -273,7 +273,7 @@ def test_the_citation_is_of_this_version() -> None:
     assert citation["repository-code"] == project["urls"]["Source"]
     assert citation["version"] == VERSION
     assert f"version {VERSION}," in README.read_text("utf-8")
-    assert f"\n## [{VERSION}]" in DOCUMENTS[-1].read_text("utf-8")
+    assert f"\n## [{VERSION}]" in (ROOT / "CHANGELOG.md").read_text("utf-8")
 
 
 def test_the_tests_run_on_the_systems_of_users() -> None:
