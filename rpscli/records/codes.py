@@ -243,7 +243,7 @@ def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
         velocity_of(shape),
         edition="SP 14.13330.2018 without its amendments, 5.5 and 5.6",
         parameters=_told(A=A, seconds={}),
-        checked=f"{NOT_VERIFIED}: from memory; give the spectrum as a CSV file where it matters",
+        checked=f"{NOT_VERIFIED}: from memory; supply the spectrum as a CSV file where it matters",
     )
 
 

@@ -92,7 +92,7 @@ def test_a_value_may_vary(equipped: str) -> None:
         ("kind: friction, ", "", "podium.devices.1.kind is missing: viscous or friction damper"),
         ("force: 4", "forse: 4", "podium.devices.1.forse is not a key of the format; did you mean"),
         ("yield_force: 300 kN", "yield_force: 90 kN", "must be > prestress = 100 kN (line 23)"),
-        (COLUMNS, "  cap_beam_mass_ratio: 10\n", "podium.devices.3 stands in each column, but"),
+        (COLUMNS, "  cap_beam_mass_ratio: 10\n", "podium.devices.3 is in each column, but"),
     ],
 )
 def test_refusals(equipped: str, faults: Faults, old: str, new: str, expected: str) -> None:

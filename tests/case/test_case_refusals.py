@@ -105,7 +105,7 @@ MISSING_AND_TWICE = [
     ("law: rigid", "restitution: 0.9", "17:12", ["law flexible, which gives its own"]),
     ("source: motion.at2", "scale: 2", "18:1: record.source is missing", ["file"]),
     ("  storey_height: 3.0\n", "  storey_height: 3.0\n  storey_height: 4\n", "6:3", ["twice"]),
-    ("  period: 0.3", "  period:", "6:3: superstructure.period has no value", ["take the key out"]),
+    ("  period: 0.3", "  period:", "6:3: superstructure.period has no value", ["remove the key"]),
     ("200 t", "[1, null, 3]", "4:20: superstructure.storey_mass.1 has no value", []),
 ]
 
@@ -366,7 +366,7 @@ def test_spherical_ends_have_no_impact_and_no_tendons(building: str) -> None:
     sphere = ["podium.bearing.slenderness=0", "podium.bearing.curvature_ratio=0.7"]
     tendon = "podium.devices=[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
     for more, said in (
-        (["podium.impact.factor=0.9"], "have no impact; take restitution and factor out"),
+        (["podium.impact.factor=0.9"], "have no impact; remove restitution and factor"),
         ([tendon, "podium.columns=4"], "podium.devices.0: tendons are not followed"),
     ):
         with pytest.raises(CaseError, match=said):

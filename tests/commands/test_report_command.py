@@ -212,7 +212,7 @@ def test_several_records_are_on_one_page(rps: Invoke, rps_json: Callable[..., An
     assert "mean of maxima" in text
     assert "Time histories under 2 records" in text
     worst = max(found["histories"], key=lambda each: each["rotation_ratio"])
-    assert f"turns the columns most, {worst['record']['name']}" in text
+    assert f"largest rotation of the columns, {worst['record']['name']}" in text
     assert "--scale 1.1" in text
     # The folder of these makes the same page, and knows that it is the same.
     assert rps("report", "set", "-o", "again.html").exit_code == 0

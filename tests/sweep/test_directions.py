@@ -126,7 +126,7 @@ def test_directions_that_are_not_even_are_named(study_of: Make) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (str(list(ANGLES)), "30", "no pair of components stands at several angles"),
+        (str(list(ANGLES)), "30", "no pair of components is given at several angles"),
         ("vary:", "perturb: {members: 2}\nvary:", "several histories for each direction"),
     ],
 )

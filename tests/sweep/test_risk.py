@@ -291,7 +291,7 @@ def test_values_that_are_lists_are_groups_too(
     [
         ("{hazard: {file: no.csv, measure: PGV}}", ("study.yaml:12", "no.csv", "no such file")),
         ("{hazard: {file: hazard.csv, measure: Sa}}", ("one period", "`period`")),
-        ("{hazard: {file: hazard.csv, measure: PGV}, measure: PGA}", ("take the first out",)),
+        ("{hazard: {file: hazard.csv, measure: PGV}, measure: PGA}", ("remove the first",)),
         ("{limits: {rotation_ratio: 0.2}}", ("hazard",)),
     ],
 )

@@ -160,7 +160,7 @@ def contact_rules(case: PartialCase) -> Iterator[Fault]:
             if case.document.at(("analysis", name)) == AnalysisSection.model_fields[name].default:
                 continue  # of a case that was written out whole
             text = (
-                f"analysis.{name} means nothing with podium.contact"
+                f"analysis.{name} has no effect with podium.contact"
                 f"{case.where((*CONTACT, 'kind'))}: ends that give way do not bounce; remove it"
             )
             yield Fault(("analysis", name), text, at_key=True)
@@ -218,7 +218,7 @@ def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
             yield Fault(
                 IMPACT,
                 "podium.impact: columns without a flat part roll through the upright position and"
-                " have no impact; take restitution and factor out",
+                " have no impact; remove restitution and factor",
                 at_key=True,
             )
         return
@@ -289,7 +289,7 @@ def devices_rules(case: PartialCase) -> Iterator[Fault]:
     if of_columns and not case.has(columns):
         yield Fault(
             (*DEVICES, of_columns[0]),
-            f"podium.devices.{of_columns[0]} stands in each column, but podium.columns, their"
+            f"podium.devices.{of_columns[0]} is in each column, but podium.columns, their"
             " number, is missing",
             needs=(columns,),
         )

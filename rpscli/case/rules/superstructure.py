@@ -90,7 +90,7 @@ def limits_rules(case: PartialCase) -> Iterator[Fault]:
         of_buildings = (q.name for q in LIMITED if "superstructure" in q.needs)
         for name in case.present(LIMITS, *of_buildings):
             text = f"needs a building, but superstructure.storeys = 0{case.where(STOREYS)}"
-            fault = f"limits.{name} {text}; take the limit out"
+            fault = f"limits.{name} {text}; remove the limit"
             yield Fault((*LIMITS, name), fault, at_key=True)
     height = (*SUPERSTRUCTURE, "storey_height")
     if case.storeys and case.has((*LIMITS, "drift_ratio")) and not case.has(height):
@@ -121,7 +121,7 @@ def column_rules(case: PartialCase) -> Iterator[Fault]:
             yield Fault(
                 (*LIMITS, name),
                 f"limits.{name}: the force of a column is known without"
-                f" {listed(lacking, 'and')} only, by which it may be some times as large; give"
+                f" {listed(lacking, 'and')} only, and may be several times as large with it; give"
                 f" {listed(('.'.join(map(str, path)) for path in lacking.values()), 'and')}",
                 at_key=True,
                 needs=tuple(lacking.values()),

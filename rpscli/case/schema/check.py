@@ -86,7 +86,7 @@ def _empty_value(
         annotation_at(model, named[:length]) is not None for length in range(1, len(named) + 1)
     ]
     if all(known):
-        text = f"{dotted(path)} has no value; write one, or take the key out"
+        text = f"{dotted(path)} has no value; write one, or remove the key"
         check.faults.append(Fault(path, text, at_key=isinstance(path[-1], str)))
     elif all(known[:-1]):  # otherwise the unknown key further up is told of
         _unknown(check, model, named, content)

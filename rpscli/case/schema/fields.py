@@ -210,7 +210,7 @@ DampingRatio = Annotated[
 
 def _two(value: object) -> object:
     if not isinstance(value, list | tuple) or len(value) != 2:
-        refuse("must be two modes, as in [1, 2]; leave modes out to damp every mode alike")
+        refuse("must be two modes, as in [1, 2]; leave modes out to damp every mode equally")
     return value
 
 
@@ -224,7 +224,7 @@ def _text(value: object) -> str:
     if not isinstance(value, str):
         refuse("must be text; put it in quotes")
     if not value.strip():
-        refuse("must not be empty text; write something, or take the key out")
+        refuse("must not be empty text; write something, or remove the key")
     return value
 
 

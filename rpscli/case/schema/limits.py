@@ -27,7 +27,7 @@ class LimitRule(Section, use_attribute_docstrings=False):
         None, description="share of the records that may exceed the limit; 0 by default"
     )
     fractile: Fractile | None = Field(
-        None, description="fractile of the demand that must keep the limit, in place of a share"
+        None, description="fractile of the demand that must meet the limit, in place of a share"
     )
 
     @model_validator(mode="after")
@@ -60,7 +60,7 @@ def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whethe
 
 def described(quantity: ResultQuantity) -> str:
     """What a limit limits, for schemas."""
-    side = ", which must be at least so large" * quantity.from_below
+    side = ", which must be at least this large" * quantity.from_below
     return f"{quantity.label}{f': {quantity.meaning}' * bool(quantity.meaning)}{side}"
 
 

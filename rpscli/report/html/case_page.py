@@ -124,14 +124,14 @@ CAPTIONS = {
     " one of its ends enlarged; and the horizontal force at the cap beam that holds it there."
     " R runs from the middle of the column to the edge of the flat part of its end; dots are"
     " contacts.",
-    "orbit": "From above: the way of the cap beam over the ground, and the moment of ground and"
+    "orbit": "From above: the path of the cap beam over the ground, and the moment of ground and"
     " building about the contacts, beyond whose circle upright columns uplift; time in colour.",
     "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
     " the events.",
     "displacements": "Displacements to the ground against time.",
     "moment_rotation": "Moment about the contact points against rotation, and what the weight alone"
     " does.",
-    "energy": "Where the energy of the ground has gone.",
+    "energy": "What became of the energy supplied by the ground.",
     "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
     "devices": "Force against displacement of each device between ground and cap beam.",
 }
@@ -380,7 +380,7 @@ class Several(NamedTuple):
         """Motions, and the response to the one that turns the columns most."""
         name = record_name(self.worst.result)
         motions = [motion for each in self.grounds for motion in horizontal(each)]
-        title = f"Response to the record that turns the columns most, {name}"
+        title = f"Response to the record with the largest rotation of the columns, {name}"
         return [
             motions_section(motions, [], f"{len(motions)} records", look, "as they were scaled"),
             Section(title, self.worst.response("orbit", "rotation", "storey_shears")),

@@ -333,7 +333,7 @@ def unknown_reference(
     for option in ("reference", "value"):
         if (given := getattr(options, option, None)) is not None and given not in values:
             path: Path = (*request.path, request.kind, option)
-            text = f"{dotted(path)} = {shown(given)} is no value of {axis.keys[place]}"
+            text = f"{dotted(path)} = {shown(given)} is not a value of {axis.keys[place]}"
             yield Fault(path, f"{text}, which takes {listed(map(shown, values), 'and')}")
 
 

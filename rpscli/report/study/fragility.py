@@ -76,7 +76,7 @@ class BandOptions(MeasureOptions):
         400, description="bootstrap samples of the records for the bands; 0 = none"
     )
     confidence: Annotated[float, Quantity(above=0, below=1)] = Field(
-        CONFIDENCE, description="probability inside the bands, which hold the choice of records"
+        CONFIDENCE, description="probability inside the bands, for the choice of records"
     )
     seed: Seed = Field(1, description="of the bootstrap")
 
@@ -118,7 +118,7 @@ class FragilityOptions(BandOptions):
     limits: LimitStates = Field(LimitStates(), description="limit states")
     series: VariedKeys | None = Field(None, description="varied keys, one curve for each value")
     dispersion: DispersionSection = Field(
-        DispersionSection(), description="uncertainty of more than the records"
+        DispersionSection(), description="uncertainty beyond the records"
     )
     at: dict[str, Option] = Field(
         {}, description="intensities by name, {MCE: 0.6 m/s}: collapse margin ratios, probabilities"
@@ -421,7 +421,7 @@ def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
     chosen = f"{drawn} {layout.independent}" if drawn > 1 else "histories under one record"
     level = f"in brackets: {style.percent(options.confidence)} bands of the choice of {chosen}"
     given = ", ".join(f"{key.replace('_', ' ')} {v:g}" for key, v in options.dispersion.given)
-    beyond = f"beta total: in quadrature with {given}" if given else "they hold no modelling error"
+    beyond = f"beta total: in quadrature with {given}" if given else "without modelling error"
     return f"{level} (bootstrap of {options.resamples}); {beyond}; -: not determined"
 
 

@@ -99,7 +99,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
             note=remarks(
                 f"fractiles of {listed(numbers)} curves",
                 "level to the right: overturned at the next intensity" if found.overturned else "",
-                "back to the left: stronger motions turn the columns less",
+                "back to the left: stronger motions, smaller rotations",
                 over(found.pooled),
                 left_out(found.failed),
             ),

@@ -122,7 +122,7 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
         return
     measure = section.measure
     if options.measure not in (None, measure):
-        yield f"measure: {options.measure} is not hazard.measure: {measure}; take the first out"
+        yield f"measure: {options.measure} is not hazard.measure: {measure}; remove the first"
     if needs_period(measure) and options.period is None:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
     yield from wrong_intensities(layout, options.model_copy(update={"measure": measure}))
@@ -259,7 +259,7 @@ def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) 
     if unseen > CLEARLY * of_shares:
         yield (
             f"{100.0 * unseen / of_shares:.0f} % of the rate of shares come from below the weakest"
-            " intensity computed, where its share is taken to hold too; add weaker ones"
+            " intensity computed, where its share is assumed to hold too; add weaker ones"
         )
     first = math.log(hazard.intensity[0] / fit.median)
     probable = 0.5 * math.erfc(-first / fragility.total / math.sqrt(2.0))
@@ -272,7 +272,7 @@ def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) 
         below, above = fit.between
         most = exceeded(hazard, np.array([max(below, hazard.intensity[0])]))[0]
         least = exceeded(hazard, np.array([above]))[0] if above < math.inf else 0.0
-        yield f"separated data say no more than that the rate is between {least:.2g} and {most:.2g}"
+        yield f"separated data show only that the rate is between {least:.2g} and {most:.2g}"
 
 
 def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> Iterator[str]:
