@@ -56,7 +56,7 @@ class ImpactLaw:
         if self.kind not in ("flexible", "rigid", "value"):
             raise ValueError(f"impact law {self.kind!r} must be flexible, rigid or value")
         if (self.kind == "value") != (self.restitution is not None):
-            raise ValueError("a restitution is needed with the impact law `value`, and only with it")
+            raise ValueError("a restitution is needed with the impact law `value`, only there")
         if not 0.0 <= self.contact_time <= LONGEST_CONTACT:
             raise ValueError(
                 f"contact_time = {self.contact_time} s must be within 0 and {LONGEST_CONTACT:g} s"

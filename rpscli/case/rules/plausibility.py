@@ -171,7 +171,7 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
     if structure.gamma == 0.0:
         yield Doubt(
             "free-standing columns (no cap beam) are assumed to roll round their own ends and to"
-            " keep their place, which torsion under their weight can hardly ensure: they may roll away"
+            " keep their place, which torsion under their weight hardly ensures: they may roll away"
         )
     if structure.impact_law.contact_time == 0.0 and structure.restitution < 1.0:
         yield Doubt(
