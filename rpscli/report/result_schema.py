@@ -205,9 +205,10 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
         **_FILES, **_ENDED,
     },
     "verify": {
-        "compared": int, "mismatches": int, "comparisons": [{**_keys(Comparison), "holds": bool}],
-        **_ENDED,
+        "compared": int, "mismatches": int, "not_answered?": [str], **_ENDED,
+        "comparisons": [{**_keys(Comparison), "holds": bool, "digits": float}],
     },
+    "verify --problems": _FILES,
     "doctor": {"findings": [dict.fromkeys(("subject", "found", "remedy"), str)], **_ENDED},
     "clean": {"folder": str, "dry_run": bool, "bytes": dict[str, int]},
 }  # fmt: skip

@@ -77,6 +77,7 @@ RUNS: dict[str, tuple[tuple[str, ...], int]] = {
         0,
     ),
     "verify": (("verify",), 0),
+    "verify --problems": (("verify", "--problems", "problems"), 0),
     "doctor": (("doctor",), 0),
     "clean": (("clean", "--dry-run"), 0),
     "error": (("check", "nothing.yaml"), 3),

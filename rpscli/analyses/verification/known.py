@@ -37,7 +37,10 @@ def within(value: float, share: float) -> Known:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One line of a verification: what is compared, of which structure, both values in one unit."""
+    """One line of a verification: what is compared, of which structure, both values in one unit.
+
+    `certified_digits` are those of a certified problem, whose computed value may be missing (NaN).
+    """
 
     group: str
     quantity: str
@@ -45,11 +48,27 @@ class Comparison:
     expected: float
     computed: float
     tolerance: float
+    certified_digits: int = 0
 
     @property
     def holds(self) -> bool:
         """Whether the computed value is close enough; one that is not a number never is."""
         return abs(self.computed - self.expected) <= self.tolerance
+
+    @property
+    def digits(self) -> float | None:
+        """Correct ones of an answer to a certified problem, at most those that are certified."""
+        if not self.certified_digits or math.isnan(self.computed):
+            return None
+        off = abs(self.computed / self.expected - 1.0)
+        return max(-math.log10(max(off, 10.0**-self.certified_digits)), 0.0)
+
+    @property
+    def verdict(self) -> str:
+        """In a word, or how many digits are correct."""
+        if self.digits is not None:
+            return f"{self.digits:.1f} digits"
+        return "agrees" if self.holds else "missing" if math.isnan(self.computed) else "DIFFERS"
 
 
 def compare(group: str, quantity: str, unit: str, known: Known, computed: float) -> Comparison:

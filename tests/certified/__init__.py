@@ -1,0 +1,1 @@
+"""Certified problems: each solved by two roads that share nothing."""
