@@ -12,7 +12,7 @@ from rpscli.analyses.demand import demand
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.records.source import load_record
 
-pytestmark = needs_compiled_kernels
+pytestmark = [needs_compiled_kernels, pytest.mark.evidence("steps, events, energy", "exact")]
 
 SETTINGS = TimeHistorySettings(recontact_rule="relative")
 ACCURATE = 1e-4

@@ -43,6 +43,7 @@ def result(motion: MotionComponents) -> TimeHistoryResult:
     return time_history(BUILDING, motion, TimeHistorySettings(free_vibration=2.0))
 
 
+@pytest.mark.evidence("both components", "exact")
 def test_the_energies_balance_at_every_sample(result: TimeHistoryResult) -> None:
     # Those put in, damped and lost are the kernel's; what is stored follows from the samples.
     t = result.trace
@@ -79,6 +80,7 @@ def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> 
     assert result.max_base_shear_x <= result.max_base_shear
 
 
+@pytest.mark.evidence("both components", "exact")
 def test_a_turned_pair_turns_all_results(
     result: TimeHistoryResult, motion: MotionComponents
 ) -> None:

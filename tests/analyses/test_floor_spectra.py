@@ -25,6 +25,7 @@ CASE = Path(__file__).parents[2] / "cases" / "six_storey.yaml"
 PERIODS = np.array([0.3, 0.8, 2.0])
 
 
+@pytest.mark.evidence("floor spectra", "exact")
 def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
     floors = np.ones((2001, 2)) * [1.0, 3.0]
     found = floor_spectra(floors, 0.01, PERIODS, 0.0)
@@ -36,6 +37,7 @@ def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
     )
 
 
+@pytest.mark.evidence("floor spectra", "exact")
 @needs_compiled_kernels
 def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
     case = load_case(str(CASE))
@@ -48,6 +50,7 @@ def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
     np.testing.assert_allclose(isolated.pseudo_acceleration, fixed.pseudo_acceleration, rtol=5e-5)
 
 
+@pytest.mark.evidence("floor spectra", "program")
 @needs_compiled_kernels
 def test_fixed_base_against_a_building_with_its_equipment() -> None:
     """Floors and an oscillator without mass on the roof, by one solver for all of them."""

@@ -30,6 +30,7 @@ def held(truth: float, found: Estimate) -> bool:
     return found.low <= truth <= found.high
 
 
+@pytest.mark.evidence("identification", "program")
 @needs
 def test_a_block_of_another_integrator_has_its_restitution() -> None:
     """Housner's block, I_o theta'' = -m g R sin(alpha - theta), theta' -> e theta' at theta = 0."""
@@ -70,6 +71,7 @@ def decay(T: float, zeta: float, t: Any) -> Any:
     return np.exp(-zeta * w * t) * np.sin(w * math.sqrt(1.0 - zeta**2) * t + 0.4)
 
 
+@pytest.mark.evidence("identification", "exact")
 @pytest.mark.parametrize("test", ["release", "earthquake", "ambient"])
 def test_the_period_of_closed_forms(test: str) -> None:
     T, zeta, dt, rng = 0.437, 0.03, 0.01, np.random.default_rng(11)
@@ -123,6 +125,7 @@ def identified(number: int, noise: Any) -> tuple[float, Rocking]:
     return loss, rocking(replace(true, impact_law=ImpactLaw()), time, rotation)
 
 
+@pytest.mark.evidence("identification", "exact")
 @needs
 @pytest.mark.long
 def test_intervals_of_the_loss_hold_the_truth() -> None:
@@ -158,6 +161,7 @@ def test_restitution_and_rolling_resistance_are_told_apart() -> None:
     assert counts.min() >= 15
 
 
+@pytest.mark.evidence("identification", "exact")
 @needs
 @pytest.mark.long
 @pytest.mark.parametrize("test", ["ambient", "release", "earthquake"])

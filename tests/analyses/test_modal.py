@@ -13,6 +13,8 @@ from rpscli.analyses.modal import UpliftedModes, modal
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
+pytestmark = pytest.mark.evidence("modes", "exact")
+
 SIZES = [(n, rho) for n in (1, 2, 3, 6, 10) for rho in (FLAT, 0.25, 0.5, 1.5)]
 SIZES += [(50, FLAT), (50, 0.5), (100, 1.5)]
 

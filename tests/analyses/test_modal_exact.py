@@ -16,6 +16,8 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Tendon, ViscousDamper
 from rpscli.model.podium import Device, PodiumStructure
 
+pytestmark = pytest.mark.evidence("modes", "program")
+
 # tan alpha, tan alpha', rho; in the last the arc's end lies far beyond the column
 SHAPES = [(0.02, 0.04, 0.5), (0.15, 0.3, FLAT), (0.15, 0.3, 0.25), (0.6, 1.2, 0.7)]
 SHAPES += [(1.0, 1.5, 1.5), (0.5, 2.0, 0.75)]

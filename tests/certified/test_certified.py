@@ -162,6 +162,18 @@ def shipped_answers(name: str) -> Sequence[tuple[float, int]]:
 
 
 @pytest.mark.long
+@pytest.mark.evidence("free-standing blocks", "program")
+@pytest.mark.evidence("buildings on bearings under earthquakes", "program")
+@pytest.mark.evidence("spherical ends", "program")
+@pytest.mark.evidence("ends that give way", "program")
+@pytest.mark.evidence("devices", "program")
+@pytest.mark.evidence("vertical motion", "program")
+@pytest.mark.evidence("both components", "program")
+@pytest.mark.evidence("free-standing blocks", "exact")
+@pytest.mark.evidence("spherical ends", "exact")
+@pytest.mark.evidence("devices", "exact")
+@pytest.mark.evidence("modes", "exact")
+@pytest.mark.evidence("pushover", "exact")
 @pytest.mark.parametrize("name", NAMES)
 def test_both_roads_lead_to_the_certified_numbers(name: str) -> None:
     problem, answers = problems()[name], shipped_answers(name)

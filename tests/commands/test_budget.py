@@ -29,6 +29,7 @@ def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
     return document
 
 
+@pytest.mark.evidence("error budget and comparison", "exact")
 def test_each_row_is_that_of_the_command_by_hand(
     workplace: Path, rps: Invoke, rps_json: Json
 ) -> None:

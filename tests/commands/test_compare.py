@@ -34,6 +34,7 @@ def test_stored_results_are_those_of_the_case(rps: Invoke, rps_json: Json) -> No
     assert [found[key] for key in ("inputs", "versions", "results", "only_a", "only_b")] == [[]] * 5
 
 
+@pytest.mark.evidence("error budget and comparison", "exact")
 def test_a_change_is_told_with_what_one_percent_of_the_motion_does(
     workplace: Path, rps_json: Json
 ) -> None:

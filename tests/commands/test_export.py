@@ -64,6 +64,8 @@ def gap(of: str, ours: dict[str, Any], theirs: dict[str, Any]) -> float:
 UP = "record.vertical=pulse:half_sine?amplitude=0.4g&period=0.6&dt=0.01"
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "program")
+@pytest.mark.evidence("export", "program")
 @pytest.mark.long
 @pytest.mark.parametrize("vertical", ["record.vertical=null", UP])
 def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> None:
@@ -78,6 +80,7 @@ def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> N
     assert gap("storey_1_drift [m]", ours, theirs) < 2e-2
 
 
+@pytest.mark.evidence("export", "program")
 @pytest.mark.long
 def test_opensees_finds_the_same_where_impacts_take_nothing(workplace: Path, rps: Invoke) -> None:
     if importlib.util.find_spec("openseespy") is None:

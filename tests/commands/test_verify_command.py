@@ -107,6 +107,7 @@ def test_what_is_no_number_does_not_agree() -> None:
     assert not compare("made", "one", "-", Known(1.0, math.inf), math.nan).holds
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize(
     "row",
     [REFERENCES[2], *(pytest.param(row, marks=pytest.mark.long) for row in REFERENCES)],

@@ -36,7 +36,10 @@ from rpscli.model.superstructure import (
 )
 from rpscli.records.ground_motion import GroundMotion
 
-pytestmark = pytest.mark.posix  # trials are timed by its signals
+pytestmark = [
+    pytest.mark.posix,
+    pytest.mark.evidence("steps, events, energy", "exact"),
+]  # trials are timed by its signals
 
 OUTCOMES = {
     "at_rest",

@@ -22,6 +22,7 @@ def close(known: Known) -> object:
     return pytest.approx(known.value, abs=known.tolerance)
 
 
+@pytest.mark.evidence("geometry of columns", "published")
 @pytest.mark.parametrize("row", GEOMETRIES)
 def test_table_of_geometry(row: Geometry) -> None:
     bearing = Bearing(1.5, row.tan_alpha, 2.0 * row.tan_alpha, row.rho)
@@ -37,6 +38,7 @@ slopes = st.floats(0.01, 0.5)
 widenings = st.floats(1.02, 2.9)
 
 
+@pytest.mark.evidence("geometry of columns", "exact")
 @given(slopes, widenings)
 def test_the_exact_limit_of_overturning_while_rolling(tan_alpha: float, widening: float) -> None:
     rise = tan_alpha * (widening - 1.0)
@@ -136,6 +138,7 @@ def test_the_cap_beam_moves_on_until_the_model_ends(rho: float, slenderness: flo
     assert end == math.pi or C[-1] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.evidence("geometry of columns", "exact")
 def test_the_axial_inertia_is_that_of_a_solid_round_column() -> None:
     """I_3 = m b^2/2 of a cylinder of half-width b, over m R^2."""
     arc, flat = Bearing(1.5, 0.15, 0.30, 0.5), Bearing(1.5, 0.15, 0.30, 0.0)

@@ -24,6 +24,8 @@ from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
 from rpscli.model.uplifted_state import uplifted_state
 
+pytestmark = [pytest.mark.evidence("devices", "exact"), pytest.mark.evidence("devices", "program")]
+
 DEVICES: tuple[Device, ...] = (
     FrictionDamper(1.2e5),
     RollingResistance(0.02),

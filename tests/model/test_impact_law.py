@@ -61,6 +61,7 @@ def angular_momentum_ratio(
     return float(np.linalg.solve(matrix, known)[0])
 
 
+@pytest.mark.evidence("impact laws", "exact")
 @given(bearings, ratios, ratios)
 def test_restitution_is_the_momentum_balance(bearing: Bearing, gamma: float, eta: float) -> None:
     for law, floors_jump in ((rigid_restitution, True), (flexible_restitution, False)):
@@ -76,6 +77,7 @@ def test_without_a_building_both_laws_are_one(bearing: Bearing, gamma: float) ->
     assert rigid == pytest.approx(flexible, abs=1e-14)
 
 
+@pytest.mark.evidence("impact laws", "published")
 @given(st.floats(0.01, 0.5))
 def test_a_rectangular_block_has_housners_restitution(tan_alpha: float) -> None:
     bearing = Bearing(1.0, tan_alpha, tan_alpha, FLAT)
@@ -83,6 +85,7 @@ def test_a_rectangular_block_has_housners_restitution(tan_alpha: float) -> None:
     assert rigid_restitution(bearing, 0.0, 0.0) == pytest.approx(expected, abs=1e-15)
 
 
+@pytest.mark.evidence("impact laws", "program")
 @given(bearings)
 def test_the_second_integrator_uses_the_same_restitution(bearing: Bearing) -> None:
     law: Literal["rigid", "flexible"]
@@ -92,6 +95,7 @@ def test_the_second_integrator_uses_the_same_restitution(bearing: Bearing) -> No
         assert structure.restitution == pytest.approx(own, abs=1e-12)
 
 
+@pytest.mark.evidence("impact laws", "exact")
 @given(bearings, ratios, st.floats(0.0, 4.0), st.booleans(), st.floats(0.0, 1.5))
 def test_loss_is_where_the_impulse_acts(
     bearing: Bearing, gamma: float, eta: float, floors_jump: bool, reach: float

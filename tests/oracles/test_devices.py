@@ -32,6 +32,8 @@ from .reference_systems import GRAVITY, podium
 from .second_integrator import OracleResult, _Simulation, simulate
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
+pytestmark = pytest.mark.evidence("devices", "exact")
+
 SLOPE = 1e-3
 LEFT_OUT = 1e-5  # a few alpha^2, relative
 

@@ -12,6 +12,8 @@ from .crossings import Array
 from .reference_systems import GRAVITY, podium
 from .second_integrator import simulate
 
+pytestmark = pytest.mark.evidence("buildings on bearings under earthquakes", "program")
+
 
 class Row(NamedTuple):
     record_set: str

@@ -20,7 +20,11 @@ from .storey_lagrangian import StoreyLagrangian
 pytest.importorskip(
     "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
 )
-pytestmark = [pytest.mark.long, needs_compiled_kernels]
+pytestmark = [
+    pytest.mark.long,
+    needs_compiled_kernels,
+    pytest.mark.evidence("impact laws", "program"),
+]
 
 RELEASED = 0.4 * math.atan(0.15)
 STILL = np.zeros(2)

@@ -20,7 +20,7 @@ from .storey_lagrangian import OracleSystem
 pytest.importorskip(
     "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
 )
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.evidence("devices", "program")]
 
 RELEASED = 0.4 * math.atan(0.15)
 W = structure_of("3", 0.5).weight

@@ -20,7 +20,7 @@ from .test_spatial import recorded_pair
 pytest.importorskip(
     "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
 )
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.evidence("both components", "program")]
 
 RATIO, AXIAL = inertia_ratios(0.15)
 

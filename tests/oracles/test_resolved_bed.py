@@ -18,6 +18,8 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import MotionComponents
 
+pytestmark = pytest.mark.evidence("ends that give way", "program")
+
 ALPHA = math.atan(0.15)
 
 

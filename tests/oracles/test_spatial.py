@@ -20,6 +20,8 @@ from .spatial_integrator import SpatialSimulation, simulate_pair
 from .spatial_lagrangian import SpatialLagrangian
 from .storey_lagrangian import OracleSystem
 
+pytestmark = pytest.mark.evidence("both components", "exact")
+
 REFERENCES: dict[str, Any] = json.loads(
     Path(__file__).with_name("spatial_references.json").read_text()
 )

@@ -18,7 +18,7 @@ from .crossings import Array
 from .spatial_integrator import SpatialSimulation, simulate_pair
 from .test_spatial import recorded_pair
 
-pytestmark = needs_compiled_kernels
+pytestmark = [needs_compiled_kernels, pytest.mark.evidence("both components", "program")]
 
 ARCS = {"tan_wedge": 0.3}
 THREE = {"storeys": 3, "eta": 3.0}

@@ -12,6 +12,8 @@ import pytest
 from .reference_systems import podium
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
+pytestmark = pytest.mark.evidence("equation of motion", "published")
+
 
 class Coefficients(NamedTuple):
     A: float

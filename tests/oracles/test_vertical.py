@@ -20,7 +20,11 @@ from .resolved_contact import structure_of
 pytest.importorskip(
     "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
 )
-pytestmark = [pytest.mark.long, needs_compiled_kernels]
+pytestmark = [
+    pytest.mark.long,
+    needs_compiled_kernels,
+    pytest.mark.evidence("forces in columns, friction", "program"),
+]
 
 SECONDS = 8.0
 

@@ -124,6 +124,7 @@ def agree(
     return result
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize("name", CASES)
 def test_both_roads_lead_to_the_same_history(name: str) -> None:
     structure, peak, shaken_upwards = CASES[name]
@@ -172,6 +173,7 @@ EQUIPPED = {
 }
 
 
+@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("names", EQUIPPED)
 def test_both_roads_with_devices(names: str) -> None:
     bare, peak = EQUIPPED[names]
@@ -187,6 +189,7 @@ def test_both_roads_with_devices(names: str) -> None:
     assert ("tendon_slack" in kinds) >= ("loose" in names)
 
 
+@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize(
     "names",
     [names if "," in names else pytest.param(names, marks=pytest.mark.long) for names in EQUIPPED],
@@ -214,6 +217,7 @@ SOON_AT_REST = [
 ]
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize(
     "structure", SOON_AT_REST, ids=lambda s: f"{s.storeys}-{s.impact_law.kind}"
 )
@@ -228,6 +232,8 @@ def test_both_roads_lock_in_the_limit_alike(structure: PodiumStructure) -> None:
     assert same is (structure.storeys == 0)
 
 
+@pytest.mark.evidence("vertical motion", "program")
+@pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize(
     ("rho", "law"), [(FLAT, "rigid"), (0.26, "flexible"), (0.5, "rigid"), (1.5, "flexible")]
 )
@@ -239,6 +245,7 @@ def test_both_roads_under_a_piece_of_an_earthquake(
     assert agree(structure, record, None, 0.5, 1e-7).impacts >= 1
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(100))
 def test_both_roads_for_random_structures(seed: int) -> None:

@@ -15,6 +15,8 @@ from rpscli.physics.planar.geometry import path_along
 from rpscli.physics.planar.state import FULL_CONTACT, IMPACT
 from rpscli.records.ground_motion import MotionComponents
 
+pytestmark = pytest.mark.evidence("forces in columns, friction", "exact")
+
 DT = 0.005
 RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
 

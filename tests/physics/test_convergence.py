@@ -21,7 +21,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
-pytestmark = needs_compiled_kernels
+pytestmark = [needs_compiled_kernels, pytest.mark.evidence("steps, events, energy", "exact")]
 
 ACCURACIES = (0.8, 1.6, 3.2)
 REFERENCE = 48.0

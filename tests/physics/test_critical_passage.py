@@ -16,6 +16,8 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.trace import Event
 from rpscli.model.podium import PodiumStructure
 
+pytestmark = pytest.mark.evidence("steps, events, energy", "exact")
+
 QUIET = TimeHistorySettings(free_vibration=0.0)
 
 

@@ -75,6 +75,7 @@ def part_of_weight(structure: PodiumStructure, part: float) -> float:
     return part * structure.weight
 
 
+@pytest.mark.evidence("devices", "exact")
 @shapes
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_friction_costs_its_force_times_the_path(slope: float, rho: float, side: float) -> None:
@@ -86,6 +87,7 @@ def test_friction_costs_its_force_times_the_path(slope: float, rho: float, side:
     assert energy_of_impact(result) == pytest.approx(bare.weight * v - F_d * u, rel=EXACT)
 
 
+@pytest.mark.evidence("devices", "exact")
 @shapes
 def test_rolling_resistance_costs_its_moment_times_the_tilt(slope: float, rho: float) -> None:
     bare = frame(slope, rho)
@@ -97,6 +99,7 @@ def test_rolling_resistance_costs_its_moment_times_the_tilt(slope: float, rho: f
     assert energy_of_impact(result) == pytest.approx(left, rel=EXACT)
 
 
+@pytest.mark.evidence("devices", "exact")
 @shapes
 def test_a_stop_gives_back_what_it_took(slope: float, rho: float) -> None:
     bare = frame(slope, rho)
@@ -117,6 +120,7 @@ def test_a_stop_gives_back_what_it_took(slope: float, rho: float) -> None:
     assert result.devices[0].force <= k * 0.6 * u * (1.0 + EXACT)
 
 
+@pytest.mark.evidence("devices", "exact")
 @shapes
 def test_a_tendon_gives_back_what_it_took(slope: float, rho: float) -> None:
     bare = frame(slope, rho)
@@ -130,6 +134,7 @@ def test_a_tendon_gives_back_what_it_took(slope: float, rho: float) -> None:
     assert result.lost_prestress == 0.0
 
 
+@pytest.mark.evidence("devices", "exact")
 def test_the_elongation_of_flat_ends() -> None:
     bearing = podium(0, 0.2, FLAT).bearing
     x = np.array([0.0, 1e-9, 1e-3, 0.2, 0.7])
@@ -138,6 +143,7 @@ def test_the_elongation_of_flat_ends() -> None:
     assert bearing.tendon_lever(x) == pytest.approx(2.0 * bearing.half_width * np.cos(0.5 * x))
 
 
+@pytest.mark.evidence("devices", "exact")
 @shapes
 def test_the_lever_of_a_tendon_is_the_slope_of_its_elongation(slope: float, rho: float) -> None:
     bearing = podium(0, slope, rho).bearing
@@ -173,6 +179,7 @@ def ramp(sign: float = 1.0) -> Array:
     return sign * RAMP * np.arange(0.0, 8.0, 0.01)
 
 
+@pytest.mark.evidence("devices", "exact")
 @shapes
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_uplift_is_delayed_by_what_devices_hold(slope: float, rho: float, sign: float) -> None:
@@ -188,6 +195,7 @@ def test_uplift_is_delayed_by_what_devices_hold(slope: float, rho: float, sign: 
     assert sliding_time(result, "uplift") == pytest.approx(limit / RAMP, rel=1e-12)
 
 
+@pytest.mark.evidence("devices", "exact")
 @shapes
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_friction_sticks_and_slides_at_its_limit(slope: float, rho: float, sign: float) -> None:
@@ -219,6 +227,7 @@ def test_more_friction_than_weight_brings_back_stays_tilted() -> None:
         assert not result.warnings
 
 
+@pytest.mark.evidence("devices", "exact")
 def test_restoring_force_with_devices() -> None:
     x = np.array([1e-6, 0.02, 0.1])
     bare = frame(0.15, 0.5)
@@ -253,6 +262,7 @@ def falling(structure: PodiumStructure) -> tuple[Array, Array]:
     return result.trace.time[kept], result.trace.cap_beam_displacement[kept]
 
 
+@pytest.mark.evidence("devices", "exact")
 def test_tendons_make_the_frame_swing_with_their_frequency() -> None:
     bare = frame(SLENDER, FLAT)
     R, W, alpha = bare.bearing.semi_diagonal, bare.weight, bare.bearing.alpha
@@ -270,6 +280,7 @@ def test_tendons_make_the_frame_swing_with_their_frequency() -> None:
     assert impact == pytest.approx(swing, rel=SMALL)
 
 
+@pytest.mark.evidence("devices", "exact")
 @pytest.mark.parametrize("coefficient", [2e3, 2e5, 5e6])
 def test_a_linear_damper_falls_exponentially(coefficient: float) -> None:
     structure, F_0, M_e = slender(ViscousDamper(coefficient))
@@ -279,6 +290,7 @@ def test_a_linear_damper_falls_exponentially(coefficient: float) -> None:
     assert u[0] - u == pytest.approx(fallen, abs=SMALL * u[0])
 
 
+@pytest.mark.evidence("devices", "exact")
 def test_a_quadratic_damper_reaches_its_final_velocity() -> None:
     c = 4e8
     structure, F_0, M_e = slender(ViscousDamper(c, 2.0))
@@ -303,6 +315,7 @@ def test_a_damper_that_holds_does_not_try_every_step_anew(exponent: float, share
     assert found.max_rotation == pytest.approx(shorter.max_rotation, rel=2e-7)
 
 
+@pytest.mark.evidence("devices", "exact")
 @pytest.mark.parametrize("exponent", [0.2, 0.5])
 def test_a_weak_power_creeps_at_its_final_velocity(exponent: float) -> None:
     structure, F_0, _ = slender()

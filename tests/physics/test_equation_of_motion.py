@@ -22,6 +22,11 @@ from rpscli.physics.planar.state import ROCKING, ROLLING
 
 from .one_lane import OneLane
 
+pytestmark = [
+    pytest.mark.evidence("equation of motion", "exact"),
+    pytest.mark.evidence("equation of motion", "program"),
+]
+
 SIXTH_ORDER = {1: 45.0, 2: -9.0, 3: 1.0}
 """Weights of central differences over 60 h."""
 

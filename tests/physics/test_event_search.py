@@ -22,6 +22,8 @@ from rpscli.physics.core.quintic import (
     value,
 )
 
+pytestmark = pytest.mark.evidence("steps, events, energy", "exact")
+
 RANDOM_CURVES = 3000 if COMPILED else 100
 
 

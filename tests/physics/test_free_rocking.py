@@ -43,6 +43,7 @@ def impact_times(result: TimeHistoryResult) -> list[float]:
     return [event.time for event in result.events if event.kind == "impact"]
 
 
+@pytest.mark.evidence("free-standing blocks", "exact")
 @pytest.mark.parametrize("rho", [FLAT, 0.25, 0.5, 1.5])
 def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
     """x'' = -w^2 (alpha + kappa x) between impacts, w^2 = g (1+2 gamma)/(R (Io+4 gamma))."""
@@ -70,6 +71,7 @@ def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
     assert np.diff(times[:8], prepend=0.0) == pytest.approx(expected, rel=LINEAR)
 
 
+@pytest.mark.evidence("free-standing blocks", "exact")
 def test_a_flat_block_swings_as_long_as_the_integral_of_energy_says() -> None:
     """x'^2/2 = w^2 [cos(alpha - x0) - cos(alpha - x)]; no small angle is assumed."""
     structure, start = podium(0, 0.3, FLAT), 0.2
@@ -106,6 +108,7 @@ def test_nothing_moves_without_a_push(storeys: int, rho: float) -> None:
     assert result.history.normal_bottom == 1.0
 
 
+@pytest.mark.evidence("steps, events, energy", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize("rho", [FLAT, 0.5, 1.5])
 def test_without_damping_and_with_e_one_energy_stays(rho: float) -> None:
@@ -126,6 +129,7 @@ def test_without_damping_and_with_e_one_energy_stays(rho: float) -> None:
     assert orders == pytest.approx(7.0, abs=0.15)
 
 
+@pytest.mark.evidence("free-standing blocks", "exact")
 def test_impacts_shrink_and_come_to_an_end() -> None:
     """Near theta = 0 each impact leaves e^2 of the height, until it is below the tolerance."""
     structure = podium(0, 0.15, FLAT)
@@ -141,6 +145,7 @@ def test_impacts_shrink_and_come_to_an_end() -> None:
     assert ratios[1:] / ratios[:-1] == pytest.approx(e, rel=2e-3)  # height/alpha <= 1e-3
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
 @needs_compiled_kernels
 def test_shear_after_the_first_separate_impact() -> None:
     """The base force turns round: V swings from V_st about -V_st (Validation by closed form).

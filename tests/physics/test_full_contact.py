@@ -35,6 +35,7 @@ def state_matrix(above: Superstructure) -> Array:
     return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
 @pytest.mark.parametrize("above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}")
 def test_full_contact_equals_lsim(above: Superstructure) -> None:
     n, dt = above.storeys, 0.02
@@ -66,6 +67,7 @@ def test_full_contact_equals_lsim(above: Superstructure) -> None:
     assert result.floor_accelerations == pytest.approx(sampled, rel=0.1)
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
 @pytest.mark.parametrize("above", BUILDINGS[:3], ids=lambda b: str(b.storeys))
 def test_one_long_step_is_as_good_as_many(above: Superstructure) -> None:
     """Two samples 1.3 s apart: one interval, against one exponential."""
@@ -107,6 +109,7 @@ OVERDAMPED = [
 ]
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
 @pytest.mark.parametrize("above", BUILDINGS + OVERDAMPED, ids=lambda b: f"{b.storeys}-{b.damping}")
 @pytest.mark.parametrize("dt", [0.02, 0.05])
 def test_the_energy_of_full_contact_is_accounted_for(above: Superstructure, dt: float) -> None:

@@ -16,6 +16,8 @@ from rpscli.model.bearing import Bearing
 from rpscli.physics.planar import geometry
 from rpscli.physics.planar.geometry import Phase
 
+pytestmark = pytest.mark.evidence("geometry of columns", "exact")
+
 ROUNDING = 2e-14
 """A few dozen roundings of numbers of the size 1 + 4 rho, which every tolerance is scaled by."""
 

@@ -21,6 +21,8 @@ from rpscli.physics.planar.transitions import is_negligible
 
 from .one_lane import OneLane
 
+pytestmark = pytest.mark.evidence("impact laws", "exact")
+
 LIMIT = TimeHistorySettings(recontact_rule="limit")
 RELATIVE = TimeHistorySettings(recontact_rule="relative")
 

@@ -15,6 +15,8 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion
 
+pytestmark = pytest.mark.evidence("equation of motion", "exact")
+
 SETTINGS = TimeHistorySettings(free_vibration=2.0)
 RECORD = waves(6.0 if COMPILED else 1.6, 0.02, 4.0, seed=11)
 VERTICAL = waves(6.0 if COMPILED else 1.6, 0.02, 2.0, seed=12)
@@ -123,6 +125,7 @@ def test_masses_and_stiffnesses_times_anything(structure: PodiumStructure) -> No
         assert two.history[name] == pytest.approx(one.history[name], rel=1e-8)
 
 
+@pytest.mark.evidence("vertical motion", "exact")
 @pytest.mark.parametrize("structure", STRUCTURES, ids=name)
 def test_a_constant_vertical_acceleration_is_a_change_of_gravity(
     structure: PodiumStructure,

@@ -13,6 +13,8 @@ from scipy.linalg import expm
 
 from rpscli.physics.core.oscillator import decay, transition
 
+pytestmark = pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
+
 
 def exact_decay(omega: float, xi: float, h: float) -> tuple[float, float]:
     """c(h) and s(h) with 60 digits: one power series for all dampings."""

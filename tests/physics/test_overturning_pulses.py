@@ -43,6 +43,7 @@ def least_amplitude(structure: PodiumStructure, shape: Array, low: float, high: 
     return 0.5 * (low + high)
 
 
+@pytest.mark.evidence("free-standing blocks", "exact")
 @pytest.mark.parametrize("size", [0.4, 1.5, 4.0])
 def test_half_sine_without_impact(size: float) -> None:
     structure = slender_block(size)
@@ -57,6 +58,7 @@ def test_half_sine_without_impact(size: float) -> None:
     assert least == pytest.approx(expected, rel=2.0 * CHORDS + 2.0 * SLENDER**2)
 
 
+@pytest.mark.evidence("free-standing blocks", "exact")
 def test_any_pulse_without_impact_overturns_by_its_weighted_integral() -> None:
     """Int exp(-p t) a dt/(g alpha) from uplift must reach 1/p: s = p t."""
     structure = slender_block(1.0)
@@ -85,6 +87,7 @@ PUBLISHED_STEP = 1e-3
 gives 0.55459 g for the first of them where 0.5545 g is printed as falling."""
 
 
+@pytest.mark.evidence("free-standing blocks", "published")
 @pytest.mark.parametrize(
     ("half_width", "half_height", "shape", "falls"),
     [(0.2, 0.6, HALF_SINE, 0.5545), (0.5, 1.5, SINE, 0.4514)],
@@ -102,6 +105,7 @@ def test_makris_and_roussos_linear(
     assert least == pytest.approx(falls, abs=0.5 * PUBLISHED_STEP)
 
 
+@pytest.mark.evidence("free-standing blocks", "published")
 @pytest.mark.parametrize(
     ("shape", "published", "tolerance"),
     [(SINE, 0.46873, 1e-5), (COSINE, 0.625, PUBLISHED_STEP)],

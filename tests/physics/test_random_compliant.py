@@ -15,6 +15,8 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
 
+pytestmark = pytest.mark.evidence("ends that give way", "exact")
+
 MOST = 1e-6
 """Of all energy that flowed. The largest of a thousand was 2.5e-7."""
 

@@ -24,6 +24,8 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
+pytestmark = pytest.mark.evidence("devices", "exact")
+
 RESIDUAL = 1e-6
 """Of the energy that was supplied; without devices it is no smaller."""
 

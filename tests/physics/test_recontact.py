@@ -13,7 +13,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactKind, ImpactLaw
 from rpscli.model.podium import PodiumStructure
 
-pytestmark = needs_compiled_kernels
+pytestmark = [needs_compiled_kernels, pytest.mark.evidence("impact laws", "exact")]
 
 Rule = Literal["relative", "limit"]
 

@@ -15,6 +15,8 @@ from rpscli.physics.planar.steps import end_step_at, fraction_at
 from .one_lane import OneLane
 from .test_equation_of_motion import State, states
 
+pytestmark = pytest.mark.evidence("equation of motion", "exact")
+
 slopes = st.floats(-50.0, 50.0)
 
 

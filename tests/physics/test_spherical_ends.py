@@ -121,6 +121,7 @@ RISING = waves(4.0, 0.02, 2.0, 4)
 SHORT = TimeHistorySettings(free_vibration=0.0)
 
 
+@pytest.mark.evidence("spherical ends", "program")
 @needs_compiled_kernels
 @pytest.mark.parametrize(
     ("structure", "scale", "up"),
@@ -178,6 +179,7 @@ def measured_period(result: TimeHistoryResult) -> float:
     return float(passages[-1] - passages[0]) / (0.5 * (len(passages) - 1))
 
 
+@pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 def test_small_swings_have_the_period_of_height_and_radius() -> None:
     """With h = 2H, a frame on massless columns is a pendulum of the length h^2/(2 r - h)."""
@@ -192,6 +194,7 @@ def test_small_swings_have_the_period_of_height_and_radius() -> None:
     assert replace(frame, columns_mass=1.0).rolling_period == pytest.approx(pendulum, rel=1e-5)
 
 
+@pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 def test_under_a_building_the_period_is_that_of_its_slowest_mode() -> None:
     """The swing lasts what the eigenvalue says, on both sides; nothing but the building damps."""
@@ -205,6 +208,7 @@ def test_under_a_building_the_period_is_that_of_its_slowest_mode() -> None:
     )  # released, the building sways
 
 
+@pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 def test_a_wide_swing_keeps_its_energy() -> None:
     """Onto the ends of the arcs and back, on both sides: each turn as high as the release."""
@@ -217,6 +221,7 @@ def test_a_wide_swing_keeps_its_energy() -> None:
     assert abs(result.energy.residual) < 1e-9 * result.trace.energy_stored[0]
 
 
+@pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize("holds", [FrictionDamper, RollingResistance])
 def test_friction_takes_the_same_from_each_swing_and_then_holds(holds: type[Device]) -> None:
@@ -244,6 +249,7 @@ def test_friction_takes_the_same_from_each_swing_and_then_holds(holds: type[Devi
         assert (shaken.outcome == "at_rest") != moves
 
 
+@pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 def test_small_flat_parts_converge_to_it() -> None:
     """In proportion to their width, whatever the impact law."""
@@ -281,6 +287,7 @@ def test_auto_follows_two_periods_and_a_still_ground_moves_nothing() -> None:
     assert (still.outcome, still.max_rotation) == ("at_rest", 0.0)
 
 
+@pytest.mark.evidence("spherical ends", "exact")
 def test_restoring_force_and_where_it_ends() -> None:
     """F du_b = W dv_b along the motion of the rotated points; no force and no limit at 0."""
     structure = on_spheres()

@@ -23,6 +23,8 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
+pytestmark = pytest.mark.evidence("steps, events, energy", "exact")
+
 BEYOND_A_PLAIN_STEP = 1.25
 """Steps that an event adds on average: the one that leads on from it, now and then one taken again
 after a false alarm, and halves of steps in which the tilt changes fast."""

@@ -18,6 +18,7 @@ def motion(values: list[float], dt: float) -> GroundMotion:
     return GroundMotion(np.array(values), dt, "n", "s", "f")
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 def test_a_triangle_by_hand() -> None:
     # a = 0, 2, 0 m/s2 at 1 s: v = 0, 1, 2; d adds 2/6 and then 1 + 4/6.
     made = motion([0.0, 2.0, 0.0], 1.0)
@@ -32,6 +33,7 @@ def test_a_triangle_by_hand() -> None:
     assert measures.d5_95 == pytest.approx(1.8, rel=1e-14)
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 def test_one_sine_against_its_integrals() -> None:
     a, w, count = 3.0, 2.0 * math.pi, 4000
     t = np.arange(count + 1) / count
@@ -44,6 +46,7 @@ def test_one_sine_against_its_integrals() -> None:
     assert measures.cav == pytest.approx(2.0 * a / math.pi, rel=second_order)
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 def test_significant_durations_by_hand() -> None:
     # Flat for 10 s: the Husid curve is straight, so 70 % and 90 % of 10 s.
     measures = intensity_measures(motion([1.0] * 101, 0.1))
@@ -51,6 +54,7 @@ def test_significant_durations_by_hand() -> None:
     assert measures.d5_95 == pytest.approx(9.0)
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 def test_spectral_measures_of_a_sudden_load() -> None:
     """Its spectrum is flat: a (1 + e), e the decay over half a cycle, at every period."""
     a, damping = 3.0, 0.05
@@ -63,6 +67,7 @@ def test_spectral_measures_of_a_sudden_load() -> None:
     assert measured(load, "Housner") == pytest.approx(peak * of_one, rel=tolerance)
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 def test_filtered_incremental_velocity_of_three_long_pushes() -> None:
     """Bell curves, too slow for the filter: each gains its integral over 0.7 T at its top."""
     period, dt, wide = 0.5, 0.005, 2.0
@@ -77,6 +82,7 @@ def test_filtered_incremental_velocity_of_three_long_pushes() -> None:
     assert measured(GroundMotion(more, dt), "FIV3", period) == wanted
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize("frequency", [0.5, 1.3, 4.0])
 def test_filtered_incremental_velocity_of_a_sine(frequency: float) -> None:
     """Three times amplitude, squared gain of the filter, and integral over the window."""
@@ -94,6 +100,7 @@ def test_filtered_incremental_velocity_of_a_sine(frequency: float) -> None:
     assert found == pytest.approx(wanted, rel=3e-3)  # ramps are not one frequency
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 @settings(deadline=None)
 @given(SAMPLES, st.floats(0.001, 1.0))
 def test_integrals_are_those_of_the_straight_lines(values: list[float], dt: float) -> None:

@@ -33,6 +33,7 @@ def motion(values: np.ndarray) -> GroundMotion:
     return GroundMotion(values, 0.005, "m", "m.at2", "PEER AT2")
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize("measure", ["PGA", "PGV", "Sa", "Arias", "CAV"])
 def test_motion_round_a_circle_measures_the_same_in_all_directions(measure: Measure) -> None:
     """What is left of that comes from the start and from where samples lie."""
@@ -44,6 +45,7 @@ def test_motion_round_a_circle_measures_the_same_in_all_directions(measure: Meas
     assert found == pytest.approx(found[0], rel=0.02)
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize(
     ("of", "share"),
     [
@@ -66,6 +68,7 @@ def test_motion_along_a_line(of: Of, share: float, measure: Measure) -> None:
     assert found == pytest.approx(share * whole, rel=1e-9 if of != "rotd50" else 0.01)
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 def test_rotated_components_by_another_road() -> None:
     rng = np.random.default_rng(1)
     x, y = rng.normal(size=(2, 400))

@@ -36,6 +36,7 @@ def simulated(made: GroundMotion, period: float, damping: float) -> tuple[float,
     return float(np.max(np.abs(response[:, 0]))), float(np.max(np.abs(response[:, 1])))
 
 
+@pytest.mark.evidence("measures and spectra of records", "program")
 @settings(deadline=None)
 @given(
     st.lists(st.integers(-5000, 5000), min_size=2, max_size=40).filter(any),
@@ -59,6 +60,7 @@ def test_against_an_independent_simulation(
     )
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 def test_steady_resonance_by_formula() -> None:
     # At resonance an undamped oscillator at rest answers a sin(wt) by a (wt cos(wt) - sin(wt))/2w2.
     w, a, cycles = 2.0 * math.pi, 1.5, 10
@@ -70,6 +72,7 @@ def test_steady_resonance_by_formula() -> None:
     assert spectrum.displacement[0] == pytest.approx(expected, rel=2 * (w / 2000) ** 2)
 
 
+@pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize("damping", [0.0, 0.05, 0.3])
 def test_sudden_constant_load_overshoots_as_in_textbooks(damping: float) -> None:
     made = motion([2.0, 2.0], 3.0)

@@ -55,6 +55,7 @@ def scanned(mean: np.ndarray, wanted: np.ndarray, least: float, *, pga: bool) ->
     return float(misfits[kept].min())
 
 
+@pytest.mark.evidence("selection of records", "exact")
 @pytest.mark.parametrize(
     ("least", "pga", "per_event"), [(0.0, False, 2), (0.9, False, 1), (0.9, True, 9)]
 )
@@ -78,6 +79,7 @@ def test_against_all_choices_of_random_spectra(
         assert costs[sets.index(found)] == pytest.approx(min(costs), abs=1e-3)
 
 
+@pytest.mark.evidence("selection of records", "exact")
 def test_moments_against_all_choices() -> None:
     """Mean and deviation of the logarithm, three of ten."""
     rng = np.random.default_rng(3)
@@ -96,6 +98,7 @@ def test_moments_against_all_choices() -> None:
         assert costs[sets.index(found)] == pytest.approx(min(costs), rel=1e-9)
 
 
+@pytest.mark.evidence("selection of records", "exact")
 def test_against_all_choices_of_motions() -> None:
     """With 0.9 of the target everywhere and the mean PGA, as EN 1998-1 asks."""
     motions, target = synthetic(9), load_target(TARGET)
@@ -123,6 +126,7 @@ def test_against_all_choices_of_motions() -> None:
     assert [rule.met for rule in selection.rules] == [True, True, True, None]
 
 
+@pytest.mark.evidence("selection of records", "exact")
 def test_a_common_factor_is_what_fits_the_mean() -> None:
     """No other factor on all fits better, where no code asks for more."""
     request = SelectionRequest(4, (0.2, 2.0), (0.05, 20.0), rules="none")

@@ -50,6 +50,7 @@ def test_a_velocity_pulse() -> None:
     assert spectral_acceleration(made, 0.1) < 1.2 * spectral_acceleration(plain, 0.1)
 
 
+@pytest.mark.evidence("synthetic motions", "exact")
 def test_the_spectrum_is_that_of_the_ground() -> None:
     # Power averaged over seeds, at the layer's frequency against four times that; well below
     # the low cut (0.24 Hz) it is nearly gone.
@@ -72,6 +73,7 @@ def test_the_spectrum_is_that_of_the_ground() -> None:
     assert power[1:3].mean() < 0.02 * near(3.0)
 
 
+@pytest.mark.evidence("synthetic motions", "exact")
 def test_the_strong_part_follows_the_envelope() -> None:
     squares = sum(
         load_record(f"synthetic:?pga=1&seed={seed}").acceleration ** 2 for seed in range(20)

@@ -18,6 +18,7 @@ from rpscli.report.tables.motions import spectrum_columns
 G = STANDARD_GRAVITY
 
 
+@pytest.mark.evidence("selection of records", "published")
 @pytest.mark.parametrize(
     ("source", "values"),
     [

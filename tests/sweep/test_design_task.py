@@ -118,6 +118,7 @@ def rows_of(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(text))
 
 
+@pytest.mark.evidence("design", "exact")
 def test_one_unknown_against_the_exact_answer(design_json: DesignJson, workplace: Path) -> None:
     # 30 % of seven are two: the third largest peak must not lift the frame.
     found = design_json(FRAME, "-o", "out")
@@ -153,6 +154,7 @@ def test_one_unknown_against_the_exact_answer(design_json: DesignJson, workplace
     assert len(rows) == found["designs"]["looked_at"] <= 64 + found["designs"]["within_tolerances"]
 
 
+@pytest.mark.evidence("design", "exact")
 def test_two_unknowns_against_the_exact_answer(design_json: DesignJson) -> None:
     found = design_json(TWO, "--set", "search.most=128", "--set", "search.resolution=0.01")
     values = found["best"]["values"]
@@ -489,6 +491,7 @@ def test_the_first_designs_are_even() -> None:
         parse_design("rps: 1", "empty.yaml")
 
 
+@pytest.mark.evidence("design", "exact")
 @pytest.mark.long
 @needs_compiled_kernels
 def test_the_shipped_design_against_a_grid(workplace: Path, no_figures: None) -> None:

@@ -63,6 +63,7 @@ def answer(source: str) -> Stored:
     return stored(rotation_ratio=value)
 
 
+@pytest.mark.evidence("directions", "exact")
 @pytest.mark.usefixtures("records")
 def test_worst_direction_and_median(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY))
@@ -137,6 +138,7 @@ def test_studies_without_directions(study_of: Make, old: str, new: str, message:
     assert REPORTS["directions"].requires is without_directions
 
 
+@pytest.mark.evidence("directions", "exact")
 @needs_compiled_kernels
 @pytest.mark.usefixtures("records")
 def test_a_motion_along_one_line_is_worst_along_it(

@@ -38,6 +38,7 @@ def bounds(values: Array) -> tuple[Array, Array]:
     return edges[place], edges[place + 1]
 
 
+@pytest.mark.evidence("efficiency of intensity measures", "program")
 def test_mean_and_scatter_between_bounds_are_those_of_scipy() -> None:
     low, high = bounds(VALUES)
     assert np.isinf(low).any()
@@ -53,6 +54,7 @@ def test_mean_and_scatter_between_bounds_are_those_of_scipy() -> None:
     assert (found.mean, found.sigma) == pytest.approx(norm.fit(data), abs=3e-4)
 
 
+@pytest.mark.evidence("efficiency of intensity measures", "program")
 def test_slopes_are_those_of_least_squares_where_bounds_are_close() -> None:
     models = pytest.importorskip("statsmodels.api")
     x = 7.0 + 0.4 * OTHER
@@ -70,6 +72,7 @@ def test_slopes_are_those_of_least_squares_where_bounds_are_close() -> None:
     assert chance(alone, found, 0.5) == pytest.approx(chi2.sf(0.5 * ratio, 1), rel=1e-4)
 
 
+@pytest.mark.evidence("efficiency of intensity measures", "program")
 def test_slopes_between_bounds_are_the_maximum_of_the_likelihood() -> None:
     x = OTHER
     low, high = bounds(VALUES + 0.3 * x)
@@ -93,6 +96,7 @@ def test_bounds_that_one_value_satisfies_determine_no_scatter() -> None:
     assert censored_fit(VALUES - 0.1, VALUES + 0.1, np.ones((60, 1))) is None
 
 
+@pytest.mark.evidence("efficiency of intensity measures", "exact")
 def test_a_limit_that_depends_on_one_measure_alone(study_of: Make) -> None:
     """Records overturn above a PGV of their own, whose scatter is small; PGA tells nothing."""
     levels = np.geomspace(0.1, 1.6, 25)

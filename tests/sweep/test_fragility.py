@@ -60,6 +60,7 @@ def fit(
     return lognormal_fit(im, y, np.arange(len(im)), weight, np.array([0.8]), bootstrap)
 
 
+@pytest.mark.evidence("statistics and fragilities", "program")
 @pytest.mark.parametrize(("count", "seed"), [(40, 1), (400, 2), (4000, 3)])
 def test_maximum_likelihood_is_that_of_statsmodels(count: int, seed: int) -> None:
     models = pytest.importorskip("statsmodels.api")
@@ -75,6 +76,7 @@ def test_maximum_likelihood_is_that_of_statsmodels(count: int, seed: int) -> Non
     assert ours.beta == pytest.approx(1.0 / b, rel=1e-7)
 
 
+@pytest.mark.evidence("statistics and fragilities", "exact")
 def test_the_fit_finds_the_fragility_that_made_the_data() -> None:
     im, y = drawn(20_000)
     found = fit(im, y, resamples=0)
@@ -83,6 +85,7 @@ def test_the_fit_finds_the_fragility_that_made_the_data() -> None:
     assert found.beta == pytest.approx(BETA, rel=0.04)
 
 
+@pytest.mark.evidence("statistics and fragilities", "exact")
 def test_bootstrap_bands_cover_the_truth_about_as_often_as_they_say() -> None:
     inside = 0
     for seed in range(40):
@@ -160,6 +163,7 @@ def test_variations_of_the_same_motions_do_not_pretend_to_more_data() -> None:
     assert fit(np.repeat(im, 50), np.repeat(im > 0.7, 50), resamples=0).beta < 0.3 * once.beta
 
 
+@pytest.mark.evidence("statistics and fragilities", "exact")
 def test_the_penalised_fit_is_the_maximum_of_its_objective() -> None:
     x = np.linspace(-1.0, 1.0, 12)
     y = x > 0.2

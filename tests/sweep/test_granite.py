@@ -76,6 +76,7 @@ def test_the_folder_is_converted_with_the_measured_outcomes(
     assert len(list((tmp_path / "motions").glob("*.at2"))) == 2
 
 
+@pytest.mark.evidence("free-standing blocks", "measured")
 def test_the_model_tells_more_outcomes_than_thresholds(
     granite: Path, sweep_json: Callable[..., dict[str, Any]], workplace: Path
 ) -> None:

@@ -37,6 +37,7 @@ KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3,
 HEADER = "PGV [cm/s],rate [1/year]\n"
 
 
+@pytest.mark.evidence("risk", "exact")
 @pytest.mark.parametrize("slope", [0.0, 1.0, 2.5, 4.0])
 @pytest.mark.parametrize("beta", [1e-3, 0.3, 0.6, 1.5])
 def test_a_power_law_gives_the_closed_form(slope: float, beta: float) -> None:
@@ -48,6 +49,7 @@ def test_a_power_law_gives_the_closed_form(slope: float, beta: float) -> None:
     assert annual_rate(hazard, median, beta) == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.evidence("risk", "exact")
 @pytest.mark.parametrize(("median", "beta"), [(0.5, 0.4), (0.15, 0.7), (3.0, 0.2), (0.8, 0.02)])
 def test_any_curve_gives_what_quadrature_gives(median: float, beta: float) -> None:
     x, y = np.log(KINKED.intensity), np.log(KINKED.rate)
@@ -73,6 +75,7 @@ def test_any_curve_gives_what_quadrature_gives(median: float, beta: float) -> No
     assert annual_rate(KINKED, median, beta) == found[0]
 
 
+@pytest.mark.evidence("risk", "exact")
 def test_a_fragility_without_spread_has_the_rate_of_its_median() -> None:
     assert annual_rate(KINKED, 0.4, 1e-9) == pytest.approx(2e-3, rel=1e-6)
 
@@ -83,6 +86,7 @@ def test_no_spread_is_too_wide() -> None:
         assert 0.0 < annual_rate(KINKED, 0.5, beta) <= KINKED.rate[0]
 
 
+@pytest.mark.evidence("risk", "exact")
 def test_a_rate_straight_from_shares_is_what_quadrature_gives() -> None:
     """Shares between levels are linear in ln(im), and stay outside as they are at the ends."""
     levels, shares = np.array([0.15, 0.3, 0.5, 2.0, 3.0]), np.array([0.1, 0.05, 0.4, 0.8, 0.9])
@@ -212,6 +216,7 @@ def test_a_study_reports_its_risk(workplace: Path, sweep_json: Callable[..., Any
     assert (workplace / "out" / "risk.png").exists()
 
 
+@pytest.mark.evidence("risk", "published")
 def test_margins_and_dispersions_are_those_of_fema_p695(
     workplace: Path,
     sweep_json: Callable[..., Any],

@@ -38,6 +38,7 @@ def test_none_and_all_have_an_interval_with_one_end(of: int) -> None:
     assert (every.low, every.high) == pytest.approx((1.0 - end, 1.0), abs=1e-9)
 
 
+@pytest.mark.evidence("statistics and fragilities", "exact")
 @pytest.mark.parametrize(("number", "of"), [(1, 22), (3, 22), (9, 22), (50, 100)])
 def test_the_interval_is_that_of_clopper_and_pearson(number: int, of: int) -> None:
     found = share(number, of)
@@ -148,6 +149,7 @@ def test_what_is_pooled_is_said(study_of: Make) -> None:
     assert pooled(single, (ALPHA, RHO)) == ()
 
 
+@pytest.mark.evidence("statistics and fragilities", "exact")
 @pytest.mark.parametrize(
     ("condition", "exceeded", "beyond", "fallen"),
     [

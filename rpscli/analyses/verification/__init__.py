@@ -13,7 +13,7 @@ from rpscli.analyses.verification.statics import geometry, modes
 
 
 def verification() -> Iterator[Comparison]:
-    """All comparisons, as they are computed; some 150 in a few seconds."""
+    """All comparisons, as they are computed; some 180 in a few seconds."""
     plane = (geometry, modes, buildings, free_rocking, pulses, devices, histories)
     for group in (*plane, compliant_ends, free_motion, passes, one_component):
         yield from group()

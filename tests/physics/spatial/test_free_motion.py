@@ -33,6 +33,7 @@ def potential_and_inertia(structure: PodiumStructure, x: float) -> tuple[float, 
     return lift, J + (1.0 + 4.0 * gamma) * out**2
 
 
+@pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize(
     ("gamma", "ends", "tilt"),
     [(0.0, {}, 0.05), (10.0, ARCS, 0.1), (10.0, ARCS, 0.2)],
@@ -55,6 +56,7 @@ def test_steady_wobble(gamma: float, ends: dict[str, Any], tilt: float) -> None:
     assert np.allclose(wobble.samples.theta, tilt, rtol=1e-9, atol=0.0)
 
 
+@pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("accuracy", [1.0, 4.0])
 @pytest.mark.parametrize("ends", [{}, ARCS], ids=["flat", "arcs"])
 def test_energy_and_momentum_stay(ends: dict[str, Any], accuracy: float) -> None:
@@ -72,6 +74,7 @@ def test_energy_and_momentum_stay(ends: dict[str, Any], accuracy: float) -> None
         assert now * sample.turning == pytest.approx(J * first.turning, rel=1e-12)
 
 
+@pytest.mark.evidence("both components", "program")
 def test_free_motion_is_that_of_an_adaptive_integrator() -> None:
     """X and Y after 10 s and eight passes, by a program that shares nothing."""
     free = released(frame(), 0.06, 0.02, 10.0, accuracy=4.0)
@@ -86,6 +89,7 @@ TURNS: dict[str, tuple[dict[str, Any], float]] = {
 }
 
 
+@pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("across", [4e-8, 4e-9, 1.2e-9])
 @pytest.mark.parametrize("building", TURNS)
 def test_angle_of_turn(building: str, across: float) -> None:

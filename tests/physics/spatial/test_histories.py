@@ -46,6 +46,7 @@ def of_record(
     return pair(x, y, dt)
 
 
+@pytest.mark.evidence("both components", "program")
 @pytest.mark.parametrize(
     ("vertical", "contact_time", "largest"),
     [
@@ -96,6 +97,7 @@ RECORDS = {
 }
 
 
+@pytest.mark.evidence("both components", "program")
 @pytest.mark.parametrize("name", RECORDS)
 def test_recorded_pairs(name: str, fema_record: RecordLoader) -> None:
     """Tilts and maxima by adaptive integrators of two other programs."""
@@ -108,6 +110,7 @@ def test_recorded_pairs(name: str, fema_record: RecordLoader) -> None:
     assert abs(history.residual) < 1e-6
 
 
+@pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("contact_time", [0.0, 2e-3])
 def test_no_axis_is_special(contact_time: float) -> None:
     """Turned by any angle, the pair turns the result."""
@@ -139,6 +142,7 @@ def test_directions_are_exchanged_with_their_buildings() -> None:
     assert same.tilt.tolist() == followed(frame(**options), pair(x, y, STEP)).tilt.tolist()
 
 
+@pytest.mark.evidence("both components", "exact")
 def test_one_component_is_the_planar_motion() -> None:
     """Along x with an impact's loss: Y stays 0, the planar program's rotations and demands."""
     x, _ = two_pulses()
@@ -159,6 +163,7 @@ def test_one_component_is_the_planar_motion() -> None:
         assert left[name] == pytest.approx(other[name], rel=5e-3)
 
 
+@pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("options", [{"contact_time": 0.0}, {"factor": 1.0 / 0.8388687078360144}])
 def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -> None:
     x, y = two_pulses()

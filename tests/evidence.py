@@ -1,0 +1,116 @@
+"""Levels of evidence: the table of VERIFICATION.md, from marks on tests.
+
+`@pytest.mark.evidence("devices", "exact")` on a test, or in `pytestmark` of a module, says what it
+is evidence of, and of which kind. `cd tests; python -m evidence` writes the table again.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+TESTS = Path(__file__).parent
+DOCUMENT = TESTS.parent / "rpscli" / "VERIFICATION.md"
+BEGIN, END = "<!-- evidence: from marks on tests -->", "<!-- end of evidence -->"
+
+KINDS = {
+    "exact": "exact solutions and identities",
+    "program": "independent programs",
+    "published": "numbers published by others",
+    "measured": "measurements",
+}
+CAPABILITIES = (
+    "geometry of columns",
+    "equation of motion",
+    "free-standing blocks",
+    "buildings on bearings under earthquakes",
+    "impact laws",
+    "spherical ends",
+    "ends that give way",
+    "devices",
+    "vertical motion",
+    "both components",
+    "steps, events, energy",
+    "modes",
+    "pushover",
+    "forces in columns, friction",
+    "floor spectra",
+    "measures and spectra of records",
+    "selection of records",
+    "synthetic motions",
+    "directions",
+    "statistics and fragilities",
+    "efficiency of intensity measures",
+    "risk",
+    "demands for loss assessment",
+    "design",
+    "identification",
+    "export",
+    "error budget and comparison",
+)
+Evidence = tuple[str, str]
+
+
+def marks(node: ast.AST) -> Iterator[Evidence]:
+    """Capability and kind of each mark in decorators or in a `pytestmark`."""
+    for call in ast.walk(node):
+        if isinstance(call, ast.Call) and ast.unparse(call.func) == "pytest.mark.evidence":
+            capability, kind = (ast.literal_eval(argument) for argument in call.args)
+            if capability not in CAPABILITIES or kind not in KINDS:
+                raise ValueError(f"{capability!r}, {kind!r}: add it to tests/evidence.py")
+            yield capability, kind
+
+
+def tests_of(path: Path) -> Counter[Evidence]:
+    """How many tests of a file are evidence of what."""
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    of_all = {
+        mark
+        for node in body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "pytestmark"
+        for mark in marks(node)
+    }
+    found: Counter[Evidence] = Counter()
+    for node in body:
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test"):
+            own = {mark for decorator in node.decorator_list for mark in marks(decorator)}
+            found.update(own | of_all)
+    return found
+
+
+def table() -> str:
+    """Rows by capability, columns by kind; each file with the number of its tests."""
+    cells: dict[Evidence, list[str]] = {}
+    for path in sorted(TESTS.rglob("test_*.py")):
+        link = (
+            f"[{path.stem.removeprefix('test_')}](../{path.relative_to(TESTS.parent).as_posix()})"
+        )
+        for mark, count in tests_of(path).items():
+            cells.setdefault(mark, []).append(f"{link} {count}")
+    lines = ["| capability | " + " | ".join(KINDS.values()) + " |", "|---" * 5 + "|"]
+    for capability in CAPABILITIES:
+        row = (", ".join(cells.get((capability, kind), ["**none**"])) for kind in KINDS)
+        lines.append(f"| {capability} | " + " | ".join(row) + " |")
+    for kind, name in KINDS.items():
+        there = [each for each in CAPABILITIES if (each, kind) in cells]
+        without = [each for each in CAPABILITIES if each not in there]
+        told = "; ".join(without) if len(without) < len(there) else f"all but {'; '.join(there)}"
+        lines.append(f"\nWithout {name}: {told} ({len(without)} of {len(CAPABILITIES)}).")
+    return "\n".join(lines)
+
+
+def with_table(text: str) -> str:
+    """A document with the table between its two marks."""
+    found = re.subn(f"{BEGIN}[\\s\\S]*?{END}", lambda _: f"{BEGIN}\n{table()}\n{END}", text)
+    if found[1] != 1:
+        raise ValueError(f"{DOCUMENT.name} has no place `{BEGIN}` ... `{END}`")
+    return found[0]
+
+
+if __name__ == "__main__":
+    DOCUMENT.write_text(with_table(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
+    sys.stdout.write(f"{table()}\n")
