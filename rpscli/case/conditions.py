@@ -136,5 +136,5 @@ def condition_text(condition: Condition) -> str:
     percent = f"{100.0 * condition.share:g} %"
     if condition.name in EVENTS:
         return f"at most {percent} of the records" if condition.share else "no record"
-    rest = f" but for {percent} of the records" if condition.share else " in every record"
+    rest = f" except in {percent} of the records" if condition.share else " in every record"
     return f"{condition.bound}{rest}"

@@ -122,8 +122,8 @@ class Rounds:
         if (place := answer.robust) != NONE and not answer.sure and answer.resamples:
             share = f"{100.0 * answer.tolerated.share[place]:.0f} %"
             yield (
-                f"no design passes in {100.0 * ROBUST:g} % of the resamples of the records; what is"
-                f" recommended does so in {share} of them"
+                f"no design passes in {100.0 * ROBUST:g} % of the resamples of the records; the"
+                f" recommended one passes in {share} of them"
             )
         if len(self.search.checked) >= self.search.most:
             yield "search.most ended the search before all of the recommended region was examined"
@@ -182,9 +182,9 @@ def validation_text(conditions: Iterable[Condition], n: int, behind: str = "") -
         fails = 1.0 - float(betainc(n - may, may + 1, 1.0 - condition.admissible))
         seen = float(betaincinv(may + 1, n - may, CONFIDENCE))
         yield (
-            f"{condition.name}: {may} of {n} may be beyond; of designs with exactly"
-            f" {100.0 * condition.admissible:g} % beyond {100.0 * fails:.0f} % fail here, and"
-            f" {100.0 * (1.0 - CONFIDENCE):.0f} % of those with {100.0 * seen:.0f} % pass{if_so}"
+            f"{condition.name}: {may} of {n} may be beyond; a design with exactly"
+            f" {100.0 * condition.admissible:g} % beyond fails here in {100.0 * fails:.0f} % of cases,"
+            f" one with {100.0 * seen:.0f} % passes in {100.0 * (1.0 - CONFIDENCE):.0f} %{if_so}"
         )
 
 
@@ -289,7 +289,7 @@ def _requirements(document: dict[str, Any], answer: Answer) -> Table:
         met_by = str(row["designs_that_meet_it"])
         if row["binds"]:
             unit = document["least"][0]["unit"]
-            met_by += f"; binds, else {measured(row['aim_without_it'], unit)}"
+            met_by += f"; governs, otherwise {measured(row['aim_without_it'], unit)}"
         rows.append((row["requirement"], word, requirement, result, met_by))
     return Table.of_texts((*VERDICT, "designs that meet it"), rows, words=5)
 

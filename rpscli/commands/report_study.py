@@ -231,6 +231,6 @@ def design_page(
         [*repeated(["rps", "design", *words], ["rps", "report", *words]), stored],
         [f"Of {title}."],
     )
-    subtitle = f"Design: {len(answer.places)} looked at{ends(case)}"
+    subtitle = f"Design: {len(answer.places)} examined{ends(case)}"
     signed = answer.task.file.document
     return PageDone(study.title, subtitle, sections, done.document, done.error, signed)

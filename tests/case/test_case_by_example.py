@@ -25,7 +25,7 @@ def test_build() -> None:
 def test_conditions() -> None:
     assert (
         condition_text(Condition("rotation_ratio", 0.5, "", share=0.1))
-        == "at most 0.5 but for 10 % of the records"
+        == "at most 0.5 except in 10 % of the records"
     )
     assert (
         condition_text(Condition("overturning", 0.0, "")),

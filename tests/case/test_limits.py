@@ -33,7 +33,7 @@ def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(building: str) -> None
     )
     assert [condition_text(condition) for condition in found] == [
         "at most 0.25 in every record",
-        "at most 0.3 but for 10 % of the records",
+        "at most 0.3 except in 10 % of the records",
         "at most 0.005 at the 84 % fractile",
         "at most 5 % of the records",
     ]
@@ -62,7 +62,7 @@ def test_a_least_force_is_limited_from_below(building: str) -> None:
     building = with_columns(building)
     found = limited(building, "{min_column_force: {at_least: 100 kN, share: 0.1}}")
     assert found == (Condition("min_column_force", 1e5, "the case", share=0.1),)
-    assert condition_text(found[0]) == "at least 100000 but for 10 % of the records"
+    assert condition_text(found[0]) == "at least 100000 except in 10 % of the records"
     (plain,) = limited(building, "{min_column_force: 0}")  # no tension
     assert condition_text(plain) == "at least 0 in every record"
     (above,) = limited(building, "{max_column_force: 100 kN}")

@@ -289,7 +289,7 @@ def test_words_fold_before_a_table_is_cut_in_two(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setenv("COLUMNS", "80")
     heads = ("ρ", "R m", "PGV m/s", "limit", "", "requirement", "result")
     said = "0 of 3 (95 %: below 0.63), 2 overturned; 29 would show it"
-    asked = "at most 2 but for 10 % of the records"
+    asked = "at most 2 except in 10 % of the records"
     row = ("0.5", "1.5", "0.6", "base_shear_ratio", "met, not shown", asked, said)
     text = rendered([Table.of_texts(heads, [row], words=7, keys=4)])
     assert text.count("base_shear_ratio") == 1
