@@ -302,7 +302,7 @@ def test_a_design_has_a_page(rps: Invoke) -> None:
     result = rps("report", "design.yaml", "-o", "out.html", "--json", *SOFT)
     document = json.loads(result.stdout)
     text = text_of("out.html")
-    assert f"Design: {document['designs']['looked_at']} looked at" in text
+    assert f"Design: {document['designs']['looked_at']} examined" in text
     assert "rps design design.yaml --set podium.impact.factor=0.5" in text
     found = document["robust"] or document["best"]
     value = f"{found['values']['podium.bearing.semi_diagonal']:.10g}"

@@ -336,7 +336,7 @@ def test_confirmation(design: StudyPoints, design_json: DesignJson, workplace: P
     assert any("recommended design does not keep" in warning for warning in found["warnings"])
     # Of two records none may be beyond 30 %: 51 % of designs at the limit are refused.
     said = " ".join(design(FRAME + unseen % "0.1 g, 0.4 g").stdout.split())
-    assert "uplift: 0 of 2 may be beyond; a design with exactly 30 % beyond fails here in 51 %" in said
+    assert "0 of 2 may be beyond; a design with exactly 30 % beyond fails here in 51 %" in said
     assert "one with 78 % passes in 5 %" in said
     (verdict,) = found["confirmation"]["robust"]
     assert verdict["beyond"]["count"] == 1
