@@ -184,7 +184,7 @@ def validation_text(conditions: Iterable[Condition], n: int, behind: str = "") -
         yield (
             f"{condition.name}: {may} of {n} may be beyond; a design with exactly"
             f" {100.0 * condition.admissible:g} % beyond fails here in {100.0 * fails:.0f} %, one"
-            f" with {100.0 * seen:.0f} % passes in {100.0 * (1.0 - CONFIDENCE):.0f} % of cases{if_so}"
+            f" with {100.0 * seen:.0f} % passes in {100.0 * (1.0 - CONFIDENCE):.0f} %{if_so}"
         )
 
 
