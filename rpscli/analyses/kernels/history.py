@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import accumulate
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.kernels.bed_maps import NO_MAP, bed_maps, has_map
 from rpscli.analyses.kernels.compilation import compiled
 from rpscli.analyses.kernels.systems import (
     longest_free_vibration,
@@ -80,16 +81,32 @@ def run_of(
         place = "record", "record_y", "vertical", "npts", "dt"
         for name, value in zip(place, placed[number], strict=True):
             row[name] = value
+    samples = [motion.samples.ravel() for motion in motions]
+    samples += _place_maps(first, given, sum(map(len, samples)), audited=rows > 0)
     result = RESULT_3D if pairs else RESULT
     return Run(
         systems=systems,
         requests=given.view(np.recarray),
-        acceleration=np.concatenate([motion.samples.ravel() for motion in motions]),
+        acceleration=np.concatenate(samples),
         results=np.zeros(len(requests), record_type(result)).view(np.recarray),
         output=_output(n, devices, rows, events, finer, pairs=pairs)
         if rows
         else _no_output(n, devices, pairs),
     )
+
+
+def _place_maps(
+    systems: NDArray[Any], requests: NDArray[Any], end: int, *, audited: bool
+) -> list[NDArray[np.float64]]:
+    """Maps of full contact on beds, to stand behind the records; writes where."""
+    requests["bed_map"], places, maps = NO_MAP, {}, []
+    for request in requests if systems["compliant"].any() else ():
+        key = int(request["system"]), float(request["dt"])
+        if key not in places and has_map(system := systems[key[0]], key[1]):
+            maps.append(bed_maps(system, key[1], audited=audited))
+            places[key], end = end, end + len(maps[-1])
+        request["bed_map"] = places.get(key, NO_MAP)
+    return maps
 
 
 def _output(

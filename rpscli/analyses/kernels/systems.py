@@ -320,8 +320,8 @@ def most_seconds(
     return each * most_steps(structure, settings, duration)
 
 
-def bedded_rate(structure: PodiumStructure) -> float:
-    """Taylor steps a second in full contact that gives way [1/s]; 0 on rigid ends."""
+def bedded_rate(structure: PodiumStructure, angle: float | None = None) -> float:
+    """Steps a second in full contact that gives way, of an angle [1/s]; 0 on rigid ends."""
     bed = structure.bed
     if bed is None:
         return 0.0
@@ -332,12 +332,13 @@ def bedded_rate(structure: PodiumStructure) -> float:
         highest = float(building.frequencies[-1])
     frequency = math.hypot(highest, math.sqrt(stiffness / bed.mass))
     decay += sum(device.bounds(structure)[1] for device in structure.devices) / bed.mass
-    return max(frequency / uplifted_angle(structure), decay / UPLIFTED_DECAY)
+    return max(frequency / (angle or uplifted_angle(structure)), decay / UPLIFTED_DECAY)
 
 
 def contact_rate(structure: PodiumStructure) -> float:
-    """Steps a second in full contact [1/s]."""
-    return highest_frequency(structure) / CONTACT_ANGLE
+    """Exact steps a second in full contact [1/s]."""
+    here = highest_frequency(structure) / CONTACT_ANGLE
+    return max(here, bedded_rate(structure, CONTACT_ANGLE))
 
 
 def highest_frequency(structure: PodiumStructure) -> float:

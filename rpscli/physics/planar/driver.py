@@ -20,6 +20,7 @@ from rpscli.physics.core.lanes import set_ground
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
 from rpscli.physics.planar.bed.passages import leave_bed, load_bed
 from rpscli.physics.planar.bed.terms import check_bed, watch_pace
+from rpscli.physics.planar.bed_block import follow_on_bed, stands_on_bed
 from rpscli.physics.planar.bed_events import observe_bed
 from rpscli.physics.planar.demands import (
     observe_ends,
@@ -153,6 +154,8 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
                 system = systems[s.system[l]]
                 if next_action == NOT_ACCEPTED:
                     next_action = resolve_step(s, l, system, block[0], output)
+                elif next_action == FOLLOW_CONTACT and stands_on_bed(s, l):
+                    next_action = follow_on_bed(s, l, system, block[0], acceleration, output)
                 elif next_action == FOLLOW_CONTACT:
                     next_action = follow_full_contact(s, l, system, block[0], acceleration, output)
                 elif next_action == GOES_ON:
@@ -236,7 +239,7 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
     s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
     load_devices(s, l, system)
-    load_bed(s, l, system)
+    load_bed(s, l, system, request)
     s.outcome[l], s.restart_after[l] = RUNNING, NOTHING_NEW
     s.interval[l] = 0
     s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)

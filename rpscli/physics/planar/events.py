@@ -24,6 +24,7 @@ from rpscli.physics.core.quintic import (
 )
 from rpscli.physics.core.records import NO_HISTORY, Floats, Record
 from rpscli.physics.planar.bed.terms import keep_pace
+from rpscli.physics.planar.bed_block import stands_on_bed
 from rpscli.physics.planar.bed_events import observe_bed, pass_on_bed, rests_on_bed
 from rpscli.physics.planar.demands import observe_end, observe_start, raise_contacts_within
 from rpscli.physics.planar.devices.events import change_law, has_friction, locate_change
@@ -176,7 +177,7 @@ def too_many_events(s: Record, l: int, system: Record) -> bool:
 
 @compiled
 def next_interval(s: Record, l: int, system: Record, acceleration: Floats) -> int:
-    """Enter the record's next interval: GOES_ON, or IS_OVER at the history's end."""
+    """Enter the record's next interval: GOES_ON, FOLLOW_CONTACT on a bed, IS_OVER at the end."""
     if enter_interval(s, l, acceleration, s.interval[l] + 1) or rests_on_bed(s, l, system):
         return IS_OVER
     if s.interval[l] + 1 == s.npts[l]:
@@ -185,7 +186,7 @@ def next_interval(s: Record, l: int, system: Record, acceleration: Floats) -> in
     if s.nonsmooth_damper[l] > 0.0:
         shorten_step(s, l)
     keep_pace(s, l)
-    return GOES_ON
+    return FOLLOW_CONTACT if stands_on_bed(s, l) else GOES_ON
 
 
 @kernel

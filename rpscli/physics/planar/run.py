@@ -37,7 +37,8 @@ class Run(NamedTuple):
 
     systems: Record  # (S,) `state.SYSTEM`, all of the same number of storeys n
     requests: Record  # (P,) `state.REQUEST`: the histories
-    acceleration: Floats  # records of the ground end to end [m/s2], linear between their samples
+    acceleration: Floats  # records of the ground end to end [m/s2], linear between their samples;
+    # behind them what full contact on beds makes of states
     results: Record  # (P,) `state.RESULT`: written
     output: Output  # samples and events, where there is one history: written
 

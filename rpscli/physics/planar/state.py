@@ -82,6 +82,12 @@ RUNNING = -1
 # What becomes of a lane.
 GOES_ON, FOLLOW_CONTACT, IS_OVER, NOT_ACCEPTED = range(4)
 
+MOST_ON_BED = 64
+"""Storeys up to which exact steps follow full contact on a bed: of more they cost too much."""
+
+BED_ROW = 2 * MOST_ON_BED + 8
+"""Entries of such a state, padded."""
+
 # Steps in full contact whose maps are kept.
 WHOLE_STEP, SHORT_STEP = range(2)
 
@@ -151,6 +157,7 @@ REQUEST = (
     Field("record_y", "", WHOLE, "offset of the second horizontal record, or NO_RECORD"),
     Field("npts", "", WHOLE, "its samples"),
     Field("vertical", "", WHOLE, "offset of the vertical record, or NO_RECORD"),
+    Field("bed_map", "", WHOLE, "offset of what `bed_block` maps by, behind them; -1 if none"),
     Field("scale", "", "-", "factor on both"),
     Field("dt", "", "s", "sampling interval"),
 )
@@ -373,7 +380,7 @@ EQUIPPED_STATE = (
     Field("device_energy", f"{SLOTS} lanes", "J", "dissipated", "devices"),
 )
 
-# Where ends give way `bed` and `bed_events` write fields of the motion above as well.
+# Where ends give way `bed`, `bed_block` and `bed_events` write fields of the motion above as well.
 COMPLIANT_STATE = (
     *EQUIPPED_STATE,
     Field("compliant", "lanes", "-", "1 if the structure stands on a bed", "bed, bed_events"),
@@ -384,6 +391,7 @@ COMPLIANT_STATE = (
     Field("root", "lanes", "sqrt(rad)", "likewise", "bed, bed_events"),
     Field("fade", "lanes", "1/rad", "1/(x_full - phi_u) of curved ends, else 0", "bed, bed_events"),
     Field("pace", "lanes", "s", "longest next step", "bed, bed_events"),
+    Field("bed_map", "lanes", WHOLE, "see `request`", "bed"),
     Field("bed_energy", "lanes", "J", "dissipated in the bed", "bed, bed_events"),
     Field("bedded_time", "lanes", "s", "in full contact", "bed, bed_events"),
     Field("impact_number", "lanes", "-", "largest chi", "bed, bed_events"),
@@ -431,6 +439,17 @@ BLOCK = (
     Field("largest", "instants", "mixed", "the largest in each step", "full_contact"),
     Field("push", "ahead", "N", "of devices on the cap beam", "devices, full_contact"),
     Field("push_within", "instants", "N", "half a step later", "devices, full_contact"),
+    # On a bed: the tilt, and what the cap beam adds to the ground's motion.
+    Field(
+        "bed_maps", f"5 {BED_ROW} {BED_ROW}", "mixed", "what a step makes of them", "full_contact"
+    ),
+    Field("standing", f"33 {BED_ROW}", "mixed", "states at instants, and one more", "bed_block"),
+    Field("tilt", "ahead", "rad", "theta", "bed_block"),
+    Field("tilt_rate", "ahead", "rad/s", "theta'", "bed_block"),
+    Field("tilt_bend", "ahead", "rad/s2", "theta''", "bed_block"),
+    Field("ground", "instants", "m/s2", "ground acceleration", "bed_block"),
+    Field("across", "ahead", "m/s2", "u_b''; 0 at rest", "bed_block"),
+    Field("across_rate", "ahead", "m/s3", "its rate", "bed_block"),
     Field("piece", "8", "mixed", "scratch of the search for roots", "quintic"),
 )
 

@@ -24,8 +24,9 @@ PATCH_LEFT = EVENT_KINDS + 1
 
 
 @with_bed()
-def load_bed(s: Record, l: int, system: Record) -> None:
+def load_bed(s: Record, l: int, system: Record, request: Record) -> None:
     """Begin a history on its bed."""
+    s.bed_map[l] = request.bed_map
     s.compliant[l], s.bed_uplift[l] = system.compliant, system.bed_uplift
     s.bed_k[l], s.bed_c[l], s.sink[l], s.root[l], s.pace[l] = 0.0, 0.0, 0.0, 0.0, math.inf
     s.bed_energy[l], s.bedded_time[l], s.impact_number[l] = 0.0, 0.0, 0.0

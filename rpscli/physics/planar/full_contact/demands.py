@@ -106,9 +106,11 @@ def contacts_may_rise(s: Record, l: int, block: Record, pull: float, h: float, s
     found, part = 0, WITHIN / 8.0 * h
     for k in range(INSTANTS):
         a_g, g_up = block.a_g[k], block.g_up[k]
-        bulge = part * abs(block.dV[k] - block.dV[k + 1])
-        shear = beam * a_g - block.V[k] - block.push[k]
-        top, bottom = abs(shear) + bulge, abs(shear + columns * a_g) + bulge
+        across, moved = block.across[k], block.across_rate[k] - block.across_rate[k + 1]
+        bulge = part * (abs(block.dV[k] - block.dV[k + 1]) + (beam + columns) * abs(moved))
+        shear = beam * (a_g + across) - block.V[k] - block.push[k]
+        shear_bottom = shear + columns * (a_g + 0.5 * across)
+        top, bottom = abs(shear) + bulge, abs(shear_bottom) + bulge
         N_top = upper * g_up + pull
         N_bottom = N_top + columns * g_up
         more = (top > s.friction_top[l] * N_top) | (bottom > s.friction_bottom[l] * N_bottom)
@@ -129,25 +131,36 @@ def observe_contacts(
         a_g, change = block.a_g[k], 0.5 * h * block.a_g_slope[k]
         g_up, rise = block.g_up[k], 0.5 * h * block.g_up_slope[k]
         middle = middle_of(V, V_end, h * block.dV[k], h * block.dV[k + 1])
+        X, X_end, rate = block.across[k], block.across[k + 1], block.across_rate
+        across = middle_of(X, X_end, h * rate[k], h * rate[k + 1])
         raise_by(
             s,
             l,
-            measures(system, V + block.push[k], a_g, g_up, pull),
-            measures(system, middle + block.push_within[k], a_g + change, g_up + rise, pull),
+            measures(system, V + block.push[k], a_g, g_up, pull, X),
             measures(
-                system, V_end + block.push[k + 1], a_g + 2.0 * change, g_up + 2.0 * rise, pull
+                system, middle + block.push_within[k], a_g + change, g_up + rise, pull, across
+            ),
+            measures(
+                system,
+                V_end + block.push[k + 1],
+                a_g + 2.0 * change,
+                g_up + 2.0 * rise,
+                pull,
+                X_end,
             ),
         )
 
 
 @compiled
-def measures(system: Record, V: float, a_g: float, g_up: float, pull: float) -> Measures:
-    """Measures of contacts at rest, see `contact_measures`."""
+def measures(
+    system: Record, V: float, a_g: float, g_up: float, pull: float, across: float
+) -> Measures:
+    """Measures of contacts in full contact, see `contact_measures`."""
     return contact_measures(
         system.cap_beam_mass,
         system.floors_mass,
         system.columns_mass,
-        0.0,
+        across,
         0.0,
         V,
         a_g,
