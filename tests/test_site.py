@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 
 import rpscli
+from rpscli.analyses.result_quantities import EVERY
 from rpscli.cli import COMMANDS
-from rpscli.commands.explain import _formats, _results
+from rpscli.commands.explain import _formats
 
 DOCS = Path(__file__).parents[1] / ".ci" / "docs"
 
@@ -94,7 +95,7 @@ def test_the_reference_has_every_command_key_result_and_name(modules: Any) -> No
         named = f"| `{limit[1]}` |" if len(limit) == 2 else f"confval}} {key.key}\n"
         assert named in keys or len(limit) > 2, key.key
     results = reference.results()["reference/results"]
-    assert [each.name for each in _results() if f"| `{each.name}` |" not in results] == []
+    assert [each.name for each in EVERY.values() if f"| `{each.name}` |" not in results] == []
     python = "\n".join(reference.python().values())
     public = {*rpscli.__all__} - {"__version__"}
     assert [name for name in public if f":: rpscli.{name}\n" not in python] == []

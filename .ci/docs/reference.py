@@ -12,12 +12,12 @@ import click
 import formulas
 
 import rpscli
+from rpscli.analyses.result_quantities import EVERY
 from rpscli.case.design import DesignFile
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import KeyReference, key_references
 from rpscli.case.study.schema import StudyFile
 from rpscli.cli import program
-from rpscli.commands.explain import _results
 from rpscli.commands.init import schema_of
 from rpscli.report.study.registry import REPORTS
 
@@ -228,7 +228,7 @@ def reports(theory: Mapping[str, str]) -> dict[str, str]:
 def results() -> dict[str, str]:
     """The page of the table of results."""
     rows = []
-    for each in _results():
+    for each in EVERY.values():
         symbol = " " + each.symbol.replace("|", r"\vert ") if each.symbol else ""
         said = f"{plain(each.label)}{symbol}" + (f": {plain(each.meaning)}" if each.meaning else "")
         least = " at least" if each.from_below else ""

@@ -366,3 +366,12 @@ STOREY_CURVE_RATIOS = (
     ResultQuantity("force_over_weight", "-", "force over weight", "$F/W$"),
 )
 """The same curve without units."""
+
+_ALL = [
+    quantity
+    for value in [*globals().values()]
+    for quantity in (value if type(value) is tuple else (value,))
+    if isinstance(quantity, ResultQuantity)
+]
+EVERY = {quantity.name: quantity for quantity in reversed(_ALL)}
+"""The whole table by name."""

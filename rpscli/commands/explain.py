@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.analyses import result_quantities
-from rpscli.analyses.result_quantities import ResultQuantity
+from rpscli.analyses.result_quantities import EVERY, ResultQuantity
 from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, nearest
@@ -46,7 +45,7 @@ def _words() -> list[str]:
     keys = [key.key for key in _formats()]
     names = [name for entry, _ in glossary() for name in _names(entry)]
     ends = [key.rsplit(".", 1)[-1] for key in keys]
-    return list(dict.fromkeys([*keys, *ends, *(q.name for q in _results()), *REPORTS, *names]))
+    return list(dict.fromkeys([*keys, *ends, *EVERY, *REPORTS, *names]))
 
 
 @click.command("explain")
@@ -63,7 +62,7 @@ def command(word: str, terminal: Terminal) -> None:
     from rpscli.report.study.registry import REPORTS
 
     keys = _keys(word)
-    results = [quantity for quantity in _results() if quantity.name == word]
+    results = [EVERY[word]] if word in EVERY else []
     words = [row for row in glossary() if word.lower() in _names(row[0])]
     offers = [] if (keys or results or words) else list(_offers(word))
     report = (REPORTS.everything() if offers else REPORTS).get(word)
@@ -157,16 +156,6 @@ def _options(word: str) -> Iterator[tuple[str, KeyReference]]:
                 found.setdefault(key, []).append(report)
     for key, reports in found.items():
         yield f"option {key.key} of the report{'s' * (len(reports) > 1)} {', '.join(reports)}", key
-
-
-def _results() -> list[ResultQuantity]:
-    """Every quantity of the table of results, once."""
-    known: dict[str, ResultQuantity] = {}
-    for value in vars(result_quantities).values():
-        for quantity in value if type(value) is tuple else (value,):
-            if isinstance(quantity, ResultQuantity):
-                known.setdefault(quantity.name, quantity)
-    return list(known.values())
 
 
 def glossary() -> list[tuple[str, str]]:

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
 
 
-DAMPING = 0.05
 BOTH = "_both"
 """In the name of a pair."""
 MADE = ("synthetic", "pulse")
@@ -137,15 +136,12 @@ def plot(
 
     Writes record.csv, spectrum.csv and the figure record; of a pair x_record.csv, y_record.csv, ...
     """
-    import numpy as np
-
-    from rpscli.records.spectrum import response_spectrum
+    from rpscli.records.spectrum import drawn_spectrum
     from rpscli.report.bundles import record_files
 
     folder = record_folder(motions, output, "plot")
-    periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
     for motion, way in zip(motions, ("x_", "y_") if len(motions) > 1 else ("",), strict=True):
-        files = record_files(motion, response_spectrum(motion, periods, DAMPING), look)
+        files = record_files(motion, drawn_spectrum(motion), look)
         folder.add_all((f"{way}{name}", content) for name, content in files)
     write(folder, terminal)
     _result("plot", motions, terminal, folder.files)

@@ -10,8 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, NamedTuple
 
-from rpscli.analyses import result_quantities
-from rpscli.analyses.result_quantities import ResultQuantity
+from rpscli.analyses.result_quantities import EVERY
 from rpscli.report.table import Heading, Part, Table, headed, large, shown
 
 MADE_ANEW = frozenset(
@@ -26,12 +25,6 @@ HISTORIES = ("points.csv", "records.csv")
 """Tables with a history in each row."""
 FIRST_RESULT = ("outcome [-]", "counted [-]", "admissible_share [-]")
 """Where results of a table begin; columns before them say what a row is about."""
-UNITS = {
-    quantity.name: quantity.unit
-    for value in vars(result_quantities).values()
-    for quantity in (value if type(value) is tuple else (value,))
-    if isinstance(quantity, ResultQuantity)
-}
 
 
 def leaves(value: object, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -77,7 +70,8 @@ class Side:
                 continue
             others = [{**each, **each.get("demands", {})}.get(name) for each in near]
             moved = [abs(x - value) for x in others if _is_number(x) and _is_number(value)]
-            unit = UNITS.get(name.rpartition(".")[2], "J" if name.startswith("energy.") else "")
+            known = EVERY.get(name.rpartition(".")[2])
+            unit = known.unit if known else "J" if name.startswith("energy.") else ""
             by = {str(i + 1): x for i, x in enumerate(value)} if isinstance(value, list) else None
             self.results[name] = Values(by or {"": value}, unit, max(moved, default=None))
 

@@ -21,8 +21,9 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import intensity_measures
-from rpscli.records.spectrum import ResponseSpectrum, response_spectrum
+from rpscli.records.spectrum import DAMPING, drawn_spectrum
 from rpscli.report.bundles import bearing_files
+from rpscli.report.differences import leaves
 from rpscli.report.documents import direction_note, versions
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, Look, figure_files
@@ -52,7 +53,6 @@ from rpscli.report.tables.timehistory import (
 )
 from rpscli.sweep.statistics.verdicts import Verdict
 
-DAMPING = 0.05
 MOST_ROWS = 100
 MOST_SPECTRA = 200
 
@@ -63,7 +63,7 @@ def motion_pictures(
     """Acceleration, velocity, displacement and response spectrum of a motion, with T1."""
     period = None if building is None else float(building.periods[0])
     return _picture(
-        lambda: record_figure(motion, _spectrum(motion), period),
+        lambda: record_figure(motion, drawn_spectrum(motion), period),
         look,
         f"{motion.name}: acceleration, velocity and displacement of the ground, and the response"
         f" spectrum at {style.percent(DAMPING)} of critical damping.",
@@ -89,7 +89,7 @@ def motions_section(
         shown = motions[:MOST_SPECTRA]
         blocks.append(
             _picture(
-                lambda: spectra_figure([_spectrum(each) for each in shown], title),
+                lambda: spectra_figure([drawn_spectrum(each) for each in shown], title),
                 look,
                 f"Response spectra of {len(shown)} records {which}, at"
                 f" {style.percent(DAMPING)} of critical damping, with their median.",
@@ -111,11 +111,6 @@ def _table(motions: Sequence[GroundMotion]) -> Table:
         "record", "SHA-256 begins with", "duration [s]", "PGA [m/s2]", "PGV [m/s]", "5-95 % [s]"
     )  # fmt: skip
     return Table.of_texts(heads, rows, words=2)
-
-
-def _spectrum(motion: GroundMotion) -> ResponseSpectrum:
-    periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
-    return response_spectrum(motion, periods, DAMPING)
 
 
 CAPTIONS = {
@@ -210,10 +205,10 @@ def _storeys(structure: PodiumStructure) -> Table:
 
 def input_table(content: Mapping[str, Any], written: Mapping[str, Any] | None = None) -> Table:
     """Every key of a case in SI units, defaults written out, beside what the user wrote."""
-    rows = [(key, _plain(value), unit(key).removeprefix("-")) for key, value in _leaves(content)]
+    rows = [(key, _plain(value), unit(key).removeprefix("-")) for key, value in leaves(content)]
     if not written:
         return Table.of_texts(("key", "value", "unit"), rows, words=3)
-    own = {key: _as_typed(value) for key, value in _leaves(written)}
+    own = {key: _as_typed(value) for key, value in leaves(written)}
     beside = [(key, own.get(key, ""), *rest) for key, *rest in rows]
     return Table.of_texts(("key", "as written", "value in SI", "unit"), beside, words=4)
 
@@ -255,18 +250,6 @@ def hidden_table() -> Table:
     head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
     bare = [[cell.replace("`", "") for cell in row[:3]] for row in rows]
     return Table.of_texts(head[:3], bare, words=3)
-
-
-def _leaves(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Dotted keys and values; lists of sections are numbered from 0, as --set has them."""
-    for name, value in content.items():
-        key = f"{prefix}{name}"
-        if isinstance(value, dict) and value:
-            yield from _leaves(value, f"{key}.")
-        elif isinstance(value, list) and any(isinstance(part, dict) for part in value):
-            yield from _leaves({str(n): part for n, part in enumerate(value)}, f"{key}.")
-        else:
-            yield key, value
 
 
 def _plain(value: object) -> str:

@@ -18,14 +18,7 @@ from rpscli.case.text.document import Document, Fault, Path, dotted, shown
 from rpscli.errors import listed
 from rpscli.report.figures import style
 from rpscli.report.study.labels import Values, axis_label, keyed, label, labels, plain
-from rpscli.report.study.panels import (
-    colour,
-    in_panels,
-    left_out,
-    marker,
-    over,
-    remarks,
-)
+from rpscli.report.study.panels import colour, in_panels, marker, noted
 from rpscli.report.study.report import DemandName, Found, Report, without_uplift
 from rpscli.report.study.statistics import share_columns
 from rpscli.report.table import Column
@@ -132,10 +125,8 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
             x_label=rf"$|\theta_{{max}}|/\alpha$ [-], {against}",
             y_label=r"$|\theta_{max}|/\alpha$ [-], the others",
             limits=lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),
-            note=remarks(
-                over(found.pooled),
-                "open markers: overturned",
-                left_out(sum(each.failed for each in pairs)),
+            note=noted(
+                found, "open markers: overturned", failed=sum(each.failed for each in pairs)
             ),
         ),
     )
@@ -204,10 +195,10 @@ def contrast(study: StudyResults, options: ContrastOptions) -> Found:
     about = f"{plain(system.values[0])} over {plain(reference.values[0])}, median over the motions"
     counts = sorted({cell.pairs for cell in cells})
     counted = f"{' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} pairs in each cell"
-    notes = [over(found.pooled), left_out(sum(cell.failed for cell in cells))]
+    note = noted(found, failed=sum(cell.failed for cell in cells))
     return Found(
         {"": columns},
-        lambda title: _maps(options, found.keys, cells, [title, about, counted, *notes]),
+        lambda title: _maps(options, found.keys, cells, [title, about, counted, note]),
         [*found.notes, *_left_out_of_ratios(cells)],
     )
 

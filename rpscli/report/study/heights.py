@@ -21,13 +21,7 @@ from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.documents import json_text
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
-from rpscli.report.study.panels import (
-    break_if_narrow,
-    in_panels,
-    left_out,
-    over,
-    remarks,
-)
+from rpscli.report.study.panels import break_if_narrow, in_panels, noted
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
@@ -132,7 +126,7 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
             y_label="level (0 = cap beam)",
             share="x",
             limits=lambda axes: axes.set_xlim(left=0.0),
-            note=remarks(over(found.pooled), left_out(sum(group.failed for group in histories))),
+            note=noted(found, failed=sum(group.failed for group in histories)),
         ),
         notes,
     )
@@ -219,11 +213,7 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
         for floor, of_floor in enumerate(one.fractiles.transpose(3, 4, 1, 2, 0), start=1)
         for period, cells in zip(PERIODS, of_floor, strict=True)
     ]
-    note = remarks(
-        over(found.pooled),
-        "fractiles that overturned are not drawn" if found.overturned else "",
-        left_out(found.failed),
-    )
+    note = noted(found, NOT_DRAWN if found.overturned else "")
     return Found(
         {"": keyed(found.keys, {"floor": "-", "period": "s", **heads}, rows)},
         floor_spectra_figure(found.keys, floors, note) if floors else None,
@@ -278,6 +268,8 @@ def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str
         yield "the sample varies the number of storeys; vary it in an axis instead"
 
 
+NOT_DRAWN = "fractiles that overturned are not drawn"
+
 FITTED = ("PFA", "PID", "BRD")
 """Types of demands to which pelicun can calibrate distributions, where they vary."""
 
@@ -310,10 +302,8 @@ def demand_sample(study: StudyResults, options: DemandSampleOptions) -> Found:
         for group in found.computed
     ]
     stem, numbers = options.name or "demand_sample", Column("file", "-", range(1, len(samples) + 1))
-    note = remarks(
-        "fractiles that overturned are not drawn" if found.overturned else "",
-        left_out(sum(group.failed for group in found.computed)),
-    )
+    failed = sum(group.failed for group in found.computed)
+    note = noted(found, NOT_DRAWN if found.overturned else "", failed=failed)
     return Found(
         {"": [numbers, *keyed(found.keys, heads, rows)]},
         demand_sample_figure(found.keys, samples, note) if samples else None,

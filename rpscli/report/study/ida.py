@@ -14,7 +14,7 @@ from rpscli.case.text.document import Document, Fault
 from rpscli.errors import listed
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
-from rpscli.report.study.panels import in_panels, left_out, over, remarks
+from rpscli.report.study.panels import in_panels, noted
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
@@ -96,12 +96,11 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
             x_label=quantity.axis_label,
             y_label=f"{name} [{level_unit}]",
             limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
-            note=remarks(
+            note=noted(
+                found,
                 f"fractiles of {listed(numbers)} curves",
                 "level to the right: overturned at the next intensity" if found.overturned else "",
                 "back to the left: stronger motions, smaller rotations",
-                over(found.pooled),
-                left_out(found.failed),
             ),
         ),
         found.notes,

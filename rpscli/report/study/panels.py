@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rpscli.report.figures import style
 from rpscli.report.study.labels import labels
+from rpscli.sweep.statistics.grouping import Grouping
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
@@ -214,6 +215,12 @@ def over(pooled: Sequence[str]) -> str:
 def remarks(*parts: str) -> str:
     """All of them that say something, in one line."""
     return "; ".join(filter(None, parts))
+
+
+def noted(found: Grouping, *parts: str, failed: int | None = None) -> str:
+    """These remarks, between what a panel is over and what is left out of it."""
+    count = found.failed if failed is None else failed
+    return remarks(over(found.pooled), *parts, left_out(count))
 
 
 def left_out(failed: int) -> str:

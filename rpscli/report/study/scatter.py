@@ -19,15 +19,7 @@ from rpscli.errors import CaseError, RecordError
 from rpscli.records.quantities import Query, parse_query
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import (
-    break_if_narrow,
-    colour,
-    in_panels,
-    left_out,
-    marker,
-    over,
-    remarks,
-)
+from rpscli.report.study.panels import break_if_narrow, colour, in_panels, marker, noted
 from rpscli.report.study.report import DemandName, Found, Report, without_uplift
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation.points import RecordRequest
@@ -151,12 +143,7 @@ def _scatter(
             x_label=quantities[x_name].axis_label,
             y_label=quantities[y_name].axis_label,
             limits=limits,
-            note=remarks(
-                over(found.pooled),
-                "fits without bands" * any(cloud.fit for cloud in clouds),
-                fallen,
-                left_out(found.failed),
-            ),
+            note=noted(found, "fits without bands" * any(cloud.fit for cloud in clouds), fallen),
         ),
         notes,
     )
@@ -309,9 +296,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
             x_label=r"$\omega/p$ [-]",
             y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
             limits=limits,
-            note=remarks(
-                over(found.pooled), "only what overturned" * several, left_out(found.failed)
-            ),
+            note=noted(found, "only what overturned" * several),
         ),
     )
 
