@@ -104,10 +104,11 @@ def command(
         name = Path(subject).stem if earlier is None else earlier.run["name"]
         make = partial(design_page, subject, overrides, earlier, look, terminal)
     elif kind == SWEEP:
-        from rpscli.commands.report_study import read_subject, study_page
+        from rpscli.commands.report_study import study_page
+        from rpscli.commands.study import read
 
-        made = read_subject(request, earlier, conditions, terminal)
         folder = None if earlier is None else earlier.folder
+        made = read(earlier.subject if earlier else request, conditions, terminal)
         name = made.layout.study.name
         make = partial(study_page, made, folder, conditions, look, terminal)
     else:

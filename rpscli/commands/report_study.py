@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from rpscli.case.case import Case
+from rpscli.case.conditions import Condition
 from rpscli.commands.design import designed
 from rpscli.commands.inputs import RESULTS
 from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
@@ -15,13 +16,13 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import (
     SweepChoices,
     of_first_system,
-    read,
     stored_study,
     study_heading,
     summary_tables,
     verdict_table,
 )
 from rpscli.errors import RecordError
+from rpscli.records.ground_motion import GroundMotion
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.html.case_page import (
@@ -35,28 +36,12 @@ from rpscli.report.html.case_page import (
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.study.labels import label
 from rpscli.report.table import Heading, Table
+from rpscli.studies import Study
+from rpscli.study_run import Collected, StudyRun
 from rpscli.sweep.evaluation.context import resolved
 from rpscli.sweep.points.layout import lay_out
 
-if TYPE_CHECKING:
-    from rpscli.case.case import Case
-    from rpscli.case.conditions import Condition
-    from rpscli.records.ground_motion import GroundMotion
-    from rpscli.studies import Study
-    from rpscli.study_run import Collected, StudyRun
-
-
 FAILURES_SHOWN = 20
-
-
-def read_subject(
-    request: CaseRequest,
-    earlier: Earlier | None,
-    conditions: Iterable[Condition],
-    terminal: Terminal,
-) -> Study:
-    """The study, or that of a folder of its results."""
-    return read(request if earlier is None else earlier.subject, conditions, terminal)
 
 
 def study_page(

@@ -20,7 +20,7 @@ from rpscli.report.study.comparison_numbers import (
     fit_faults,
     uncomparable,
 )
-from rpscli.report.study.fragility import fit_cells, fit_units, measure_name
+from rpscli.report.study.fragility import draw_fit, fit_cells, fit_units, measure_name
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import log_ticks
 from rpscli.report.study.report import Found, Report
@@ -166,15 +166,7 @@ def _draw_outcomes(axes: style.Axes, report: Comparison, each: Compared, found: 
     for (name, curve), colour, marker in zip(
         _curves(found), (style.BLACK, style.BLUE), "os", strict=True
     ):
-        if curve.fit.fitted:
-            axes.plot(
-                curve.grid, curve.fit.curve, color=colour, lw=1.4, label=name,
-                marker=marker, ms=3.2, markevery=[],  # the legend shows both
-            )  # fmt: skip
-            axes.fill_between(curve.grid, *curve.fit.band, color=colour, alpha=0.15, lw=0)
-        axes.plot(
-            curve.binned.intensity, curve.binned.share, ls="", marker=marker, ms=3.2, color=colour
-        )
+        draw_fit(axes, curve.grid, curve.fit, curve.binned, colour, marker, name)
     intensity, differ = report.intensity.values[each.points], each.computed - each.observed
     for sign, height, name in (
         (1.0, 1.05, "above: computed only"),

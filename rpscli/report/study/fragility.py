@@ -447,21 +447,12 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
     def draw(axes: style.Axes, curves: list[Fragility]) -> None:
         for curve in curves:
             place, shade = curve.place, colour(curve.place, groups)
-            dashes = "--" if curve.fit.method == "penalised" else "-"
-            axes.plot(
-                curve.grid, curve.fit.curve, dashes, color=shade, lw=1.4,
-                marker=marker(place), ms=3.2, markevery=[],  # the legend shows both
-                label=labels(report.systems.keys, curve.values) or None,
-            )  # fmt: skip
+            named, banded = labels(report.systems.keys, curve.values), len(curves) <= MOST_BANDS
+            data = curve.grid, curve.fit, curve.observed
+            draw_fit(axes, *data, shade, marker(place), named or None, banded=banded)
             if curve.total != curve.fit.beta:
                 total = ndtr(np.log(curve.grid / curve.fit.median) / curve.total)
                 axes.plot(curve.grid, total, ":", color=shade, lw=1.0)
-            if len(curves) <= MOST_BANDS:
-                axes.fill_between(curve.grid, *curve.fit.band, color=shade, alpha=0.15, lw=0)
-            axes.plot(
-                curve.observed.intensity, curve.observed.share, ls="", color=shade,
-                marker=marker(place), ms=3.2, alpha=0.8,
-            )  # fmt: skip
         axes.set_ylim(-0.02, 1.02)
         axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
         beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
@@ -492,6 +483,21 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
         y_label="probability of exceedance",
         note=remarks(*notes),
     )
+
+
+def draw_fit(
+    axes: style.Axes, grid: Array, fit: Lognormal, seen: Observed, shade: str, mark: str,
+    label: str | None, *, banded: bool = True,
+) -> None:  # fmt: skip
+    """A fragility, its band, and the shares that it goes through."""
+    if fit.fitted:
+        axes.plot(
+            grid, fit.curve, "--" if fit.method == "penalised" else "-", color=shade, lw=1.4,
+            marker=mark, ms=3.2, markevery=[], label=label,  # the legend shows both
+        )  # fmt: skip
+        if banded:
+            axes.fill_between(grid, *fit.band, color=shade, alpha=0.15, lw=0)
+    axes.plot(seen.intensity, seen.share, ls="", color=shade, marker=mark, ms=3.2, alpha=0.8)
 
 
 BEYOND_COMPUTED = "grey: stronger than computed"
