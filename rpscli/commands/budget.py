@@ -76,33 +76,28 @@ def command(
     given = read_case(request, terminal)
     motions = list(single_motions(records, motion))
     grounds = all_made(partial(load_motion, given.case), motions, RpsError)
-    ratio = period_ratio or usual_period_ratio(given.case)
-    inputs = {"record": motion_inputs(grounds[0]), "records": records, "period_ratio": ratio}
+    inputs = {"record": motion_inputs(grounds[0]), "records": records, "period_ratio": period_ratio}
     source = motion_source(given.case, motions[0])
     folder = case_folder(given, output, "budget", record_source=source, **inputs)
     announce_compilation(terminal)
-    found = case_budget(given, motions, grounds, ratio, terminal)
+    found = case_budget(given, motions, grounds, period_ratio, terminal)
     folder.add_all(budget_files(*found, given.case.title, look))
     document, plane = budget_document(*found), grounds[0].y is None
     conclude(given, folder, document, budget_tables(*found), terminal, plane=plane)
-
-
-def usual_period_ratio(case: Case) -> float:
-    """Of the rows edges and plane: that of the case if it has one."""
-    bed = case.structure.bed
-    return (bed and bed.period_ratio) or PERIOD_RATIO
 
 
 def case_budget(
     given: CaseInput,
     motions: Sequence[MotionRequest],
     grounds: Sequence[MotionComponents],
-    ratio: float,
+    period_ratio: float | None,
     terminal: Terminal,
 ) -> tuple[list[Row], list[Effect]]:
     """All rows of a case under the first of its motions, and what they do to each result."""
     from rpscli.sweep.budget import effects
 
+    bed = given.case.structure.bed
+    ratio = period_ratio or (bed and bed.period_ratio) or PERIOD_RATIO
     wishes = [("as it is", (), motions[0]), *_wishes(given.case, motions, grounds, ratio)]
     rows = []
     with counted(f"{len(wishes)} histories", terminal) as tell:

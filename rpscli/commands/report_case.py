@@ -243,12 +243,12 @@ def _budget(
     terminal: Terminal,
 ) -> list[Section]:
     """What `rps budget` says of one of the histories, the others as its records."""
-    from rpscli.commands.budget import case_budget, usual_period_ratio
+    from rpscli.commands.budget import case_budget
     from rpscli.report.budget import budget_section
 
-    given, order = requests[0].given, [first, *(n for n in range(len(motions)) if n != first)]
-    ratio, grounds = usual_period_ratio(given.case), [requests[n].ground for n in order]
-    found = case_budget(given, [motions[n] for n in order], grounds, ratio, terminal)
+    given, order = requests[0].given, sorted(range(len(motions)), key=lambda n: n != first)
+    grounds = [requests[n].ground for n in order]
+    found = case_budget(given, [motions[n] for n in order], grounds, None, terminal)
     return [budget_section(*found, given.case.title, look, requests[first].label)]
 
 
