@@ -18,12 +18,7 @@ from rpscli.commands.inputs import (
     write,
 )
 from rpscli.commands.shell.failure import concluded, leave
-from rpscli.commands.shell.options import (
-    CaseRequest,
-    OutputRequest,
-    case_options,
-    result_options,
-)
+from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading

@@ -9,12 +9,7 @@ import click
 
 from rpscli.analyses.result_quantities import PUSHOVER
 from rpscli.commands.inputs import case_folder, conclude, read_case
-from rpscli.commands.shell.options import (
-    CaseRequest,
-    OutputRequest,
-    case_options,
-    result_options,
-)
+from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.documents import pushover_document

@@ -16,12 +16,7 @@ from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation
-from rpscli.commands.timehistory_run import (
-    HistoryRequest,
-    compute,
-    history_requests,
-    look_beside,
-)
+from rpscli.commands.timehistory_run import HistoryRequest, compute, history_requests, look_beside
 from rpscli.errors import UsageError
 from rpscli.report.differences import as_text, results_of
 from rpscli.report.documents import heading

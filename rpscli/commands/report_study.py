@@ -82,12 +82,7 @@ def study_page(
 
 
 def _sections(
-    study: Study,
-    run: StudyRun,
-    found: Collected,
-    notes: Sequence[str],
-    folder: Path,
-    look: Look,
+    study: Study, run: StudyRun, found: Collected, notes: Sequence[str], folder: Path, look: Look
 ) -> list[Section]:
     layout = study.layout
     first = resolved(layout.plan, layout[0].values)
@@ -176,11 +171,7 @@ def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
 
 
 def design_page(
-    source: str,
-    overrides: tuple[str, ...],
-    earlier: Earlier | None,
-    look: Look,
-    terminal: Terminal,
+    source: str, overrides: tuple[str, ...], earlier: Earlier | None, look: Look, terminal: Terminal
 ) -> PageDone:
     """Search, or go on from the points that are stored, and put all in order."""
     request = CaseRequest(source, overrides) if earlier is None else earlier.subject

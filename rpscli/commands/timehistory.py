@@ -10,13 +10,7 @@ import click
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
-from rpscli.commands.inputs import (
-    MotionRequest,
-    motion_options,
-    read_case,
-    single_motions,
-    write,
-)
+from rpscli.commands.inputs import MotionRequest, motion_options, read_case, single_motions, write
 from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     CaseRequest,

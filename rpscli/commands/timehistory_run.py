@@ -106,10 +106,7 @@ def unique(names: Sequence[str]) -> list[str]:
 
 
 def compute(
-    request: HistoryRequest,
-    conditions: Sequence[Condition],
-    look: Look,
-    terminal: Terminal,
+    request: HistoryRequest, conditions: Sequence[Condition], look: Look, terminal: Terminal
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
     from rpscli.analyses.convergence import steps_warning

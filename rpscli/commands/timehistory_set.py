@@ -8,12 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rpscli.case.conditions import (
-    EVENTS,
-    Condition,
-    case_conditions,
-    with_friction,
-)
+from rpscli.case.conditions import EVENTS, Condition, case_conditions, with_friction
 from rpscli.commands.inputs import RESULTS, case_folder, motion_inputs, write
 from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import OutputRequest

@@ -116,9 +116,7 @@ def _design(answer: Answer, place: int, *, built: bool = False) -> dict[str, Any
     """A design by itself, or with what may be built in its place."""
     judged, at = answer.judged_at(place) if built else (answer.judged, place)
     objectives = zip(
-        map(objective_label, answer.task.file.minimise),
-        judged.objectives[:, 0, at],
-        strict=True,
+        map(objective_label, answer.task.file.minimise), judged.objectives[:, 0, at], strict=True
     )
     more: dict[str, Any] = {}
     if built:

@@ -334,10 +334,6 @@ def fail_on_option(meaning: str) -> Decorator:
         "conditions",
         lambda fail_on: [parse_condition(text) for text in fail_on],
         click.option(
-            "--fail-on",
-            multiple=True,
-            metavar="WHAT",
-            **completing(_condition_names),
-            help=meaning,
+            "--fail-on", multiple=True, metavar="WHAT", **completing(_condition_names), help=meaning
         ),
     )

@@ -30,15 +30,7 @@ from rpscli.report.figures.look import Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.planes import record_name
 from rpscli.report.figures.structure import structure_figure
-from rpscli.report.html.page import (
-    Block,
-    Code,
-    Notice,
-    Picture,
-    Section,
-    page_look,
-    pictures,
-)
+from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
 from rpscli.report.study.statistics import verdicts_in_short
 from rpscli.report.table import Column, Table, shown
 from rpscli.report.tables.derivation import derivations, first_shape

@@ -245,11 +245,7 @@ def _passed(group: Histories, result: str, threshold: float) -> Passed:
 
 
 def efficiency_figure(
-    keys: Sequence[str],
-    rows: Sequence[Row],
-    limits: Sequence[LimitState],
-    title: str,
-    note: str,
+    keys: Sequence[str], rows: Sequence[Row], limits: Sequence[LimitState], title: str, note: str
 ) -> bytes:
     """One panel a limit state: the scatter by each measure."""
     groups = [*{str(row.values): row.values for row in rows}.values()]

@@ -272,10 +272,7 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
         rows = [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
     if result.overturning_ratio is not None:
         rows.append(_row(result, "overturning_ratio"))
-    return [
-        *rows,
-        *((f"  without {what}", "", "", "") for what in result.left_out_of_columns),
-    ]
+    return [*rows, *((f"  without {what}", "", "", "") for what in result.left_out_of_columns)]
 
 
 def _energy(result: TimeHistoryResult) -> list[Row]:

@@ -56,10 +56,7 @@ class Records:
 
     @classmethod
     def of(
-        cls,
-        outcomes: Sequence[str],
-        demands: Sequence[Mapping[str, float]],
-        sources: Sequence[str],
+        cls, outcomes: Sequence[str], demands: Sequence[Mapping[str, float]], sources: Sequence[str]
     ) -> Records:
         """From the outcome, the demands and the record of each history."""
         columns = {name: np.array([each[name] for each in demands]) for name in demands[0]}

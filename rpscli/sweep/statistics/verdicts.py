@@ -118,10 +118,7 @@ def rate_notes(layout: StudyPoints) -> Iterator[str]:
 
 
 def rate_verdict(
-    condition: Condition,
-    rates: Array,
-    shares: Sequence[Share],
-    values: tuple[object, ...] = (),
+    condition: Condition, rates: Array, shares: Sequence[Share], values: tuple[object, ...] = ()
 ) -> Verdict:
     """From the shares (levels,) that overturned, with the rates of these levels."""
     ends = np.array([(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares])
