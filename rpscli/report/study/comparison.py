@@ -20,7 +20,7 @@ from rpscli.report.study.comparison_numbers import (
     fit_faults,
     uncomparable,
 )
-from rpscli.report.study.fragility import draw_fit, fit_cells, fit_units, measure_name
+from rpscli.report.study.fragility import band_words, draw_fit, fit_cells, fit_units, measure_name
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import log_ticks
 from rpscli.report.study.report import Found, Report
@@ -140,7 +140,10 @@ def comparison_figure(report: Comparison, title: str) -> bytes:
     down = -(-len(shown) // across)
 
     def draw(figure: style.Figure) -> None:
-        notes = [f"records: {judged[0].part}", f"bands: {style.percent(report.options.confidence)}"]
+        found = [each.found for each in shown if isinstance(each.found, Outcomes)]
+        fits = [curve.fit for each in found for _, curve in _curves(each)]
+        notes = [f"records: {judged[0].part}"]
+        notes += [band_words(report.options.confidence, fits)] * bool(fits)
         if len(judged) > len(shown):
             notes.append(f"the first {len(shown)} of {len(judged)} panels")
         style.heading(figure, title, *notes)

@@ -458,9 +458,7 @@ def fragility_figure(report: Fragilities, title: str) -> bytes:
         beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
 
     drawn = [curve for panel in panels for curve in panel]
-    some_bands = any(np.isfinite(curve.fit.band[0]).any() for curve in drawn)
-    band_words = f"bands: {style.percent(report.confidence)}, the choice of records"
-    notes = ["markers: observed", band_words if some_bands else "no bands are determined"]
+    notes = ["markers: observed", band_words(report.confidence, (c.fit for c in drawn))]
     if any(curve.total != curve.fit.beta for curve in drawn):
         notes.append("dotted: with further dispersion")
     notes.append(BEYOND_COMPUTED)
@@ -497,7 +495,17 @@ def draw_fit(
         )  # fmt: skip
         if banded:
             axes.fill_between(grid, *fit.band, color=shade, alpha=0.15, lw=0)
-    axes.plot(seen.intensity, seen.share, ls="", color=shade, marker=mark, ms=3.2, alpha=0.8)
+        label = None
+    axes.plot(
+        seen.intensity, seen.share, ls="", color=shade, marker=mark, ms=3.2, alpha=0.8, label=label
+    )
+
+
+def band_words(confidence: float, fits: Iterable[Lognormal]) -> str:
+    """A remark on the bands of curves."""
+    if not any(np.isfinite(fit.band[0]).any() for fit in fits):
+        return "no bands are determined"
+    return f"bands: {style.percent(confidence)}, the choice of records"
 
 
 BEYOND_COMPUTED = "grey: stronger than computed"
