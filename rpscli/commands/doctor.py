@@ -40,10 +40,7 @@ KEPT = {"compiled kernels": "kernels-*", "times of compilation": TIMES_FILE, "fo
 @click.command("doctor")
 @terminal_options
 def command(terminal: Terminal) -> None:
-    """What rps finds on this machine, what is missing, and the remedy.
-
-    The exit code is 6 if something is missing that rps cannot do without.
-    """
+    """What rps finds on this machine, what is missing, and the remedy; 6 without what it needs."""
     needed = _packages(None)
     optional = [row for extra in EXTRAS for row in _packages(extra)]
     rows = [*_surroundings(), *needed, *optional]

@@ -85,17 +85,13 @@ def _example(name: str, folder: Path, terminal: Terminal, *, force: bool) -> Non
         meant = hint(name, known, "`rps init --example` lists all")
         raise UsageError(f"--example {name}: there is none of this name; {meant}")
     files = {folder / path: content for path, content in example_files(name).items()}
-    # Examples share files: what another one left as it is may stay.
-    for each in list(files)[1:]:
-        if each.is_file() and each.read_bytes() == files[each]:
-            del files[each]
     _write(files, terminal, force=force)
 
 
 def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> None:
-    """All of the files, of which the first is what was asked for."""
-    for each in files:
-        if each.exists() and not force:
+    """All of the files, of which the first is what was asked for; the same may be there already."""
+    for each, content in files.items():
+        if each.exists() and not force and each.read_bytes() != content:
             raise Refused(f"{each} exists; name another file, or overwrite it with --force")
     write_whole(files)
     first, *others = files

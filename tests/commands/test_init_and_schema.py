@@ -71,8 +71,10 @@ def test_an_editor_finds_the_schema(rps: Invoke, kind: str) -> None:
     schema = json.loads(Path(f"rps-{kind}.schema.json").read_text(encoding="utf-8"))
     assert schema == json.loads(rps("schema", *study).stdout)
     jsonschema.validate(read_yaml(read_text(f"{kind}.yaml"), kind).content, schema)
-    assert rps("init", "other.yaml", "--editor", *study).exit_code == 7  # the schema is there
-    assert not Path("other.yaml").exists()
+    assert rps("init", "other.yaml", "--editor", *study).exit_code == 0  # the schema is the same
+    Path(f"rps-{kind}.schema.json").write_text("mine", encoding="utf-8")
+    assert rps("init", "third.yaml", "--editor", *study).exit_code == 7
+    assert not Path("third.yaml").exists()
 
 
 def test_studies_keep_their_schema(rps: Invoke) -> None:
