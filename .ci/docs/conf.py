@@ -40,7 +40,7 @@ nitpick_ignore_regex = [
     ("py:.*", r"(numpy|np|collections|pathlib|typing|types|matplotlib|pandas|pydantic)\..*"),
     (
         "py:.*",
-        r"(NDArray|Array|Axes|Figure|Path|Any|Callable|Mapping|Sequence|Iterable|Iterator|optional)",
+        r"(NDArray|Array|(style\.)?(Axes|Figure)|Path|Any|Callable|Mapping|Sequence|Iterable|Iterator|optional)",
     ),
 ]
 default_role = "py:obj"
