@@ -24,6 +24,10 @@ PAGES = {
     "cases/granite/README.md": "cases/granite",
     "cases/studies/contact/README.md": "cases/contact",
     "cases/studies/impact_law/README.md": "cases/impact_law",
+    **{
+        path.relative_to(ROOT).as_posix(): f"certified/{path.stem.replace('README', 'index')}"
+        for path in sorted((ROOT / "rpscli/analyses/certified").glob("*.md"))
+    },
 }
 """Files that are pages, and their names on the site."""
 
@@ -31,7 +35,7 @@ SET = {
     "theory",
     "verification",
     "reference/glossary",
-    *filter(re.compile("cases/").match, PAGES.values()),
+    *filter(re.compile("cases/|certified/").match, PAGES.values()),
 }
 """Pages whose code is mostly formulas."""
 
