@@ -8,9 +8,11 @@ what is found there always belongs to the program that runs.
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from fractions import Fraction
 from functools import cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -27,8 +29,6 @@ Array = TypeVar("Array")
 OPTIONS: dict[str, Any] = {
     "nogil": True,
     "error_model": "numpy",
-    # The only liberty that the compiler has: a product and a sum may be rounded once.
-    "fastmath": {"contract"},
     # Nothing is called from C: without these wrappers a tenth less is to be compiled. The argument
     # of numba.jit is not in its manual.
     "no_cfunc_wrapper": True,
@@ -84,11 +84,24 @@ def cache_folder() -> Path | None:
 
 
 def kernel(function: Function) -> Function:
-    """Compile at the first call from Python, without the GIL; keep the machine code on disk."""
+    """Compile at the first call from Python, without the GIL; keep the machine code on disk.
+
+    The only liberty that the compiler has: a product and a sum may be rounded once. Which, it may
+    choose anew for each loop. What a kernel calls is compiled with the liberty that it has.
+    """
+    return _kernel(function, fastmath={"contract"})
+
+
+def exact_kernel(function: Function) -> Function:
+    """The same without that liberty: it rounds as Python does, in every loop and process."""
+    return _kernel(function)
+
+
+def _kernel(function: Function, **liberty: Any) -> Function:
     folder, config = cache_folder(), cast("Any", numba.config)
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
     try:
-        made = numba.njit(function, cache=folder is not None, **OPTIONS)
+        made = numba.njit(function, cache=folder is not None, **OPTIONS, **liberty)
     finally:
         config.CACHE_DIR = before
     if folder is not None and not config.DISABLE_JIT:
@@ -138,6 +151,38 @@ def specialised(function: Function) -> Function:
     return cast("Function", numba.njit(function, **OPTIONS))
 
 
+def by_record(function: Function, *, anew: bool = False) -> Function:
+    """Compile for records (the first argument); `variant` tells of another for some of them.
+
+    So kernels of different records share what calls it; `anew` as `specialised`.
+    """
+    others: dict[str, Callable[..., Any]] = {}
+
+    def fitting(fields: Iterable[str]) -> Callable[..., Any]:
+        return next((other for field, other in others.items() if field in fields), function)
+
+    @wraps(function)
+    def chosen(record: Any, *rest: Any) -> Any:
+        return fitting(record.dtype.names)(record, *rest)
+
+    @overload(chosen, jit_options=cast("Any", OPTIONS), strict=False, prefer_literal=anew)
+    def choose(record: Any, *_: Any) -> Callable[..., Any]:
+        return fitting(record.fields)
+
+    cast("Any", chosen).variants = others
+    return cast("Function", chosen)
+
+
+def variant(of: Any, field: str) -> Callable[[Function], Function]:
+    """Take this function in place of one `by_record`, for records with a field."""
+
+    def register(function: Function) -> Function:
+        of.variants[field] = compiled(function)
+        return function
+
+    return register
+
+
 def compiled_with(
     field: str, *, otherwise: object = None, anew: bool = False
 ) -> Callable[[Function], Function]:
@@ -149,20 +194,30 @@ def compiled_with(
     def constant(*_: object) -> object:
         return otherwise
 
-    nothing: Any = otherwise if callable(otherwise) else constant
-
     def decorate(function: Function) -> Function:
-        @wraps(function)
-        def chosen(record: Any, *others: Any) -> Any:
-            return (function if field in record.dtype.names else nothing)(record, *others)
-
-        @overload(chosen, jit_options=cast("Any", OPTIONS), strict=False, prefer_literal=anew)
-        def choose(record: Any, *_: Any) -> Callable[..., Any]:
-            return function if field in record.fields else nothing
-
-        return cast("Function", chosen)
+        made: Any = by_record(otherwise if callable(otherwise) else constant, anew=anew)
+        variant(made, field)(function)
+        return cast("Function", wraps(function)(made))
 
     return decorate
+
+
+def fma(a: float, b: float, c: float) -> float:
+    """The sum a b + c, rounded once: in machine code one instruction, in Python the same number."""
+    if (there := getattr(math, "fma", None)) is not None:  # Python 3.13
+        return float(there(a, b, c))
+    plain = float(a) * float(b) + float(c)
+    if not math.isfinite(plain):
+        return plain
+    return float(Fraction(float(a)) * Fraction(float(b)) + Fraction(float(c))) or plain
+
+
+@intrinsic
+def _fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
+    def code(_context: Any, builder: Any, _signature: Any, given: Any) -> Any:
+        return builder.fma(*given)
+
+    return types.float64(a, b, c), code
 
 
 def uncounted(array: Array) -> Array:
@@ -204,9 +259,11 @@ def _prefetch(_typing: Any, array: Any, index: Any) -> Any:
 
 _own: Any = _without_owner
 _fetch: Any = _prefetch
+_sum: Any = _fused
 for _function, _code in (
     (uncounted, lambda array: _own(array)),  # noqa: PLW0108 -- functions are asked for
     (prefetch, lambda array, index: _fetch(array, index)),  # noqa: PLW0108
+    (fma, lambda a, b, c: _sum(a, b, c)),  # noqa: PLW0108
 ):
     overload(_function, jit_options=cast("Any", OPTIONS), strict=False)(
         lambda *_, code=_code: cast("Any", code)

@@ -1,10 +1,14 @@
-"""Ground acceleration of a lane: linear between the samples of the record, zero after the last."""
+"""Ground acceleration of a lane: linear between the samples of the record, zero after the last.
+
+The ground moves in one direction, or in x and in y: then what is called `system`, `block` or
+`margin` are two, of which `along` takes one.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from rpscli.physics.core.compile import compiled, prefetch
+from rpscli.physics.core.compile import compiled, compiled_with, prefetch
 from rpscli.physics.core.records import INSTANTS, NO_RECORD, Floats, Record
 
 
@@ -15,6 +19,32 @@ class Ground(NamedTuple):
     a_g_slope: float  # their slopes over it [m/s3]
     g_up: float  # a_g and g + a_v at the start of an interval [m/s2]
     g_up_slope: float  # their slopes over it [m/s3]
+
+
+@compiled_with("record_y", otherwise=1)
+def directions(_s: Record) -> int:
+    """Horizontal directions in which the ground moves."""
+    return 2
+
+
+def _itself(_s: Record, given: Any, _axis: int) -> Any:
+    return given
+
+
+@compiled_with("record_y", otherwise=_itself)
+def along(_s: Record, given: Any, axis: int) -> Any:
+    """What belongs to a direction, of what there is one in each."""
+    return given[axis]
+
+
+def _record_of_one(s: Record, l: int, _axis: int) -> int:
+    return int(s.record[l])
+
+
+@compiled_with("record_y", otherwise=_record_of_one)
+def record_along(s: Record, l: int, axis: int) -> int:
+    """Offset of a lane's record in a direction."""
+    return int(s.record[l] if axis == 0 else s.record_y[l])
 
 
 AHEAD = 16
@@ -47,6 +77,14 @@ def set_ground(s: Record, l: int, acceleration: Floats) -> None:
     s.interval_start[l], s.time[l] = interval * s.dt[l], 0.0
     s.a_g[l], s.a_g_slope[l] = ground.a_g, ground.a_g_slope
     s.g_up[l], s.g_up_slope[l] = ground.g_up, ground.g_up_slope
+    set_ground_in_y(s, l, acceleration)
+
+
+@compiled_with("record_y")
+def set_ground_in_y(s: Record, l: int, acceleration: Floats) -> None:
+    """The same of the second record."""
+    ground = ground_in(s, l, acceleration, s.interval[l], s.record_y[l])
+    s.a_g_y[l], s.a_g_y_slope[l] = ground.a_g, ground.a_g_slope
 
 
 @compiled

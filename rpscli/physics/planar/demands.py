@@ -22,8 +22,8 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled, inlined
-from rpscli.physics.core.records import ORDER, Record
+from rpscli.physics.core.compile import by_record, compiled, inlined
+from rpscli.physics.core.records import ORDER, Floats, Record
 from rpscli.physics.core.series import (
     integral,
     middle_of,
@@ -243,7 +243,7 @@ def contacts_within(s: Record, l: int, t: float) -> Measures:
     return contacts_of(s, l, theta, theta_dot, acceleration, B, C, V, a_g, g_up)
 
 
-@compiled
+@by_record
 def raise_contacts_within(s: Record, l: int, fraction: float) -> None:
     """Raise the demands of contacts by those of the first part of the step, if any may rise.
 
@@ -288,7 +288,7 @@ def raise_contacts(s: Record, l: int, one: Measures, other: Measures) -> None:
     s.shear_bottom[l] = max(s.shear_bottom[l], abs(one[5]), abs(other[5]))
 
 
-@compiled
+@by_record
 def observe_end(s: Record, l: int, system: Record) -> None:
     """Raise the demands of a lane's floors by those of a step that was cut short by an event."""
     if s.demands_rise[l] == 0.0:  # in the whole step
@@ -302,43 +302,66 @@ def observe_end(s: Record, l: int, system: Record) -> None:
         raise_floors(s, l, system)
 
 
-@compiled
+@by_record
 def raise_floors(s: Record, l: int, system: Record) -> None:
     """Raise the demands of a lane's storeys and floors by those of the step just taken.
 
     By those at its end; and by those within, where they bulge enough above both ends.
     """
-    shears, accelerations, width = s.looked_at[0], s.looked_at[1], whole_vectors(s.n)
-    for i in range(width):
-        shears[i], accelerations[i] = 0.0, 0.0
-    for r in range(s.n):
-        q, force = s.next_q[r, l], s.modal_force[r, l]
-        s.seen_q[r, l], s.seen_force[r, l] = q, force
-        for i in range(width):
-            shears[i] += system.storey_shear_of[r, i] * q
-            accelerations[i] += system.phi[r, i] * force
+    shears, accelerations = s.looked_at[0], s.looked_at[1]
+    look_at_end(s, l, system, 0, shears, accelerations)
     moved, shaken = math.sqrt(s.shear_before[l]), math.sqrt(s.acceleration_before[l])
     bulge = WITHIN / 8.0 * s.step[l] * math.sqrt(s.shear_bend[l])
     other_bulge = bulge * math.sqrt(s.bend_ratio[l])
-    within, room, other_room = 0, math.inf, math.inf
-    for i in range(s.n):
-        most, now, share = s.storey_shear[l, i], abs(shears[i]), system.shear_bound_of[i]
-        left, before = share * (most - now), share * (most - s.last_shear[l, i]) - moved
-        within |= 1 if min(left, before) < bulge else 0
-        s.storey_shear[l, i], s.last_shear[l, i] = max(most, now), now
-        room = min(room, max(left, 0.0))
-    for i in range(s.n):
-        most, now = s.floor_acceleration[l, i], abs(accelerations[i])
-        share = system.acceleration_bound_of[i]
-        left, before = share * (most - now), share * (most - s.last_acceleration[l, i]) - shaken
-        within |= 1 if min(left, before) < other_bulge else 0
-        s.floor_acceleration[l, i], s.last_acceleration[l, i] = max(most, now), now
-        other_room = min(other_room, max(left, 0.0))
+    most, last, of = s.storey_shear[l], s.last_shear[l], system.shear_bound_of
+    within, s.shear_room[l] = raise_by_end(most, last, shears, of, moved, bulge, s.n)
+    most, last, of = s.floor_acceleration[l], s.last_acceleration[l], system.acceleration_bound_of
+    other, s.acceleration_room[l] = raise_by_end(
+        most, last, accelerations, of, shaken, other_bulge, s.n
+    )
     s.shear_bound[l], s.acceleration_bound[l] = 0.0, 0.0
-    s.shear_room[l] = SURELY * (room * room)
-    s.acceleration_room[l] = SURELY * (other_room * other_room)
-    if s.step[l] > 0.0 and within > 0:
+    if s.step[l] > 0.0 and within + other > 0:
         raise_floors_within(s, l, system)
+
+
+@compiled
+def look_at_end(
+    s: Record, l: int, system: Record, first: int, shears: Floats, accelerations: Floats
+) -> None:
+    """Write what the modes from the first on, as they are now seen, make of storeys and floors."""
+    width = whole_vectors(system.n)
+    for i in range(width):
+        shears[i], accelerations[i] = 0.0, 0.0
+    for r in range(system.n):
+        q, force = s.next_q[first + r, l], s.modal_force[first + r, l]
+        s.seen_q[first + r, l], s.seen_force[first + r, l] = q, force
+        for i in range(width):
+            shears[i] += system.storey_shear_of[r, i] * q
+            accelerations[i] += system.phi[r, i] * force
+
+
+@compiled
+def raise_by_end(
+    largest: Floats,
+    last: Floats,
+    now: Floats,
+    bound_of: Floats,
+    moved: float,
+    bulge: float,
+    storeys: int,
+) -> tuple[int, float]:
+    """Raise demands of all floors by what they are now, and note it as the last that was seen.
+
+    Returns 1 if more may have been between, and the sum with which none rises from now on.
+    """
+    within, room = 0, math.inf
+    for i in range(storeys):
+        most, here, share = largest[i], abs(now[i]), bound_of[i]
+        left, before = share * (most - here), share * (most - last[i]) - moved
+        within |= 1 if min(left, before) < bulge else 0
+        largest[i], last[i] = max(most, here), here
+        room = min(room, max(left, 0.0))
+    return within, SURELY * (room * room)
 
 
 @compiled
@@ -350,24 +373,8 @@ def whole_vectors(storeys: int) -> int:
 @compiled
 def raise_floors_within(s: Record, l: int, system: Record) -> None:
     """The same by those at the start, in the middle, at the end, and of a parabola through them."""
-    h, rows, width = s.step[l], s.looked_at, whole_vectors(s.n)
-    rate = 1.5 / h
-    for k in range(6):
-        for i in range(width):
-            rows[k, i] = 0.0
-    for r in range(s.n):
-        q0, v0, q1, v1 = s.q[r, l], s.dq[0, r, l], s.next_q[r, l], s.next_dq[r, l]
-        q, v = middle_of(q0, q1, h * v0, h * v1), rate * (q1 - q0) - 0.25 * (v0 + v1)
-        omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-        f0, f, f1 = omega2 * q0 + damping * v0, omega2 * q + damping * v, omega2 * q1 + damping * v1
-        for i in range(width):
-            shear, phi = system.storey_shear_of[r, i], system.phi[r, i]
-            rows[0, i] += shear * q0
-            rows[1, i] += shear * q
-            rows[2, i] += shear * q1
-            rows[3, i] += phi * f0
-            rows[4, i] += phi * f
-            rows[5, i] += phi * f1
+    rows = s.looked_at
+    fill_within(s, l, system, 0, rows)
     for i in range(s.n):
         shear = peak(rows[0, i], rows[1, i], rows[2, i])
         acceleration = peak(rows[3, i], rows[4, i], rows[5, i])
@@ -376,6 +383,30 @@ def raise_floors_within(s: Record, l: int, system: Record) -> None:
 
 
 @compiled
+def fill_within(s: Record, l: int, system: Record, first: int, rows: Floats) -> None:
+    """Write shears and accelerations of modes from the first on at start, middle and end."""
+    h, width = s.step[l], whole_vectors(system.n)
+    rate = 1.5 / h
+    for k in range(6):
+        for i in range(width):
+            rows[k, i] = 0.0
+    for of in range(system.n):
+        r = first + of
+        q0, v0, q1, v1 = s.q[r, l], s.dq[0, r, l], s.next_q[r, l], s.next_dq[r, l]
+        q, v = middle_of(q0, q1, h * v0, h * v1), rate * (q1 - q0) - 0.25 * (v0 + v1)
+        omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
+        f0, f, f1 = omega2 * q0 + damping * v0, omega2 * q + damping * v, omega2 * q1 + damping * v1
+        for i in range(width):
+            shear, phi = system.storey_shear_of[of, i], system.phi[of, i]
+            rows[0, i] += shear * q0
+            rows[1, i] += shear * q
+            rows[2, i] += shear * q1
+            rows[3, i] += phi * f0
+            rows[4, i] += phi * f
+            rows[5, i] += phi * f1
+
+
+@by_record
 def set_below_all_maxima(s: Record, l: int, system: Record) -> None:
     """Note which sums over all modes, from rest, raise no storey's shear and no acceleration."""
     shear, acceleration = math.inf, math.inf

@@ -15,7 +15,7 @@ from threading import Thread, current_thread, main_thread
 
 import numpy as np
 
-from rpscli.physics.core.compile import compiled, kernel, uncounted
+from rpscli.physics.core.compile import by_record, compiled, kernel, uncounted
 from rpscli.physics.core.lanes import set_ground
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
 from rpscli.physics.planar.bed.passages import leave_bed, load_bed
@@ -117,15 +117,8 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
     speed, and all that it calls would be compiled once more.
     """
     s = state[0]
-    systems, acceleration = uncounted(run.systems), uncounted(run.acceleration)
-    output = Output(
-        uncounted(run.output.samples),
-        uncounted(run.output.floors),
-        uncounted(run.output.log),
-        uncounted(run.output.devices),
-        run.output.finer,
-    )
-    run = Run(systems, uncounted(run.requests), acceleration, uncounted(run.results), output)
+    run = without_owners(run)
+    systems, acceleration, output = run.systems, run.acceleration, run.output
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, s.lanes
     begun = False
@@ -164,6 +157,25 @@ def integrate_lanes(state: Record, block: Record, run: Run) -> None:  # noqa: C9
                     next_action = next_history(s, l, run)
             active -= s.history[l] == NO_HISTORY
         begun = True
+
+
+@compiled
+def without_owners(run: Run) -> Run:
+    """The same run, of arrays that are `uncounted`."""
+    output = Output(
+        uncounted(run.output.samples),
+        uncounted(run.output.floors),
+        uncounted(run.output.log),
+        uncounted(run.output.devices),
+        run.output.finer,
+    )
+    return Run(
+        uncounted(run.systems),
+        uncounted(run.requests),
+        uncounted(run.acceleration),
+        uncounted(run.results),
+        output,
+    )
 
 
 @kernel
@@ -207,10 +219,11 @@ def observe_lanes(s: Record, systems: Record, block: Record, output: Output) -> 
     for l in range(s.lanes):
         if s.accepted[l] == 0.0:
             continue
+        system = system_of(s, l, systems)
         if s.audited > 0:
             book_energy(s, l, 1.0)
             if output.finer > 1:
-                store_within(s, l, systems[s.system[l]], output, 1.0)
+                store_within(s, l, system, output, 1.0)
         if s.devices[l] > 0:
             book_devices(s, l, 1.0)
             observe_devices(s, l, 1.0)
@@ -218,8 +231,14 @@ def observe_lanes(s: Record, systems: Record, block: Record, output: Output) -> 
         if s.peak_inside[l] > 0.0:
             raise_peak(s, l, block, output.log)
         if s.demands_rise[l] > 0.0:
-            raise_floors(s, l, systems[s.system[l]])
+            raise_floors(s, l, system)
         raise_contacts_within(s, l, 1.0)
+
+
+@by_record
+def system_of(s: Record, l: int, systems: Record) -> Record:
+    """The structure of a lane."""
+    return systems[s.system[l]]
 
 
 @compiled
@@ -234,21 +253,12 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     """Load a history into a lane, at rest: FOLLOW_CONTACT, or GOES_ON if it is tilted."""
     request = run.requests[history]
     system = run.systems[request.system]
-    load_system(s, l, system)
     s.history[l], s.system[l] = history, request.system
-    s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
-    s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
+    load_system(s, l, system)
+    load_modes(s, l, system, 0)
+    load_request(s, l, request, system)
     load_devices(s, l, system)
     load_bed(s, l, system, request)
-    s.outcome[l], s.restart_after[l] = RUNNING, NOTHING_NEW
-    s.interval[l] = 0
-    s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
-    steps = max(math.ceil(request.dt * system.uplifted_rate), 1)
-    s.uplifted_step[l], s.uplifted_steps[l] = request.dt / steps, steps
-    steps = max(math.ceil(request.dt * system.contact_rate), 1)
-    s.contact_step[l], s.contact_steps[l] = request.dt / steps, steps
-    s.side[l], s.theta[l], s.theta_dot[l], s.theta_ddot[l] = 1.0, 0.0, 0.0, 0.0
-    s.no_event[l], s.stalled[l] = 0.0, 0
     enter_phase(s, l, system, ROLLING if system.beta > 0.0 else ROCKING)
     s.phase[l] = FULL_CONTACT
     clear_results(s, l)
@@ -259,6 +269,22 @@ def begin_history(s: Record, l: int, run: Run, history: int) -> int:
     s.next_a_g[l], s.next_g_up[l], s.next_V[l] = s.a_g[l], s.g_up[l], 0.0
     store_sample(s, l, system, run.output)
     return FOLLOW_CONTACT
+
+
+@compiled
+def load_request(s: Record, l: int, request: Record, system: Record) -> None:
+    """What is followed, at rest, and in which steps."""
+    s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
+    s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
+    s.outcome[l], s.restart_after[l] = RUNNING, NOTHING_NEW
+    s.interval[l] = 0
+    s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
+    steps = max(math.ceil(request.dt * system.uplifted_rate), 1)
+    s.uplifted_step[l], s.uplifted_steps[l] = request.dt / steps, steps
+    steps = max(math.ceil(request.dt * system.contact_rate), 1)
+    s.contact_step[l], s.contact_steps[l] = request.dt / steps, steps
+    s.side[l], s.theta[l], s.theta_dot[l], s.theta_ddot[l] = 1.0, 0.0, 0.0, 0.0
+    s.no_event[l], s.stalled[l] = 0.0, 0
 
 
 @compiled
@@ -274,10 +300,16 @@ def load_system(s: Record, l: int, system: Record) -> None:
     s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
     s.theta_cr[l], s.last_term[l] = system.theta_cr, system.last_term
     s.bend_ratio[l] = system.bend_ratio
-    for r in range(s.n):
-        s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[r], system.two_xi_omega[r]
-        s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[r], system.shear_weight[r]
-        s.acceleration_weight[r, l] = system.acceleration_weight[r]
+
+
+@compiled
+def load_modes(s: Record, l: int, system: Record, first: int) -> None:
+    """The building's modes at rest, from a row on."""
+    for of in range(system.n):
+        r = first + of
+        s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[of], system.two_xi_omega[of]
+        s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[of], system.shear_weight[of]
+        s.acceleration_weight[r, l] = system.acceleration_weight[of]
         s.q[r, l], s.dq[0, r, l], s.seen_q[r, l], s.seen_force[r, l] = 0.0, 0.0, 0.0, 0.0
 
 
@@ -289,16 +321,22 @@ def clear_results(s: Record, l: int) -> None:
     s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
     s.heavy_top[l], s.heavy_bottom[l] = 0.0, 0.0
     s.shear_top[l], s.shear_bottom[l] = 0.0, 0.0
-    s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l] = 0.0, 0.0
-    s.shear_room[l], s.acceleration_room[l] = 0.0, 0.0
-    for i in range(s.n):
-        s.storey_shear[l, i], s.floor_acceleration[l, i] = 0.0, 0.0
-        s.last_shear[l, i], s.last_acceleration[l, i] = 0.0, 0.0
+    clear_floors(s, l)
     s.energy_input[l], s.energy_damped[l] = 0.0, 0.0
     s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
     s.steps[l], s.creating_impacts[l] = 0.0, 0
     for i in range(EVENT_KINDS):
         s.events[l, i] = 0
+
+
+@by_record
+def clear_floors(s: Record, l: int) -> None:
+    """The same of storeys and floors."""
+    s.shear_below_all_maxima[l], s.acceleration_below_all_maxima[l] = 0.0, 0.0
+    s.shear_room[l], s.acceleration_room[l] = 0.0, 0.0
+    for i in range(s.n):
+        s.storey_shear[l, i], s.floor_acceleration[l, i] = 0.0, 0.0
+        s.last_shear[l, i], s.last_acceleration[l, i] = 0.0, 0.0
 
 
 @compiled
@@ -344,8 +382,14 @@ def leave_result(s: Record, l: int, result: Record) -> None:
     result.shear_top, result.shear_bottom = s.shear_top[l], s.shear_bottom[l]
     result.energy_input, result.energy_damped = s.energy_input[l], s.energy_damped[l]
     result.energy_lost, result.energy_created = s.energy_lost[l], s.energy_created[l]
+    leave_floors(s, l, result)
+    for i in range(EVENT_KINDS):
+        result.events[i] = s.events[l, i]
+
+
+@by_record
+def leave_floors(s: Record, l: int, result: Record) -> None:
+    """Write the demands of storeys and floors."""
     for i in range(s.n):
         result.storey_shear[i] = s.storey_shear[l, i]
         result.floor_acceleration[i] = s.floor_acceleration[l, i]
-    for i in range(EVENT_KINDS):
-        result.events[i] = s.events[l, i]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.compile import by_record, compiled
 from rpscli.physics.core.records import Record
 from rpscli.physics.core.series import NODES, WEIGHTS, integral, sine_cosine, value
 from rpscli.physics.planar.bed.passages import potential
@@ -51,7 +51,7 @@ def uplifted_energy(s: Record, l: int, system: Record) -> float:
     return float(lifted) + moving
 
 
-@compiled
+@by_record
 def powers_within(s: Record, l: int, t: float) -> tuple[float, float]:
     """Power of the ground and of the dampers [W], a fraction t of the step after its start."""
     terms = rotation_terms(s, l)

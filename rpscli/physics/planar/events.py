@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled, kernel
+from rpscli.physics.core.compile import by_record, compiled, kernel
 from rpscli.physics.core.lanes import enter_interval, log_event, time_of
 from rpscli.physics.core.quintic import (
     NEAR,
@@ -89,6 +89,18 @@ def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[floa
     Returns: Fraction, level of the tilt, kind of the event, or NO_EVENT: then the alarm was false;
     and, of a CHANGE_OF_DEVICE, the function that it was watched by.
     """
+    first, level, kind = leaves_range(s, l, system, block)
+    which = -1
+    if s.devices[l] > 0:
+        t, found = locate_change(s, l, block)
+        if t < first:
+            first, level, kind, which = t, tilt_at(s, l, t), CHANGE_OF_DEVICE, found
+    return first, level, kind, which
+
+
+@compiled
+def leaves_range(s: Record, l: int, system: Record, block: Record) -> tuple[float, float, int]:
+    """Fraction of the step at which the tilt leaves its phase's range, where, and the event."""
     path, piece = path_of(s, l), block.piece
     first, level, kind = NO_PASSAGE, 0.0, NO_EVENT
     t = first_descent(offset(path, 1.0, s.theta_low[l]), NEAR, piece)
@@ -99,12 +111,62 @@ def locate_event(s: Record, l: int, system: Record, block: Record) -> tuple[floa
         first, level, kind = t, s.theta_high[l], event_above(s, l, system)
     if kind != NO_EVENT:
         first = fraction_at(s, l, level, first)
-    which = -1
+    return first, level, kind
+
+
+@compiled
+def end_step(
+    s: Record,
+    l: int,
+    system: Record,
+    block: Record,
+    output: Output,
+    fraction: float,
+    level: float,
+) -> None:
+    """End the step of a lane within, at a level of the tilt [level rad]."""
+    if s.audited > 0:
+        book_energy(s, l, fraction)
+        if output.finer > 1:
+            store_within(s, l, system, output, fraction)
     if s.devices[l] > 0:
-        t, found = locate_change(s, l, block)
-        if t < first:
-            first, level, kind, which = t, tilt_at(s, l, t), CHANGE_OF_DEVICE, found
-    return first, level, kind, which
+        book_devices(s, l, fraction)
+        observe_devices(s, l, fraction)
+    observe_bed(s, l, fraction)
+    raise_contacts_within(s, l, fraction)
+    end_turn_at(s, l, fraction)
+    end_step_at(s, l, fraction, level)
+    observe_end(s, l, system)
+    turned = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
+    if s.next_theta[l] > s.max_theta[l] or turned:
+        raise_peak(s, l, block, output.log)
+    s.theta[l], s.theta_dot[l] = s.next_theta[l], s.next_theta_dot[l]
+    for r in range(s.n):
+        s.q[r, l], s.dq[0, r, l] = s.next_q[r, l], s.next_dq[r, l]
+    before = s.time[l]
+    s.time[l] += s.step[l]
+    s.stalled[l] = s.stalled[l] + 1 if s.time[l] == before else 0
+    take_turn(s, l)
+
+
+@by_record
+def end_turn_at(_s: Record, _l: int, _t: float) -> None:
+    """In one plane nothing else is at the end of a step."""
+
+
+@by_record
+def take_turn(_s: Record, _l: int) -> None:
+    """In one plane nothing else becomes the state."""
+
+
+@by_record
+def note_peak(_s: Record, _l: int, _t: float) -> None:
+    """In one plane nothing else is known of the largest tilt."""
+
+
+@by_record
+def note_critical(_s: Record, _l: int, _t: float, _log: Record, _row: int) -> None:
+    """Nor of where theta_cr was passed."""
 
 
 @compiled
@@ -121,26 +183,7 @@ def end_on_event(
 ) -> None:
     """End the step on an event, and switch [level rad]."""
     log = output.log
-    if s.audited > 0:
-        book_energy(s, l, fraction)
-        if output.finer > 1:
-            store_within(s, l, system, output, fraction)
-    if s.devices[l] > 0:
-        book_devices(s, l, fraction)
-        observe_devices(s, l, fraction)
-    observe_bed(s, l, fraction)
-    raise_contacts_within(s, l, fraction)
-    end_step_at(s, l, fraction, level)
-    observe_end(s, l, system)
-    turned = s.theta_dot[l] > 0.0 and s.next_theta_dot[l] < 0.0
-    if s.next_theta[l] > s.max_theta[l] or turned:
-        raise_peak(s, l, block, log)
-    s.theta[l], s.theta_dot[l] = s.next_theta[l], s.next_theta_dot[l]
-    for r in range(s.n):
-        s.q[r, l], s.dq[0, r, l] = s.next_q[r, l], s.next_dq[r, l]
-    before = s.time[l]
-    s.time[l] += s.step[l]
-    s.stalled[l] = s.stalled[l] + 1 if s.time[l] == before else 0
+    end_step(s, l, system, block, output, fraction, level)
     if pass_on_bed(s, l, system, log, kind):
         return
     if kind == IMPACT:
@@ -265,6 +308,7 @@ def raise_peak(s: Record, l: int, block: Record, log: Record) -> None:
     if height > s.max_theta[l]:
         s.max_theta[l] = height
         s.max_theta_time[l] = s.interval_start[l] + (s.time[l] + fraction * s.step[l])
+        note_peak(s, l, fraction)
         if height > s.theta_cr[l] and s.critical_time[l] < 0.0:
             log_critical_passage(s, l, block, log, path)
 
@@ -276,4 +320,6 @@ def log_critical_passage(s: Record, l: int, block: Record, log: Record, path: Qu
     t = min(first_descent(offset(path, -1.0, level), SETTLED, block.piece), 1.0)
     rate = side * slope(path, t) / h if h > 0.0 else 0.0
     s.critical_time[l] = time_of(s, l) + t * h
-    log_event(s, l, log, s.critical_time[l], CRITICAL_PASSAGE, side * level, rate, rate, 0.0)
+    time = s.critical_time[l]
+    row = log_event(s, l, log, time, CRITICAL_PASSAGE, side * level, rate, rate, 0.0)
+    note_critical(s, l, t, log, row)

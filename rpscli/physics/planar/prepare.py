@@ -11,7 +11,7 @@ import gc
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, cast
 
@@ -28,17 +28,24 @@ from rpscli.physics.planar.run import empty_block, empty_run, empty_state
 
 
 def compile_kernel(variant: str) -> None:
-    """Compile the kernel, of any variant; what fails in a part is left to the first call.
+    """Compile the kernel, of any variant; what fails in a part is left to the first call."""
+    compile_in_parts(__name__, variant, compile_phases, compile_whole)
+
+
+def compile_in_parts(
+    module: str, what: str, here: Callable[[str], None], whole: Callable[[str], None]
+) -> None:
+    """Compile one part here and one by running a module, then the whole.
 
     Without a cache, or without machine code at all, there is nothing to prepare.
     """
     if not can_prepare():
         return
-    with garbage_kept(), compiling(__name__, variant) as other:
+    with garbage_kept(), compiling(module, what) as other:
         try:
-            compile_phases(variant)
+            here(what)
             other.wait()
-            integrate_lanes(empty_state(1, 1, variant=variant), empty_block(1), empty_run(1))
+            whole(what)
         except BaseException:
             other.kill()
             raise
@@ -70,6 +77,11 @@ def compile_phases(variant: str) -> None:
     go_on_restarted(s, 0, run.systems[0], run.output)
     floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
     integrate_fixed_base(run.acceleration, 1.0, 1, 0, run.systems, block, floors, largest)
+
+
+def compile_whole(variant: str) -> None:
+    """The kernel itself, of parts that are compiled."""
+    integrate_lanes(empty_state(1, 1, variant=variant), empty_block(1), empty_run(1))
 
 
 def compile_steps(variant: str) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.compile import by_record, compiled
+from rpscli.physics.core.lanes import along, directions
 from rpscli.physics.core.records import Record
 from rpscli.physics.core.series import cubic, integral, sine_cosine, slope, value
 from rpscli.physics.planar.bed.passages import energy_of_bed
@@ -34,21 +35,28 @@ def store_sample(s: Record, l: int, system: Record, output: Output) -> None:
 @compiled
 def store_within(s: Record, l: int, system: Record, output: Output, fraction: float) -> None:
     """Keep the states at the even parts of the interval that the first part of the step passes."""
-    h, terms, part = s.step[l], rotation_terms(s, l), s.dt[l] / output.finer
+    h, part = s.step[l], s.dt[l] / output.finer
     if h <= 0.0:
         return
-    theta, theta_dot, theta_ddot = s.theta[l], s.theta_dot[l], s.theta_ddot[l]
     for j in range(max(math.ceil(s.time[l] / part - PASSED), 1), output.finer):
         t = (j * part - s.time[l]) / h
         if t * h >= fraction * h - PASSED * part:
             break
-        s.theta[l], s.theta_dot[l] = theta + h * integral(terms, t), value(terms, t)
-        s.theta_ddot[l] = slope(terms, t) / h
         for r in range(s.n):
             mode = modal_terms(s, r, l)
             s.looked_at[0, r] = s.q[r, l] + h * integral(mode, t)
             s.looked_at[1, r] = value(mode, t)
-        store_row(s, l, system, output, s.interval[l] * output.finer + j)
+        store_row_within(s, l, system, output, s.interval[l] * output.finer + j, t)
+
+
+@by_record
+def store_row_within(s: Record, l: int, system: Record, output: Output, at: int, t: float) -> None:
+    """Keep the state a fraction t into the step, its modes as they stand in `looked_at`."""
+    h, terms = s.step[l], rotation_terms(s, l)
+    theta, theta_dot, theta_ddot = s.theta[l], s.theta_dot[l], s.theta_ddot[l]
+    s.theta[l], s.theta_dot[l] = theta + h * integral(terms, t), value(terms, t)
+    s.theta_ddot[l] = slope(terms, t) / h
+    store_row(s, l, system, output, at)
     s.theta[l], s.theta_dot[l], s.theta_ddot[l] = theta, theta_dot, theta_ddot
 
 
@@ -62,19 +70,22 @@ def store_at_rest(
         time = j * part - begin
         if time >= h - PASSED * part:
             break
+        x = along(s, block, 0)
         s.next_V[l] = 0.0
-        s.next_a_g[l] = block.a_g[k] + block.a_g_slope[k] * time
-        s.next_g_up[l] = block.g_up[k] + block.g_up_slope[k] * time
-        for r in range(s.n):
-            v0, v1 = h * block.dqs[r, k], h * block.dqs[r, k + 1]
-            q, change = cubic(block.qs[r, k], block.qs[r, k + 1], v0, v1, time / h)
-            s.looked_at[0, r], s.looked_at[1, r] = q, change / h
-            force = s.omega2[r, l] * q + s.two_xi_omega[r, l] * change / h
-            s.next_V[l] += s.Gamma[r, l] * force
+        s.next_a_g[l] = x.a_g[k] + x.a_g_slope[k] * time
+        s.next_g_up[l] = x.g_up[k] + x.g_up_slope[k] * time
+        for axis in range(directions(s)):
+            of = along(s, block, axis)
+            for r in range(of.n):
+                v0, v1, mode = h * of.dqs[r, k], h * of.dqs[r, k + 1], axis * of.n + r
+                q, change = cubic(of.qs[r, k], of.qs[r, k + 1], v0, v1, time / h)
+                s.looked_at[0, mode], s.looked_at[1, mode] = q, change / h
+                force = s.omega2[mode, l] * q + s.two_xi_omega[mode, l] * change / h
+                s.next_V[l] += s.Gamma[mode, l] * force
         store_row(s, l, system, output, s.interval[l] * output.finer + j)
 
 
-@compiled
+@by_record
 def store_row(s: Record, l: int, system: Record, output: Output, at: int) -> None:
     """Keep the state of a lane, its modes as they stand in `looked_at`, if there is room."""
     if at >= output.samples.shape[0]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled, specialised
+from rpscli.physics.core.compile import by_record, compiled, specialised
 from rpscli.physics.core.quintic import Quintic, lower_hull, quintic, upper_hull
 from rpscli.physics.core.records import LANES, ORDER, Record
 from rpscli.physics.core.series import integral, slope, value
@@ -41,7 +41,7 @@ def path_of(s: Record, l: int) -> Quintic:
     )
 
 
-@compiled
+@by_record
 def plan_steps(s: Record, l: int) -> None:
     """Length of the next steps: even parts of what is left of the interval.
 

@@ -6,10 +6,25 @@ import math
 
 import numpy as np
 
-from rpscli.physics.core.compile import compiled, kernel, uncounted
+from rpscli.physics.core.compile import compiled, exact_kernel, variant
+from rpscli.physics.core.lanes import set_ground
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
-from rpscli.physics.planar.driver import clear_results, leave_result, load_system, run_interruptible
+from rpscli.physics.planar.driver import (
+    clear_floors,
+    clear_results,
+    leave_floors,
+    leave_result,
+    load_modes,
+    load_request,
+    load_system,
+    observe_lanes,
+    run_interruptible,
+    system_of,
+    without_owners,
+)
+from rpscli.physics.planar.energy import building_energy
 from rpscli.physics.planar.run import Output, Run
+from rpscli.physics.planar.samples import store_sample
 from rpscli.physics.planar.state import (
     AT_REST,
     BLOCK,
@@ -19,24 +34,18 @@ from rpscli.physics.planar.state import (
     GOES_ON,
     IS_OVER,
     NOT_ACCEPTED,
-    NOTHING_NEW,
     ROCKING,
     ROLLING,
     RUNNING,
     SURVIVED,
     UPLIFT,
 )
-from rpscli.physics.spatial.demands import observe_ends_3d, observe_start_3d, raise_floors_3d
-from rpscli.physics.spatial.energy import resting_energy, uplifted_energy_3d
+from rpscli.physics.spatial import samples  # noqa: F401 -- which tell planar functions of theirs
+from rpscli.physics.spatial.demands import observe_ends_3d, observe_start_3d
+from rpscli.physics.spatial.energy import uplifted_energy_3d
 from rpscli.physics.spatial.equation_of_motion import enter_phase_3d, place_of
-from rpscli.physics.spatial.events import (
-    next_interval_3d,
-    observe_step,
-    raise_peak_3d,
-    resolve_step_3d,
-)
-from rpscli.physics.spatial.full_contact import enter_interval_3d, follow_full_contact_3d
-from rpscli.physics.spatial.samples import store_sample_3d
+from rpscli.physics.spatial.events import next_interval_3d, resolve_step_3d
+from rpscli.physics.spatial.full_contact import follow_full_contact_3d
 from rpscli.physics.spatial.state import STATE_3D
 from rpscli.physics.spatial.steps import accept_steps, check_steps, grow, plan_step, take_steps
 
@@ -54,19 +63,11 @@ def integrate_pairs(run: Run, lanes: int = LANES, *, interruptible: bool = False
     run_interruptible(integrate_lanes_3d, state, blocks, run, interruptible=interruptible)
 
 
-@kernel
+@exact_kernel
 def integrate_lanes_3d(state: Record, blocks: Record, run: Run) -> None:  # noqa: C901, PLR0912 -- see `planar.driver`
     """The same, in lanes and two blocks of steps that are made already."""
-    s = state[0]
-    systems, acceleration = uncounted(run.systems), uncounted(run.acceleration)
-    output = Output(
-        uncounted(run.output.samples),
-        uncounted(run.output.floors),
-        uncounted(run.output.log),
-        uncounted(run.output.devices),
-        run.output.finer,
-    )
-    run = Run(systems, uncounted(run.requests), acceleration, uncounted(run.results), output)
+    s, run = state[0], without_owners(run)
+    systems, acceleration, output = run.systems, run.acceleration, run.output
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, s.lanes
     begun = False
@@ -88,7 +89,7 @@ def integrate_lanes_3d(state: Record, blocks: Record, run: Run) -> None:  # noqa
                 if s.steps[l] > systems[s.system[l]].most_steps:
                     s.outcome[l], next_action = FAILED_TOO_MANY_STEPS, IS_OVER
             while next_action != GOES_ON or s.steps_left[l] == 0.0:
-                both = systems[s.system[l]], systems[s.system[l] + 1]
+                both = system_of(s, l, systems)
                 if next_action == NOT_ACCEPTED:
                     next_action = resolve_step_3d(s, l, both, blocks[0], output)
                 elif next_action == FOLLOW_CONTACT:
@@ -96,33 +97,25 @@ def integrate_lanes_3d(state: Record, blocks: Record, run: Run) -> None:  # noqa
                 elif next_action == GOES_ON:
                     next_action = next_interval_3d(s, l, both[0], acceleration)
                     if s.audited > 0:
-                        store_sample_3d(s, l, both, output)
+                        store_sample(s, l, both, output)
                 else:
                     next_action = next_history_3d(s, l, run)
             active -= s.history[l] == NO_HISTORY
         begun = True
 
 
-@kernel
+@exact_kernel
 def advance_lanes_3d(state: Record, systems: Record, blocks: Record, output: Output) -> None:
     """A step of all lanes together, as far as it holds no event."""
     s = state[0]
     take_steps(s)
     check_steps(s)
     observe_ends_3d(s)
-    for l in range(s.lanes):
-        if s.accepted[l] == 0.0:
-            continue
-        both = systems[s.system[l]], systems[s.system[l] + 1]
-        observe_step(s, l, both, output, 1.0)
-        if s.peak_inside[l] > 0.0:
-            raise_peak_3d(s, l, blocks[0], output.log)
-        if s.demands_rise[l] > 0.0:
-            raise_floors_3d(s, l, both)
+    observe_lanes(s, systems, blocks[0], output)
     accept_steps(s)
 
 
-@kernel
+@exact_kernel
 def next_history_3d(s: Record, l: int, run: Run) -> int:
     """A lane's history is over: FOLLOW_CONTACT or GOES_ON with the next, if there is one."""
     if s.history[l] != NO_HISTORY:
@@ -137,54 +130,47 @@ def next_history_3d(s: Record, l: int, run: Run) -> int:
     return GOES_ON
 
 
+@variant(system_of, "cos_phi")
+def systems_of(s: Record, l: int, systems: Record) -> Record:
+    """The structure of a lane, in x and in y."""
+    return systems[s.system[l] : s.system[l] + 2]
+
+
 @compiled
 def begin_history_3d(s: Record, l: int, run: Run, history: int) -> int:
     """Load a history into a lane, at rest: FOLLOW_CONTACT, or GOES_ON if it is tilted."""
     request = run.requests[history]
-    first, half = 2 * request.system, s.storeys
-    both = run.systems[first], run.systems[first + 1]
+    s.history[l], s.system[l] = history, 2 * request.system
+    both = system_of(s, l, run.systems)
     system = both[0]
-    s.n = half  # what follows loads modes in x
     load_system(s, l, system)
-    s.n = 2 * half
-    s.bend_ratio[l] = max(system.bend_ratio, both[1].bend_ratio)
-    for r in range(half):
-        of, y = half + r, both[1]
-        s.omega2[of, l], s.two_xi_omega[of, l] = y.omega2[r], y.two_xi_omega[r]
-        s.Gamma[of, l], s.shear_weight[of, l] = y.Gamma[r], y.shear_weight[r]
-        s.acceleration_weight[of, l] = y.acceleration_weight[r]
-        s.q[of, l], s.dq[0, of, l], s.seen_q[of, l], s.seen_force[of, l] = 0.0, 0.0, 0.0, 0.0
-    s.history[l], s.system[l] = history, first
-    s.record[l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
-    s.record_y[l] = request.record_y
-    s.scale[l], s.dt[l], s.sampling_rate[l] = request.scale, request.dt, 1.0 / request.dt
-    s.outcome[l], s.restart_after[l] = RUNNING, NOTHING_NEW
-    s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
-    steps = max(math.ceil(request.dt * system.uplifted_rate), 1)
-    s.uplifted_step[l], s.uplifted_steps[l] = request.dt / steps, steps
-    steps = max(math.ceil(request.dt * system.contact_rate), 1)
-    s.contact_step[l], s.contact_steps[l] = request.dt / steps, steps
+    load_request(s, l, request, system)
+    for axis in range(2):
+        load_modes(s, l, both[axis], axis * s.storeys)
+    s.bend_ratio[l], s.record_y[l] = max(system.bend_ratio, both[1].bend_ratio), request.record_y
     s.inertia_axial[l], s.restitution[l] = system.inertia_axial, system.restitution
     s.contact_time[l] = system.contact_time
     s.bounces_kept[l] = 1.0 if system.bounces > 0.0 else 0.0
     s.push_x[l], s.push_y[l], s.pull[l] = 0.0, 0.0, 0.0
-    s.side[l], s.theta[l], s.theta_dot[l], s.theta_ddot[l] = 1.0, 0.0, 0.0, 0.0
     s.angular_momentum[l], s.cos_phi[l], s.sin_phi[l] = 0.0, 1.0, 0.0
     s.turning_rate[l], s.tilt_terms[0, l], s.per_J[l] = 0.0, 0.0, 0.0
-    s.no_event[l], s.stalled[l], s.step_limit[l], s.series_ratio[l] = 0.0, 0, 0.0, 1.0
+    s.step_limit[l], s.series_ratio[l] = 0.0, 1.0
     enter_phase_3d(s, l, system, ROLLING if system.beta > 0.0 else ROCKING)
-    at = place_of(s, l, 0.0)
     sine = math.cos(system.alpha)
-    s.cone[l] = math.sqrt((s.io_1[l] + s.one_4gamma[l] * sine * sine) / at.A)
+    s.cone[l] = math.sqrt((s.io_1[l] + s.one_4gamma[l] * sine * sine) / place_of(s, l, 0.0).A)
     s.phase[l] = FULL_CONTACT
-    clear_results_3d(s, l)
-    enter_interval_3d(s, l, run.acceleration, 0)
+    clear_results(s, l)
+    s.max_azimuth[l], s.critical_azimuth[l] = 0.0, 0.0
+    s.max_beam[0, l], s.max_beam[1, l], s.torsion_lever[l] = 0.0, 0.0, 0.0
+    s.passes_as_impacts[l], s.energy_passes[l] = 0.0, 0.0
+    s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
+    set_ground(s, l, run.acceleration)
     if system.initial_rotation != 0.0:
-        release_3d(s, l, both[0])
+        release_3d(s, l, system)
         plan_step(s, l)
-        store_sample_3d(s, l, both, run.output)
+        store_sample(s, l, both, run.output)
         return GOES_ON
-    store_sample_3d(s, l, both, run.output)
+    store_sample(s, l, both, run.output)
     return FOLLOW_CONTACT
 
 
@@ -199,46 +185,45 @@ def release_3d(s: Record, l: int, system: Record) -> None:
     observe_start_3d(s, l)
 
 
-@compiled
-def clear_results_3d(s: Record, l: int) -> None:
-    """Nothing has happened yet."""
-    half = s.n
-    s.n = s.storeys
-    clear_results(s, l)
-    s.n = half
+@variant(clear_floors, "cos_phi")
+def clear_floors_3d(s: Record, l: int) -> None:
+    """Nothing was demanded of storeys and floors."""
+    for k in range(6):
+        s.room[k, l], s.below[k, l] = 0.0, 0.0
+        for i in range(s.storeys):
+            s.largest[k, l, i], s.last[k, l, i] = 0.0, 0.0
+
+
+@variant(leave_floors, "cos_phi")
+def leave_floors_3d(s: Record, l: int, result: Record) -> None:
+    """Write the demands of storeys and floors."""
     for i in range(s.storeys):
-        s.storey_shear_x[l, i], s.storey_shear_y[l, i] = 0.0, 0.0
-        s.floor_acceleration_x[l, i], s.floor_acceleration_y[l, i] = 0.0, 0.0
-    for k in range(3):
-        s.shear_rooms[k, l], s.acceleration_rooms[k, l] = 0.0, 0.0
-    s.max_azimuth[l], s.critical_azimuth[l], s.max_x[l], s.max_y[l] = 0.0, 0.0, 0.0, 0.0
-    s.torsion_lever[l], s.passes_as_impacts[l], s.energy_passes[l] = 0.0, 0.0, 0.0
-    s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
+        result.storey_shear[i], result.floor_acceleration[i] = (
+            s.largest[0, l, i],
+            s.largest[3, l, i],
+        )
+        result.storey_shear_x[i], result.storey_shear_y[i] = s.largest[1, l, i], s.largest[2, l, i]
+        result.floor_acceleration_x[i] = s.largest[4, l, i]
+        result.floor_acceleration_y[i] = s.largest[5, l, i]
 
 
 @compiled
 def finish_history_3d(s: Record, l: int, run: Run) -> None:
     """Write what the history leaves behind."""
     result, stands = run.results[s.history[l]], s.phase[l] == FULL_CONTACT
+    azimuth = 0.0 if stands else math.atan2(s.sin_phi[l], s.cos_phi[l])
     if not stands and s.theta[l] > s.max_theta[l]:
         s.max_theta[l], s.max_theta_time[l] = s.theta[l], s.interval_start[l] + s.time[l]
-        s.max_azimuth[l] = math.atan2(s.sin_phi[l], s.cos_phi[l])
+        s.max_azimuth[l] = azimuth
     if s.outcome[l] == RUNNING:
         moved = s.max_theta[l] > 0.0 or s.events[l, UPLIFT] > 0
         s.outcome[l] = SURVIVED if moved else AT_REST
-    result.energy_stored = resting_energy(s, l) if stands else uplifted_energy_3d(s, l)
+    result.energy_stored = building_energy(s, l, 0.0) if stands else uplifted_energy_3d(s, l)
     s.theta[l] = 0.0 if stands else s.theta[l]
-    s.n = s.storeys
     leave_result(s, l, result)
-    s.n = 2 * s.storeys
-    result.azimuth = 0.0 if stands else math.atan2(s.sin_phi[l], s.cos_phi[l])
-    result.max_azimuth, result.critical_azimuth = s.max_azimuth[l], s.critical_azimuth[l]
-    result.max_x, result.max_y = s.max_x[l], s.max_y[l]
+    result.azimuth, result.max_azimuth = azimuth, s.max_azimuth[l]
+    result.critical_azimuth = s.critical_azimuth[l]
+    result.max_x, result.max_y = s.max_beam[0, l], s.max_beam[1, l]
     result.passes_as_impacts = int(s.passes_as_impacts[l])
     result.closest_pass, result.shortest_pass = s.closest_pass[l], s.shortest_pass[l]
     result.energy_passes, result.torsion_lever = s.energy_passes[l], s.torsion_lever[l]
-    for i in range(s.storeys):
-        result.storey_shear_x[i] = s.storey_shear_x[l, i]
-        result.storey_shear_y[i] = s.storey_shear_y[l, i]
-        result.floor_acceleration_x[i] = s.floor_acceleration_x[l, i]
-        result.floor_acceleration_y[i] = s.floor_acceleration_y[l, i]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.compile import compiled, variant
 from rpscli.physics.core.records import Record
-from rpscli.physics.core.series import NODES, WEIGHTS, integral, value
+from rpscli.physics.core.series import integral, value
+from rpscli.physics.planar.energy import powers_within
 from rpscli.physics.planar.equation_of_motion import (
     cap_beam_lift,
     lifted_mass,
@@ -12,7 +13,13 @@ from rpscli.physics.planar.equation_of_motion import (
     phase_constants,
     rotation_terms,
 )
-from rpscli.physics.spatial.equation_of_motion import Place, beam_motion, place_of, turning_terms
+from rpscli.physics.spatial.equation_of_motion import (
+    Place,
+    beam_motion,
+    direction_at,
+    place_of,
+    turning_terms,
+)
 
 
 @compiled
@@ -53,50 +60,27 @@ def uplifted_energy_3d(s: Record, l: int) -> float:
     )
 
 
-@compiled
-def resting_energy(s: Record, l: int) -> float:
-    """Kinetic and strain energy of the building in full contact [J]."""
-    energy = strain_energy(s, l)
-    for r in range(s.n):
-        energy += 0.5 * (s.dq[0, r, l] * s.dq[0, r, l])
-    return energy
-
-
-@compiled
-def book_energy_3d(s: Record, l: int, fraction: float) -> None:
-    """Book what ground and dampers do in the first part of the step, see `planar.energy`."""
+@variant(powers_within, "cos_phi")
+def powers_within_3d(s: Record, l: int, t: float) -> tuple[float, float]:
+    """Power of the ground and of the dampers [W], a fraction t of the step after its start."""
     h, mass, half, diameter = s.step[l], lifted_mass(s, l), s.storeys, s.diameter[l]
-    rates, turning = rotation_terms(s, l), turning_terms(s, l)
-    for i in range(len(NODES)):
-        t = fraction * NODES[i]
-        p, w = value(rates, t), value(turning, t)
-        at = place_of(s, l, s.theta[l] + h * integral(rates, t))
-        cos_phi, sin_phi = direction_at(s, l, t)
-        along, across = diameter * at.C * p, diameter * at.u * w
-        m_x = mass * (along * cos_phi - across * sin_phi)
-        m_y = mass * (along * sin_phi + across * cos_phi)
-        damped = 0.0
-        for r in range(s.n):
-            dq = value(modal_terms(s, r, l), t)
-            damped += s.two_xi_omega[r, l] * (dq * dq)
-            if r < half:
-                m_x += s.Gamma[r, l] * dq
-            else:
-                m_y += s.Gamma[r, l] * dq
-        time = s.time[l] + t * h
-        a_v = s.g_up[l] + s.g_up_slope[l] * time - s.gravity[l]
-        supplied = (s.a_g[l] + s.a_g_slope[l] * time) * m_x
-        supplied += (s.a_g_y[l] + s.a_g_y_slope[l] * time) * m_y
-        supplied += a_v * mass * diameter * at.B * p
-        s.energy_input[l] -= fraction * h * WEIGHTS[i] * supplied
-        s.energy_damped[l] += fraction * h * WEIGHTS[i] * damped
-
-
-@compiled
-def direction_at(s: Record, l: int, t: float) -> tuple[float, float]:
-    """Cosine and sine of the azimuth a fraction t into the step."""
-    cosine, sine = 0.0, 0.0
-    for m in range(s.cos_phi_terms.shape[0] - 1, -1, -1):
-        cosine = cosine * t + s.cos_phi_terms[m, l]
-        sine = sine * t + s.sin_phi_terms[m, l]
-    return cosine, sine
+    rates = rotation_terms(s, l)
+    p, w = value(rates, t), value(turning_terms(s, l), t)
+    at = place_of(s, l, s.theta[l] + h * integral(rates, t))
+    cos_phi, sin_phi = direction_at(s, l, t)
+    along, across = diameter * at.C * p, diameter * at.u * w
+    m_x = mass * (along * cos_phi - across * sin_phi)
+    m_y = mass * (along * sin_phi + across * cos_phi)
+    damped = 0.0
+    for r in range(s.n):
+        dq = value(modal_terms(s, r, l), t)
+        damped += s.two_xi_omega[r, l] * (dq * dq)
+        if r < half:
+            m_x += s.Gamma[r, l] * dq
+        else:
+            m_y += s.Gamma[r, l] * dq
+    time = s.time[l] + t * h
+    a_v = s.g_up[l] + s.g_up_slope[l] * time - s.gravity[l]
+    supplied = (s.a_g[l] + s.a_g_slope[l] * time) * m_x
+    supplied += (s.a_g_y[l] + s.a_g_y_slope[l] * time) * m_y
+    return -(supplied + a_v * mass * diameter * at.B * p), damped

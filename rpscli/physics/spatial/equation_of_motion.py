@@ -17,8 +17,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from rpscli.physics.core.compile import compiled, inlined
-from rpscli.physics.core.records import ORDER, Record
+from rpscli.physics.core.compile import compiled, fma, inlined
+from rpscli.physics.core.records import ORDER, Floats, Record
 from rpscli.physics.core.series import Terms, sine_cosine
 from rpscli.physics.planar.equation_of_motion import inertia, inertia_slope, phase_constants
 from rpscli.physics.planar.state import ROLLING
@@ -49,16 +49,6 @@ MOST = 1023
 """No building has more storeys: a number masked by this, the compiler knows not to be negative."""
 
 
-@inlined
-def dot(a: float, b: float, c: float, d: float) -> float:
-    """Sum a b + c d, each product rounded by itself: alike in one lane and in all.
-
-    Of several products in one sum the compiler may choose which it rounds with the sum; adding zero
-    leaves it no choice. So do all sums of the step that more than one loop could share.
-    """
-    return (a * b + 0.0) + (c * d + 0.0)
-
-
 class Place(NamedTuple):
     """What follows from a tilt alone."""
 
@@ -81,17 +71,18 @@ def place_of(s: Record, l: int, x: float) -> Place:
     sine, cosine = sine_cosine(x)
     half, _ = sine_cosine(0.5 * x)
     versed = 2.0 * half * half
-    B, C = dot(P, cosine, Q, sine), c + dot(P, sine, -Q, cosine)
-    u = (s.phase_u0[l] - P) + dot(P, versed, c, x) - (Q * sine + 0.0)
+    B, C = P * cosine + Q * sine, c + (P * sine - Q * cosine)
+    u = (s.phase_u0[l] - P) + (P * versed + c * x) - Q * sine
     spin_1, base = s.spin_1[l], s.spin_0[l] + s.spin_1[l] * sine
     rolls = spin_1 > 0.0
     g = s.spin[l] * ((x - sine) / base if rolls else 1.0)
     g_slope = spin_1 * (versed - g * cosine) / base
     G = versed + g
-    A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], dot(B, B, C, C), B)
-    J = dot(s.io_1[l] * sine, sine, s.inertia_axial[l] * G, G) + s.one_4gamma[l] * u * u
-    H = dot(s.io_1[l] * sine, cosine, s.inertia_axial[l] * G, sine + g_slope)
-    return Place(sine, cosine, B, C, u, A, J, H + s.one_4gamma[l] * u * C, G, g_slope)
+    A = inertia(s.io_1[l], s.one_4gamma[l], s.four_gamma_eta[l], B * B + C * C, B)
+    i_1, i_3, beam = s.io_1[l], s.inertia_axial[l], s.one_4gamma[l]
+    J = i_1 * sine * sine + i_3 * G * G + beam * u * u
+    H = i_1 * sine * cosine + i_3 * G * (sine + g_slope) + beam * u * C
+    return Place(sine, cosine, B, C, u, A, J, H, G, g_slope)
 
 
 # Taylor terms.
@@ -100,13 +91,8 @@ def place_of(s: Record, l: int, x: float) -> Place:
 @inlined
 def begin_terms(s: Record, lanes: int) -> None:
     """Terms of order 0: the state, and what follows from it."""
-    for l in range(lanes):
-        s.V_term[l], s.V_y_term[l] = 0.0, 0.0
-    for r in range(s.n):
-        for l in range(lanes):
-            omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-            s.modal_force[r, l] = dot(omega2, s.q[r, l], damping, s.dq[0, r, l])
-    add_shears(s, lanes)
+    begin_modes(s, lanes, 0)
+    begin_modes(s, lanes, 1)
     for l in range(lanes):
         x = s.theta[l]
         at = place_of(s, l, x)
@@ -115,9 +101,7 @@ def begin_terms(s: Record, lanes: int) -> None:
         s.sin2_terms[0, l] = 2.0 * at.sine * at.cosine
         s.cos2_terms[0, l] = 1.0 - 2.0 * at.sine * at.sine
         s.D_terms[0, l], s.u_terms[0, l] = at.C - s.phase_c[l], at.u
-        s.cos_phi_terms[0, l], s.sin_phi_terms[0, l] = cos_phi, sin_phi
-        s.u_cos_terms[0, l], s.u_sin_terms[0, l] = at.u * cos_phi, at.u * sin_phi
-        s.C_cos_terms[0, l], s.C_sin_terms[0, l] = at.C * cos_phi, at.C * sin_phi
+        s.e_terms[0, 0, l], s.e_terms[1, 0, l] = cos_phi, sin_phi
         s.B_terms[0, l], s.C_terms[0, l], s.A_terms[0, l] = at.B, at.C, at.A
         s.H_terms[0, l], s.J_terms[0, l] = at.H, at.J
         s.g_terms[0, l], s.g_slope_terms[0, l] = at.G - (1.0 - at.cosine), at.g_slope
@@ -125,29 +109,32 @@ def begin_terms(s: Record, lanes: int) -> None:
         s.turning[l] = s.angular_momentum[l] * s.per_J[l]
         s.dtheta_terms[0, l], s.turning_terms[0, l] = s.theta_dot[l], s.turning[l]
         s.momentum_terms[0, l] = s.angular_momentum[l]
-        s.V[l], s.V_y[l] = s.V_term[l], s.V_y_term[l]
         time = s.time[l]
-        s.z_x_terms[0, l] = push_term(s, l, s.V[l], s.a_g[l] + s.a_g_slope[l] * time)
-        s.z_y_terms[0, l] = push_term(s, l, s.V_y[l], s.a_g_y[l] + s.a_g_y_slope[l] * time)
+        s.z_terms[0, 0, l] = push_term(s, l, s.shear[0, l], s.a_g[l] + s.a_g_slope[l] * time)
+        s.z_terms[1, 0, l] = push_term(s, l, s.shear[1, l], s.a_g_y[l] + s.a_g_y_slope[l] * time)
+        s.u_b_terms[0, 0, l], s.u_b_terms[1, 0, l] = at.u * cos_phi, at.u * sin_phi
+        s.C_e_terms[0, 0, l], s.C_e_terms[1, 0, l] = at.C * cos_phi, at.C * sin_phi
     extend_positions(s, lanes, 1)
 
 
 @inlined
-def add_shears(s: Record, lanes: int) -> None:
-    """Add up the terms of V in x and in y."""
+def begin_modes(s: Record, lanes: int, axis: int) -> None:
+    """The forces of modes in a direction, and their sum V."""
     half = s.storeys & MOST
-    for r in range(half):
+    for l in range(lanes):
+        s.shear[axis, l] = 0.0
+    for i in range(half):
+        r = half * axis + i
         for l in range(lanes):
-            s.V_term[l] += s.Gamma[r, l] * s.modal_force[r, l]
-    for r in range(half):
-        for l in range(lanes):
-            s.V_y_term[l] += s.Gamma[half + r, l] * s.modal_force[half + r, l]
+            damping = s.two_xi_omega[r, l] * s.dq[0, r, l]
+            s.modal_force[r, l] = fma(s.omega2[r, l], s.q[r, l], damping)
+            s.shear[axis, l] = fma(s.Gamma[r, l], s.modal_force[r, l], s.shear[axis, l])
 
 
 @inlined
 def push_term(s: Record, l: int, V: float, a_g: float) -> float:
     """z from shear or device force V [N] and a_g [m/s2] [1/s2]."""
-    return dot(s.shear_factor[l], V, -s.ground_over_R[l], a_g)
+    return float(s.shear_factor[l] * V - s.ground_over_R[l] * a_g)
 
 
 @inlined
@@ -163,84 +150,72 @@ def extend_positions(s: Record, lanes: int, m: int) -> None:
         cos_phi, sin_phi, J = 0.0, 0.0, 0.0
         for j in range(m):
             p, w = s.dtheta_terms[k - j, l], s.turning_terms[k - j, l]
-            sine += s.cos_terms[j, l] * p
-            cosine -= s.sin_terms[j, l] * p
-            sine2 += s.cos2_terms[j, l] * p
-            cosine2 -= s.sin2_terms[j, l] * p
-            cos_phi -= s.sin_phi_terms[j, l] * w
-            sin_phi += s.cos_phi_terms[j, l] * w
-            J += s.H_terms[j, l] * p
-        x, sine, cosine = part * s.dtheta_terms[k, l], part * sine, part * cosine
-        sine2, cosine2 = 2.0 * part * sine2, 2.0 * part * cosine2
+            sine = fma(s.cos_terms[j, l], p, sine)
+            cosine = fma(s.sin_terms[j, l], p, cosine)
+            sine2 = fma(s.cos2_terms[j, l], p, sine2)
+            cosine2 = fma(s.sin2_terms[j, l], p, cosine2)
+            cos_phi = fma(s.e_terms[1, j, l], w, cos_phi)
+            sin_phi = fma(s.e_terms[0, j, l], w, sin_phi)
+            J = fma(s.H_terms[j, l], p, J)
+        x, sine, cosine = part * s.dtheta_terms[k, l], part * sine, -part * cosine
+        sine2, cosine2 = 2.0 * part * sine2, -2.0 * part * cosine2
         P, Q, c = s.phase_p[l], s.phase_q[l], s.phase_c[l]
-        D, u = dot(P, sine, -Q, cosine), dot(c, x, -Q, sine) - (P * cosine + 0.0)
+        D, u = P * sine - Q * cosine, c * x - Q * sine - P * cosine
         s.tilt_terms[m, l], s.sin_terms[m, l], s.cos_terms[m, l] = x, sine, cosine
         s.sin2_terms[m, l], s.cos2_terms[m, l] = sine2, cosine2
-        s.cos_phi_terms[m, l], s.sin_phi_terms[m, l] = part * cos_phi, part * sin_phi
+        s.e_terms[0, m, l], s.e_terms[1, m, l] = -part * cos_phi, part * sin_phi
         s.D_terms[m, l], s.u_terms[m, l] = D, u
         if m <= ORDER:
-            s.B_terms[m, l], s.J_terms[m, l] = dot(P, cosine, Q, sine), 2.0 * part * J
-            vertical = dot(s.A_cos2[l], cosine2, s.A_sin2[l], sine2)
-            s.A_terms[m, l] = dot(2.0 * c * s.one_4gamma[l], D, s.four_gamma_eta[l], vertical)
-    extend_products(s, lanes, m)
+            s.B_terms[m, l], s.J_terms[m, l] = P * cosine + Q * sine, 2.0 * part * J
+            vertical = s.A_cos2[l] * cosine2 + s.A_sin2[l] * sine2
+            A = 2.0 * c * s.one_4gamma[l] * D
+            s.A_terms[m, l] = A + s.four_gamma_eta[l] * vertical
+    extend_products(s, lanes, m, 0)
+    extend_products(s, lanes, m, 1)
     if m <= ORDER:
-        extend_spin(s, lanes, m)
+        extend_inertia(s, lanes, m)
 
 
 @inlined
-def extend_products(s: Record, lanes: int, m: int) -> None:
-    """Terms of order m of u and C along both axes, and of H but for spin on arcs."""
+def extend_products(s: Record, lanes: int, m: int, axis: int) -> None:
+    """Terms of order m of u and C along an axis."""
     for l in range(lanes):
-        c = s.phase_c[l]
-        u_cos, u_sin, C_cos, C_sin, along = 0.0, 0.0, 0.0, 0.0, 0.0
+        u_b, C_e = 0.0, s.phase_c[l] * s.e_terms[axis, m, l]
         for j in range(m + 1):
-            cos_phi, sin_phi = s.cos_phi_terms[m - j, l], s.sin_phi_terms[m - j, l]
-            D, u = s.D_terms[j, l], s.u_terms[j, l]
-            u_cos += u * cos_phi
-            u_sin += u * sin_phi
-            C_cos += D * cos_phi
-            C_sin += D * sin_phi
-            along += s.tilt_terms[m - j, l] * D
-        s.u_cos_terms[m, l], s.u_sin_terms[m, l] = u_cos, u_sin
-        speed = m / s.step[l] * s.diameter[l]
-        s.beam_x[l], s.beam_y[l] = speed * u_cos + 0.0, speed * u_sin + 0.0
+            e = s.e_terms[axis, m - j, l]
+            u_b, C_e = fma(s.u_terms[j, l], e, u_b), fma(s.D_terms[j, l], e, C_e)
+        s.u_b_terms[axis, m, l] = u_b
+        s.beam[axis, l] = m / s.step[l] * s.diameter[l] * u_b
         if m <= ORDER:
-            s.C_cos_terms[m, l] = C_cos + c * s.cos_phi_terms[m, l]
-            s.C_sin_terms[m, l] = C_sin + c * s.sin_phi_terms[m, l]
-            H = dot(s.H_sin[l], s.sin_terms[m, l], s.H_cos[l], s.cos_terms[m, l])
-            H += s.H_sin2[l] * s.sin2_terms[m, l]
-            H += s.H_cos2[l] * s.cos2_terms[m, l]
-            H += s.H_x[l] * s.tilt_terms[m, l]
-            s.H_terms[m, l] = H + s.one_4gamma[l] * c * along
+            s.C_e_terms[axis, m, l] = C_e
 
 
 @inlined
-def extend_spin(s: Record, lanes: int, m: int) -> None:
-    """Terms of order m of what spin on arcs adds to G, dG/dx and H."""
+def extend_inertia(s: Record, lanes: int, m: int) -> None:
+    """Terms of order m of H, and of G and dG/dx, to which spin on arcs adds."""
     for l in range(lanes):
-        spin_1, crossed, slope, more = s.spin_1[l], 0.0, 0.0, 0.0
+        spin_1, crossed, slope, more, along = s.spin_1[l], 0.0, 0.0, 0.0, 0.0
+        for j in range(m + 1):
+            along = fma(s.tilt_terms[m - j, l], s.D_terms[j, l], along)
         for j in range(1, m):
             sine, cosine = s.sin_terms[j, l], s.cos_terms[j, l]
             g_j, other, slope_j = s.g_terms[j, l], s.g_terms[m - j, l], s.g_slope_terms[m - j, l]
-            crossed += sine * other
-            slope += other * cosine
-            slope += sine * slope_j
-            more += (g_j - cosine) * slope_j
+            crossed = fma(sine, other, crossed)
+            slope = fma(other, cosine, fma(sine, slope_j, slope))
+            more = fma(g_j - cosine, slope_j, more)
         sine, cosine = s.sin_terms[m, l], s.cos_terms[m, l]
         sine_0, cosine_0 = s.sin_terms[0, l], s.cos_terms[0, l]
         g_0, slope_0 = s.g_terms[0, l], s.g_slope_terms[0, l]
         per, rolls = 1.0 / (s.spin_0[l] + spin_1 * sine_0), 1.0 if spin_1 > 0.0 else 0.0
         crossed += g_0 * sine
-        g = dot(rolls * s.spin[l], s.tilt_terms[m, l] - sine, -spin_1, crossed) * per
-        slope += cosine + g_0 * cosine
-        slope += g * cosine_0
-        slope += sine * slope_0
+        g = (rolls * s.spin[l] * (s.tilt_terms[m, l] - sine) - spin_1 * crossed) * per
+        slope += cosine + g_0 * cosine + g * cosine_0 + sine * slope_0
         slope *= -spin_1 * per
-        more += slope + (g_0 - cosine_0) * slope
-        more += (g - cosine) * slope_0
-        more += crossed + g * sine_0
+        more += slope + (g_0 - cosine_0) * slope + (g - cosine) * slope_0 + crossed + g * sine_0
         s.g_terms[m, l], s.g_slope_terms[m, l] = g, slope
-        s.H_terms[m, l] += s.inertia_axial[l] * more
+        H = s.H_sin[l] * sine + s.H_cos[l] * cosine + s.H_x[l] * s.tilt_terms[m, l]
+        H += s.H_sin2[l] * s.sin2_terms[m, l] + s.H_cos2[l] * s.cos2_terms[m, l]
+        s.H_terms[m, l] = H + s.one_4gamma[l] * s.phase_c[l] * along + s.inertia_axial[l] * more
 
 
 @inlined
@@ -250,29 +225,29 @@ def extend_tilt(s: Record, lanes: int, m: int) -> None:
     for l in range(lanes):
         h = s.step[l]
         part = h * (1.0 / m)
-        p, w, w_last = s.dtheta_terms[0, l], s.turning_terms[0, l], s.turning_terms[k, l]
-        z_x, z_y = s.z_x_terms[0, l], s.z_y_terms[0, l]
-        pushes = dot(z_x, s.C_cos_terms[k, l], z_y, s.C_sin_terms[k, l])
-        turns = dot(z_y, s.u_cos_terms[k, l], -z_x, s.u_sin_terms[k, l])
-        inertial, slowed = 0.5 * s.A_terms[m, l] * p + 0.0, s.J_terms[m, l] * w + 0.0
-        w2 = w * w_last + 0.0
+        pushes, turns, turned, w2, spins = 0.0, 0.0, 0.0, 0.0, 0.0
+        for j in range(m):
+            z_x, z_y = s.z_terms[0, j, l], s.z_terms[1, j, l]
+            pushes = fma(z_x, s.C_e_terms[0, k - j, l], pushes)
+            pushes = fma(z_y, s.C_e_terms[1, k - j, l], pushes)
+            turns = fma(z_y, s.u_b_terms[0, k - j, l], turns)
+            turned = fma(z_x, s.u_b_terms[1, k - j, l], turned)
+            w2 = fma(s.turning_terms[j, l], s.turning_terms[k - j, l], w2)
+        inertial = 0.5 * s.A_terms[m, l] * s.dtheta_terms[0, l]
+        slowed = s.J_terms[m, l] * s.turning_terms[0, l]
         for j in range(1, m):
-            z_x, z_y = s.z_x_terms[j, l], s.z_y_terms[j, l]
-            pushes += z_x * s.C_cos_terms[k - j, l]
-            pushes += z_y * s.C_sin_terms[k - j, l]
-            pushes += s.H_terms[j, l] * s.w2_terms[k - j, l]
-            turns += z_y * s.u_cos_terms[k - j, l]
-            turns -= z_x * s.u_sin_terms[k - j, l]
-            w2 += s.turning_terms[j, l] * s.turning_terms[k - j, l] + 0.0
-            inertial += (0.5 * (m + j) / m) * s.A_terms[m - j, l] * s.dtheta_terms[j, l]
-            slowed += s.J_terms[m - j, l] * s.turning_terms[j, l]
+            spins = fma(s.H_terms[j, l], s.w2_terms[k - j, l], spins)
+            A = (0.5 * (m + j) / m) * s.A_terms[m - j, l]
+            inertial = fma(A, s.dtheta_terms[j, l], inertial)
+            slowed = fma(s.J_terms[m - j, l], s.turning_terms[j, l], slowed)
         s.w2_terms[k, l] = w2
-        pushes += s.H_terms[0, l] * w2
+        pushes += fma(s.H_terms[0, l], w2, spins)
         g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
         before = s.B_terms[k - 1, l] if m > 1 else 0.0
-        weights = s.weight_over_R[l] * dot(g_up, s.B_terms[k, l], h * s.g_up_slope[l], before)
-        s.dtheta_terms[m, l] = -s.per_A[l] * (part * (weights - pushes) + inertial)
-        momentum = part * turns + 0.0
+        weights = g_up * s.B_terms[k, l] + h * s.g_up_slope[l] * before
+        force = s.weight_over_R[l] * weights - pushes
+        s.dtheta_terms[m, l] = -s.per_A[l] * (part * force + inertial)
+        momentum = part * (turns - turned)
         s.momentum_terms[m, l] = momentum
         s.turning_terms[m, l] = s.per_J[l] * (momentum - slowed)
 
@@ -280,39 +255,33 @@ def extend_tilt(s: Record, lanes: int, m: int) -> None:
 @inlined
 def extend_modes(s: Record, lanes: int, m: int) -> None:
     """Terms of order m of the modes, their forces, and with V of z; u_b' is known to order m."""
-    for l in range(lanes):
-        part, time, h = s.step[l] * (1.0 / m), s.time[l], s.step[l]
-        a_x = (
-            s.a_g[l] + s.a_g_slope[l] * time if m == 1 else (h * s.a_g_slope[l] if m == 2 else 0.0)
-        )
-        a_y = s.a_g_y[l] + s.a_g_y_slope[l] * time
-        a_y = a_y if m == 1 else (h * s.a_g_y_slope[l] if m == 2 else 0.0)
-        s.beam_x[l] += part * a_x
-        s.beam_y[l] += part * a_y
-        s.V_term[l], s.V_y_term[l] = 0.0, 0.0
-    half = s.storeys & MOST
-    for r in range(half):
-        for l in range(lanes):
-            s.V_term[l] += extended_mode(s, r, l, m, s.beam_x[l])
-    for r in range(half):
-        for l in range(lanes):
-            s.V_y_term[l] += extended_mode(s, half + r, l, m, s.beam_y[l])
-    for l in range(lanes):
-        rise = s.step[l] if m == 1 else 0.0
-        s.z_x_terms[m, l] = push_term(s, l, s.V_term[l], rise * s.a_g_slope[l])
-        s.z_y_terms[m, l] = push_term(s, l, s.V_y_term[l], rise * s.a_g_y_slope[l])
+    extend_modes_along(s, lanes, m, 0, s.a_g, s.a_g_slope)
+    extend_modes_along(s, lanes, m, 1, s.a_g_y, s.a_g_y_slope)
 
 
 @inlined
-def extended_mode(s: Record, r: int, l: int, m: int, beam: float) -> float:
-    """Write the term of order m of a mode; returns its part of V."""
-    part, Gamma = s.step[l] * (1.0 / m), s.Gamma[r, l]
-    q = part * s.dq[m - 1, r, l]
-    dq = dot(-Gamma, beam, -part, s.modal_force[r, l])
-    force = dot(s.two_xi_omega[r, l], dq, s.omega2[r, l], q)
-    s.dq[m, r, l] = dq
-    s.modal_force[r, l] = force
-    return float(Gamma * force)
+def extend_modes_along(
+    s: Record, lanes: int, m: int, axis: int, a_g: Floats, a_g_slope: Floats
+) -> None:
+    """The same in a direction."""
+    for l in range(lanes):
+        h, slope, s.shear[axis, l] = s.step[l], a_g_slope[l], 0.0
+        ground = a_g[l] + slope * s.time[l] if m == 1 else (h * slope if m == 2 else 0.0)
+        s.beam[axis, l] += h * (1.0 / m) * ground
+    half = s.storeys & MOST
+    for i in range(half):
+        r = half * axis + i
+        for l in range(lanes):
+            part, Gamma = s.step[l] * (1.0 / m), s.Gamma[r, l]
+            q = part * s.dq[m - 1, r, l]
+            dq = fma(-Gamma, s.beam[axis, l], -part * s.modal_force[r, l])
+            force = fma(s.two_xi_omega[r, l], dq, s.omega2[r, l] * q)
+            s.dq[m, r, l] = dq
+            s.modal_force[r, l] = force
+            s.shear[axis, l] = fma(Gamma, force, s.shear[axis, l])
+    for l in range(lanes):
+        rise = s.step[l] * a_g_slope[l] if m == 1 else 0.0
+        s.z_terms[axis, m, l] = push_term(s, l, s.shear[axis, l], rise)
 
 
 # The motion within a step.
@@ -330,6 +299,21 @@ def momentum_terms(s: Record, l: int) -> Terms:
     """Terms of L of a lane."""
     d = s.momentum_terms
     return d[0, l], d[1, l], d[2, l], d[3, l], d[4, l], d[5, l], d[6, l], d[7, l]
+
+
+@compiled
+def pair_within(terms: Floats, l: int, t: float) -> tuple[float, float]:
+    """A pair of series (2, orders, lanes) a fraction t into the step."""
+    x, y = 0.0, 0.0
+    for m in range(terms.shape[1] - 1, -1, -1):
+        x, y = x * t + terms[0, m, l], y * t + terms[1, m, l]
+    return x, y
+
+
+@compiled
+def direction_at(s: Record, l: int, t: float) -> tuple[float, float]:
+    """Cosine and sine of the azimuth a fraction t into the step."""
+    return pair_within(s.e_terms, l, t)
 
 
 @compiled
@@ -372,14 +356,13 @@ def rates_now(s: Record, l: int) -> tuple[float, float, float, float]:
 @compiled
 def renew_push(s: Record, l: int) -> tuple[float, float]:
     """z of the present state, without devices: V anew, and the ground [1/s2]."""
-    half, V_x, V_y = s.storeys, 0.0, 0.0
+    half, time, V_x, V_y = s.storeys, s.time[l], 0.0, 0.0
     for r in range(s.n):
         force = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[0, r, l]
         if r < half:
             V_x += s.Gamma[r, l] * force
         else:
             V_y += s.Gamma[r, l] * force
-    time = s.time[l]
     return (
         push_term(s, l, V_x, s.a_g[l] + s.a_g_slope[l] * time),
         push_term(s, l, V_y, s.a_g_y[l] + s.a_g_y_slope[l] * time),

@@ -44,11 +44,19 @@ def log_event_3d(
     """Count and log an event at the present state; returns its row, or -1."""
     theta = 0.0 if s.phase[l] == FULL_CONTACT else s.theta[l]
     row = log_event(s, l, log, time_of(s, l), kind, theta, before, after, lost)
+    describe_event(log, row, math.atan2(s.sin_phi[l], s.cos_phi[l]), 0.0, 0.0, 0.0)
+    return row
+
+
+@compiled
+def describe_event(
+    log: Record, row: int, azimuth: float, least: float, nearness: float, share: float
+) -> None:
+    """Complete an entry of the log, if there was room for it."""
     if row >= 0:
         entry = log[row]
-        entry.azimuth = math.atan2(s.sin_phi[l], s.cos_phi[l])
-        entry.least_tilt, entry.nearness, entry.loss_share = 0.0, 0.0, 0.0
-    return row
+        entry.azimuth, entry.least_tilt, entry.nearness = azimuth, least, nearness
+        entry.loss_share = share
 
 
 @compiled
@@ -107,8 +115,7 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: int) -> N
     s.energy_lost[l] += lost
     s.energy_passes[l] += lost
     row = log_event_3d(s, l, log, PASS, p, s.theta_dot[l], lost)
-    if row >= 0:
-        log[row].least_tilt, log[row].nearness, log[row].loss_share = least, nearness, share
+    describe_event(log, row, math.atan2(s.sin_phi[l], s.cos_phi[l]), least, nearness, share)
     s.closest_pass[l] = min(s.closest_pass[l], least / system.alpha)
     s.shortest_pass[l] = min(s.shortest_pass[l], least / max(speed, 1e-300))
     s.passes_as_impacts[l] += 1.0 if share > 0.5 else 0.0
@@ -158,9 +165,7 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
         at = place_of(s, l, s.theta[l])
         before = beam_now(s, l)
         lifted = lifting_energy(s, l, at) + tilting_energy_3d(s, l, at)
-    phase = ROLLING if system.beta > 0.0 else ROCKING
-    if s.phase[l] != phase:
-        enter_phase_3d(s, l, system, phase)
+    enter_phase_3d(s, l, system, ROLLING if system.beta > 0.0 else ROCKING)
     s.cos_phi[l], s.sin_phi[l] = z_x / size, z_y / size
     s.theta[l], s.theta_dot[l], s.angular_momentum[l] = UPLIFT_TILT, 0.0, 0.0
     move_floors(s, l, before)

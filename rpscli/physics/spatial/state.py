@@ -9,13 +9,8 @@ these rows, so that what loops over modes serves both kernels. What is planar an
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
-from rpscli.physics.core.records import WHOLE, Field, Record
+from rpscli.physics.core.records import WHOLE, Field
 from rpscli.physics.planar import state as planar
-
-Pair: TypeAlias = tuple[Record, Record]
-"""Of a structure the systems in x and in y."""
 
 UPRIGHT_TILT = 5e-10
 """theta_c [rad]: what passes nearer is taken over by a map."""
@@ -32,7 +27,9 @@ def _composed() -> tuple[Field, ...]:
     """
     unused = {"action_terms", "beam_velocity_term", "next_B", "next_C", "next_per_A"}
     unused |= {"next_theta_push", "looked_at", "shear_bound", "shear_before", "shear_bend"}
-    unused |= {"acceleration_bound", "acceleration_before", "device_terms"}
+    unused |= {"acceleration_bound", "acceleration_before", "device_terms", "V", "storey_shear"}
+    unused |= {"shear_room", "shear_below_all_maxima", "last_shear", "floor_acceleration"}
+    unused |= {"acceleration_room", "acceleration_below_all_maxima", "last_acceleration"}
     kept = [field for field in planar.STATE if field.name not in unused]
     return tuple(
         field._replace(sizes=field.sizes.replace("modes lanes", "rows lanes"), by="spatial")
@@ -91,14 +88,12 @@ STATE_3D = (
     *_lanes("rad/s2", turning_rate="w' at the start of the step"),
     *_lanes(
         "N",
-        V_y="base shear in y",
-        next_V_y="at the end of the step",
         push_x="of devices on the cap beam, in x",
         push_y="in y",
         pull="of devices on it, downwards",
     ),
-    *_lanes("m/s", beam_x="last term of u_b' and the ground's velocity, in x", beam_y="in y"),
-    *_lanes("N", V_term="last term of V in x", V_y_term="in y"),
+    Field("shear", "2 lanes", "N", "last term of V in x and y", "spatial"),
+    Field("beam", "2 lanes", "m/s", "last term of u_b' and the ground's velocity", "spatial"),
     # Positions have a term more than velocities.
     *_terms("rad", "positions", tilt="of x"),
     *_terms(
@@ -110,39 +105,28 @@ STATE_3D = (
         cos2="of cos 2x",
         D="of C - c",
         u="of u = |u_b|/2R",
-        cos_phi="of the cosine of the azimuth",
-        sin_phi="of its sine",
-        u_cos="of u_b/2R in x",
-        u_sin="in y",
     ),
+    *_terms("-", "2 positions", e="of cosine and sine of the azimuth", u_b="of u_b/2R in x and y"),
+    *_terms("-", "2 terms", C_e="of C times these"),
+    *_terms("1/s2", "2 terms", z="of z in x and y"),
     *_terms("rad/s", "terms", turning="of w", momentum="of L"),
-    *_terms("-", "terms", J="of J", H="of H", C_cos="of C cos phi", C_sin="of C sin phi", g="of G"),
-    *_terms("-", "terms", g_slope="of dG/dx"),
-    *_terms("1/s2", "terms", z_x="of z in x", z_y="in y", w2="of w^2"),
-    # Demands of floors: resultants, then in x and in y. What bounds them is in `planar.demands`.
-    Field("looked_at", "12 floors", "mixed", "shears, accelerations; modes", "spatial"),
-    Field(
-        "kept", "2 rows", "mixed", "the modes at the step's end, while others are stored", "spatial"
-    ),
+    *_terms("-", "terms", J="of J", H="of H", g="of G - 1 + cos x", g_slope="of its slope"),
+    *_terms("1/s2", "terms", w2="of w^2"),
+    # Demands of floors, see `demands` for their rows; what bounds them is in `planar.demands`.
+    Field("looked_at", "12 rows", "mixed", "shears, accelerations; modes", "spatial"),
     *(
-        Field(f"{name}_{way}", "lanes modes", unit, f"largest one in {way}", "spatial")
-        for name, unit in (("storey_shear", "N"), ("floor_acceleration", "m/s2"))
-        for way in "xy"
+        Field(name, "6 lanes modes", "mixed", text, "spatial")
+        for name, text in (("largest", "the demands"), ("last", "when last looked at"))
     ),
-    *(
-        Field(f"{name}_{what}", "2 lanes", "mixed", f"{text}, in x and y", "spatial")
-        for name in ("shear", "acceleration")
-        for what, text in (("bound", "sum of what changed"), ("before", "at its start"))
-    ),
-    Field("shear_bend", "2 lanes", "mixed", "sum of what velocities lose", "spatial"),
-    *(
-        Field(f"{name}_{what}", "3 lanes", "mixed", f"{text}: resultant, x, y", "spatial")
-        for name in ("shear", "acceleration")
-        for what, text in (("rooms", "none rises to this"), ("below", "none rises from rest"))
-    ),
+    Field("bound", "4 lanes", "mixed", "sums of what changed since then", "spatial"),
+    Field("before", "4 lanes", "mixed", "at the start of the step", "spatial"),
+    Field("bend", "2 lanes", "mixed", "sums of what velocities lose, in x and y", "spatial"),
+    Field("room", "6 lanes", "mixed", "no demand rises with a sum to this", "spatial"),
+    Field("below", "6 lanes", "mixed", "none rises from rest", "spatial"),
     # Where it was largest, and what passes near upright did.
     *_lanes("rad", max_azimuth="of the largest tilt", critical_azimuth="where theta_cr was passed"),
-    *_lanes("m", max_x="largest |u_b| in x", max_y="in y", torsion_lever="largest so far"),
+    Field("max_beam", "2 lanes", "m", "largest |u_b| in x and y", "spatial"),
+    *_lanes("m", torsion_lever="largest so far"),
     *_lanes("-", passes_as_impacts="passes with l > .5"),
     Field("closest_pass", "lanes", "-", "least theta_min/alpha of a pass", "spatial"),
     Field("shortest_pass", "lanes", "s", "least theta_min/|q| of a pass", "spatial"),

@@ -9,14 +9,21 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled, specialised
+from rpscli.physics.core.compile import compiled, fma, specialised, variant
 from rpscli.physics.core.quintic import Quintic, lower_hull, quintic, upper_hull
 from rpscli.physics.core.records import LANES, ORDER, Record
 from rpscli.physics.core.series import integral, sine_cosine, value
-from rpscli.physics.planar.steps import ONE_BEFORE, add_terms, chosen, end_step_at, path_of, sums
+from rpscli.physics.planar.events import end_turn_at, take_turn
+from rpscli.physics.planar.steps import (
+    ONE_BEFORE,
+    add_terms,
+    chosen,
+    path_of,
+    plan_steps,
+    sums,
+)
 from rpscli.physics.spatial.equation_of_motion import (
     begin_terms,
-    dot,
     extend_modes,
     extend_positions,
     extend_tilt,
@@ -80,28 +87,22 @@ def extend_all(s: Record, lanes: int) -> None:
 @compiled
 def add_turns(s: Record) -> None:
     """What else is at the end of the step: L, the turn of the azimuth, x'' and what acts on it."""
-    w, d, momentum = s.turning_terms, s.dtheta_terms, s.momentum_terms
+    w, d, L = s.turning_terms, s.dtheta_terms, s.momentum_terms
     for l in range(s.lanes):
         per = 1.0 / s.step[l]
         turn, _ = sums(w[0, l], w[1, l], w[2, l], w[3, l], w[4, l], w[5, l], w[6, l], w[7, l])
         s.next_turn[l] = s.step[l] * turn
-        _, s.next_angular_momentum[l] = sums(
-            momentum[0, l],
-            momentum[1, l],
-            momentum[2, l],
-            momentum[3, l],
-            momentum[4, l],
-            momentum[5, l],
-            momentum[6, l],
-            momentum[7, l],
-        )
+        faster, momentum = 0.0, 0.0
+        for m in range(ORDER, 0, -1):
+            faster += m * d[m, l]
+            momentum += L[m, l]
+        s.next_angular_momentum[l] = momentum + L[0, l]
         s.theta_ddot[l], s.turning_rate[l] = per * d[1, l], per * w[1, l]
-        faster = d[1, l] + 2.0 * d[2, l] + 3.0 * d[3, l] + 4.0 * d[4, l]
-        s.next_theta_ddot[l] = per * (faster + 5.0 * d[5, l] + 6.0 * d[6, l] + 7.0 * d[7, l])
+        s.next_theta_ddot[l] = per * faster
     for r in range(s.n):
         for l in range(s.lanes):
-            omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-            s.modal_force[r, l] = dot(omega2, s.next_q[r, l], damping, s.next_dq[r, l])
+            damping = s.two_xi_omega[r, l] * s.next_dq[r, l]
+            s.modal_force[r, l] = fma(s.omega2[r, l], s.next_q[r, l], damping)
 
 
 @compiled
@@ -161,7 +162,7 @@ GROWTH, CAUTION = 2.0, 0.9
 """Of steps behind one that was too long: at most so much longer, and so much of what fits."""
 
 
-@compiled
+@variant(plan_steps, "cos_phi")
 def plan_step(s: Record, l: int) -> None:
     """Length of the next step: an even part of what is left of the interval, or `step_limit`.
 
@@ -215,13 +216,10 @@ def accept_steps(s: Record) -> None:
         s.theta_ddot[l] = chosen(accepted, s.next_theta_ddot[l], s.theta_ddot[l])
         momentum = chosen(accepted, s.next_angular_momentum[l], s.angular_momentum[l])
         s.angular_momentum[l] = momentum
-        s.cos_phi[l] = chosen(accepted, dot(cos_phi, cosine, -sin_phi, sine), cos_phi)
-        s.sin_phi[l] = chosen(accepted, dot(sin_phi, cosine, cos_phi, sine), sin_phi)
-        for i in range(2):
-            s.shear_before[i, l] = chosen(accepted, s.shear_bound[i, l], s.shear_before[i, l])
-            s.acceleration_before[i, l] = chosen(
-                accepted, s.acceleration_bound[i, l], s.acceleration_before[i, l]
-            )
+        s.cos_phi[l] = chosen(accepted, cos_phi * cosine - sin_phi * sine, cos_phi)
+        s.sin_phi[l] = chosen(accepted, sin_phi * cosine + cos_phi * sine, sin_phi)
+        for i in range(4):
+            s.before[i, l] = chosen(accepted, s.bound[i, l], s.before[i, l])
     for r in range(s.n):
         for l in range(lanes):
             s.q[r, l] = chosen(s.accepted[l], s.next_q[r, l], s.q[r, l])
@@ -233,31 +231,25 @@ def accept_steps(s: Record) -> None:
         s.steps_left[l] = left
         x, p = s.theta[l], s.theta_dot[l]
         across = s.turning[l] * x
-        near = s.step[l] * s.step[l] * dot(p, p, across, across) > ARC * ARC * (x * x)
+        near = s.step[l] * s.step[l] * (p * p + across * across) > ARC * ARC * (x * x)
         goes_on = accepted & (left > 0.0) & (s.step_limit[l] == 0.0) & (not near)
         s.needs_attention[l] = 0.0 if goes_on else 1.0
         s.no_event[l] = 0.0
         s.steps[l] += 1.0
 
 
-@compiled
-def end_step_at_3d(s: Record, l: int, t: float, level: float) -> None:
-    """Make a fraction t of the step of a lane its end, where the tilt is at a level [level rad]."""
-    h = s.step[l]
-    s.next_turn[l] = h * integral(turning_terms(s, l), t)
+@variant(end_turn_at, "cos_phi")
+def end_turn_at_3d(s: Record, l: int, t: float) -> None:
+    """Set turn and L at a fraction t of the step of a lane, where it is to end."""
+    s.next_turn[l] = s.step[l] * integral(turning_terms(s, l), t)
     s.next_angular_momentum[l] = value(momentum_terms(s, l), t)
-    end_step_at(s, l, t, level)
 
 
-@compiled
-def take_end(s: Record, l: int) -> None:
-    """Make the end of a lane's step its state."""
+@variant(take_turn, "cos_phi")
+def take_turn_3d(s: Record, l: int) -> None:
+    """Make turn and L at the end of a lane's step its state."""
     turn_by(s, l, s.next_turn[l])
-    s.theta[l], s.theta_dot[l] = s.next_theta[l], s.next_theta_dot[l]
     s.angular_momentum[l] = s.next_angular_momentum[l]
-    for r in range(s.n):
-        s.q[r, l], s.dq[0, r, l] = s.next_q[r, l], s.next_dq[r, l]
-    s.time[l] += s.step[l]
 
 
 @compiled

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,12 +12,15 @@ import pytest
 from paper_structures import Array, RecordLoader, ground, needs_compiled_kernels
 from two_components import followed, frame, pair, two_pulses
 
+from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.kernels.systems import paired_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
+
+from . import short_history
 
 pytestmark = needs_compiled_kernels
 
@@ -173,15 +175,26 @@ def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -
 
 
 def test_alone_and_in_company() -> None:
-    """The same bits, whatever goes on in other lanes.
+    """The same bits, whatever goes on in other lanes."""
+    x, y = two_pulses()
+    settings = TimeHistorySettings(free_vibration=2.0)
+    requests = [
+        Request(structure, pair(factor * x, y, STEP), settings)
+        for structure in (frame(**THREE, contact_time=2e-3), frame(3, 3.0))
+        for factor in np.linspace(0.5, 1.6, 20)
+    ]
+    together, alone = demands(requests), demands(requests, worth_lanes=1000)
+    assert len({one.max_rotation for one in together}) > len(requests) / 2  # some overturn
+    for one, other in zip(together, alone, strict=True):
+        assert one.history.tobytes() == other.history.tobytes()
 
-    In a process that finds kernels compiled: in the one that compiles them last bits may differ.
-    """
-    still = np.zeros(2)
-    followed(frame(**THREE), pair(still, still, STEP))  # compiles
-    script = Path(__file__).with_name("alone_and_in_company.py")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    subprocess.run([sys.executable, "-P", str(script)], env=environment, check=True)
+
+def test_python_and_machine_code_agree_to_the_last_bit() -> None:
+    script = str(short_history.__file__)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
+    command = [sys.executable, "-P", "-W", "error", script]
+    done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+    assert done.stdout.strip() == short_history.digest()
 
 
 def test_more_instants_change_nothing() -> None:

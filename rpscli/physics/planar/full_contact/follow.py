@@ -5,8 +5,14 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics.core.compile import compiled, kernel
-from rpscli.physics.core.lanes import enter_interval, set_ground_of_block
+from rpscli.physics.core.compile import by_record, compiled, kernel
+from rpscli.physics.core.lanes import (
+    along,
+    directions,
+    enter_interval,
+    record_along,
+    set_ground_of_block,
+)
 from rpscli.physics.core.records import INSTANTS, NO_HISTORY, Floats, Record
 from rpscli.physics.planar.demands import set_below_all_maxima
 from rpscli.physics.planar.devices.rest import (
@@ -52,15 +58,19 @@ from rpscli.physics.planar.transitions import uplift
 @compiled
 def modes_to_block(s: Record, l: int, block: Record) -> None:
     """Begin full contact with the modes as they are."""
-    for r in range(s.n):
-        block.q[r], block.dq[r] = s.q[r, l], s.dq[0, r, l]
+    for axis in range(directions(s)):
+        to = along(s, block, axis)
+        for r in range(to.n):
+            to.q[r], to.dq[r] = s.q[axis * to.n + r, l], s.dq[0, axis * to.n + r, l]
 
 
 @compiled
 def modes_from_block(s: Record, l: int, block: Record) -> None:
     """Take the modes over from full contact; the tilt rests."""
-    for r in range(s.n):
-        s.q[r, l], s.dq[0, r, l] = block.q[r], block.dq[r]
+    for axis in range(directions(s)):
+        of = along(s, block, axis)
+        for r in range(of.n):
+            s.q[axis * of.n + r, l], s.dq[0, axis * of.n + r, l] = of.q[r], of.dq[r]
 
 
 class Plan(NamedTuple):
@@ -93,7 +103,8 @@ def plan_block(s: Record, l: int, system: Record, block: Record, finer: int) -> 
     if finer > 1 or time > 0.0:
         left = max(s.dt[l] - time, 0.0)
         each = int(max(math.ceil(finer * left / step - 1e-9), 1))
-        fill_map(block, system, SHORT_STEP, left / each)
+        for axis in range(directions(s)):
+            fill_map(along(s, block, axis), along(s, system, axis), SHORT_STEP, left / each)
         return Plan(min(each, INSTANTS - 1), left / each, each, SHORT_STEP)
     each = int(s.contact_steps[l])
     free = i + 1 - s.npts[l]
@@ -118,12 +129,9 @@ def accept_block(
     first, time = s.interval[l], s.time[l]
     passed = taken // plan.each
     if output.samples.shape[0] > 0:
-        if plan.which == SHORT_STEP:
-            fill_work(block, system, SHORT_STEP, plan.h)
-        book_energy_of_block(block, system, plan.which)
+        book_blocks(s, system, block, plan.which, plan.h)
         for k in range(1, taken + 1):
-            s.energy_input[l] += block.input[k - 1]
-            s.energy_damped[l] += block.damped[k - 1]
+            book_step(s, l, block, k - 1)
             done = (k - 1) // plan.each
             s.interval[l] = first + done
             if output.finer > 1:
@@ -131,12 +139,12 @@ def accept_block(
                 store_at_rest(s, l, system, block, output, k - 1, begin, plan.h)
             s.interval[l] = first + k // plan.each
             if k % plan.each == 0:
-                keep_state(block, k)
+                keep_blocks(s, block, k)
                 modes_from_block(s, l, block)
-                s.next_V[l] = block.V[k]
-                s.next_a_g[l], s.next_g_up[l] = block.a_g[k], block.g_up[k]
+                x = along(s, block, 0)
+                s.next_V[l], s.next_a_g[l], s.next_g_up[l] = x.V[k], x.a_g[k], x.g_up[k]
                 store_sample(s, l, system, output)
-    keep_state(block, taken)
+    keep_blocks(s, block, taken)
     if passed == 0:
         s.time[l] = time + taken * plan.h
         return False
@@ -145,6 +153,30 @@ def accept_block(
     )
     s.time[l] = (taken - passed * plan.each) * plan.h
     return over
+
+
+@compiled
+def keep_blocks(s: Record, block: Record, k: int) -> None:
+    """Make the state after k steps the present one."""
+    for axis in range(directions(s)):
+        keep_state(along(s, block, axis), k)
+
+
+@compiled
+def book_blocks(s: Record, system: Record, block: Record, which: int, h: float) -> None:
+    """What ground and dampers do in each step."""
+    for axis in range(directions(s)):
+        if which == SHORT_STEP:
+            fill_work(along(s, block, axis), along(s, system, axis), SHORT_STEP, h)
+        book_energy_of_block(along(s, block, axis), along(s, system, axis), which)
+
+
+@compiled
+def book_step(s: Record, l: int, block: Record, k: int) -> None:
+    """Add what they do in one step."""
+    for axis in range(directions(s)):
+        s.energy_input[l] += along(s, block, axis).input[k]
+        s.energy_damped[l] += along(s, block, axis).damped[k]
 
 
 @compiled
@@ -160,31 +192,43 @@ def leave_contact(
     side: float,
 ) -> None:
     """Leave full contact a time h into the step after `at` others of the block [h s]."""
+    for axis in range(directions(s)):
+        of, each = along(s, block, axis), along(s, system, axis)
+        set_ground_of_part(of, at, h)
+        fill_map(of, each, SHORT_STEP, h)
+        follow_modes(of, each, SHORT_STEP)
+    observe_block(s, l, system, block, pull, h, 1)
+    if output.samples.shape[0] > 0:
+        book_blocks(s, system, block, SHORT_STEP, h)
+        book_step(s, l, block, 0)
+        if output.finer > 1:
+            store_at_rest(s, l, system, block, output, 0, s.time[l], h)
+    keep_blocks(s, block, 1)
+    s.time[l] += h
+    modes_from_block(s, l, block)
+    begin_motion(s, l, system, output.log, side)
+
+
+@compiled
+def set_ground_of_part(block: Record, at: int, h: float) -> None:
+    """Begin a block with the ground's motion in the first part of the step after `at` others."""
     block.a_g[0], block.a_g_slope[0] = block.a_g[at], block.a_g_slope[at]
     block.g_up[0], block.g_up_slope[0] = block.g_up[at], block.g_up_slope[at]
     block.a_g[1] = block.a_g[0] + h * block.a_g_slope[0]
     block.g_up[1] = block.g_up[0] + h * block.g_up_slope[0]
-    fill_map(block, system, SHORT_STEP, h)
-    follow_modes(block, system, SHORT_STEP)
-    observe_block(s, l, system, block, pull, h, 1)
-    if output.samples.shape[0] > 0:
-        fill_work(block, system, SHORT_STEP, h)
-        book_energy_of_block(block, system, SHORT_STEP)
-        s.energy_input[l] += block.input[0]
-        s.energy_damped[l] += block.damped[0]
-        if output.finer > 1:
-            store_at_rest(s, l, system, block, output, 0, s.time[l], h)
-    keep_state(block, 1)
-    s.time[l] += h
-    modes_from_block(s, l, block)
+
+
+@by_record
+def begin_motion(s: Record, l: int, system: Record, log: Record, side: float) -> None:
+    """Uplift, or slide where friction has held the storey."""
     if s.phase[l] == STUCK:
-        slide(s, l, output.log, side)
+        slide(s, l, log, side)
     else:
-        uplift(s, l, system, output.log, side)
-        begin_excursion(s, l, output.log)
+        uplift(s, l, system, log, side)
+        begin_excursion(s, l, log)
 
 
-@compiled
+@by_record
 def observe_block(
     s: Record, l: int, system: Record, block: Record, pull: float, h: float, steps: int
 ) -> None:
@@ -200,20 +244,20 @@ def observe_block(
 
 @compiled
 def search_block(
-    block: Record, margin: Margin, plan: Plan, least: float
+    s: Record, block: Record, margin: Margin, plan: Plan, least: float
 ) -> tuple[int, float, float, bool]:
     """Steps that end before uplift, the fraction of the next, the side, and whether uplift comes.
 
     With `least` 0 uplift is located; else the steps end before the first with less of the limit
     left than this share, and the side is zero.
     """
-    if not raise_alarms(block, margin, plan.h, least):
+    if not raise_alarms(s, block, margin, plan.h, least):
         return plan.steps, 0.0, 0.0, False
     for taken in range(plan.steps):
-        if block.alarm[taken] > 0.0:
+        if along(s, block, 0).alarm[taken] > 0.0:
             if least > 0.0:
                 return taken, 0.0, 0.0, True
-            fraction, side = first_uplift(block, margin, plan.h, taken)
+            fraction, side = first_uplift(s, block, margin, plan.h, taken)
             if side != 0.0:
                 return taken, fraction, side, True
     return plan.steps, 0.0, 0.0, False
@@ -224,37 +268,65 @@ def follow_full_contact(
     s: Record, l: int, system: Record, block: Record, acceleration: Floats, output: Output
 ) -> int:
     """Follow a lane in full contact, or stuck: GOES_ON when it begins to move, or IS_OVER."""
+    return follow_at_rest(s, l, system, block, acceleration, output)
+
+
+@compiled
+def follow_at_rest(
+    s: Record, l: int, system: Record, block: Record, acceleration: Floats, output: Output
+) -> int:
+    """The same, of either kernel."""
     if s.history[l] == NO_HISTORY:
         return IS_OVER
     margin = margin_of(s, l, system)
     pull = pull_at_rest(s, l)
     set_below_all_maxima(s, l, system)
     modes_to_block(s, l, block)
-    fill_map(block, system, WHOLE_STEP, s.contact_step[l])
-    if output.samples.shape[0] > 0:
-        fill_work(block, system, WHOLE_STEP, s.contact_step[l])
-    for k in range(INSTANTS):
-        block.push[k], block.push_within[k] = 0.0, 0.0
+    for axis in range(directions(s)):
+        fill_map(along(s, block, axis), along(s, system, axis), WHOLE_STEP, s.contact_step[l])
+        if output.samples.shape[0] > 0:
+            fill_work(along(s, block, axis), along(s, system, axis), WHOLE_STEP, s.contact_step[l])
+    clear_push(along(s, block, 0))
     side, over, fine = 0.0, False, False
     while side == 0.0 and not over and s.stop == 0:
         plan = plan_block(s, l, system, block, FINE if fine else 1)
-        set_ground_of_block(s, l, block, acceleration, plan.h, plan.each, plan.steps, s.record[l])
-        follow_modes(block, system, plan.which)
-        taken, fraction, side, alarm = search_block(block, margin, plan, 0.0 if fine else NEAR)
+        for axis in range(directions(s)):
+            of, record = along(s, block, axis), record_along(s, l, axis)
+            set_ground_of_block(s, l, of, acceleration, plan.h, plan.each, plan.steps, record)
+            follow_modes(of, along(s, system, axis), plan.which)
+        taken, fraction, side, alarm = search_block(s, block, margin, plan, 0.0 if fine else NEAR)
         observe_block(s, l, system, block, pull, plan.h, taken)
-        if not math.isfinite(block.ddV[taken]):
+        if not is_finite(s, block, taken):
             s.outcome[l] = FAILED_NOT_FINITE
             over = True
             break
         fine = alarm
         over = accept_block(s, l, system, block, acceleration, output, plan, taken, margin)
         if side != 0.0:
-            h = locate_uplift(block, system, margin, plan.h, taken, fraction * plan.h, side)
+            guess = fraction * plan.h
+            h = locate_uplift(s, block, system, margin, plan.h, taken, guess, side)
             leave_contact(s, l, system, block, output, pull, taken, h, side)
     if over:
         modes_from_block(s, l, block)
-    plan_steps(s, l)
+    else:
+        plan_steps(s, l)
     return IS_OVER if over else GOES_ON
+
+
+@compiled
+def clear_push(block: Record) -> None:
+    """Devices do not push yet."""
+    for k in range(INSTANTS):
+        block.push[k], block.push_within[k] = 0.0, 0.0
+
+
+@compiled
+def is_finite(s: Record, block: Record, k: int) -> bool:
+    """Whether the state after k steps is made of numbers."""
+    total = 0.0
+    for axis in range(directions(s)):
+        total += along(s, block, axis).ddV[k]
+    return math.isfinite(total)
 
 
 # When the free vibration after the record can be left off.
@@ -272,9 +344,9 @@ def is_over(s: Record, l: int, system: Record, block: Record, margin: Margin) ->
     until the storey is down.
     """
     free = s.interval[l] + 1 - s.npts[l]
-    if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
+    if along(s, system, 0).until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
         return False
-    return stays_down(system, block, margin) and demands_stand(s, l, system, block)
+    return stays_down(s, system, block, margin) and demands_stand(s, l, system, block)
 
 
 @compiled
@@ -284,28 +356,41 @@ def modal_speed(system: Record, block: Record, r: int) -> float:
 
 
 @compiled
-def stays_down(system: Record, block: Record, margin: Margin) -> bool:
-    """Whether the freely vibrating building can never again push hard enough to uplift."""
+def largest_shear(system: Record, block: Record) -> float:
+    """The base shear never passes this in free vibration [N]."""
     largest = 0.0
     for r in range(system.n):
         force = system.omega[r] + system.two_xi_omega[r]
         largest += abs(system.Gamma[r]) * force * modal_speed(system, block, r)
+    return largest
+
+
+@by_record
+def stays_down(_s: Record, system: Record, block: Record, margin: Margin) -> bool:
+    """Whether the freely vibrating building can never again push hard enough to uplift."""
     limit = min(
         system.gravity * margin.right + margin.held_right,
         system.gravity * margin.left + margin.held_left,
     )
-    return system.n == 0 or bool(margin.shear_share * largest < limit)
+    return system.n == 0 or bool(margin.shear_share * largest_shear(system, block) < limit)
 
 
 @compiled
+def largest_at(system: Record, block: Record, i: int) -> tuple[float, float]:
+    """Shear of a storey and acceleration of its floor that free vibration never passes."""
+    shear, acceleration = 0.0, 0.0
+    for r in range(system.n):
+        speed, omega = modal_speed(system, block, r), system.omega[r]
+        shear += abs(system.storey_shear_of[r, i]) * speed / omega
+        acceleration += abs(system.phi[r, i]) * (omega + system.two_xi_omega[r]) * speed
+    return shear, acceleration
+
+
+@by_record
 def demands_stand(s: Record, l: int, system: Record, block: Record) -> bool:
     """Whether free vibration in full contact can raise no storey shear and no acceleration."""
     for i in range(system.n):
-        shear, acceleration = 0.0, 0.0
-        for r in range(system.n):
-            speed, omega = modal_speed(system, block, r), system.omega[r]
-            shear += abs(system.storey_shear_of[r, i]) * speed / omega
-            acceleration += abs(system.phi[r, i]) * (omega + system.two_xi_omega[r]) * speed
+        shear, acceleration = largest_at(system, block, i)
         if shear > s.storey_shear[l, i] or acceleration > s.floor_acceleration[l, i]:
             return False
     return True

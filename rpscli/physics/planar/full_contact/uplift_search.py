@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.compile import by_record, compiled
 from rpscli.physics.core.quintic import (
     NO_PASSAGE,
     SETTLED,
@@ -50,9 +50,15 @@ class Margin(NamedTuple):
     ground_damping: float  # sum Gamma^2 2 xi w [kg/s]: what the ground's slope adds to V''
 
 
-@compiled
+@by_record
 def margin_of(s: Record, l: int, system: Record) -> Margin:
     """What the margin of a structure at rest is made of, in full contact or stuck."""
+    return margin_in(s, l, system)
+
+
+@compiled
+def margin_in(s: Record, l: int, system: Record) -> Margin:
+    """The same in one direction."""
     ground_factor, building = load_factors(system.gamma, system.eta)
     damping = 0.0
     for r in range(system.n):
@@ -83,20 +89,22 @@ def limit_to(margin: Margin, side: float) -> tuple[float, float]:
 
 
 @compiled
+def push_at(block: Record, margin: Margin, a_g: float, k: int, of: int) -> tuple[float, ...]:
+    """The push and its first two derivatives after `of` steps, the ground as in the k-th."""
+    factor, share, slope = margin.ground_factor, margin.shear_share, block.a_g_slope[k]
+    return (
+        uplift_push(factor, share, a_g, block.V[of]),
+        uplift_push(factor, share, slope, block.dV[of]),
+        share * block.ddV[of] + -share * margin.ground_damping * slope,
+    )
+
+
+@compiled
 def push_path(block: Record, margin: Margin, h: float, k: int) -> Quintic:
     """What pushes the storey over, q(t) of this module, during the step after k others [h s]."""
-    factor, share, slope = margin.ground_factor, margin.shear_share, block.a_g_slope[k]
-    start = block.a_g[k]
-    curvature = -share * margin.ground_damping * slope
-    return quintic(
-        h,
-        uplift_push(factor, share, start, block.V[k]),
-        uplift_push(factor, share, slope, block.dV[k]),
-        share * block.ddV[k] + curvature,
-        uplift_push(factor, share, start + slope * h, block.V[k + 1]),
-        uplift_push(factor, share, slope, block.dV[k + 1]),
-        share * block.ddV[k + 1] + curvature,
-    )
+    start = push_at(block, margin, block.a_g[k], k, k)
+    end = push_at(block, margin, block.a_g[k] + block.a_g_slope[k] * h, k, k + 1)
+    return quintic(h, start[0], start[1], start[2], end[0], end[1], end[2])
 
 
 @compiled
@@ -112,8 +120,8 @@ def margin_path(path: Quintic, limit: float, change: float, side: float, held: f
     )
 
 
-@compiled
-def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
+@by_record
+def raise_alarms(_s: Record, block: Record, margin: Margin, h: float, least: float) -> bool:
     """Write `alarm`: 0 for steps in which the margin surely stays positive to both sides [h s].
 
     Returns whether any is not 0.
@@ -133,8 +141,10 @@ def raise_alarms(block: Record, margin: Margin, h: float, least: float) -> bool:
     return alarms > 0
 
 
-@compiled
-def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float, float]:
+@by_record
+def first_uplift(
+    _s: Record, block: Record, margin: Margin, h: float, k: int
+) -> tuple[float, float]:
     """Fraction of the step after k others at which the storey uplifts, and the side (0: none)."""
     path = push_path(block, margin, h, k)
     # Where gravity is lost both margins are negative at once: then the push decides.
@@ -155,10 +165,10 @@ def first_uplift(block: Record, margin: Margin, h: float, k: int) -> tuple[float
 
 
 @compiled
-def margin_after(
-    block: Record, system: Record, margin: Margin, h: float, k: int, side: float
+def push_after(
+    block: Record, system: Record, margin: Margin, h: float, k: int
 ) -> tuple[float, float]:
-    """Margin f against uplift to `side` and its slope, a time h into the step after k, exactly.
+    """The push q and its slope, a time h into the step after k, exactly.
 
     The state at the start of that step is the present one of the block.
     """
@@ -174,8 +184,16 @@ def margin_after(
         ddq = -system.Gamma[r] * a_g - force
         V += system.Gamma[r] * force
         dV += system.Gamma[r] * (system.omega2[r] * dq + system.two_xi_omega[r] * ddq)
-    push = uplift_push(margin.ground_factor, margin.shear_share, a_g, V)
-    push_slope = uplift_push(margin.ground_factor, margin.shear_share, slope, dV)
+    factor, share = margin.ground_factor, margin.shear_share
+    return uplift_push(factor, share, a_g, V), uplift_push(factor, share, slope, dV)
+
+
+@by_record
+def margin_after(
+    _s: Record, block: Record, system: Record, margin: Margin, h: float, k: int, side: float
+) -> tuple[float, float]:
+    """Margin f against uplift to `side` and its slope, a time h into the step after k, exactly."""
+    push, push_slope = push_after(block, system, margin, h, k)
     factor, held = limit_to(margin, side)
     limit = factor * (block.g_up[k] + block.g_up_slope[k] * h)
     return limit - (side * push - held), factor * block.g_up_slope[k] - side * push_slope
@@ -183,7 +201,14 @@ def margin_after(
 
 @compiled
 def locate_uplift(
-    block: Record, system: Record, margin: Margin, h: float, k: int, guess: float, side: float
+    s: Record,
+    block: Record,
+    system: Record,
+    margin: Margin,
+    h: float,
+    k: int,
+    guess: float,
+    side: float,
 ) -> float:
     """Time into the step after k others, near guess in [0, h], where the margin is zero [s].
 
@@ -192,7 +217,7 @@ def locate_uplift(
     """
     t = guess
     for _ in range(6):
-        f, slope = margin_after(block, system, margin, t, k, side)
+        f, slope = margin_after(s, block, system, margin, t, k, side)
         if slope >= 0.0:
             break
         change = -f / slope
