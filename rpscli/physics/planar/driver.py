@@ -93,7 +93,18 @@ def run_interruptible(
     *,
     interruptible: bool,
 ) -> None:
-    """Call a kernel, in another thread if it is to hear Ctrl-C."""
+    """Call a kernel, in another thread if it is to hear Ctrl-C.
+
+    Of many histories the longest begin first, so that no lane is left with one at the end.
+    """
+    if len(run.requests) > LANES and not run.output.samples.size:
+        given = run.requests.view(np.ndarray)
+        order = np.argsort(-given["npts"] * given["dt"], kind="stable")
+        if np.any(order[1:] < order[:-1]):
+            ordered = run._replace(requests=run.requests[order], results=run.results[order])
+            run_interruptible(lanes_of, state, block, ordered, interruptible=interruptible)
+            run.results[order] = ordered.results
+            return
     if not interruptible or current_thread() is not main_thread():
         lanes_of(state, block, run)
         return

@@ -141,7 +141,8 @@ def push_term(s: Record, l: int, V: float, a_g: float) -> float:
 def extend_positions(s: Record, lanes: int, m: int) -> None:
     """Terms of order m of what depends on positions, from velocities up to order m - 1.
 
-    Inner loops are few and long: the compiler is to unroll them once it knows m, not before.
+    Inner loops are long, and one in each loop over lanes: the compiler is to unroll them once it
+    knows m, not before, and not too late for vector instructions.
     """
     k = m - 1
     for l in range(lanes):
@@ -194,28 +195,33 @@ def extend_products(s: Record, lanes: int, m: int, axis: int) -> None:
 def extend_inertia(s: Record, lanes: int, m: int) -> None:
     """Terms of order m of H, and of G and dG/dx, to which spin on arcs adds."""
     for l in range(lanes):
-        spin_1, crossed, slope, more, along = s.spin_1[l], 0.0, 0.0, 0.0, 0.0
+        along = 0.0
         for j in range(m + 1):
             along = fma(s.tilt_terms[m - j, l], s.D_terms[j, l], along)
+        H = s.H_sin[l] * s.sin_terms[m, l] + s.H_cos[l] * s.cos_terms[m, l]
+        H += s.H_sin2[l] * s.sin2_terms[m, l] + s.H_cos2[l] * s.cos2_terms[m, l]
+        H += s.H_x[l] * s.tilt_terms[m, l] + s.one_4gamma[l] * s.phase_c[l] * along
+        s.H_terms[m, l] = H
+    for l in range(lanes):
+        spin_1, crossed, slope, more = s.spin_1[l], 0.0, 0.0, 0.0
         for j in range(1, m):
             sine, cosine = s.sin_terms[j, l], s.cos_terms[j, l]
             g_j, other, slope_j = s.g_terms[j, l], s.g_terms[m - j, l], s.g_slope_terms[m - j, l]
             crossed = fma(sine, other, crossed)
-            slope = fma(other, cosine, fma(sine, slope_j, slope))
+            slope = fma(sine, slope_j, slope)
+            slope = fma(other, cosine, slope)
             more = fma(g_j - cosine, slope_j, more)
         sine, cosine = s.sin_terms[m, l], s.cos_terms[m, l]
         sine_0, cosine_0 = s.sin_terms[0, l], s.cos_terms[0, l]
         g_0, slope_0 = s.g_terms[0, l], s.g_slope_terms[0, l]
-        per, rolls = 1.0 / (s.spin_0[l] + spin_1 * sine_0), 1.0 if spin_1 > 0.0 else 0.0
+        per = 1.0 / (s.spin_0[l] + spin_1 * sine_0)
         crossed += g_0 * sine
-        g = (rolls * s.spin[l] * (s.tilt_terms[m, l] - sine) - spin_1 * crossed) * per
+        g = spin_1 * (s.tilt_terms[m, l] - sine - crossed) * per
         slope += cosine + g_0 * cosine + g * cosine_0 + sine * slope_0
         slope *= -spin_1 * per
         more += slope + (g_0 - cosine_0) * slope + (g - cosine) * slope_0 + crossed + g * sine_0
         s.g_terms[m, l], s.g_slope_terms[m, l] = g, slope
-        H = s.H_sin[l] * sine + s.H_cos[l] * cosine + s.H_x[l] * s.tilt_terms[m, l]
-        H += s.H_sin2[l] * s.sin2_terms[m, l] + s.H_cos2[l] * s.cos2_terms[m, l]
-        s.H_terms[m, l] = H + s.one_4gamma[l] * s.phase_c[l] * along + s.inertia_axial[l] * more
+        s.H_terms[m, l] += s.inertia_axial[l] * more
 
 
 @inlined
@@ -225,29 +231,30 @@ def extend_tilt(s: Record, lanes: int, m: int) -> None:
     for l in range(lanes):
         h = s.step[l]
         part = h * (1.0 / m)
-        pushes, turns, turned, w2, spins = 0.0, 0.0, 0.0, 0.0, 0.0
-        for j in range(m):
+        p, w, w_last = s.dtheta_terms[0, l], s.turning_terms[0, l], s.turning_terms[k, l]
+        z_x, z_y = s.z_terms[0, 0, l], s.z_terms[1, 0, l]
+        pushes = z_x * s.C_e_terms[0, k, l] + z_y * s.C_e_terms[1, k, l]
+        turns = z_y * s.u_b_terms[0, k, l] - z_x * s.u_b_terms[1, k, l]
+        inertial, slowed, w2 = 0.5 * s.A_terms[m, l] * p, s.J_terms[m, l] * w, w * w_last
+        for j in range(1, m):
             z_x, z_y = s.z_terms[0, j, l], s.z_terms[1, j, l]
             pushes = fma(z_x, s.C_e_terms[0, k - j, l], pushes)
             pushes = fma(z_y, s.C_e_terms[1, k - j, l], pushes)
+            pushes = fma(s.H_terms[j, l], s.w2_terms[k - j, l], pushes)
             turns = fma(z_y, s.u_b_terms[0, k - j, l], turns)
-            turned = fma(z_x, s.u_b_terms[1, k - j, l], turned)
+            turns = fma(-z_x, s.u_b_terms[1, k - j, l], turns)
             w2 = fma(s.turning_terms[j, l], s.turning_terms[k - j, l], w2)
-        inertial = 0.5 * s.A_terms[m, l] * s.dtheta_terms[0, l]
-        slowed = s.J_terms[m, l] * s.turning_terms[0, l]
-        for j in range(1, m):
-            spins = fma(s.H_terms[j, l], s.w2_terms[k - j, l], spins)
             A = (0.5 * (m + j) / m) * s.A_terms[m - j, l]
             inertial = fma(A, s.dtheta_terms[j, l], inertial)
             slowed = fma(s.J_terms[m - j, l], s.turning_terms[j, l], slowed)
         s.w2_terms[k, l] = w2
-        pushes += fma(s.H_terms[0, l], w2, spins)
+        pushes = fma(s.H_terms[0, l], w2, pushes)
         g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
         before = s.B_terms[k - 1, l] if m > 1 else 0.0
         weights = g_up * s.B_terms[k, l] + h * s.g_up_slope[l] * before
         force = s.weight_over_R[l] * weights - pushes
         s.dtheta_terms[m, l] = -s.per_A[l] * (part * force + inertial)
-        momentum = part * (turns - turned)
+        momentum = part * turns
         s.momentum_terms[m, l] = momentum
         s.turning_terms[m, l] = s.per_J[l] * (momentum - slowed)
 
