@@ -123,9 +123,10 @@ class DeviceTrace(Frozen):
     """What each device does at the record's samples: arrays (samples, devices)."""
 
     force: Array
-    """On the cap beam, positive to the right [N]; of a tendon the tension of one."""
+    """On the cap beam, positive to the right [N]; of a tendon the tension of one. Under both
+    components resultants, below zero where they resist."""
     displacement: Array
-    """u_b [m]; of a tendon the elongation of one."""
+    """u_b [m], under both components |u_b|; of a tendon the elongation of one."""
     energy: Array
     """Dissipated so far [J]. A damped stop that has let go dissipates what its spring still holds
     as the cap beam moves back to the gap, not at once: sums over an excursion are exact."""

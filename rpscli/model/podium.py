@@ -161,8 +161,8 @@ class PodiumStructure(Shown):
                 f"the impact law {self.impact_law.kind} lets floors jump, which has no form for a"
                 " pass that loses a part of an impact; use the law flexible, with loss or factor"
             )
-        if self.devices:
-            return "devices are followed in one plane only; leave podium.devices out"
+        for kind in {"friction", "rolling_resistance"} & {d.kind for d in self.devices}:
+            return f"devices of the kind {kind} are followed in one plane only; leave them out"
         return ""
 
     @property

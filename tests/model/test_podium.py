@@ -13,7 +13,7 @@ from paper_structures import FLAT, building, podium
 from scipy.integrate import quad
 
 from rpscli.model.bearing import Bearing
-from rpscli.model.devices import FrictionDamper, RollingResistance
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 
@@ -131,12 +131,14 @@ def test_what_is_followed_in_one_plane_only() -> None:
     bearing = Bearing(1.5, 0.15, 0.3, 0.5)
     frame = PodiumStructure(bearing, 2e4, 2e5, impact_law=ImpactLaw("rigid"))
     under = PodiumStructure(bearing, 2e4, 2e5, building(2), ImpactLaw("value", 0.9))
-    both = (FrictionDamper(1e3), RollingResistance(1e-3))
-    damped = PodiumStructure(bearing, 2e4, 2e5, devices=both)
     ball = PodiumStructure(Bearing(1.5, 0.0, 0.3, 0.8), 2e4, 2e5, impact_law=ImpactLaw(loss=0.0))
     assert not frame.planar_only
     assert "use the law flexible" in under.planar_only
-    assert "leave podium.devices out" in damped.planar_only
+    for device in (FrictionDamper(1e3), RollingResistance(1e-3)):
+        held = PodiumStructure(bearing, 2e4, 2e5, devices=(device,))
+        assert f"the kind {device.kind} are followed in one plane" in held.planar_only
+    smooth = ViscousDamper(1e3), Stop(0.1, 1e6), Tendon(1e3, 1e5)
+    assert not PodiumStructure(bearing, 2e4, 2e5, devices=smooth).planar_only
     assert "without a flat part" in ball.planar_only
 
 

@@ -17,7 +17,9 @@ import numpy as np
 from scipy.integrate import DOP853
 
 from .crossings import NODES, Array, first_crossing, monotone_pieces, through_nodes
+from .devices import OracleDevice
 from .full_contact import FullContact
+from .spatial_devices import SpatialDevices
 from .spatial_lagrangian import SpatialLagrangian
 from .storey_lagrangian import OracleSystem
 
@@ -53,6 +55,7 @@ class SpatialSimulation:
         tip: float = TIP,
         integrated_spin: bool = False,
         begins_at: float | None = None,
+        devices: tuple[OracleDevice, ...] = (),
     ) -> None:
         """`begins_at`: uplifts start at rest at this tilt, not with the cube of the time."""
         along_y, self.begins_at = along_y or along_x, begins_at
@@ -60,6 +63,7 @@ class SpatialSimulation:
             axial = 0.5 * along_x.tan_alpha_wedge**2 / (1.0 + along_x.tan_alpha**2)
         self.motion = SpatialLagrangian(along_x, along_y, axial, integrated_spin=integrated_spin)
         plane = self.plane = self.motion.plane
+        self.devices = self.motion.devices = SpatialDevices(plane, devices)
         self.fixed = [FullContact(type(plane)(way)) for way in (along_x, along_y)]
         self.alpha = math.atan(along_x.tan_alpha)
         self.contact_time, self.rtol, self.tip = contact_time, rtol, tip
@@ -120,6 +124,7 @@ class SpatialSimulation:
         hold = np.zeros(_ORDER + 1)
         weight = self.plane.lifted_mass * math.tan(self.alpha)
         hold[:2] = weight * (self.motion.system.gravity + ground[2]), weight * slope[2] * h
+        hold[0] += self.devices.at_rest(self.alpha, self.motion.system.R)
         return np.array([*rows, hold])
 
     def stand(self, ground: Array, slope: Array, duration: float) -> float:
@@ -241,6 +246,12 @@ class SpatialSimulation:
             )
             if root is not None:
                 events.append((root, "pass"))
+            if self.devices.yields(float(np.max(theta)), rolling=self.rolling):
+                root = first_crossing(
+                    radial, monotone_pieces(radial), 0.0, -1, end=float(last[1]), noise=noise
+                )
+                if root is not None:
+                    events.append((root, "turn"))
             at, kind = min(events, default=(1.0, ""))
             peaks = [z for z in pieces if z <= at]
             highest = np.polynomial.polynomial.polyval(np.array(peaks), curve)
@@ -258,7 +269,7 @@ class SpatialSimulation:
     def miss(self, kind: str, y: Array) -> float:
         theta, moving = self.curves(y)
         level = {"limit": self.limit, "tip": self.tip, "phase": self.plane.beta}
-        return float(moving if kind == "pass" else theta - level[kind])
+        return float(moving if kind in ("pass", "turn") else theta - level[kind])
 
     def meet(
         self, ground: Array, slope: Array, start: float, h: float, at: float, kind: str
@@ -292,6 +303,8 @@ class SpatialSimulation:
             self.rolling = not self.rolling
         elif kind == "limit":
             self.overturned = True
+        elif kind == "turn":
+            self.devices.unload(math.hypot(self.y[0], self.y[1]), rolling=self.rolling)
         elif kind == "pass":
             self.approach(ground, slope, time)
         else:

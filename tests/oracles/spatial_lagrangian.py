@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .spatial_devices import SpatialDevices
 from .storey_lagrangian import Array, OracleSystem, StoreyLagrangian
 
 
@@ -44,6 +45,7 @@ class SpatialLagrangian:
     ) -> None:
         """`axial` is I_3/(m_c R^2); `integrated_spin` lets all of dJ/dtheta act, as the program."""
         self.integrated_spin = integrated_spin
+        self.devices: SpatialDevices | None = None
         self.system, self.directions = along_x, (along_x, along_y)
         self.plane = StoreyLagrangian(along_x)
         self.storeys, self.critical_rotation = self.plane.storeys, self.plane.critical_rotation
@@ -123,8 +125,17 @@ class SpatialLagrangian:
         outward = here.slope.real * float(outwards @ push)
         outward -= self.plane.lifted_mass * gravity * here.slope.imag
         outward += 0.5 * here.spinning * turns**2 - half_slope * grows**2
+        around_held = 0.0
+        if self.devices is not None:
+            held = self.devices.on_beam(beam_rate)
+            against = self.devices.against_rolling(grows, swings)
+            outward += here.slope.real * float(outwards @ held) - float(against[0])
+            outward -= self.devices.against_tilt(
+                x, here.shift.real, here.slope.real, grows, rolling=rolling
+            )
+            around_held = here.shift.real * float(around @ held) - x * float(against[1])
         theta2 = outward / self.tilt_inertia(here.slope)
-        sweep = here.shift.real * float(around @ push)
+        sweep = here.shift.real * float(around @ push) + around_held
         sweep -= (here.spinning + 0.5 * here.twisting) * grows * turns
         phi2 = sweep / here.inertia
         out = np.empty(half)

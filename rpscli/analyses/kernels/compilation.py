@@ -21,6 +21,7 @@ KERNELS = {
     "devices": "kernel with devices",
     "compliant": "kernel with compliant contact",
     "pairs": "kernel for both components",
+    "pairs with devices": "kernel for both components, with devices",
 }
 """By variant: planar ones of `physics.planar.state.STATES`, and those for motions in x and y."""
 
@@ -60,7 +61,7 @@ def compiled(variant: str) -> Iterator[None]:
             if variant.startswith("pairs"):
                 from rpscli.physics.spatial.prepare import compile_pairs
 
-                compile_pairs()
+                compile_pairs(variant)
             else:
                 compile_kernel(variant)
             if cache_folder() is not None:  # else the first call compiles

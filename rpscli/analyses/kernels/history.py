@@ -28,7 +28,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
 from rpscli.physics.planar.run import Output, Run, variant_of
 from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
-from rpscli.physics.spatial.state import EVENT_3D, RESULT_3D, SAMPLE_3D
+from rpscli.physics.spatial.state import EVENT_3D, RESULT_3D, SAMPLE_3D, variant_of_pairs
 from rpscli.records.ground_motion import MotionComponents
 
 MOST_NUMBERS = 1e9
@@ -129,7 +129,7 @@ def _no_output(storeys: int, devices: int, pairs: bool) -> Output:  # noqa: FBT0
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
     """Follow every history of a run, of one component or of pairs; writes `run.results`."""
     pairs = "azimuth" in (run.results.dtype.names or ())
-    with compiled("pairs" if pairs else variant_of(run)):
+    with compiled(variant_of_pairs(run) if pairs else variant_of(run)):
         if pairs:
             from rpscli.physics.spatial.driver import integrate_pairs
 

@@ -274,7 +274,7 @@ def go_on_restarted(s: Record, l: int, system: Record, output: Output) -> int:
         return IS_OVER
     if s.devices[l] > 0:
         set_devices(s, l, s.theta[l], s.theta_dot[l])
-        raise_devices(s, l, s.theta[l], s.theta_dot[l])
+        raise_devices(s, l, s.theta[l], s.theta_dot[l], 0.0)
     renew_accelerations(s, l)
     observe_start(s, l)
     after = s.restart_after[l]

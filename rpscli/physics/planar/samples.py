@@ -110,4 +110,4 @@ def store_row(s: Record, l: int, system: Record, output: Output, at: int) -> Non
             du += system.phi[r, i] * s.looked_at[1, r]
         output.floors[at, 0, i], output.floors[at, 1, i] = u, du
     if s.devices[l] > 0:
-        store_devices(s, l, output.devices[at])
+        store_devices(s, l, output.devices[at], 0.0)

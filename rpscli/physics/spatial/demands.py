@@ -37,6 +37,7 @@ from rpscli.physics.planar.equation_of_motion import (
 )
 from rpscli.physics.planar.full_contact.demands import add_modes, raise_floors_of_block
 from rpscli.physics.planar.full_contact.follow import observe_block
+from rpscli.physics.spatial.devices import set_push
 from rpscli.physics.spatial.equation_of_motion import (
     MOST,
     Place,
@@ -276,9 +277,9 @@ def contacts_may_rise_3d(s: Record, l: int) -> bool:
         s.a_g_y[l] + s.a_g_y_slope[l] * time,
         s.g_up[l] + s.g_up_slope[l] * time,
     )
-    # From z, which holds what devices push with as well.
-    V_x = (s.z_terms[0, 0, l] + s.ground_over_R[l] * ground[0]) / s.shear_factor[l] - s.push_x[l]
-    V_y = (s.z_terms[1, 0, l] + s.ground_over_R[l] * ground[1]) / s.shear_factor[l] - s.push_y[l]
+    # From z, which holds what dampers push with as well.
+    V_x = (s.z_terms[0, 0, l] + s.ground_over_R[l] * ground[0]) / s.shear_factor[l]
+    V_y = (s.z_terms[1, 0, l] + s.ground_over_R[l] * ground[1]) / s.shear_factor[l]
     top, N_top, bottom, N_bottom = forces_of(
         s, l, at, (s.cos_phi[l], s.sin_phi[l]), (p, w, p_rate, w_rate), (V_x, V_y), ground
     )
@@ -312,15 +313,16 @@ def contacts_within_3d(s: Record, l: int, t: float) -> Measures:
     a_x, a_y = s.a_g[l] + s.a_g_slope[l] * time, s.a_g_y[l] + s.a_g_y_slope[l] * time
     g_up = s.g_up[l] + s.g_up_slope[l] * time
     z_x, z_y = pair_within(s.z_terms, l, t)
-    # z holds what devices push with as well.
-    V_x = (z_x + s.ground_over_R[l] * a_x) / s.shear_factor[l] - s.push_x[l]
-    V_y = (z_y + s.ground_over_R[l] * a_y) / s.shear_factor[l] - s.push_y[l]
+    V_x = (z_x + s.ground_over_R[l] * a_x) / s.shear_factor[l]
+    V_y = (z_y + s.ground_over_R[l] * a_y) / s.shear_factor[l]
+    p, w, direction = value(rates, t), value(turning, t), direction_at(s, l, t)
+    set_push(s, l, at, s.theta[l] + h * integral(rates, t), direction, (p, w), 0.0)
     shear_top, normal_top, shear_bottom, normal_bottom = forces_of(
         s,
         l,
         at,
-        direction_at(s, l, t),
-        (value(rates, t), value(turning, t), slope(rates, t) / h, slope(turning, t) / h),
+        direction,
+        (p, w, slope(rates, t) / h, slope(turning, t) / h),
         (V_x, V_y),
         (a_x, a_y, g_up),
     )

@@ -9,6 +9,9 @@ import numpy as np
 from rpscli.physics.core.compile import compiled, exact_kernel, variant
 from rpscli.physics.core.lanes import set_ground
 from rpscli.physics.core.records import LANES, NO_HISTORY, Record, scratch
+from rpscli.physics.planar.devices.events import check_devices
+from rpscli.physics.planar.devices.flows import leave_devices
+from rpscli.physics.planar.devices.rest import load_devices, release_devices
 from rpscli.physics.planar.driver import (
     clear_floors,
     clear_results,
@@ -42,11 +45,12 @@ from rpscli.physics.planar.state import (
 )
 from rpscli.physics.spatial import samples  # noqa: F401 -- which tell planar functions of theirs
 from rpscli.physics.spatial.demands import observe_ends_3d, observe_start_3d
+from rpscli.physics.spatial.devices import check_speeds, load_3d
 from rpscli.physics.spatial.energy import uplifted_energy_3d
 from rpscli.physics.spatial.equation_of_motion import enter_phase_3d, place_of
 from rpscli.physics.spatial.events import next_interval_3d, resolve_step_3d
 from rpscli.physics.spatial.full_contact import follow_full_contact_3d
-from rpscli.physics.spatial.state import STATE_3D
+from rpscli.physics.spatial.state import STATES_3D, variant_of_pairs
 from rpscli.physics.spatial.steps import accept_steps, check_steps, grow, plan_step, take_steps
 
 
@@ -56,7 +60,7 @@ def integrate_pairs(run: Run, lanes: int = LANES, *, interruptible: bool = False
     `run.systems` holds two records of each structure, of its directions x and y.
     """
     systems = run.systems.view(np.ndarray)
-    state, storeys = scratch(STATE_3D), systems["n"][0]
+    state, storeys = scratch(STATES_3D[variant_of_pairs(run)]), systems["n"][0]
     blocks, plain = scratch(BLOCK, 2), state.view(np.ndarray)
     plain["n"], plain["storeys"], plain["lanes"], plain["stop"] = 2 * storeys, storeys, lanes, 0
     blocks.view(np.ndarray)["n"] = storeys
@@ -110,6 +114,8 @@ def advance_lanes_3d(state: Record, systems: Record, blocks: Record, output: Out
     s = state[0]
     take_steps(s)
     check_steps(s)
+    check_devices(s)
+    check_speeds(s)
     observe_ends_3d(s)
     observe_lanes(s, systems, blocks[0], output)
     accept_steps(s)
@@ -125,6 +131,7 @@ def next_history_3d(s: Record, l: int, run: Run) -> int:
         return begin_history_3d(s, l, run, s.waiting - 1)
     # It makes steps of nothing, of a tilt at rest.
     s.history[l], s.step[l], s.steps_left[l], s.system[l] = NO_HISTORY, 1e-9, 1.0, 0
+    s.devices[l] = 0
     s.theta[l], s.theta_dot[l], s.angular_momentum[l] = 0.1, 0.0, 0.0
     s.cos_phi[l], s.sin_phi[l] = 1.0, 0.0
     return GOES_ON
@@ -152,6 +159,8 @@ def begin_history_3d(s: Record, l: int, run: Run, history: int) -> int:
     s.contact_time[l] = system.contact_time
     s.bounces_kept[l] = 1.0 if system.bounces > 0.0 else 0.0
     s.push_x[l], s.push_y[l], s.pull[l] = 0.0, 0.0, 0.0
+    load_devices(s, l, system)
+    load_3d(s, l)
     s.angular_momentum[l], s.cos_phi[l], s.sin_phi[l] = 0.0, 1.0, 0.0
     s.turning_rate[l], s.tilt_terms[0, l], s.per_J[l] = 0.0, 0.0, 0.0
     s.step_limit[l], s.series_ratio[l] = 0.0, 1.0
@@ -182,6 +191,7 @@ def release_3d(s: Record, l: int, system: Record) -> None:
     s.max_theta[l], s.max_azimuth[l] = theta, math.acos(s.cos_phi[l])
     enter_phase_3d(s, l, system, ROLLING if theta < system.beta else ROCKING)
     s.angular_momentum[l] = place_of(s, l, theta).J * system.initial_turning
+    release_devices(s, l)
     observe_start_3d(s, l)
 
 
@@ -221,6 +231,7 @@ def finish_history_3d(s: Record, l: int, run: Run) -> None:
     result.energy_stored = building_energy(s, l, 0.0) if stands else uplifted_energy_3d(s, l)
     s.theta[l] = 0.0 if stands else s.theta[l]
     leave_result(s, l, result)
+    leave_devices(s, l, result)
     result.azimuth, result.max_azimuth = azimuth, s.max_azimuth[l]
     result.critical_azimuth = s.critical_azimuth[l]
     result.max_x, result.max_y = s.max_beam[0, l], s.max_beam[1, l]

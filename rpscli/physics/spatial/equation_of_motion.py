@@ -20,6 +20,7 @@ from typing import NamedTuple
 from rpscli.physics.core.compile import compiled, fma, inlined
 from rpscli.physics.core.records import ORDER, Floats, Record
 from rpscli.physics.core.series import Terms, sine_cosine
+from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.equation_of_motion import inertia, inertia_slope, phase_constants
 from rpscli.physics.planar.state import ROLLING
 from rpscli.physics.planar.transitions import enter_phase
@@ -224,6 +225,12 @@ def extend_inertia(s: Record, lanes: int, m: int) -> None:
         s.H_terms[m, l] += s.inertia_axial[l] * more
 
 
+@with_devices(otherwise=0.0)
+def tilt_term(s: Record, k: int, l: int) -> float:
+    """Term of what devices add to the tilt's equation beside z."""
+    return float(s.device_terms[k, l])
+
+
 @inlined
 def extend_tilt(s: Record, lanes: int, m: int) -> None:
     """Terms of order m of p, L and w."""
@@ -252,7 +259,7 @@ def extend_tilt(s: Record, lanes: int, m: int) -> None:
         g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
         before = s.B_terms[k - 1, l] if m > 1 else 0.0
         weights = g_up * s.B_terms[k, l] + h * s.g_up_slope[l] * before
-        force = s.weight_over_R[l] * weights - pushes
+        force = s.weight_over_R[l] * weights - pushes - tilt_term(s, k, l)
         s.dtheta_terms[m, l] = -s.per_A[l] * (part * force + inertial)
         momentum = part * turns
         s.momentum_terms[m, l] = momentum
@@ -347,11 +354,10 @@ def beam_now(s: Record, l: int) -> tuple[float, float, float, float]:
 
 @compiled
 def rates_now(s: Record, l: int) -> tuple[float, float, float, float]:
-    """p, w, p' and w' of the present state, devices as they push at the step's start."""
+    """p, w, p' and w' of the present state, without devices."""
     at = place_of(s, l, s.theta[l])
     p, w = s.theta_dot[l], s.angular_momentum[l] / at.J
     z_x, z_y = renew_push(s, l)
-    z_x, z_y = z_x + s.shear_factor[l] * s.push_x[l], z_y + s.shear_factor[l] * s.push_y[l]
     cosine, sine = s.cos_phi[l], s.sin_phi[l]
     slope = inertia_slope(s.one_4gamma[l], s.four_gamma_eta[l], phase_constants(s, l), at.B, at.C)
     weights = (s.g_up[l] + s.g_up_slope[l] * s.time[l]) * s.weight_over_R[l]

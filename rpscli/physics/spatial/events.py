@@ -9,8 +9,11 @@ from rpscli.physics.core.lanes import enter_interval
 from rpscli.physics.core.quintic import NEAR, SETTLED, first_descent, lower_hull, offset
 from rpscli.physics.core.records import NO_HISTORY, Floats, Record
 from rpscli.physics.core.series import slope, value
+from rpscli.physics.planar.devices.events import change_law, locate_change
+from rpscli.physics.planar.devices.flows import raise_devices
 from rpscli.physics.planar.equation_of_motion import cap_beam_lift, lifted_mass, rotation_terms
 from rpscli.physics.planar.events import (
+    CHANGE_OF_DEVICE,
     end_step,
     leaves_range,
     note_critical,
@@ -37,6 +40,7 @@ from rpscli.physics.planar.state import (
 )
 from rpscli.physics.planar.steps import tilt_at
 from rpscli.physics.spatial.demands import observe_start_3d
+from rpscli.physics.spatial.devices import mark_azimuth, take_up_stops
 from rpscli.physics.spatial.energy import uplifted_energy_3d
 from rpscli.physics.spatial.equation_of_motion import direction_at, enter_phase_3d
 from rpscli.physics.spatial.passes import describe_event, log_event_3d, pass_upright, settles
@@ -65,6 +69,9 @@ def locate_event_3d(s: Record, l: int, system: Record, block: Record) -> tuple[f
                 first, level, kind = t, tilt_at(s, l, t), PASS
     elif rate[5] >= 0.0 and lower_hull(rate) < 0.0 and first_descent(rate, NEAR, piece) <= 1.0:
         return 0.5, 0.0, HALVE
+    t, which = locate_change(s, l, block)
+    if t < first:
+        first, level, kind = t, tilt_at(s, l, t), CHANGE_OF_DEVICE + which
     return first, level, kind
 
 
@@ -117,7 +124,13 @@ def switch(s: Record, l: int, system: Record, log: Record, kind: int) -> bool:
     if kind in (PASS, NEAR_PASS):
         near = 1 if kind == NEAR_PASS else 0
         pass_upright(s, l, system, log, near)
+        take_up_stops(s, l, log)
         return settles(s, l, system, log, near)
+    if kind >= CHANGE_OF_DEVICE:
+        change_law(s, l, log, kind - CHANGE_OF_DEVICE)
+        raise_devices(s, l, s.theta[l], s.theta_dot[l], 0.0)
+        mark_azimuth(s, l, log)
+        return False
     log_event_3d(s, l, log, kind, s.theta_dot[l], s.theta_dot[l], 0.0)
     if kind == OVERTURNING:
         rolls = s.theta_cr[l] < system.beta

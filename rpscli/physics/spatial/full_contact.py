@@ -14,6 +14,7 @@ from typing import TypeAlias
 from rpscli.physics.core.compile import compiled, exact_kernel, variant
 from rpscli.physics.core.quintic import NO_PASSAGE, SETTLED, first_descent, quintic
 from rpscli.physics.core.records import INSTANTS, Floats, Record
+from rpscli.physics.planar.devices.rest import pull_at_rest
 from rpscli.physics.planar.full_contact.follow import (
     begin_motion,
     demands_stand,
@@ -46,6 +47,7 @@ def follow_full_contact_3d(
     s: Record, l: int, systems: Record, blocks: Record, acceleration: Floats, output: Output
 ) -> int:
     """Follow a lane in full contact: GOES_ON when it begins to tilt, or IS_OVER."""
+    s.push_x[l], s.push_y[l], s.pull[l] = 0.0, 0.0, pull_at_rest(s, l)
     return follow_at_rest(s, l, systems, blocks, acceleration, output)
 
 

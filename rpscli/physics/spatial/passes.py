@@ -13,7 +13,9 @@ import math
 from rpscli.physics.core.compile import compiled
 from rpscli.physics.core.lanes import log_event, time_of
 from rpscli.physics.core.records import Record
+from rpscli.physics.planar.devices.rest import begin_excursion
 from rpscli.physics.planar.state import FULL_CONTACT, PASS, RECONTACT, ROCKING, ROLLING, UPLIFT
+from rpscli.physics.spatial.devices import held_3d, mark_azimuth
 from rpscli.physics.spatial.energy import lifting_energy, strain_energy, tilting_energy_3d
 from rpscli.physics.spatial.equation_of_motion import beam_now, enter_phase_3d, place_of, renew_push
 from rpscli.physics.spatial.state import UPLIFT_TILT, UPRIGHT_TILT
@@ -75,7 +77,7 @@ def move_floors(s: Record, l: int, before: tuple[float, float, float, float]) ->
 def limit_of(s: Record, l: int, system: Record) -> float:
     """|z| at which a structure at rest uplifts [1/s2]."""
     g_up = s.g_up[l] + s.g_up_slope[l] * s.time[l]
-    return float(math.tan(system.alpha) * g_up * s.weight_over_R[l])
+    return float(math.tan(system.alpha) * g_up * s.weight_over_R[l]) + held_3d(s, l)
 
 
 @compiled
@@ -161,9 +163,11 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
     if size == 0.0:  # what falls freely may tilt to any side
         z_x, size = 1.0, 1.0
     before = (0.0, 0.0, 0.0, 0.0)
+    rise = UPLIFT_TILT
     if s.phase[l] != FULL_CONTACT:
         at = place_of(s, l, s.theta[l])
         before = beam_now(s, l)
+        rise -= s.theta[l]
         lifted = lifting_energy(s, l, at) + tilting_energy_3d(s, l, at)
     enter_phase_3d(s, l, system, ROLLING if system.beta > 0.0 else ROCKING)
     s.cos_phi[l], s.sin_phi[l] = z_x / size, z_y / size
@@ -171,6 +175,8 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
     move_floors(s, l, before)
     s.energy_input[l] += lifting_energy(s, l, place_of(s, l, UPLIFT_TILT)) - lifted
     s.energy_input[l] += strain_energy(s, l) - strain
+    arm = s.diameter[l] * math.cos(system.alpha) / s.shear_factor[l]
+    s.energy_input[l] += held_3d(s, l) * arm * rise
     s.step_limit[l] = FIRST_STEP
 
 
@@ -180,3 +186,5 @@ def uplift_3d(s: Record, l: int, system: Record, log: Record) -> None:
     z_x, z_y = renew_push(s, l)
     begin_tilt(s, l, system, z_x, z_y)
     log_event_3d(s, l, log, UPLIFT, 0.0, 0.0, 0.0)
+    begin_excursion(s, l, log)
+    mark_azimuth(s, l, log)

@@ -11,11 +11,11 @@ from rpscli.physics.planar.equation_of_motion import rotation_terms
 from rpscli.physics.planar.run import Output
 from rpscli.physics.planar.samples import store_row, store_row_within
 from rpscli.physics.planar.state import FULL_CONTACT
+from rpscli.physics.spatial.devices import rates_with_devices, store_devices_3d
 from rpscli.physics.spatial.equation_of_motion import (
     beam_motion,
     direction_at,
     place_of,
-    rates_now,
     turning_terms,
 )
 
@@ -25,7 +25,7 @@ def store_row_3d(s: Record, l: int, systems: Record, output: Output, row: int) -
     """Keep the state of a lane, its modes as they stand in `looked_at`, if there is room."""
     rates, stands = (0.0, 0.0, 0.0, 0.0), s.phase[l] == FULL_CONTACT
     if not stands:
-        rates = rates_now(s, l)
+        rates = rates_with_devices(s, l)
     write_row(s, l, systems, output, row, 0.0 if stands else s.theta[l], rates)
 
 
@@ -59,6 +59,8 @@ def write_row(
     sample.theta, sample.phase = theta, s.phase[l]
     sample.azimuth = math.atan2(s.sin_phi[l], s.cos_phi[l]) if theta > 0.0 else 0.0
     sample.theta_dot, sample.turning, sample.theta_ddot, sample.turning_rate = rates
+    if s.devices[l] > 0:
+        store_devices_3d(s, l, output.devices[row], theta, (rates[0], rates[1]))
     sample.push_x, sample.push_y = s.push_x[l], s.push_y[l]
     sample.energy_input, sample.energy_damped = s.energy_input[l], s.energy_damped[l]
     sample.energy_lost = s.energy_lost[l]

@@ -9,8 +9,11 @@ these rows, so that what loops over modes serves both kernels. What is planar an
 
 from __future__ import annotations
 
+import numpy as np
+
 from rpscli.physics.core.records import WHOLE, Field
 from rpscli.physics.planar import state as planar
+from rpscli.physics.planar.run import Run
 
 UPRIGHT_TILT = 5e-10
 """theta_c [rad]: what passes nearer is taken over by a map."""
@@ -133,6 +136,27 @@ STATE_3D = (
     *_lanes("J", energy_passes="lost in passes"),
 )
 """`state` of `spatial`; lanes side by side."""
+
+EQUIPPED_STATE_3D = (
+    *STATE_3D,
+    *(field for field in planar.STATE if field.name == "device_terms"),
+    *planar.EQUIPPED_STATE[len(planar.STATE) :],
+    *_lanes("-", kinks="1: a device's force has a kink where v = 0"),
+    *_terms("m/s", "2 terms", v="of u_b' in x and y"),
+    *_terms("m2/s2", "terms", speed2="of its square"),
+    *_terms("N s/m", "terms", drag="of -P/u_b'"),
+)
+"""With devices."""
+
+STATES_3D = {"pairs": STATE_3D, "pairs with devices": EQUIPPED_STATE_3D}
+"""By the variant of the kernel that is compiled for it."""
+
+
+def variant_of_pairs(run: Run) -> str:
+    """Which of `STATES_3D` the structures of a run ask for."""
+    devices = run.systems.view(np.ndarray)["devices"]
+    return "pairs with devices" if devices.any() else "pairs"
+
 
 RESULT_3D = (
     *planar.RESULT,

@@ -22,6 +22,7 @@ from rpscli.physics.planar.steps import (
     plan_steps,
     sums,
 )
+from rpscli.physics.spatial.devices import begin_devices_3d, extend_devices_3d
 from rpscli.physics.spatial.equation_of_motion import (
     begin_terms,
     extend_modes,
@@ -61,27 +62,35 @@ def take_steps(s: Record) -> None:
 def extend_all(s: Record, lanes: int) -> None:
     """Terms of all orders, in all lanes, see `planar.steps.extend_all`."""
     begin_terms(s, lanes)
+    begin_devices_3d(s)
     extend_tilt(s, lanes, 1)
     extend_positions(s, lanes, 2)
     extend_modes(s, lanes, 1)
+    extend_devices_3d(s, 1)
     extend_tilt(s, lanes, 2)
     extend_positions(s, lanes, 3)
     extend_modes(s, lanes, 2)
+    extend_devices_3d(s, 2)
     extend_tilt(s, lanes, 3)
     extend_positions(s, lanes, 4)
     extend_modes(s, lanes, 3)
+    extend_devices_3d(s, 3)
     extend_tilt(s, lanes, 4)
     extend_positions(s, lanes, 5)
     extend_modes(s, lanes, 4)
+    extend_devices_3d(s, 4)
     extend_tilt(s, lanes, 5)
     extend_positions(s, lanes, 6)
     extend_modes(s, lanes, 5)
+    extend_devices_3d(s, 5)
     extend_tilt(s, lanes, 6)
     extend_positions(s, lanes, 7)
     extend_modes(s, lanes, 6)
+    extend_devices_3d(s, 6)
     extend_tilt(s, lanes, 7)
     extend_positions(s, lanes, 8)
     extend_modes(s, lanes, 7)
+    extend_devices_3d(s, 7)
 
 
 @compiled

@@ -67,7 +67,8 @@ def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None
     axes.axhline(0.0, color=style.BLACK, lw=0.5)
     axes.axvline(0.0, color=style.BLACK, lw=0.5)
     axes.set_title(f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small())
-    axes.set(xlabel=drawn.stroke, ylabel=f"{drawn.force} [{prefix}N]")
+    stroke = drawn.stroke if result.motion.y is None else drawn.stroke.replace("u_b", "|u_b|")
+    axes.set(xlabel=stroke, ylabel=f"{drawn.force} [{prefix}N]")
     axes.locator_params(axis="x", nbins=5)
 
 

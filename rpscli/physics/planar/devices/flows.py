@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from rpscli.physics.core.compile import compiled
-from rpscli.physics.core.records import Floats, Record
+import math
+
+from rpscli.physics.core.compile import compiled, compiled_with
+from rpscli.physics.core.records import ORDER, Floats, Record
 from rpscli.physics.core.series import NODES, WEIGHTS, Terms, integral, value
 from rpscli.physics.planar.devices import with_devices
 from rpscli.physics.planar.devices.events import watch_stop
@@ -44,11 +46,12 @@ def book_devices(s: Record, l: int, fraction: float) -> None:
         theta_dot = value(terms, t)
         theta = s.theta[l] + s.step[l] * integral(terms, t)
         path, rate, _ = cap_beam_path(s, l, theta, theta_dot)
+        speed = speed_of(s, l, path, rate, turning_at(s, l, t))
         _, lever, _, _ = tendon_elongation(s, l, theta)
         for i in range(s.devices[l]):
             kind, power = s.device_kind[i, l], 0.0
             if kind in (VISCOUS, FRICTION):
-                power = resistance(s, l, i, path, rate) * rate
+                power = resistance(s, l, i, path, speed) * speed
             elif kind == STOP:
                 if s.device_branch[i, l] == WORKING:
                     power = s.law[i, STOP_DAMPING, l] * rate * rate
@@ -62,6 +65,27 @@ def book_devices(s: Record, l: int, fraction: float) -> None:
             s.device_energy[i, l] += fraction * s.step[l] * WEIGHTS[n] * power
 
 
+@compiled_with("turning_terms", otherwise=0.0)
+def turning_at(s: Record, l: int, t: float) -> float:
+    """w a fraction t into the step, of a tilt to any side."""
+    w = 0.0
+    for m in range(ORDER, -1, -1):
+        w = w * t + s.turning_terms[m, l]
+    return w
+
+
+@compiled
+def along_tilt(s: Record, l: int, path: float, rate: float, w: float) -> float:  # noqa: ARG001 -- called as `speed_of`
+    """|u_b|' in one plane."""
+    return rate
+
+
+@compiled_with("turning_terms", otherwise=along_tilt)
+def speed_of(s: Record, l: int, path: float, rate: float, w: float) -> float:  # noqa: ARG001
+    """Velocity that dampers resist: |u_b'| of a tilt to any side."""
+    return math.sqrt(rate * rate + path * w * (path * w))
+
+
 @with_devices()
 def observe_devices(s: Record, l: int, fraction: float) -> None:
     """Raise the largest forces and rates of devices by those of the first part of the step.
@@ -72,7 +96,7 @@ def observe_devices(s: Record, l: int, fraction: float) -> None:
     raise_within(s, l, fraction)
     if terms[0] > 0.0 and value(terms, fraction) < 0.0:
         raise_within(s, l, where_zero(terms, fraction))
-    d = s.advance_terms
+    d = speed_terms(s)
     rate = d[0, l], d[1, l], d[2, l], d[3, l], d[4, l], d[5, l], d[6, l], d[7, l]
     raise_where_level(s, l, rate, fraction)
     for i in range(s.devices[l]):
@@ -81,6 +105,20 @@ def observe_devices(s: Record, l: int, fraction: float) -> None:
             d = s.event_terms
             force = d[0, l], d[1, l], d[2, l], d[3, l], d[4, l], d[5, l], d[6, l], d[7, l]
             raise_where_level(s, l, force, fraction)
+
+
+@compiled
+def advance_terms(s: Record) -> Floats:
+    """Terms of |u_b|'."""
+    terms: Floats = s.advance_terms
+    return terms
+
+
+@compiled_with("speed2_terms", otherwise=advance_terms)
+def speed_terms(s: Record) -> Floats:
+    """Terms of what is largest with the velocity of dampers."""
+    terms: Floats = s.speed2_terms
+    return terms
 
 
 @compiled
@@ -108,23 +146,32 @@ def raise_where_level(s: Record, l: int, c: Terms, fraction: float) -> None:
 def raise_within(s: Record, l: int, t: float) -> None:
     """Raise the largest forces and rates by those a fraction t into the step."""
     terms = rotation_terms(s, l)
-    raise_devices(s, l, s.theta[l] + s.step[l] * integral(terms, t), value(terms, t))
+    w = turning_at(s, l, t)
+    raise_devices(s, l, s.theta[l] + s.step[l] * integral(terms, t), value(terms, t), w)
 
 
 @with_devices()
-def raise_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
-    """Raise the largest forces and rates by those at a tilt and its rate."""
+def raise_devices(s: Record, l: int, theta: float, theta_dot: float, w: float) -> None:
+    """Raise the largest forces and rates by those at a tilt and its rates."""
     path, rate, C = cap_beam_path(s, l, theta, theta_dot)
     e, lever, _, _ = tendon_elongation(s, l, theta)
     for i in range(s.devices[l]):
-        force, speed, _ = device_at(s, l, i, path, rate, C, e, lever * theta_dot)
+        force, speed, _ = device_at(s, l, i, path, rate, C, e, lever * theta_dot, w)
         s.device_force[i, l] = max(s.device_force[i, l], abs(force))
         s.device_velocity[i, l] = max(s.device_velocity[i, l], abs(speed))
 
 
 @compiled
 def device_at(
-    s: Record, l: int, i: int, path: float, rate: float, C: float, e: float, e_rate: float
+    s: Record,
+    l: int,
+    i: int,
+    path: float,
+    rate: float,
+    C: float,
+    e: float,
+    e_rate: float,
+    w: float,
 ) -> tuple[float, float, float]:
     """Force of a device, the rate at which it is worked, and its displacement.
 
@@ -137,7 +184,8 @@ def device_at(
     if kind == ROLLING_RESISTANCE:
         moment = s.direction[l] * s.law[i, ROLLING_MOMENT, l]
         return moment / (s.diameter[l] * C), rate, path
-    return resistance(s, l, i, path, rate), rate, path
+    speed = speed_of(s, l, path, rate, w) if kind == VISCOUS else rate
+    return resistance(s, l, i, path, speed), speed, path
 
 
 @compiled
@@ -158,7 +206,7 @@ def stored_in(s: Record, l: int, i: int, path: float, e: float) -> float:
 
 
 @with_devices()
-def store_devices(s: Record, l: int, sample: Floats) -> None:
+def store_devices(s: Record, l: int, sample: Floats, w: float) -> None:
     """Keep force, displacement, dissipated and stored energy of each device of a lane.
 
     Horizontal forces are those on the cap beam, positive to the right, and go with u_b; of a tendon
@@ -171,7 +219,7 @@ def store_devices(s: Record, l: int, sample: Floats) -> None:
     share = mobilised_friction(s, l) if stuck or stands else 0.0
     for i in range(s.devices[l]):
         kind, e_rate = s.device_kind[i, l], lever * s.theta_dot[l]
-        force, _, displacement = device_at(s, l, i, path, rate, C, e, e_rate)
+        force, _, displacement = device_at(s, l, i, path, rate, C, e, e_rate, w)
         if kind != TENDON:
             if (stuck or stands) and kind in (FRICTION, ROLLING_RESISTANCE):
                 force *= share * s.direction[l]

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.compile import compiled, compiled_with
 from rpscli.physics.core.records import ORDER, TERMS, Record
 from rpscli.physics.core.series import sine_cosine
 from rpscli.physics.planar.devices import with_devices
@@ -84,7 +84,8 @@ def set_devices(s: Record, l: int, theta: float, theta_dot: float) -> None:
     e, lever, sin_psi, cos_psi = tendon_elongation(s, l, theta)
     resisting, tense = 0.0, 0.0
     for i in range(s.devices[l]):
-        resisting += resistance(s, l, i, path, rate)
+        if not is_vector(s, l, i):
+            resisting += resistance(s, l, i, path, rate)
         tense += s.columns[l] * tension(s, l, i, e)
     moment = tense * lever + s.direction[l] * s.friction_moment[l]
     s.next_device[l] = -s.shear_factor[l] * (C * resisting + moment / s.diameter[l])
@@ -210,22 +211,35 @@ def expand_elongation(s: Record, l: int) -> None:
 def begin_devices(s: Record) -> None:
     """Terms of order 0, in lanes with devices."""
     for l in range(s.lanes):
-        if s.devices[l] == 0:
+        if s.devices[l] > 0:
+            begin_lane(s, l)
+
+
+@compiled
+def begin_lane(s: Record, l: int) -> None:
+    """The same for one lane."""
+    path, rate, _ = cap_beam_path(s, l, s.theta[l], s.theta_dot[l])
+    s.path[l], s.advance_terms[0, l] = path, rate
+    resisting, tense, stiffness = 0.0, 0.0, 0.0
+    if s.tendons[l] > 0:
+        expand_elongation(s, l)
+    for i in range(s.devices[l]):
+        if is_vector(s, l, i):
             continue
-        path, rate, _ = cap_beam_path(s, l, s.theta[l], s.theta_dot[l])
-        s.path[l], s.advance_terms[0, l] = path, rate
-        resisting, tense, stiffness = 0.0, 0.0, 0.0
-        if s.tendons[l] > 0:
-            expand_elongation(s, l)
-        for i in range(s.devices[l]):
-            own = resistance(s, l, i, path, rate)
-            resisting += own
-            s.power_terms[i, 0, l] = own
-            if s.device_kind[i, l] == TENDON:
-                tense += s.columns[l] * tension(s, l, i, s.elongation_terms[0, l])
-                if s.device_branch[i, l] == WORKING:
-                    stiffness += s.columns[l] * s.law[i, TENDON_STIFFNESS, l]
-        s.resistance_terms[0, l], s.tension[l], s.tendon_stiffness[l] = resisting, tense, stiffness
+        own = resistance(s, l, i, path, rate)
+        resisting += own
+        s.power_terms[i, 0, l] = own
+        if s.device_kind[i, l] == TENDON:
+            tense += s.columns[l] * tension(s, l, i, s.elongation_terms[0, l])
+            if s.device_branch[i, l] == WORKING:
+                stiffness += s.columns[l] * s.law[i, TENDON_STIFFNESS, l]
+    s.resistance_terms[0, l], s.tension[l], s.tendon_stiffness[l] = resisting, tense, stiffness
+
+
+@compiled_with("cos_phi", otherwise=False)
+def is_vector(s: Record, l: int, i: int) -> bool:
+    """Whether a device resists along its velocity in x and y, of a tilt to any side."""
+    return bool(s.device_kind[i, l] == VISCOUS)
 
 
 @with_devices()
@@ -248,6 +262,8 @@ def extend_lane(s: Record, l: int, m: int) -> None:
     resisting = 0.0
     for i in range(s.devices[l]):
         kind = s.device_kind[i, l]
+        if is_vector(s, l, i):
+            continue
         if kind == VISCOUS:
             resisting += extend_power(s, l, i, m)
         elif kind == STOP and s.device_branch[i, l] == WORKING:
