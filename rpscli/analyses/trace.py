@@ -123,8 +123,7 @@ class DeviceTrace(Frozen):
     """What each device does at the record's samples: arrays (samples, devices)."""
 
     force: Array
-    """On the cap beam, positive to the right [N]; of a tendon the tension of one. Under both
-    components resultants, below zero where they resist."""
+    """On the cap beam, positive to the right, of pairs outwards [N]; of a tendon the tension."""
     displacement: Array
     """u_b [m], under both components |u_b|; of a tendon the elongation of one."""
     energy: Array
