@@ -94,4 +94,6 @@ def _similar(path: Path) -> str:
     names = {item.stem: item.name for item in folder.iterdir() if item.is_file()}
     if found := nearest(path.stem, names):
         return f"; did you mean {folder / names[found]}?"
-    return "; `rps init` writes a case to start from"
+    return (
+        "; check its name" if path.suffix == ".csv" else "; `rps init` writes a case to start from"
+    )
