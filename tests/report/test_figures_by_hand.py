@@ -94,7 +94,7 @@ def test_results_over_the_direction() -> None:
 
     def spread(worst: float, rotd50: float, both: float) -> dict[Any, tuple[Array, ...]]:
         medians = ((shear, 7.0, 7.0, NAN), (way, worst, rotd50, both))
-        return {q: tuple(np.array([of, INF]) for of in each) for q, *each in medians}
+        return {q: tuple(np.array([0.5 * of, of, INF]) for of in each) for q, *each in medians}
 
     one, two = pair([0.1, 0.4, 0.2, 0.3], 0.4, 45.0), pair([0.5, 0.5, INF, 0.6], INF, 90.0)
     shown = (
@@ -112,7 +112,12 @@ def test_results_over_the_direction() -> None:
     top = 1.08 * 0.6
     for axes in (first, second):
         same(curve(axes, "overturned"), ([90.0], [top]))
-        same([*axes.get_xlim(), *axes.get_ylim()], (-4.0, 184.0, 0.0, top))
+        same([*axes.get_xlim(), *axes.get_ylim()], (-4.0, 199.0, 0.0, top))
+        assert "16 to 84 % of pairs" in figure.get_suptitle()
+    lines = (np.array(line.get_data()) for line in first.lines)
+    bands = [each for each in lines if each.shape == (2, 2) and np.ptp(each[0]) == 0.0]
+    for (x, y), at, low in zip(bands, (184.0, 189.0, 194.0), (0.2, 0.125, 0.25), strict=True):
+        same((x, y), ([at, at], [low, 2.0 * top]))
     same(curve(first, "worst direction"), ([45.0], [0.4]))
     levels = [f"{of}, median of pairs" for of in ("worst direction", "RotD50", "both components")]
     is_level(first, levels[0], 0.4)
