@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from rpscli.records.spectrum import response_spectrum
     from rpscli.studies import Study, StudyResult, load_study
 
+    __version__: str
+
 _HOMES = {
     "rpscli.analyses.demand": ("demand",),
     "rpscli.analyses.floor_spectra": ("fixed_base_floor_spectra", "isolated_floor_spectra"),

@@ -73,6 +73,7 @@ def test_without_a_cache_a_place_is_asked_for(
     assert set(rps_json("clean")["bytes"].values()) == {0}
 
 
+@pytest.mark.posix
 def test_clean_deletes_what_rps_keeps_and_nothing_else(
     rps: Invoke, rps_json: InvokeJson, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
