@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.physics.core.records import INSTANTS, Record
-from rpscli.physics.core.series import NODES
 from rpscli.physics.planar.state import MOST_ON_BED
 
 NO_MAP = -1
@@ -33,6 +32,8 @@ def bed_maps(system: Record, dt: float, *, audited: bool) -> NDArray[np.float64]
     numbers. If audited, the same to the nodes of Gauss's rule within follow.
     """
     from scipy.linalg import expm
+
+    from rpscli.physics.core.series import NODES  # brings numba, which is slow
 
     n, h = int(system["n"]), dt / steps_of(system, dt)
     size, C, gamma = 2 * n + 2, float(system["bed_height"]), float(system["gamma"])
