@@ -61,7 +61,8 @@ class DeviceSection(Section):
 
     kind: Literal["viscous", "friction", "stop", "tendon", "rolling_resistance"] = Field(
         description="viscous or friction damper, elastic stop, unbonded tendon in the axis of each"
-        " column, or the resistance of the columns to rolling"
+        " column, or the resistance of the columns to rolling; friction and rolling_resistance"
+        " not under both components"
     )
     coefficient: Annotated[float | None, Quantity("N s/m", symbol="c", above=0)] = None
     """viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"""
@@ -72,7 +73,7 @@ class DeviceSection(Section):
     force: Annotated[float | None, Quantity("N", symbol="F_d", above=0)] = None
     """friction: F_d, at which the damper slides"""
     gap: Annotated[float | None, Quantity("m", symbol="d", at_least=0)] = None
-    """stop: d, the cap beam's displacement at which it is met, on both sides"""
+    """stop: d, the cap beam's displacement at which it is met, on all sides"""
     stiffness: Annotated[float | None, Quantity("N/m", above=0)] = None
     """stop: k_s; tendon: k_t of one"""
     damping: Annotated[float | None, Quantity("N s/m", symbol="c_s", at_least=0)] = None
