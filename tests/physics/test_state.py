@@ -25,7 +25,7 @@ from rpscli.physics.core.records import (
 from rpscli.physics.planar import state
 from rpscli.physics.planar.run import empty_block, empty_state
 from rpscli.physics.planar.state import (
-    BLOCK,
+    COMPLIANT_BLOCK,
     COMPLIANT_STATE,
     EVENT,
     EVENT_KINDS,
@@ -41,7 +41,7 @@ TABLES = {
     "request": REQUEST,
     "state": STATE,
     "compliant": COMPLIANT_STATE,
-    "block": BLOCK,
+    "block": COMPLIANT_BLOCK,
     "result": RESULT,
     "sample": SAMPLE,
     "event": EVENT,
@@ -173,7 +173,9 @@ def writers(variable: str) -> dict[str, set[str]]:
     return found
 
 
-@pytest.mark.parametrize(("fields", "variable"), [(COMPLIANT_STATE, "s"), (BLOCK, "block")])
+@pytest.mark.parametrize(
+    ("fields", "variable"), [(COMPLIANT_STATE, "s"), (COMPLIANT_BLOCK, "block")]
+)
 def test_fields_name_who_writes_them(fields: tuple[Field, ...], variable: str) -> None:
     """What is written through an argument is not found here, and is named all the same."""
     known = writers(variable)

@@ -27,7 +27,7 @@ from rpscli.physics.planar.full_contact.demands import (
     observe_contacts,
     raise_floors_of_block,
 )
-from rpscli.physics.planar.full_contact.modal_block import add_forces, add_rates, clear_sums
+from rpscli.physics.planar.full_contact.modal_block import sum_modes
 from rpscli.physics.planar.run import Output
 from rpscli.physics.planar.samples import PASSED, store_row, store_sample
 from rpscli.physics.planar.state import AFTER_PHASE_CHANGE, BEDDED, GOES_ON, IS_OVER
@@ -129,9 +129,13 @@ def unfold(s: Record, l: int, system: Record, block: Record, steps: int) -> None
         block.tilt[k], block.tilt_rate[k] = row[0], row[1]
         for r in range(s.n):
             block.qs[r, k], block.dqs[r, k] = row[2 * r + 2], row[2 * r + 3]
-    clear_sums(block)
+    for k in range(INSTANTS):
+        block.V[k] = 0.0
     for r in range(s.n):
-        add_forces(block, system, r)
+        Gamma, omega2, two_xi_omega = system.Gamma[r], system.omega2[r], system.two_xi_omega[r]
+        for k in range(INSTANTS):
+            force = omega2 * block.qs[r, k] + two_xi_omega * block.dqs[r, k]
+            block.V[k] += Gamma * force
     C, k_bed, c_bed = system.bed_height, system.bed_k, system.bed_c
     per_A, beam = 1.0 / (s.io_1[l] + s.one_4gamma[l] * (C * C)), s.diameter[l] * C
     for k in range(INSTANTS):
@@ -141,8 +145,7 @@ def unfold(s: Record, l: int, system: Record, block: Record, steps: int) -> None
         block.across[k] = beam * block.tilt_bend[k]
         block.ground[k] = block.a_g[k]
         block.a_g[k] += block.across[k]  # what shakes the building
-    for r in range(s.n):
-        add_rates(block, system, r)
+    sum_modes(block, system)
     for k in range(INSTANTS):
         action = s.ground_over_R[l] * block.a_g_slope[k] - s.shear_factor[l] * block.dV[k]
         springs = k_bed * block.tilt_rate[k] + c_bed * block.tilt_bend[k]

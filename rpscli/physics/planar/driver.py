@@ -40,7 +40,7 @@ from rpscli.physics.planar.state import (
     AFTER_RELEASE,
     AT_REST,
     BEDDED,
-    BLOCK,
+    BLOCKS,
     EVENT_KINDS,
     FAILED_TOO_MANY_STEPS,
     FOLLOW_CONTACT,
@@ -76,8 +76,8 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
     costs a tenth of a millisecond.
     """
     systems = run.systems.view(np.ndarray)  # fields of records take ten times as long
-    state = scratch(STATES[variant_of(run)])
-    block, storeys, plain = scratch(BLOCK), systems["n"][0], state.view(np.ndarray)
+    state, block = scratch(STATES[variant_of(run)]), scratch(BLOCKS[variant_of(run)])
+    storeys, plain = systems["n"][0], state.view(np.ndarray)
     plain["n"], plain["lanes"], plain["stop"] = storeys, lanes, 0
     if "fading" in (plain.dtype.names or ()):
         plain["fading"] = int((systems["bed_full"] > 0.0).any())

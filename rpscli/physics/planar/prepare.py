@@ -71,23 +71,24 @@ def compiling(module: str, what: str) -> subprocess.Popen[bytes]:
 def compile_phases(variant: str) -> None:
     """Full contact, what begins a phase or a history, and the building on a fixed base."""
     run, s = empty_run(1), no_histories(variant)[0]
-    block = empty_block(1)
+    block = empty_block(1, variant=variant)
     follow_full_contact(s, 0, run.systems[0], block[0], run.acceleration, run.output)
     next_history(s, 0, run)
     go_on_restarted(s, 0, run.systems[0], run.output)
     floors, largest = np.empty((0, 2, 1)), np.zeros((2, 1))
-    integrate_fixed_base(run.acceleration, 1.0, 1, 0, run.systems, block, floors, largest)
+    integrate_fixed_base(run.acceleration, 1.0, 1, 0, run.systems, empty_block(1), floors, largest)
 
 
 def compile_whole(variant: str) -> None:
     """The kernel itself, of parts that are compiled."""
-    integrate_lanes(empty_state(1, 1, variant=variant), empty_block(1), empty_run(1))
+    block = empty_block(1, variant=variant)
+    integrate_lanes(empty_state(1, 1, variant=variant), block, empty_run(1))
 
 
 def compile_steps(variant: str) -> None:
     """Uplifted steps of all lanes, and those of one that end on an event."""
     run, state = empty_run(1), no_histories(variant)
-    block = empty_block(1)
+    block = empty_block(1, variant=variant)
     advance_lanes(state, run.systems, block, run.output)
     resolve_step(state[0], 0, run.systems[0], block[0], run.output)
 

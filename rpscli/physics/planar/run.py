@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rpscli.physics.core.records import LANES, Floats, Record, records
 from rpscli.physics.planar.state import (
-    BLOCK,
+    BLOCKS,
     EVENT,
     REQUEST,
     RESULT,
@@ -58,9 +58,9 @@ def empty_state(storeys: int, lanes: int = LANES, *, variant: str = "plain") -> 
     return state
 
 
-def empty_block(storeys: int) -> Record:
+def empty_block(storeys: int, *, variant: str = "plain") -> Record:
     """Room for a block of steps in full contact, an array of one record."""
-    block = records(BLOCK)
+    block = records(BLOCKS[variant])
     block.n = storeys
     return block
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.core.compile import compiled, compiled_with
 from rpscli.physics.core.records import INSTANTS, Floats, Record
 from rpscli.physics.core.series import middle_of, peak
 from rpscli.physics.planar.demands import SURELY, WITHIN, raise_by, reach, written
@@ -98,6 +98,16 @@ def largest_of_row(block: Record, h: float, steps: int) -> float:
     return float(max(largest[0], largest[1], largest[2], largest[3]))
 
 
+def _still(_block: Record, _k: int) -> tuple[float, float]:
+    return 0.0, 0.0
+
+
+@compiled_with("across", otherwise=_still)
+def beam_motion(block: Record, k: int) -> tuple[float, float]:
+    """u_b'' after k steps and its rate [m/s2, m/s3]: 0 but on a bed."""
+    return block.across[k], block.across_rate[k]
+
+
 @compiled
 def contacts_may_rise(s: Record, l: int, block: Record, pull: float, h: float, steps: int) -> bool:
     """Whether forces of the columns may be larger, or smaller, than so far in the first steps."""
@@ -106,7 +116,8 @@ def contacts_may_rise(s: Record, l: int, block: Record, pull: float, h: float, s
     found, part = 0, WITHIN / 8.0 * h
     for k in range(INSTANTS):
         a_g, g_up = block.a_g[k], block.g_up[k]
-        across, moved = block.across[k], block.across_rate[k] - block.across_rate[k + 1]
+        across, rate = beam_motion(block, k)
+        moved = rate - beam_motion(block, k + 1)[1]
         bulge = part * (abs(block.dV[k] - block.dV[k + 1]) + (beam + columns) * abs(moved))
         shear = beam * (a_g + across) - block.V[k] - block.push[k]
         shear_bottom = shear + columns * (a_g + 0.5 * across)
@@ -131,8 +142,8 @@ def observe_contacts(
         a_g, change = block.a_g[k], 0.5 * h * block.a_g_slope[k]
         g_up, rise = block.g_up[k], 0.5 * h * block.g_up_slope[k]
         middle = middle_of(V, V_end, h * block.dV[k], h * block.dV[k + 1])
-        X, X_end, rate = block.across[k], block.across[k + 1], block.across_rate
-        across = middle_of(X, X_end, h * rate[k], h * rate[k + 1])
+        (X, rate), (X_end, rate_end) = beam_motion(block, k), beam_motion(block, k + 1)
+        across = middle_of(X, X_end, h * rate, h * rate_end)
         raise_by(
             s,
             l,

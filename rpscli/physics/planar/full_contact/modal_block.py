@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.core.compile import compiled, kernel
+from rpscli.physics.core.compile import compiled, inlined, kernel
 from rpscli.physics.core.oscillator import decay, transition
 from rpscli.physics.core.records import INSTANTS, Floats, Record
 from rpscli.physics.core.series import NODES, WEIGHTS
@@ -47,47 +47,33 @@ def follow_modes(block: Record, system: Record, which: int) -> None:
     the demands. Few rows meet in each loop over instants: so the compiler finds it worth checking
     that they do not overlap, and makes vector instructions.
     """
-    clear_sums(block)
     move_modes(block, block.step_maps[which])
-    for r in range(block.n):
-        add_forces(block, system, r)
-        add_rates(block, system, r)
+    sum_modes(block, system)
 
 
-@compiled
-def clear_sums(block: Record) -> None:
-    """Begin the sums over modes."""
+@inlined
+def sum_modes(block: Record, system: Record) -> None:
+    """Write what the modes make of V, its derivatives and the bounds, shaken by `a_g`."""
     for k in range(INSTANTS):
         block.V[k], block.dV[k], block.ddV[k] = 0.0, 0.0, 0.0
         block.shear_bound[k], block.acceleration_bound[k] = 0.0, 0.0
         block.shear_bend[k] = 0.0
-
-
-@compiled
-def add_forces(block: Record, system: Record, r: int) -> None:
-    """Write the forces of mode r, and add what it brings to V and to the bounds."""
-    Gamma, omega2, two_xi_omega = system.Gamma[r], system.omega2[r], system.two_xi_omega[r]
-    for k in range(INSTANTS):
-        block.forces[r, k] = omega2 * block.qs[r, k] + two_xi_omega * block.dqs[r, k]
-    shear, acceleration = system.shear_weight[r], system.acceleration_weight[r]
-    for k in range(INSTANTS):
-        q, force = block.qs[r, k], block.forces[r, k]
-        block.V[k] += Gamma * force
-        block.shear_bound[k] += shear * (q * q)
-        block.acceleration_bound[k] += acceleration * (force * force)
-
-
-@compiled
-def add_rates(block: Record, system: Record, r: int) -> None:
-    """Add what mode r brings to V', V'' and the bend, shaken by `a_g`."""
-    Gamma, omega2, two_xi_omega = system.Gamma[r], system.omega2[r], system.two_xi_omega[r]
-    shear = system.shear_weight[r]
-    for k in range(INSTANTS):
-        ddq = -Gamma * block.a_g[k] - block.forces[r, k]
-        force_rate = omega2 * block.dqs[r, k] + two_xi_omega * ddq
-        block.dV[k] += Gamma * force_rate
-        block.ddV[k] += Gamma * (omega2 * ddq - two_xi_omega * force_rate)
-        block.shear_bend[k] += shear * (ddq * ddq)
+    for r in range(block.n):
+        Gamma, omega2, two_xi_omega = system.Gamma[r], system.omega2[r], system.two_xi_omega[r]
+        for k in range(INSTANTS):
+            block.forces[r, k] = omega2 * block.qs[r, k] + two_xi_omega * block.dqs[r, k]
+        shear, acceleration = system.shear_weight[r], system.acceleration_weight[r]
+        for k in range(INSTANTS):
+            q, force = block.qs[r, k], block.forces[r, k]
+            block.V[k] += Gamma * force
+            block.shear_bound[k] += shear * (q * q)
+            block.acceleration_bound[k] += acceleration * (force * force)
+        for k in range(INSTANTS):
+            ddq = -Gamma * block.a_g[k] - block.forces[r, k]
+            force_rate = omega2 * block.dqs[r, k] + two_xi_omega * ddq
+            block.dV[k] += Gamma * force_rate
+            block.ddV[k] += Gamma * (omega2 * ddq - two_xi_omega * force_rate)
+            block.shear_bend[k] += shear * (ddq * ddq)
 
 
 @compiled
