@@ -9,6 +9,7 @@ import pytest
 from oracles.compliant_storey import CompliantStorey
 from paper_structures import Array, ground, needs_compiled_kernels, waves
 from scipy.optimize import brentq
+from scipy.signal import lsim
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.results import TimeHistoryResult
@@ -198,6 +199,35 @@ def test_a_second_integrator_agrees(kind: str) -> None:
     np.testing.assert_allclose(
         found.trace.floor_displacements, floors, atol=1e-6 * np.abs(floors).max()
     )
+
+
+@needs_compiled_kernels
+def test_a_sine_sweep_is_that_of_the_modes() -> None:
+    """Below uplift: M, C and K of [u_b, floors over the ground], written here, in state space."""
+    structure = podium(3, Contact("plane", period_ratio=1.2, damping=0.1))
+    bed, above = structure.bed, structure.superstructure
+    assert bed is not None
+    assert above is not None
+    time = np.arange(1201) * 0.01
+    motion = ground(0.05 * np.sin(2.0 * math.pi * (0.5 + 0.4 * time) * time), 0.01)
+    found = shaken(structure, motion, free_vibration=0.0)
+    assert found.uplifts == 0
+    M = np.diag([bed.mass, *above.masses])
+    C, K = np.zeros((4, 4)), np.zeros((4, 4))
+    for whole, part in ((C, above.damping_matrix), (K, above.stiffness_matrix)):
+        whole[1:, 1:] = part
+        whole[0, 1:] = whole[1:, 0] = -part.sum(axis=0)
+        whole[0, 0] = part.sum()
+    C[0, 0] += 0.2 * math.sqrt(bed.stiffness * bed.mass)
+    K[0, 0] += bed.stiffness
+    # The ground pushes columns by their middle: the beam feels (1 + 2 gamma) N m_c/2 of it.
+    push = np.array([structure.cap_beam_mass + 0.5 * structure.columns_mass, *above.masses])
+    A = np.zeros((8, 8))
+    A[:4, 4:], A[4:, :4], A[4:, 4:] = np.eye(4), -np.linalg.solve(M, K), -np.linalg.solve(M, C)
+    b = np.concatenate([np.zeros(4), -np.linalg.solve(M, push)])[:, None]
+    _, _, states = lsim((A, b, np.eye(8), np.zeros((8, 1))), motion.acceleration, time)
+    floors = found.trace.floor_displacements
+    np.testing.assert_allclose(floors, states[:, 1:4], atol=1e-8 * np.abs(floors).max())
 
 
 def mirrored(motion: GroundMotion) -> GroundMotion:
