@@ -163,9 +163,12 @@ HISTORY = (
     ),
     ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
     ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
-    ResultQuantity("reentries", "-", "returns to full contact", whole=True, needs="contact"),
     ResultQuantity(
-        "full_contact_share", "-", "share of time in full contact", needs="contact",
+        "reentries", "-", "returns to full contact", limit="50", whole=True, needs="contact",
+    ),
+    ResultQuantity(
+        "full_contact_share", "-", "share of time in full contact", limit="0.5", needs="contact",
+        from_below=True,
     ),
     ResultQuantity(
         "max_impact_number", "-", "impact number", r"$\chi$", limit="8", needs="contact",

@@ -39,6 +39,15 @@ def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(building: str) -> None
     ]
 
 
+def test_full_contact_that_gives_way_is_limited_from_both_sides(building: str) -> None:
+    """How often it is entered from above, how long it lasts from below."""
+    found = limited(building, "{reentries: 20, full_contact_share: {at_least: 0.5, share: 0.1}}")
+    assert [(c.name, c.from_below, condition_text(c)) for c in found] == [
+        ("reentries", False, "at most 20 in every record"),
+        ("full_contact_share", True, "at least 0.5 except in 10 % of the records"),
+    ]
+
+
 def with_columns(building: str) -> str:
     """What the force of a column is made of."""
     building = building.replace("  profile: sine\n", "  vertical_period: 0.1 s\n")

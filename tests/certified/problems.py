@@ -300,7 +300,7 @@ def giving_way(name: str, kind: str, above: Floors, settles: float) -> Problem:
             np.array(podium.masses), podium.stiffness_matrix, podium.damping_matrix,
             settles / motion.half_width, zeta, kind == "plane", motion.restitution,
         )  # fmt: skip
-        return told(*storey.history(MOTIONS["x"], DT, tolerance=3e-14))
+        return told(*storey.history(MOTIONS["x"], DT, tolerance=3e-14)[:2])
 
     def second(change: Change) -> Iterable[float]:
         trace = history(name, change).trace

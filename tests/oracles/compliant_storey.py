@@ -50,8 +50,11 @@ class CompliantStorey:
             B,
         )
 
-    def rates(self, a_g: float, y: Array, bedded: bool) -> Array:
-        """y = [theta, theta', u_t, u_t'], theta and all else of the side with theta > 0."""
+    def rates(self, a_g: float, y: Array, bedded: bool, a_v: float = 0.0) -> Array:
+        """y = [theta, theta', u_t, u_t'], theta and all else of the side with theta > 0.
+
+        What is lifted, W/g by v_b' = 2 R B_v theta', feels a_v; in full contact nothing is.
+        """
         n, R = len(self.masses), self.R
         x, rate, u, du = y[0], y[1], y[2 : 2 + n], y[2 + n :]
         total, g = self.masses.sum(), self.gravity
@@ -62,7 +65,7 @@ class CompliantStorey:
             C, dC, Bv, dBv = np.cos(self.alpha - self.phi_u), 0.0, 0.0, 0.0
         else:
             arm, Bv, dBv, C, dC = self.arms(x)
-            moment = 2.0 * R * weight * arm
+            moment = 2.0 * R * weight * (arm + Bv * a_v / g)
         own = 0.25 * self.columns + self.beam
         Icm = (self.Io - 1.0) * self.columns * R * R
         inertia = Icm + 4.0 * R * R * (own * (C * C + Bv * Bv) + total * Bv * Bv)
@@ -101,32 +104,36 @@ class CompliantStorey:
         return float(np.sqrt(low / (low + (own + total) * np.sin(a) ** 2)))
 
     def history(
-        self, a_g: Array, dt: float, theta0: float = 0.0, tolerance: float = 1e-11
-    ) -> tuple[Array, Array]:
-        """theta and u_t at the samples; from rest, tilted by theta0 >= 0."""
+        self, a_g: Array, dt: float, a_v: Array | None = None, tolerance: float = 1e-11
+    ) -> tuple[Array, Array, int]:
+        """theta and u_t at the samples, and the number of returns to full contact; from rest."""
         n = len(self.masses)
-        y, side, bedded = np.zeros(2 + 2 * n), 1.0, theta0 == 0.0
-        y[0] = theta0
-        y[2 : 2 + n] = self.beam_path(theta0, bedded)
-        found = [(theta0, *y[2 : 2 + n])]
+        y, side, bedded, returns = np.zeros(2 + 2 * n), 1.0, True, 0
+        found = [(0.0, *y[2 : 2 + n])]
+        a_v = np.zeros_like(a_g) if a_v is None else a_v
         for k in range(len(a_g) - 1):
             t, end = 0.0, dt
             while end - t > 1e-13:
                 ends = self._ends(bedded)
                 ground = side * a_g[k], side * (a_g[k + 1] - a_g[k]) / dt
+                lift = a_v[k], (a_v[k + 1] - a_v[k]) / dt
                 step = solve_ivp(
-                    partial(self._rates_at, ground, bedded), (t, end), y, "DOP853", events=ends,
-                    rtol=tolerance, atol=1e-13, max_step=0.25 * dt,
+                    partial(self._rates_at, ground, lift, bedded), (t, end), y, "DOP853",
+                    events=ends, rtol=tolerance, atol=1e-13, max_step=0.25 * dt,
                 )  # fmt: skip
                 t, y = float(step.t[-1]), step.y[:, -1]
                 if step.status == 1:
                     y, side, bedded = self._pass(y, side, bedded)
+                    returns += bedded
             found.append((side * y[0], *(side * y[2 : 2 + n])))
         table = np.array(found)
-        return table[:, 0], table[:, 1:]
+        return table[:, 0], table[:, 1:], returns
 
-    def _rates_at(self, ground: tuple[float, float], bedded: bool, t: float, y: Array) -> Array:
-        return self.rates(ground[0] + ground[1] * t, y, bedded)
+    def _rates_at(
+        self, ground: tuple[float, float], lift: tuple[float, float], bedded: bool, t: float,
+        y: Array,
+    ) -> Array:  # fmt: skip
+        return self.rates(ground[0] + ground[1] * t, y, bedded, lift[0] + lift[1] * t)
 
     def _ends(self, bedded: bool) -> list:  # type: ignore[type-arg]
         def above(_t: float, z: Array) -> float:

@@ -187,18 +187,25 @@ def oracle(structure: PodiumStructure) -> CompliantStorey:
 @pytest.mark.evidence("ends that give way", "program")
 @needs_compiled_kernels
 @pytest.mark.parametrize("kind", ["plane", "edges"])
-def test_a_second_integrator_agrees(kind: str) -> None:
-    motion = waves(2.5, 0.01, 2.5, seed=4)
+@pytest.mark.parametrize("peak", [0.0, 5.0])
+def test_a_second_integrator_agrees(kind: str, peak: float) -> None:
+    """Five seconds, without and with vertical motion of this peak [m/s2]."""
+    motion, vertical = waves(5.0, 0.01, 2.5, seed=4), waves(5.0, 0.01, peak, seed=11)
     contact = Contact(kind, period_ratio=1.3, damping=0.1)  # type: ignore[arg-type]
     structure = podium(2, contact, loss=0.5)
-    found = shaken(structure, motion, free_vibration=0.0, accuracy=2.0)
-    theta, floors = oracle(structure).history(motion.acceleration, motion.dt)
-    assert found.impacts >= 3
-    largest = np.abs(theta).max()
-    np.testing.assert_allclose(found.trace.rotation, theta, atol=1e-6 * largest)
-    np.testing.assert_allclose(
-        found.trace.floor_displacements, floors, atol=1e-6 * np.abs(floors).max()
+    theta, floors, returns = oracle(structure).history(
+        motion.acceleration, motion.dt, vertical.acceleration
     )
+    assert returns >= 5
+    shaking = MotionComponents(motion, vertical=vertical if peak else None)
+    for accuracy, bar in ((1.0, 1e-6), (4.0, 1e-8)):
+        settings = TimeHistorySettings(free_vibration=0.0, accuracy=accuracy)
+        found = time_history(structure, shaking, settings, with_fixed_base=False)
+        assert found.reentries == returns
+        for ours, theirs in (
+            (found.trace.rotation, theta), (found.trace.floor_displacements, floors)
+        ):  # fmt: skip
+            np.testing.assert_allclose(ours, theirs, atol=bar * np.abs(theirs).max())
 
 
 @needs_compiled_kernels
@@ -335,3 +342,62 @@ def test_the_law_of_a_plane_end() -> None:
         rtol=1e-4,
         atol=1e-6,
     )
+
+
+STRIPS = 4000
+"""Of a plane end: where its contact ends is known to a strip, 5e-4 of the half width."""
+
+
+def strips(structure: PodiumStructure, settlement: float, theta: Array) -> tuple[Array, Array]:
+    """Restoring moment and lift v_b - v_b(0) of the storey, its weight at rest on springs.
+
+    The middle of an end sinks by s, its springs by s + xi sin(theta); none pulls. Bisection finds
+    s where they carry W; v_b = -2 s - 2 H (1 - cos(theta)).
+    """
+    b, weight = structure.bearing, structure.weight
+    B, H = b.half_width, b.half_height
+    if structure.contact.kind == "edges":
+        xi = np.array([-B, B])
+    else:
+        xi = B * ((2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0)
+    spring = weight / (settlement * xi.size)
+
+    def forces(sunk: Array) -> Array:
+        lowered = sunk[:, None] + np.sin(theta)[:, None] * xi
+        return np.asarray(spring * np.maximum(lowered, 0.0))
+
+    low, high = -B * np.sin(theta), np.full(theta.size, settlement)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        light = forces(middle).sum(axis=1) < weight
+        low, high = np.where(light, middle, low), np.where(light, high, middle)
+    moment = 2.0 * (forces(high) @ xi * np.cos(theta) - weight * H * np.sin(theta))
+    return moment, 2.0 * (settlement - high) - 2.0 * H * (1.0 - np.cos(theta))
+
+
+@pytest.mark.evidence("ends that give way", "program")
+@pytest.mark.parametrize("kind", ["plane", "edges"])
+@pytest.mark.parametrize("settlement", [6e-6, 4.7e-5, 1.76e-4])
+def test_moments_and_stiffness_of_a_static_bed(kind: str, settlement: float) -> None:
+    """Springs without tension under flat ends, at rest: nothing of the law of one end is used."""
+    structure = podium(3, Contact(kind, settlement=settlement))  # type: ignore[arg-type]
+    bed, b = structure.bed, structure.bearing
+    assert bed is not None
+    size, sine = 2.0 * structure.weight * b.semi_diagonal, math.sin(b.alpha)
+    lifts = settlement / b.half_width
+    assert bed.uplift_rotation == pytest.approx(lifts, rel=1e-12)
+    # K_s is the secant up to phi_u, with C there; dF/du_b at 0 has C at 0, 2 tan(alpha) phi_u less.
+    for turned, C, rel in (
+        (lifts, math.cos(b.alpha - lifts), 1e-6),
+        (0.01 * lifts, math.cos(b.alpha), 2.1 * b.slenderness * lifts),
+    ):
+        moment = float(strips(structure, settlement, np.array([turned]))[0][0])
+        stiffness = moment / turned / (2.0 * b.semi_diagonal * C) ** 2
+        assert bed.stiffness == pytest.approx(stiffness, rel=rel)
+    x = b.alpha * np.linspace(0.1, 0.8, 15)
+    moments = strips(structure, settlement, x)[0] / size
+    path = bed.path(x)
+    np.testing.assert_allclose(path.arm, moments, atol=1e-3 * sine)
+    ends = [strips(structure, settlement, x * (1.0 + h))[1] for h in (-0.01, 0.01)]
+    arms = (ends[1] - ends[0]) / (0.02 * x) / (2.0 * b.semi_diagonal)
+    np.testing.assert_allclose(path.lift_arm, arms, atol=2e-3 * sine)
