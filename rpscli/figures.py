@@ -94,7 +94,8 @@ def _examined(draw: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(draw)
     def panel(axes: Any, drawn: Any, *arguments: Any, **named: Any) -> None:
-        for value, kind in ((axes, axes_name), (drawn, drawn_name)):
+        for value, name in ((axes, axes_name), (drawn, drawn_name)):
+            kind = name.rpartition(".")[2]
             known = {parent.__name__ for parent in type(value).__mro__}
             if kind.isidentifier() and kind not in known:
                 home = "matplotlib" if kind == "Axes" else "rpscli"

@@ -1,14 +1,21 @@
-"""Devices under both components: a second integrator, the planar limit, symmetry, energy."""
+"""Devices under both components: a second integrator, the planar limit, symmetry, energy.
+
+Their kernel takes a minute to compile: the tests that need it are long, and what stands beside the
+second integrator in the suite is interpreted.
+"""
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from oracles.spatial_integrator import SpatialSimulation, simulate_pair
-from paper_structures import ground, needs_compiled_kernels, oracle_devices, oracle_system
+from paper_structures import Array, ground, needs_compiled_kernels, oracle_devices, oracle_system
 from two_components import followed, frame, pair, two_pulses
 
 from rpscli.analyses.kernels.history import sampled_history
@@ -19,7 +26,7 @@ from rpscli.model.podium import Device, PodiumStructure
 from rpscli.physics.planar.state import STOP_LEFT, STOP_MET, TENDON_YIELDING
 from rpscli.records.ground_motion import MotionComponents
 
-pytestmark = needs_compiled_kernels
+with_kernel = pytest.mark.long, needs_compiled_kernels
 
 STEP = 0.01
 ARCS: dict[str, Any] = {"tan_wedge": 0.3, "rho": 0.5}
@@ -44,23 +51,12 @@ def fine(accuracy: float = 4.0) -> TimeHistorySettings:
     return TimeHistorySettings(free_vibration=0.0, accuracy=accuracy)
 
 
-QUICK = ("root", True), ("no gap", False), ("yields", True)
-
-
-@pytest.mark.parametrize(
-    ("kind", "arcs"),
-    [
-        pytest.param(kind, arcs, marks=() if (kind, arcs) in QUICK else pytest.mark.long)
-        for kind in KINDS
-        for arcs in (False, True)
-    ],
-)
-def test_against_the_second_integrator(kind: str, arcs: bool) -> None:
-    """Cartesian, adaptive, laws as functions: the same tilts over two seconds."""
-    x, y = two_pulses(2.0)
-    options = ARCS if arcs else {}
-    structure = equipped(kind, **options)
-    ours = followed(structure, pair(x, y, STEP), fine())
+def beside_the_second_integrator(
+    kind: str, arcs: bool, x: Array, y: Array, accuracy: float = 4.0
+) -> None:
+    """Cartesian, adaptive, laws as functions: the same tilts throughout."""
+    structure = equipped(kind, **(ARCS if arcs else {}))
+    ours = followed(structure, pair(x, y, STEP), fine(accuracy))
     run = SpatialSimulation(
         oracle_system(structure),
         axial=structure.bearing.inertia_ratio_axial,
@@ -70,13 +66,30 @@ def test_against_the_second_integrator(kind: str, arcs: bool) -> None:
         devices=oracle_devices(structure),
     )
     states = simulate_pair(run, np.array([x, y, 0.0 * x]), STEP, STEP * (len(x) - 1))
-    assert run.max_tilt > 0.02
+    assert run.max_tilt > 1e-3
     gap = np.abs(states[:, 0] + 1j * states[:, 1] - ours.tilt)
     assert np.max(gap) < 1e-9  # 1e-12 are found, 1e-10 where a damped stop lets go
-    assert abs(ours.residual) < 1e-9  # 1e-12 are found
+    # 1e-12 are found; the promise of steps of usual length is 1e-6
+    assert abs(ours.residual) < (1e-9 if accuracy > 1.0 else 1e-6)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("arcs", [False, True])
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=with_kernel) for kind in KINDS])
+def test_against_the_second_integrator(kind: str, arcs: bool) -> None:
+    beside_the_second_integrator(kind, arcs, *two_pulses(2.0))
+
+
+def test_a_third_of_a_second_interpreted() -> None:
+    script = (
+        "from physics.spatial.test_devices import beside_the_second_integrator, two_pulses\n"
+        "x, y = two_pulses()[:, 80:115]; x[0] = y[0] = 0.0\n"
+        "beside_the_second_integrator('root', True, x, y, 1.0)"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
+    subprocess.run([sys.executable, "-P", "-c", script], env=environment, check=True)
+
+
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=with_kernel) for kind in KINDS])
 def test_one_component_is_the_planar_program(kind: str) -> None:
     """Along x: rotations until it rests, what the device saw, and what went through it."""
     x, _ = two_pulses()
@@ -93,7 +106,7 @@ def test_one_component_is_the_planar_program(kind: str) -> None:
             assert left.events[event] == other.events[event]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=with_kernel) for kind in KINDS])
 def test_no_axis_is_special(kind: str) -> None:
     x, y = two_pulses()
     turn = np.exp(0.64j)
@@ -106,6 +119,8 @@ def test_no_axis_is_special(kind: str) -> None:
         assert other.left[name][0] == pytest.approx(one.left[name][0], rel=1e-5), name
 
 
+@pytest.mark.long
+@needs_compiled_kernels
 def test_what_is_kept_at_samples() -> None:
     """Forces along the velocity, as geometry of sharp edges has it; the audit closes throughout."""
     x, y = two_pulses(3.0)
