@@ -43,8 +43,8 @@ KINDS: dict[str, Device] = {
 }
 
 
-def equipped(kind: str, **options: Any) -> PodiumStructure:
-    return frame(3, 3.0, contact_time=2e-3, devices=(KINDS[kind],), **options)
+def equipped(kind: str, storeys: int = 3, **options: Any) -> PodiumStructure:
+    return frame(storeys, 3.0, contact_time=2e-3, devices=(KINDS[kind],), **options)
 
 
 def fine(accuracy: float = 4.0) -> TimeHistorySettings:
@@ -52,10 +52,10 @@ def fine(accuracy: float = 4.0) -> TimeHistorySettings:
 
 
 def beside_the_second_integrator(
-    kind: str, arcs: bool, x: Array, y: Array, accuracy: float = 4.0
+    kind: str, arcs: bool, x: Array, y: Array, storeys: int = 3, accuracy: float = 4.0
 ) -> None:
     """Cartesian, adaptive, laws as functions: the same tilts throughout."""
-    structure = equipped(kind, **(ARCS if arcs else {}))
+    structure = equipped(kind, storeys, **(ARCS if arcs else {}))
     ours = followed(structure, pair(x, y, STEP), fine(accuracy))
     run = SpatialSimulation(
         oracle_system(structure),
@@ -83,7 +83,7 @@ def test_a_third_of_a_second_interpreted() -> None:
     script = (
         "from physics.spatial.test_devices import beside_the_second_integrator, two_pulses\n"
         "x, y = two_pulses()[:, 80:115]; x[0] = y[0] = 0.0\n"
-        "beside_the_second_integrator('root', True, x, y, 1.0)"
+        "beside_the_second_integrator('root', True, x, y, 1, 1.0)"
     )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
     subprocess.run([sys.executable, "-P", "-c", script], env=environment, check=True)
