@@ -30,7 +30,7 @@ CAPABILITIES = (
     "buildings on bearings under earthquakes",
     "impact laws",
     "spherical ends",
-    "ends that give way",
+    "compliant ends",
     "devices",
     "vertical motion",
     "both components",

@@ -118,7 +118,7 @@ class Histories:
         return u, v
 
     def on_bed(self, values: Array) -> Array:
-        """The values where ends give way; NaN on rigid ones."""
+        """The values on compliant ends; NaN on rigid ones."""
         return np.asarray(np.where(self.each(lambda st: st.bed is not None) > 0.0, values, np.nan))
 
     def of_storeys(self, field: str) -> Array:
@@ -366,11 +366,11 @@ class Demand(Shown):
         lambda h: h.left["events"][:, state.IMPACT],
     )
     reentries = _Optional(
-        "Number of returns to full contact that gives way; None on rigid ends.",
+        "Number of returns to compliant full contact; None on rigid ends.",
         lambda h: h.on_bed(h.left["events"][:, state.IMPACT]),
     )
     full_contact_share = _Optional(
-        "Share of the history in full contact that gives way; None on rigid ends.",
+        "Share of the history in compliant full contact; None on rigid ends.",
         lambda h: h.on_bed(h.left["bedded_time"] / h.left["time"]),
     )
     max_impact_number = _Optional(
@@ -378,7 +378,7 @@ class Demand(Shown):
         lambda h: h.on_bed(h.left["impact_number"]),
     )
     edge_pressure_ratio = _Optional(
-        "Largest edge pressure over the mean, of plane flat ends that give way; None without.",
+        "Largest edge pressure over the mean, of compliant plane flat ends; None without.",
         _edge_pressure,
     )
     duration = _Result[float]("Length of the history with its free vibration [s].")

@@ -110,10 +110,10 @@ class ModalResult(Shown):
     fixed_base
         None without a building.
     rolling, rocking
-        After uplift, on the arcs and on the edges of the columns; of ends that give way as if they
+        After uplift, on the arcs and on the edges of the columns; of compliant ends as if they
         were rigid, at 0+.
     full_contact
-        Of ends that give way: n + 1 modes, shapes from the cap beam up; None on rigid ends, where
+        Of compliant ends: n + 1 modes, shapes from the cap beam up; None on rigid ends, where
         it is `fixed_base`.
     """
 
@@ -188,7 +188,7 @@ def modal(structure: PodiumStructure) -> ModalResult:
 
 
 def _full_contact(structure: PodiumStructure) -> FixedBaseModes | None:
-    """Modes of full contact that gives way, in [u_b, u_t] (Theory, section 12)."""
+    """Modes of compliant full contact, in [u_b, u_t] (Theory, section 12)."""
     if (bed := structure.bed) is None:
         return None
     C_u, diameter = bed.height, 2.0 * structure.bearing.semi_diagonal

@@ -66,11 +66,11 @@ class PushoverResult(Shown):
     structure
         Podium, bearings and building.
     uplift_force
-        F at 0+ [N]; of ends that give way where they begin to lift.
+        F at 0+ [N]; of compliant ends where they begin to lift.
     critical_rotation, critical_displacement
         theta_cr [rad], and u_b there [m].
     initial_stiffness
-        dF/du_b at 0+ [N/m]; of ends that give way K_s.
+        dF/du_b at 0+ [N/m]; of compliant ends K_s.
     curve
         Restoring force of the storey.
     capacity

@@ -83,7 +83,7 @@ NEEDS = {
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "superstructure, devices": "a superstructure and podium.devices",
     "podium.friction": "podium.friction in the case",
-    "contact": "a podium.contact that gives way: kind plane or edges",
+    "contact": "a compliant podium.contact: kind plane or edges",
     "plane contact": "podium.contact of the kind plane under flat ends",
     "columns": "podium.plan and superstructure.vertical_period in the case, without which it leaves"
     " out the overturning moment and the shock of impacts",

@@ -357,7 +357,7 @@ class TimeHistoryResult(Demand):
         return tuple(notes)
 
     def _on_bed(self) -> Iterator[str]:
-        """What ends that give way were not tried for."""
+        """What compliant ends were not tried for."""
         chi, pressure = self.max_impact_number, self.edge_pressure_ratio
         if chi is not None and chi > LARGEST_TRIED and self.structure.contact.kind == "plane":
             yield (

@@ -180,8 +180,8 @@ class Trace(Shown):
     rotation, rotation_rate
         theta [rad], theta' [rad/s].
     phase
-        0 in full contact, 1 rolling, 2 rocking, 3 held by friction, 4 in full contact that
-        gives way.
+        0 in full contact, 1 rolling, 2 rocking, 3 held by friction, 4 in compliant
+        full contact.
     cap_beam_displacement, lift
         u_b and v_b [m].
     floor_displacements, floor_velocities, floor_accelerations

@@ -244,7 +244,7 @@ def _podium(file: CaseFile, partial: PartialCase) -> Podium:
 
 
 def _refuse_contact(podium: Podium, file: CaseFile, document: Document) -> None:
-    """Say what the model does not take of ends that give way, or of a start below phi_u."""
+    """Say what the model does not take of compliant ends, or of a start below phi_u."""
     try:
         structure = podium_structure(podium, file)
         if structure.bed is not None:

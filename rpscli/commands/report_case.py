@@ -151,7 +151,7 @@ class PageDone:
 
 
 def ends(case: Case) -> str:
-    """The kind of ends that give way, to follow in a heading."""
+    """The kind of compliant ends, to follow in a heading."""
     kind = case.structure.contact.kind
     return "" if kind == "rigid" else f", {kind} contact"
 

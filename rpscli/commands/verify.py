@@ -53,8 +53,8 @@ INSTALLATION = (
 def command(*, problems: Path | None, score: str | None, digits: float, terminal: Terminal) -> None:
     """Compare this installation with closed forms, published numbers and a second integrator.
 
-    Takes some seconds, after a minute in which kernels of one plane, of both directions and of ends
-    that give way are compiled once. The exit code is 6 if a single number is off.
+    Takes some seconds, after a minute in which the kernels for one plane, for both directions and
+    for compliant ends are compiled once. The exit code is 6 if a single number is off.
     """
     if problems is not None and score is not None:
         raise UsageError("--problems writes what --score reads; take one of them")

@@ -1,4 +1,4 @@
-"""What the ends of the columns bear on: rigid, or a plane or two edges that give way."""
+"""What the ends of the columns bear on: rigid, or a plane or two compliant edges."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Contact:
     Parameters
     ----------
     kind
-        ``rigid``: nothing moves until the columns lift. ``plane``: a plane joint that gives way
+        ``rigid``: nothing moves until the columns lift. ``plane``: a compliant plane joint
         evenly and cannot pull; it lifts gradually. ``edges``: the same at the edges of the flat
         part alone, a hinge that begins to move at once and lifts at once.
     period_ratio
@@ -35,7 +35,7 @@ class Contact:
     stiffness
         K_s = dF/du_b of the storey at u_b = 0 [N/m].
     settlement
-        D_0, by which one joint gives way under the permanent load [m]; of flat ends only.
+        D_0, compression of one joint under the permanent load [m]; of flat ends only.
     damping
         zeta, damping ratio of the storey's own vibration in full contact, A theta'' + c theta' +
         k theta = 0 with c = 2 zeta sqrt(k A).
@@ -75,7 +75,7 @@ class Contact:
             raise ValueError("sizes of the contact must be > 0, its damping >= 0, all finite")
         if self.period_ratio is not None and self.period_ratio <= 1.0:
             raise ValueError(
-                f"period_ratio = {self.period_ratio:g} must be above 1: what gives way lengthens"
+                f"period_ratio = {self.period_ratio:g} must be above 1: compliant ends lengthen"
                 " the period; for 1 use the kind `rigid`"
             )
 
@@ -109,7 +109,7 @@ class BedPath(NamedTuple):
 
 
 class Bed(NamedTuple):
-    """Full contact that gives way, of a structure (Theory (12.5) to (12.9)).
+    """Compliant full contact, of a structure (Theory (12.5) to (12.9)).
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def _storey_stiffness(structure: Standing, mass: float, omega: float) -> float:
 
 
 def bed_of(structure: Standing) -> Bed | None:
-    """What full contact of a structure gives way by; None on rigid ends.
+    """Compliance of full contact of a structure; None on rigid ends.
 
     Raises
     ------
@@ -308,14 +308,14 @@ def bed_of(structure: Standing) -> Bed | None:
     farthest = 2.0 * b.semi_diagonal * found.height * found.uplift_rotation
     if any(getattr(device, "gap", math.inf) <= farthest for device in structure.devices):
         raise ValueError(
-            f"with ends that give way a stop must have a gap above {farthest:.3g} m, the"
+            f"with compliant ends a stop must have a gap above {farthest:.3g} m, the"
             " displacement at which they begin to lift"
         )
     return found
 
 
 def _refuse_combinations(structure: Standing) -> None:
-    """Refuse what is not followed with ends that give way: raises ValueError."""
+    """Refuse what is not followed with compliant ends: raises ValueError."""
     contact, b = structure.contact, structure.bearing
     devices, law = {device.kind for device in structure.devices}, structure.impact_law
     without, curved = structure.superstructure is None, not b.is_flat

@@ -61,7 +61,7 @@ class PodiumStructure(Shown):
         The same floors on the stiffnesses across the first direction, y, where they differ from
         those along it, x; None if they do not.
     contact
-        What the ends bear on; rigid, or what gives way in full contact.
+        What the ends bear on; rigid or compliant in full contact.
 
     Raises
     ------
@@ -70,7 +70,7 @@ class PodiumStructure(Shown):
         not in (0, 1]: with e <= 0 the columns would not go over to the other edge (Theory,
         section 4), or there are too many devices; of spherical ends, if the restitution is not 1
         or there is a tendon.
-        Of a contact that gives way, if it is too soft to hold the weight, or with what it is not
+        Of a compliant contact, if it is too soft to hold the weight, or with what it is not
         followed with.
 
     Notes
@@ -153,7 +153,7 @@ class PodiumStructure(Shown):
             return "columns without a flat part are followed in one plane only"
         if self.bed is not None:
             return (
-                "ends that give way are followed under one component; use podium.contact `rigid`,"
+                "compliant ends are followed under one component; use podium.contact `rigid`,"
                 " or one component at a time"
             )
         if self.impact_law.floors_jump and self.superstructure is not None:
@@ -295,7 +295,7 @@ class PodiumStructure(Shown):
 
     @cached_property
     def bed(self) -> Bed | None:
-        """Full contact that gives way; None on rigid ends."""
+        """Compliant full contact; None on rigid ends."""
         return bed_of(self)
 
     def path(self, rotation: Array) -> tuple[Array, ...]:

@@ -89,7 +89,7 @@ class Problem:
 
     def case(self, title: str) -> str:
         analysis = {"free_vibration": 0.0, "recontact_tolerance": 1e-12, "accuracy": 8}
-        if self.podium.contact:  # ends that give way do not bounce
+        if self.podium.contact:  # compliant ends do not bounce
             del analysis["recontact_tolerance"]
         return self.podium.case(title, self.record, {**analysis, **self.analysis})
 

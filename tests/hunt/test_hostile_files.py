@@ -116,7 +116,7 @@ def test_devices(long: bool) -> None:
 
 @shares
 def test_contact(long: bool) -> None:
-    """Ends that give way: each kind with sizes, right and wrong, below other laws and devices."""
+    """Compliant ends: each kind with sizes, right and wrong, below other laws and devices."""
     sizes = {"period_ratio": ("1.2", "1.01"), "stiffness": ("60 MN/m", "9 kN/mm"),
              "settlement": ("0.05 mm", "5 mm"), "damping": ("0", "0.1")}  # fmt: skip
     soft = (CASES / "measured_period.yaml").read_text(encoding="utf-8").split("record:")[0]

@@ -53,7 +53,7 @@ RESIDUAL = 1e-6
 """Of the energy: what the step is made for."""
 
 BED_RESIDUAL = 1e-3
-"""On ends that give way, at usual steps: 5 of 410 are above 1e-6, the largest 4.6e-4, where impacts
+"""On compliant ends, at usual steps: 5 of 410 are above 1e-6, the largest 4.6e-4, where impacts
 lose nothing or ends have no damping: errors of thousands of passages and minutes of vibration add
 up. With steps a quarter as long all must be below 1e-6, which an error of equations would not."""
 
@@ -103,7 +103,7 @@ def structure(random: Random) -> PodiumStructure:
 
 
 def structure_on_a_bed(random: Random) -> PodiumStructure:
-    """Ends that give way, from hardly to barely holding the weight; perhaps with dampers."""
+    """Compliant ends, from hardly to barely holding the weight; perhaps with dampers."""
     system = structure(random)
     kind = random.choice(["plane", "plane", "edges"])
     sizes: dict[str, float] = {}
@@ -324,7 +324,7 @@ def test_ends_that_give_way(long: bool) -> None:
     def trial(random: Random) -> str:
         return judged_history(random, structure_on_a_bed)
 
-    hunt("ends that give way", trial, 6, 1000 if long else None)
+    hunt("compliant ends", trial, 6, 1000 if long else None)
 
 
 @needs_compiled_kernels

@@ -1,4 +1,4 @@
-"""The law of ends that give way against beds whose pressures are followed point by point."""
+"""The law of compliant ends against beds whose pressures are followed point by point."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import MotionComponents
 
-pytestmark = pytest.mark.evidence("ends that give way", "program")
+pytestmark = pytest.mark.evidence("compliant ends", "program")
 
 ALPHA = math.atan(0.15)
 

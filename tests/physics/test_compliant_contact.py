@@ -1,4 +1,4 @@
-"""Ends that give way against exact numbers, energy, symmetry and a second integrator."""
+"""Compliant ends against exact numbers, energy, symmetry and a second integrator."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ RELEASES = [
 ]
 
 
-@pytest.mark.evidence("ends that give way", "program")
+@pytest.mark.evidence("compliant ends", "program")
 @needs_compiled_kernels
 @pytest.mark.parametrize(("storeys", "phi_u", "loss", "swing", "shear"), RELEASES)
 def test_a_release(storeys: int, phi_u: float, loss: float, swing: float, shear: float) -> None:
@@ -106,7 +106,7 @@ ARCS = [
 """The same on arcs, rho 0.5."""
 
 
-@pytest.mark.evidence("ends that give way", "program")
+@pytest.mark.evidence("compliant ends", "program")
 @needs_compiled_kernels
 @pytest.mark.parametrize(("storeys", "phi_u", "loss", "swing", "shear"), ARCS)
 def test_a_release_on_arcs(
@@ -127,7 +127,7 @@ def test_a_release_on_arcs(
     assert found.base_shear_ratio == pytest.approx(shear, abs=1e-3)
 
 
-@pytest.mark.evidence("ends that give way", "exact")
+@pytest.mark.evidence("compliant ends", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize(("storeys", "back"), [(1, 0.3546), (3, 0.3389), (6, 0.2955)])
 def test_stiff_edges_are_rigid_ends(storeys: int, back: float) -> None:
@@ -140,7 +140,7 @@ def test_stiff_edges_are_rigid_ends(storeys: int, back: float) -> None:
     assert swings == pytest.approx([back, back], abs=1e-4)
 
 
-@pytest.mark.evidence("ends that give way", "exact")
+@pytest.mark.evidence("compliant ends", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize("kind", ["plane", "edges"])
 @pytest.mark.parametrize("rho", [0.0, RHO])
@@ -154,7 +154,7 @@ def test_without_loss_and_damping_energy_stays(kind: str, rho: float) -> None:
     assert np.ptp(found.trace.energy_stored) < 2e-6 * kept
 
 
-@pytest.mark.evidence("ends that give way", "exact")
+@pytest.mark.evidence("compliant ends", "exact")
 @needs_compiled_kernels
 def test_full_contact_swings_with_the_period_that_was_asked_for() -> None:
     """The first mode, alone: M, C = 0 and K of [u_b, u_t] written here."""
@@ -184,7 +184,7 @@ def oracle(structure: PodiumStructure) -> CompliantStorey:
     )  # fmt: skip
 
 
-@pytest.mark.evidence("ends that give way", "program")
+@pytest.mark.evidence("compliant ends", "program")
 @needs_compiled_kernels
 @pytest.mark.parametrize("kind", ["plane", "edges"])
 @pytest.mark.parametrize("peak", [0.0, 5.0])
@@ -278,7 +278,7 @@ def test_nothing_comes_after_the_end(amplitude: float) -> None:
     np.testing.assert_array_equal(short.storey_shears, long.storey_shears)
 
 
-@pytest.mark.evidence("ends that give way", "exact")
+@pytest.mark.evidence("compliant ends", "exact")
 @needs_compiled_kernels
 def test_the_residual_falls_with_the_order_of_the_steps() -> None:
     motion = waves(4.0, 0.02, 3.0, seed=5)
@@ -292,7 +292,7 @@ def slope(f: Array, x: Array) -> Array:
     return np.asarray((f[0] - 8.0 * f[1] + 8.0 * f[3] - f[4]) / (12.0 * 1e-4 * x))
 
 
-@pytest.mark.evidence("ends that give way", "exact")
+@pytest.mark.evidence("compliant ends", "exact")
 @pytest.mark.parametrize("kind", ["plane", "edges"])
 @pytest.mark.parametrize("rho", [0.0, RHO, 0.8])
 def test_moments_are_slopes_of_the_potential(kind: str, rho: float) -> None:
@@ -327,7 +327,7 @@ LAW = {  # phi/phi_u: m, lift of the end's centre over B phi_u
 }  # fmt: skip
 
 
-@pytest.mark.evidence("ends that give way", "exact")
+@pytest.mark.evidence("compliant ends", "exact")
 def test_the_law_of_a_plane_end() -> None:
     """Columns so slender that B hardly changes: the law of one end remains."""
     alpha, phi_u = math.atan(0.15), 1e-7
@@ -375,7 +375,7 @@ def strips(structure: PodiumStructure, settlement: float, theta: Array) -> tuple
     return moment, 2.0 * (settlement - high) - 2.0 * H * (1.0 - np.cos(theta))
 
 
-@pytest.mark.evidence("ends that give way", "program")
+@pytest.mark.evidence("compliant ends", "program")
 @pytest.mark.parametrize("kind", ["plane", "edges"])
 @pytest.mark.parametrize("settlement", [6e-6, 4.7e-5, 1.76e-4])
 def test_moments_and_stiffness_of_a_static_bed(kind: str, settlement: float) -> None:

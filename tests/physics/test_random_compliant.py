@@ -1,4 +1,4 @@
-"""Energy of random structures on ends that give way: whatever is supplied is accounted for."""
+"""Energy of random structures on compliant ends: whatever is supplied is accounted for."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
 
-pytestmark = pytest.mark.evidence("ends that give way", "exact")
+pytestmark = pytest.mark.evidence("compliant ends", "exact")
 
 MOST = 1e-6
 """Of all energy that flowed. The largest of a thousand was 2.5e-7."""

@@ -127,7 +127,7 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
 
 
 def fill_bed(record: Record, bed: Bed) -> None:
-    """What gives way in full contact; u_b goes on from there."""
+    """Compliance of full contact; u_b goes on from there."""
     record["compliant"], record["bed_uplift"] = 1, bed.uplift_rotation
     record["bed_full"], record["bed_height"] = bed.full_rotation, bed.height
     record["bed_k"], record["bed_c"] = bed.spring, bed.damper
@@ -321,7 +321,7 @@ def most_seconds(
 
 
 def bedded_rate(structure: PodiumStructure, angle: float | None = None) -> float:
-    """Steps a second in full contact that gives way, of an angle [1/s]; 0 on rigid ends."""
+    """Steps a second in compliant full contact, of an angle [1/s]; 0 on rigid ends."""
     bed = structure.bed
     if bed is None:
         return 0.0

@@ -84,7 +84,7 @@ NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""
 
 STIFFEST, SOFTEST = 1.02, 0.02
-"""Least period ratio and largest phi_u/alpha of ends that give way for which that is meant."""
+"""Least period ratio and largest phi_u/alpha of compliant ends for which that is meant."""
 
 STRONGEST = 0.4
 """Hardly a building carries more than this part of its weight sideways: V_st/(M_tot g)."""

@@ -154,14 +154,14 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
 
 
 def contact_rules(case: PartialCase) -> Iterator[Fault]:
-    """Ends that give way come down without bounces that could be left out."""
+    """Compliant ends come down without bounces that could be left out."""
     if case.document.at((*CONTACT, "kind")) in ("plane", "edges"):
         for name in case.written(("analysis",), "recontact_tolerance", "recontact_rule"):
             if case.document.at(("analysis", name)) == AnalysisSection.model_fields[name].default:
                 continue  # of a case that was written out whole
             text = (
                 f"analysis.{name} has no effect with podium.contact"
-                f"{case.where((*CONTACT, 'kind'))}: ends that give way do not bounce; remove it"
+                f"{case.where((*CONTACT, 'kind'))}: compliant ends do not bounce; remove it"
             )
             yield Fault(("analysis", name), text, at_key=True)
 

@@ -242,8 +242,8 @@ class ContactSection(Section):
 
     kind: Literal["rigid", "plane", "edges"] = Field(
         "rigid",
-        description="rigid: nothing moves before uplift; plane: a joint that gives way and lifts"
-        " gradually; edges: two edges that give way and lift at once",
+        description="rigid: nothing moves before uplift; plane: a compliant joint that lifts"
+        " gradually; edges: two compliant edges that lift at once",
     )
     period_ratio: Annotated[float | None, Quantity(symbol="r = T/T_1", above=1)] = None
     """first period in full contact over that on a fixed base, as measured"""

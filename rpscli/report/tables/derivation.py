@@ -109,7 +109,7 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
 
 
 def _of_bed(structure: PodiumStructure) -> dict[str, str]:
-    """Of ends that give way, whose phi_u is the root of its formula (Theory (12.8))."""
+    """Of compliant ends, whose phi_u is the root of its formula (Theory (12.8))."""
     lost = "2 / 3 * sin(alpha)" if structure.contact.kind == "plane" else "0"
     stiffness = f"W * (B_u - {lost}) / (2 * R * phi_u * C_u^2)"
     return {

@@ -101,7 +101,7 @@ CONTACT = (
     Derived("contact_mass", "columns and cap beam at u_b", "m_0", "kg", "bed.mass"),
     Derived("contact_share", "contact length at 0.1 alpha", "", "-", "bed.contact_share"),
 )
-"""Of ends that give way."""
+"""Of compliant ends."""
 
 FIRST_PERIOD = Derived(
     "T1", "first period on a fixed base", "T1", "s",

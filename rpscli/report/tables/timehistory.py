@@ -95,7 +95,7 @@ def restitution_text(structure: PodiumStructure) -> str:
 
 
 def contact_text(structure: PodiumStructure) -> str | None:
-    """Kind, period and settlement of ends that give way; None of rigid ones."""
+    """Kind, period and settlement of compliant ends; None of rigid ones."""
     if (bed := structure.bed) is None:
         return None
     kind, ratio = structure.contact.kind, bed.period_ratio
