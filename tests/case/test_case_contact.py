@@ -86,7 +86,7 @@ def test_what_is_refused(building: str, overrides: tuple[str, ...], reason: str)
 def test_both_components_are_refused(building: str) -> None:
     x = GroundMotion([0.0, 0.1, 0.0], 0.01, "made", "made", "made")  # type: ignore[arg-type]
     pair = MotionComponents(x, y=x)
-    with pytest.raises((ValueError, UsageError), match="compliant ends are followed under one component"):
+    with pytest.raises((ValueError, UsageError), match="compliant ends are followed under one"):
         demands([Request(structure_of(building, PLANE), pair)])
 
 
