@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 import pytest
+from paper_structures import podium
 
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.model.contact import Contact, ContactKind
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import profile_stiffnesses
 
 ROOT = Path(__file__).parents[1]
@@ -79,3 +83,21 @@ def test_weight_on_drifting_storeys(storeys: int, per_cent: float) -> None:
     share = float((weights / (3.0 * stiffnesses)).max())
     assert 100.0 * share == pytest.approx(per_cent, abs=0.05)
     assert f"{per_cent} %" in TEXT
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.25, 1.5])
+@pytest.mark.parametrize(("kind", "share"), [("plane", 3.0), ("edges", 1.0)])
+def test_where_ends_that_give_way_lift_to_first_order(
+    kind: ContactKind, share: float, rho: float
+) -> None:
+    """The bearing itself has the stiffness (2 rho - 1) W/2H, which joints add to."""
+    soft = Contact(kind, period_ratio=1.5)
+    structure = replace(podium(6, 0.15, rho, law=ImpactLaw()), contact=soft)
+    bed = structure.bed
+    assert bed is not None
+    relative = 2.0 * structure.bearing.half_height * bed.stiffness / structure.weight
+    first = 0.15 / (share * (1.0 - 2.0 * rho + relative))
+    # what the text says of the rest: a seventh of it is of a higher order still
+    missing = 1.0 - bed.uplift_rotation / first
+    assert missing == pytest.approx(2.0 * bed.uplift_rotation * 0.15, rel=0.17)
+    assert "tan(alpha)/(3 (1 - 2 rho + 2 H K_s/W))" in TEXT
