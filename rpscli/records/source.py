@@ -113,6 +113,7 @@ def load_components(
     """
     above = None if vertical is None else load_record(vertical, **how)
     parts = parts_of(source)
+    in_set = source.startswith(f"{sets.SCHEME}:") and parts.both
     if not parts.both:
         along = load_record(source, **how)
         if y is None:
@@ -120,8 +121,10 @@ def load_components(
         across = load_record(y, **how)
     else:
         _require_two(parts, source)
+        if in_set:  # before a component is refused that nobody wrote
+            _describes_no_file(source, **{key: how.get(key) for key in ("dt", "units")})
+            sets.expand_set(source.partition(":")[2], source)
         along, across = (load_record(one, **how) for one in parts.pair or ())
-    in_set = source.startswith(f"{sets.SCHEME}:") and parts.both
     name = along.name.replace("_a", "_both", 1) if in_set else f"{along.name}_both"
     motion = MotionComponents(replace(along, name=name, source=source), above, y=across)
     return turned(motion, parts.rotation + rotation)
@@ -188,13 +191,17 @@ def split_factor(source: str) -> tuple[str, str]:
     return plain, "" if factor is None else f"factor={factor}"
 
 
+def _describes_no_file(source: str, dt: float | None, units: str | None) -> None:
+    if dt is not None or units is not None:
+        raise RecordError(f"{source}: dt and units describe files; leave them out here")
+
+
 def _loaded(source: str, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
     scheme, rest = _split_scheme(source, folder)
     if scheme == LIST:
         raise RecordError(f"{source}: stands for several records; name one of its lines")
     if scheme:
-        if dt is not None or units is not None:
-            raise RecordError(f"{source}: dt and units describe files; leave them out here")
+        _describes_no_file(source, dt, units)
         return _MAKERS[scheme](rest, source)
     place, options = file_and_options(source, folder)
     query = parse_query(options, source, ("dt", "units", "channel", "second", "angle"))

@@ -123,7 +123,10 @@ def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]
     text = f"{dotted(path)} is not a key of the format"
     if suggestion is None:
         section = section_at(model, path[:-1])
-        names = listed(fields_of(section), "and") if section else ""
+        fields = [*fields_of(section)] if section else []
+        if (parent := dotted(path[:-1])) and len(fields) > 12:
+            fields[12:] = [f"{len(fields) - 12} more (rps explain {parent})"]
+        names = listed(fields, "and") if fields else ""
         return Fault(path, f"{text}; known here: {names}", at_key=True), None
     if suggestion[-1] == path[-1]:
         parent = dotted(suggestion[:-1])

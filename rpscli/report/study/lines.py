@@ -16,7 +16,7 @@ from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
 from rpscli.case.study.schema import AnyKeys, Keys
 from rpscli.case.text.document import Document, Fault, Path, dotted
-from rpscli.errors import hint, listed
+from rpscli.errors import hint
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels, plain, symbol
 from rpscli.report.study.panels import colour, in_panels, left_out, over, remarks
@@ -299,7 +299,7 @@ def unknown_results(
     for option, name in named:
         if quantity(analysis, name) is None:
             path: Path = (*request.path, request.kind, option)
-            meant = hint(name, KNOWN[analysis], f"known are {listed(KNOWN[analysis])}")
+            meant = hint(name, KNOWN[analysis], "`rps schema results` has all names")
             text = f"{dotted(path)} = {name} is not a result of {analysis}"
             yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {meant}")
 
