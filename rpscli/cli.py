@@ -66,7 +66,7 @@ class Program(LazyGroup):
             raise
         except BaseException as error:  # noqa: BLE001 -- the last stop of every error
             # Imported now, when it is needed.
-            from rpscli.commands.shell.failure import report
+            from rpscli.commands.shell.terminal import report
 
             code = report(error, as_json="--json" in words)
         sys.exit(code or 0)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.systems import CONTACT_ANGLE, building_system
+from rpscli.analyses.trace import prolonged
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -93,7 +94,7 @@ def _in_direction(
         acceleration_histories=histories,
     )
     drifts, rates = (np.diff(floors[:, i], axis=1, prepend=0.0) for i in range(2))
-    ground = _sampled(record.acceleration, intervals + 1)[:, None]
+    ground = prolonged(record.acceleration, intervals + 1)[:, None]
     jerks = _accelerations(building, np.stack((floors[:, 1], histories - ground), axis=1))
     k = building.stiffnesses
     return response, [
@@ -166,11 +167,6 @@ def floor_speeds(relative: Array, record: GroundMotion) -> Array:
     """Absolute velocities of floors (samples, n) [m/s], from those relative to the ground."""
     ground = velocity(record.acceleration, record.dt)[: len(relative)]
     return relative + np.pad(ground, (0, len(relative) - len(ground)), mode="edge")[:, None]
-
-
-def _sampled(values: Array, samples: int) -> Array:
-    kept = values[:samples]
-    return np.pad(kept, (0, samples - len(kept)))
 
 
 def largest_of_cubics(values: Array, rates: Array, dt: float) -> float:

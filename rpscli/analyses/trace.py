@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+from typing import Any, Literal, NamedTuple, Self, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -118,8 +118,21 @@ def device_demands(structure: PodiumStructure, history: Record) -> tuple[DeviceD
     )
 
 
+class _Sampled:
+    """Base of dataclasses with a value at each sample in every field, or None."""
+
+    def at(self, rows: Rows) -> Self:
+        """Only some samples."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
+        known = {name: of for name, of in values.items() if of is not None}
+        parts = {
+            n: of.at(rows) if isinstance(of, _Sampled) else of[rows] for n, of in known.items()
+        }
+        return type(self)(**parts)
+
+
 @dataclass(frozen=True, eq=False)
-class DeviceTrace(Frozen):
+class DeviceTrace(_Sampled, Frozen):
     """What each device does at the record's samples: arrays (samples, devices)."""
 
     force: Array
@@ -132,19 +145,13 @@ class DeviceTrace(Frozen):
     stored: Array
     """Energy over what was stored at rest [J]; of a stop `k_s (|u_b| - d)^2/2`, let go or not."""
 
-    def at(self, rows: Rows) -> DeviceTrace:
-        """Only some samples."""
-        return DeviceTrace(
-            self.force[rows], self.displacement[rows], self.energy[rows], self.stored[rows]
-        )
-
 
 BLOCK = 50_000
 """Samples whose quantities are derived at once."""
 
 
 @dataclass(frozen=True, eq=False)
-class Direction(Frozen):
+class Direction(_Sampled, Frozen):
     """What a history has in one horizontal direction, as in `Trace`: (samples, ...)."""
 
     ground_acceleration: Array
@@ -158,13 +165,9 @@ class Direction(Frozen):
     shear_top: Array
     shear_bottom: Array
 
-    def at(self, rows: Rows) -> Direction:
-        """Only some samples."""
-        return Direction(*(getattr(self, each.name)[rows] for each in fields(self)))
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trace(Shown):
+class Trace(_Sampled, Shown):
     """Histories at the record's samples and on through the free vibration, SI units.
 
     What was largest between samples, and on both sides of impacts, is in the largest demands, not
@@ -231,16 +234,6 @@ class Trace(Shown):
     azimuth: Array | None = None
     azimuth_rate: Array | None = None
     y: Direction | None = None
-
-    def at(self, rows: Rows) -> Trace:
-        """Only some samples."""
-        values: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
-        for name, of in values.items():
-            if isinstance(of, DeviceTrace | Direction):
-                values[name] = of.at(rows)
-            elif of is not None:
-                values[name] = of[rows]
-        return Trace(**values)
 
     def size(self, name: str) -> Array:
         """Of what has a direction: its absolute value, or sqrt(x^2 + y^2)."""

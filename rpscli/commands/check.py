@@ -17,9 +17,8 @@ from rpscli.commands.inputs import (
     read_case,
     write,
 )
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import USUAL, Look
@@ -61,8 +60,7 @@ def command(
     derived = derived_quantities(structure) | device_consequences(structure)
     record, error = _record(given.case)
     document = {
-        **heading(),
-        "command": "check",
+        **heading("check"),
         "case": case_heading(given),
         **derived,
         "record": record,

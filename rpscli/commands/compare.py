@@ -13,7 +13,6 @@ import click
 from rpscli.analyses.result_quantities import plain
 from rpscli.commands.inputs import RESULTS, MotionRequest, read_case, single_motions
 from rpscli.commands.report_case import DESIGN, HISTORY, SUMMARY, SWEEP, kind_of
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
     CaseRequest,
@@ -21,7 +20,7 @@ from rpscli.commands.shell.options import (
     records_option,
     terminal_options,
 )
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.documents import heading, versions
 from rpscli.report.figures.look import Look
@@ -82,7 +81,7 @@ def command(
             f"{len(beyond)} results of {a} and {b} differ by more than {tolerance:g} of their"
             f" largest value: {', '.join(beyond[:5])}{' ...' * (len(beyond) > 5)}"
         )
-    document = {**heading(), "command": "compare", "tolerance": tolerance}
+    document = {**heading("compare"), "tolerance": tolerance}
     document |= comparison_document(first, second, found)
     terminal.result(concluded(document, error), tables(first, second, found, tolerance))
     leave(error)

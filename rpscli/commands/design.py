@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
     OutputRequest,
@@ -16,7 +15,7 @@ from rpscli.commands.shell.options import (
     result_options,
     run_options,
 )
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.study import SweepChoices, show_dry_run, study_heading
 from rpscli.report.documents import direction_note, heading
 from rpscli.report.figures.look import Look
@@ -132,8 +131,7 @@ def designed(
     notes = [*rounds.notes(answer, confirmations), *study.warnings, *found.notes]
     judged = headline_of(confirmations)
     document = {
-        **heading(),
-        "command": "design",
+        **heading("design"),
         "study": study_heading(run.layout),
         "note": direction_note(run.layout.pairs) or None,
         "points": {"total": len(run.table), "failed": len(found.failures)},

@@ -16,7 +16,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.study import SweepChoices, compute, of_first_system
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.design import requirement_label
-from rpscli.report.study.labels import label, symbol
+from rpscli.report.study.labels import axis_label, label, symbol
 from rpscli.report.study.statistics import VERDICT, verdict_lines, verdict_texts
 from rpscli.report.table import Heading, Part, Table, large, measured, shown
 from rpscli.studies import Study
@@ -245,12 +245,10 @@ def _values(document: dict[str, Any]) -> Table:
     shown_designs = [best] if document["robust"] is None else [document["robust"], best]
     rows = []
     for key in best["values"]:
-        unit = unit_of(key)
-        name = symbol(key) if unit == "-" else f"{symbol(key)} [{unit}]"
         least = "minimised" if symbol(key) in best["aims"] else ""
         # As it was judged: no digit less.
         values = [f"{design['values'][key]:.10g}" for design in shown_designs]
-        rows.append((name, least, *values, _interval(intervals[key])))
+        rows.append((axis_label(key), least, *values, _interval(intervals[key])))
     for place, (objective, value) in enumerate(_further_objectives(document, best)):
         name = objective["aim"]
         interval = [large(end, objective["unit"])[0] or 0.0 for end in intervals.get(name, ())]

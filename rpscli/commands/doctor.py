@@ -12,9 +12,8 @@ from pathlib import Path
 
 import click
 
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import terminal_options
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.shell.waiting import TIMES_FILE
 from rpscli.errors import VerificationMismatch
 from rpscli.machine import available_cores
@@ -48,7 +47,7 @@ def command(terminal: Terminal) -> None:
     findings = [dict(zip(("subject", "found", "remedy"), row, strict=True)) for row in rows]
     lacking = "\n".join(f"{name}: {found}; {remedy}" for name, found, remedy in needed if remedy)
     error = VerificationMismatch(lacking) if lacking else None
-    document = {**heading(), "command": "doctor", "findings": findings}
+    document = {**heading("doctor"), "findings": findings}
     # Without rich there are no tables: then the errors say it.
     terminal.result(concluded(document, error), [table] if installed("rich") else ())
     leave(error)
@@ -101,10 +100,10 @@ def clean(terminal: Terminal, *, dry_run: bool) -> None:
         sizes[what] = sum(map(_bytes, found))
         for path in [] if dry_run else found:
             shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-    document = {"command": "clean", "folder": str(place), "dry_run": dry_run, "bytes": sizes}
+    document = {"folder": str(place), "dry_run": dry_run, "bytes": sizes}
     head = f"{'would be deleted' if dry_run else 'deleted'} from {place}"
     table = Table.of_texts((head, "size"), [(what, _size(size)) for what, size in sizes.items()])
-    terminal.result({**heading(), **document}, [table])
+    terminal.result({**heading("clean"), **document}, [table])
 
 
 def _bytes(path: Path) -> int:

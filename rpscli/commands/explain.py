@@ -78,8 +78,7 @@ def command(word: str, terminal: Terminal) -> None:
     if not (keys or results or words or options or offers or word == PLUGINS):
         raise UsageError(f"explain {word}: {_hint(word)}")
     document = {
-        **heading(),
-        "command": "explain",
+        **heading("explain"),
         "word": word,
         "keys": [key._asdict() for key in keys],
         "results": [{name: value for name, value in q._asdict().items() if value} for q in results],

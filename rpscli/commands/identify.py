@@ -91,7 +91,7 @@ def command(
         write_whole({place: encoded(text)})
         files.append(str(place))
         terminal.note(f"written to {place}")
-    begin = {**heading(), "command": "identify", "case": case_heading(given), "test": test}
+    begin = {**heading("identify"), "case": case_heading(given), "test": test}
     begin |= {"level": LEVEL, "estimates": records(columns), **document}
     end = {"keys": values, "warnings": given.case.warnings, "files": files}
     terminal.result({**begin, **end}, [Heading(given.case.title), table, *parts])

@@ -78,7 +78,7 @@ def _example(name: str, folder: Path, terminal: Terminal, *, force: bool) -> Non
     known = examples()
     name = name.removesuffix(".yaml").removeprefix(f"{FOLDER}/")
     if not name:
-        document = {**heading(), "command": "init", "files": [], "examples": known}
+        document = {**heading("init"), "files": [], "examples": known}
         terminal.result(document, [Table.listing(known.items())])
         return
     if name not in known:
@@ -101,7 +101,7 @@ def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> N
     also = f" with {listed(map(str, others), 'and')}" if others else ""
     terminal.note(f"written to {first}{also}; next: rps {check}")
     if terminal.as_json:
-        terminal.result({**heading(), "command": "init", "files": [str(each) for each in files]})
+        terminal.result({**heading("init"), "files": [str(each) for each in files]})
 
 
 FORMATS = ("case", "study", "design", "results")

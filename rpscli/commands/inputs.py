@@ -107,8 +107,7 @@ def conclude(
         )
         terminal.warn(warnings[-1:])
     document = {
-        **heading(),
-        "command": folder.run.command,
+        **heading(folder.run.command),
         "case": case_heading(given),
         **results,
         "warnings": warnings,
@@ -266,8 +265,15 @@ def _scaled_to(
     how: dict[str, Any],
 ) -> MotionComponents:
     """A motion by the factor that brings a measure of it, or of its pair, to a value."""
-    from rpscli.records.measures import MEASURES, factor_to, measured, needs_period
-    from rpscli.records.pair_measure import USUAL, measure_label, pair_measure
+    from rpscli.records.measures import (
+        MEASURES,
+        USUAL,
+        factor_to,
+        measure_label,
+        measured,
+        needs_period,
+        pair_measure,
+    )
     from rpscli.records.source import load_record
 
     measure, period = target.measure, target.period

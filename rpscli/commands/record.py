@@ -108,7 +108,7 @@ def _result(
 
     found = [(motion, intensity_measures(motion)) for motion in motions]
     own, *others = (record_document(*each) for each in found)
-    document = {**heading(), "command": f"record {command}", **own}
+    document = {**heading(f"record {command}"), **own}
     if others:
         document["y"] = others[0]
     if files is not None:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
     OutputRequest,
@@ -21,7 +20,7 @@ from rpscli.commands.shell.options import (
     output_options,
     terminal_options,
 )
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.shell.waiting import watched
 from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.documents import heading
@@ -175,8 +174,8 @@ def command(
     """
     from rpscli.records.codes import load_target
     from rpscli.records.filters import parse_filter
+    from rpscli.records.measures import USUAL
     from rpscli.records.pair import together
-    from rpscli.records.pair_measure import USUAL
     from rpscli.records.requirements import RULES as KNOWN
     from rpscli.records.selection import SelectionRequest, select
     from rpscli.records.source import expand_sources, load_components
@@ -234,7 +233,7 @@ def command(
     ]
     error = LimitExceeded("\n".join(missed)) if missed else None
     document = {
-        **heading(), "command": "record select", **selection_document(selection),
+        **heading("record select"), **selection_document(selection),
         "periods_from": why, "left_out": left_out, "files": folder.files,
     }  # fmt: skip
     terminal.result(concluded(document, error), _tables(selection, why, left_out))

@@ -22,7 +22,6 @@ from rpscli.commands.report_case import (
     earlier_results,
     kind_of,
 )
-from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     CaseRequest,
     fail_on_option,
@@ -30,7 +29,7 @@ from rpscli.commands.shell.options import (
     style_option,
     terminal_options,
 )
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, leave
 from rpscli.errors import Refused, UsageError
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rpscli.analyses.result_quantities import plain
 from rpscli.commands.inputs import CaseInput, MotionRequest, case_heading
-from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.commands.timehistory_run import HistoryRequest, compute, history_requests, look_beside
 from rpscli.errors import UsageError

@@ -10,9 +10,8 @@ from rpscli.case.conditions import Condition
 from rpscli.commands.design import designed
 from rpscli.commands.inputs import RESULTS
 from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
-from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.study import (
     SweepChoices,
     of_first_system,

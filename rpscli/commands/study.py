@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.case.conditions import Condition
-from rpscli.commands.shell.failure import INTERRUPTED
 from rpscli.commands.shell.options import CaseRequest
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import INTERRUPTED, Terminal
 from rpscli.commands.shell.waiting import (
     announce_compilation,
     duration,
@@ -111,8 +110,7 @@ def compute(command: str, run: StudyRun, terminal: Terminal) -> Finish:
         text = str(interruption)
         terminal.note(text)
         document = {
-            **heading(),
-            "command": command,
+            **heading(command),
             "study": study_heading(run.layout),
             "points": interruption.points,
             **failure_document("Interrupted", text, INTERRUPTED),
@@ -184,8 +182,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
             seconds = estimated_seconds(layout, study.context, jobs)
         source = "trying some of the points"
     document: dict[str, Any] = {
-        **heading(),
-        "command": "sweep",
+        **heading("sweep"),
         "study": study_heading(layout),
         "dry_run": True,
         "analysis": layout.plan.analysis,

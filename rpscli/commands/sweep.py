@@ -10,7 +10,6 @@ import click
 
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import (
     FILE,
     CaseRequest,
@@ -20,7 +19,7 @@ from rpscli.commands.shell.options import (
     result_options,
     run_options,
 )
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
     SweepChoices,
@@ -100,8 +99,7 @@ def command(
     for _, of_one in groupby(notes, lambda note: note.partition(": ")[0]):
         terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)
     document = {
-        **heading(),
-        "command": "sweep",
+        **heading("sweep"),
         "study": study_heading(run.layout),
         "note": _note(run) or None,
         "points": {

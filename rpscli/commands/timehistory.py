@@ -11,7 +11,6 @@ import click
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import MotionRequest, motion_options, read_case, single_motions, write
-from rpscli.commands.shell.failure import leave
 from rpscli.commands.shell.options import (
     CaseRequest,
     OutputRequest,
@@ -20,7 +19,7 @@ from rpscli.commands.shell.options import (
     result_options,
     several_cases_options,
 )
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, leave
 from rpscli.commands.shell.waiting import announce_compilation, counted
 from rpscli.commands.timehistory_run import (
     HistoryRequest,

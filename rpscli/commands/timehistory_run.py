@@ -20,9 +20,8 @@ from rpscli.commands.inputs import (
     motion_inputs,
     motion_source,
 )
-from rpscli.commands.shell.failure import concluded
 from rpscli.commands.shell.options import OutputRequest
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
 from rpscli.report.documents import direction_note, heading, json_text, timehistory_document
@@ -109,7 +108,7 @@ def compute(
     request: HistoryRequest, conditions: Sequence[Condition], look: Look, terminal: Terminal
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
-    from rpscli.analyses.convergence import steps_warning
+    from rpscli.analyses.neighbours import steps_warning
     from rpscli.analyses.timehistory import time_history
     from rpscli.report.bundles import floor_spectra_files, timehistory_files
     from rpscli.report.study.statistics import verdict_document
@@ -182,8 +181,7 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
 
     given, ground = request.given, request.ground
     document = {
-        **heading(),
-        "command": COMMAND,
+        **heading(COMMAND),
         "note": direction_note([ground.y is not None]) or None,
         "case": case_heading(given),
         **timehistory_document(result),

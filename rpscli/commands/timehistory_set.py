@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rpscli.case.conditions import EVENTS, Condition, case_conditions, with_friction
 from rpscli.commands.inputs import RESULTS, case_folder, motion_inputs, write
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import OutputRequest
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.timehistory_run import (
     COMMAND,
     HistoryRequest,
@@ -178,8 +177,7 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
         for text in history.document["warnings"]
     ]
     document = {
-        **heading(),
-        "command": COMMAND,
+        **heading(COMMAND),
         "note": _note(computed) or None,
         "histories": [history.document for history in histories],
         "sets": [set_document(case) for case in computed],

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.commands.shell.failure import concluded, leave
 from rpscli.commands.shell.options import FILE, terminal_options
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import Refused, UsageError, VerificationMismatch
 from rpscli.report.documents import heading
@@ -74,8 +73,7 @@ def _conclude(
 ) -> None:
     error = _mismatch(found, what)
     document = {
-        **heading(),
-        "command": "verify",
+        **heading("verify"),
         "compared": len(found),
         "mismatches": sum(not line.holds for line in found),
         "comparisons": [
@@ -96,7 +94,7 @@ def _write_problems(folder: Path, terminal: Terminal) -> None:
     write_whole(files)
     terminal.note(f"written to {folder}; begin with README.md, fill in {folder / ANSWERS}")
     if terminal.as_json:
-        terminal.result({**heading(), "command": "verify", "files": [str(path) for path in files]})
+        terminal.result({**heading("verify"), "files": [str(path) for path in files]})
 
 
 def _score(source: str, digits: float, terminal: Terminal) -> None:

@@ -29,7 +29,7 @@ from typing import Literal
 from rpscli.errors import RecordError
 from rpscli.records.families import OTHER_SCHEME, VERTICAL, family, right_angles
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.pair_measure import Of
+from rpscli.records.measures import Of
 from rpscli.records.source import SourceParts, load_components, parts_of
 
 By = Literal["recordings", "events"]

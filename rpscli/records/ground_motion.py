@@ -17,8 +17,7 @@ from rpscli.records.recording import UNKNOWN, Recording
 from rpscli.shown import Shown, with_unit
 
 if TYPE_CHECKING:
-    from rpscli.records.measures import Measure
-    from rpscli.records.pair_measure import Of
+    from rpscli.records.measures import Measure, Of
 
 LEAST, MOST = 0.25, 4.0
 """Factors between these are usual."""
@@ -258,7 +257,7 @@ class GroundMotion(Shown):
         if second is None:
             unscaled = measured(self, measure, period, damping)
         else:
-            from rpscli.records.pair_measure import pair_measure  # which measures motions too
+            from rpscli.records.measures import pair_measure  # which measures motions too
 
             unscaled = pair_measure(self, second, measure, of, period, damping)
         return self.scaled(factor_to(value, unscaled, measure, self.source))

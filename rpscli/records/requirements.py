@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from rpscli.records.pair_measure import Of
+from rpscli.records.measures import Of
 
 Component = Of | Literal["srss"]
 """What a spectrum is of: a measure of pairs, or the root of the sum of both squared spectra."""

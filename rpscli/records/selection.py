@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, event_of, pairs
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import intensity_measures
+from rpscli.records.measures import (
+    intensity_measures,
+    of_directions,
+    over_directions,
+    spectra_over_directions,
+)
 from rpscli.records.pair import together
-from rpscli.records.pair_measure import of_directions, over_directions, spectra_over_directions
 from rpscli.records.requirements import RULES, Component, Periods, Requirements, Rule
 from rpscli.records.search import Goal, Pool, best_choice
 from rpscli.records.source import load_record

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError, beginning, stem_of
-from rpscli.records.pair_measure import Of
+from rpscli.records.measures import Of
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
 from rpscli.records.requirements import Component
 

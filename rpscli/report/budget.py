@@ -86,9 +86,7 @@ def budget_document(rows: Sequence[Row], found: Sequence[Effect]) -> dict[str, A
             "limit": effect.limit.limit if effect.limit else None,
             "exceeded": bool(effect.exceeded[0]),
             "turned_by": options[effect.turned],
-            "moved_by": np.array([row.options for row in known])[
-                effect.moved & bool(effect.quantity)
-            ],
+            "moved_by": options[effect.moved & bool(effect.quantity)],
             "sentences": sentences(known, effect),
             "records_fractiles": effect.spread,
             "records_beyond": str(effect.beyond),

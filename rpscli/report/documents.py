@@ -72,15 +72,16 @@ def direction_note(pairs: Iterable[bool]) -> str:
     return "" if all(pairs) else ONE_DIRECTION
 
 
-def heading(status: str = "ok") -> Document:
+def heading(command: str = "", status: str = "ok") -> Document:
     """The keys with which every document begins."""
-    return {"schema_version": SCHEMA_VERSION, "rps_version": VERSION, "status": status}
+    begin = {"schema_version": SCHEMA_VERSION, "rps_version": VERSION, "status": status}
+    return begin | ({"command": command} if command else {})
 
 
 def failure_document(kind: str, message: str, exit_code: int) -> Document:
     """The keys by which a document says that its command failed."""
     return {
-        **heading("error"),
+        **heading(status="error"),
         "passed": False,
         "exit_code": exit_code,
         "error": {"type": kind, "message": message, "exit_code": exit_code},

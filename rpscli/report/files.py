@@ -124,19 +124,14 @@ class OutputFolder:
         self.folder = folder
         self.run = run
         self.force = force
-        self._contents: dict[Path, Content] = {}
+        self.contents: dict[Path, Content] = {}
         self.removed: list[str] = []
         self._earlier = self._claimed()
 
     @property
     def files(self) -> list[str]:
         """What will be, or was, written: paths as the user would type them."""
-        return [str(path) for path in (*self._contents, self.folder / RUN_FILE)]
-
-    @property
-    def contents(self) -> Mapping[Path, Content]:
-        """What was collected."""
-        return self._contents
+        return [str(path) for path in (*self.contents, self.folder / RUN_FILE)]
 
     @property
     def replaces_other_inputs(self) -> bool:
@@ -156,23 +151,23 @@ class OutputFolder:
             for name, content in files:
                 self.add(name, content)
         except Exception:
-            if self._contents:
+            if self.contents:
                 self.write()
             raise
 
     def add_at(self, path: Path, content: str | Content) -> None:
         """Collect a file that stands elsewhere; it is guarded like those of the folder."""
-        self._contents[path] = encoded(content) if isinstance(content, str) else content
+        self.contents[path] = encoded(content) if isinstance(content, str) else content
 
     def write(self) -> None:
         """Write all files, `run.json` with them."""
         with locked(self.folder):
             # Another process may have written here since this one began.
             self._earlier = self._claimed()
-            for path in self._contents:
+            for path in self.contents:
                 if path.exists() and self._known_as(path) not in self._own:
                     self._refuse(f"{path} exists and is not an earlier output of this command")
-            contents = {**self._contents, self.folder / RUN_FILE: self._run_text().encode()}
+            contents = {**self.contents, self.folder / RUN_FILE: self._run_text().encode()}
             write_whole(contents)
             for stale in self._own - {self._known_as(path) for path in contents}:
                 if Path(stale).name == stale and (self.folder / stale).is_file():
@@ -189,7 +184,7 @@ class OutputFolder:
             "record": self._record,
             "inputs": self.run.inputs,
             "versions": versions(),
-            "files": [self._known_as(path) for path in self._contents],
+            "files": [self._known_as(path) for path in self.contents],
         }
         return json_text(document)
 

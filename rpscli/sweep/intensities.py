@@ -8,8 +8,7 @@ import numpy as np
 
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
-from rpscli.records.measures import MEASURES, Measure, needs_period
-from rpscli.records.pair_measure import Of, measure_label
+from rpscli.records.measures import MEASURES, Measure, Of, measure_label, needs_period
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.table import Array, Table
 
@@ -66,11 +65,8 @@ def intensity(table: Table, context: StudyContext, options: Asked) -> Intensity:
     if measure is None and scaled is not None:
         measure, period, damping = scaled.measure, scaled.period, scaled.damping
     measure = measure or "PGV"
-    target = scaled is not None and (measure, period, damping) == (
-        scaled.measure,
-        scaled.period,
-        scaled.damping,
-    )
+    wanted = measure, period, damping
+    target = scaled is not None and wanted == (scaled.measure, scaled.period, scaled.damping)
     values = np.full(len(table), np.nan)
     for point in table.layout:
         assert point.record is not None, "points of histories have a record"

@@ -66,7 +66,7 @@ def test_a_measured_restitution_has_no_other_law() -> None:
 
 def test_long_histories_say_that_nothing_was_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     result = time_history(podium(2), RECORD, SHORT)
-    monkeypatch.setattr(module, "MOST_STEPS", 10)
+    monkeypatch.setattr(module, "MOST_STEPS_BESIDE", 10)
     assert neighbours(result) == []
     (text,) = neighbours_texts(result, [])
     assert "steps are too many" in text

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from paper_structures import building, needs_compiled_kernels, podium, waves
 
-from rpscli.analyses import convergence
-from rpscli.analyses.convergence import steps_warning
+from rpscli.analyses import neighbours
 from rpscli.analyses.demand import demand
+from rpscli.analyses.neighbours import steps_warning
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -76,5 +76,5 @@ def test_motions_that_never_converge_are_called_samples(monkeypatch: pytest.Monk
     assert warning is not None
     assert warning.endswith("judge by many records")
     # what takes long is not run again
-    monkeypatch.setattr(convergence, "MOST_STEPS", 1000)
+    monkeypatch.setattr(neighbours, "MOST_STEPS", 1000)
     assert steps_warning(result) is None

@@ -57,7 +57,7 @@ def test_check_with_common_units_needs_no_library_of_units(workplace: Path) -> N
 
 
 def test_a_document_of_an_error_needs_no_numpy(workplace: Path) -> None:
-    code = "import sys, rpscli.commands.shell.failure; sys.exit('numpy' in sys.modules)"
+    code = "import sys, rpscli.commands.shell.terminal; sys.exit('numpy' in sys.modules)"
     root = str(Path(__file__).parents[2])
     subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": root}, check=True)
 

@@ -13,9 +13,10 @@ from scipy.integrate import cumulative_trapezoid
 from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, earthquake, pairs
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import Measure, measured
-from rpscli.records.pair_measure import (
+from rpscli.records.measures import (
+    Measure,
     Of,
+    measured,
     of_directions,
     over_directions,
     pair_measure,

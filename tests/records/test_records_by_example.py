@@ -7,8 +7,13 @@ import numpy as np
 from rpscli.records.clusters import _numbered, event_of
 from rpscli.records.formats.record_text import printed_resolution
 from rpscli.records.ground_motion import GroundMotion, is_usual, scale_warning
-from rpscli.records.measures import factor_to, needs_period
-from rpscli.records.pair_measure import DIRECTIONS, measure_label, of_directions
+from rpscli.records.measures import (
+    DIRECTIONS,
+    factor_to,
+    measure_label,
+    needs_period,
+    of_directions,
+)
 from rpscli.records.quantities import last_digit, unit_factor, why_no_numbers
 from rpscli.records.selection import misfit
 from rpscli.records.sets import expand_set

@@ -23,7 +23,7 @@ from rpscli.report.study.comparison_numbers import (
     uncomparable,
 )
 from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.statistics.observations import Maxima, agreement, record_of, threshold
+from rpscli.sweep.statistics.observations import Maxima, agreement, threshold
 from sweep.made_up import ALPHA, place, results_of, stored, tabulate
 from sweep.small_studies import Make
 
@@ -94,7 +94,7 @@ def test_a_fit_learns_from_one_part_and_is_judged_on_the_other(study_of: Make) -
     parts = {(each.values[0], each.part): each for each in found.compared}
     for title in ("left", "right"):
         fitted, held = parts[title, "fitted"], parts[title, "held out"]
-        both = [set(record_of(layout, each.points).tolist()) for each in (fitted, held)]
+        both = [set(layout.places[1][each.points].tolist()) for each in (fitted, held)]
         assert len(both[0]) == len(both[1]) == RECORDS // 2
         assert both[0] | both[1] == set(range(RECORDS))
         assert fitted.chosen == held.chosen
@@ -111,7 +111,7 @@ def test_what_is_held_out_has_no_say_in_the_fit(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY))
     found = report(layout, options, overturns)
     held = next(each for each in found.compared if each.part == "held out")
-    turned = set(record_of(layout, held.points).tolist())
+    turned = set(layout.places[1][held.points].tolist())
     seen(*(
         f"{SOURCE.format(n)},left,{int((n <= 4) != (n - 1 in turned))}"
         for n in range(1, RECORDS + 1)

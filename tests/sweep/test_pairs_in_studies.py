@@ -19,7 +19,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, Superstructure
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import MotionComponents
-from rpscli.records.pair_measure import pair_measure
+from rpscli.records.measures import pair_measure
 from rpscli.records.source import load_components, load_record
 from rpscli.sweep.evaluation.batch import reference_shears
 from rpscli.sweep.evaluation.context import StudyContext

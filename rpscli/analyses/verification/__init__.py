@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rpscli.analyses.verification.contact import compliant_ends
 from rpscli.analyses.verification.known import Comparison
-from rpscli.analyses.verification.motions import buildings, devices, free_rocking, histories
+from rpscli.analyses.verification.motions import (
+    buildings,
+    compliant_ends,
+    devices,
+    free_rocking,
+    histories,
+)
 from rpscli.analyses.verification.overturning import pulses
 from rpscli.analyses.verification.space import free_motion, one_component, passes
 from rpscli.analyses.verification.statics import geometry, modes

@@ -1,4 +1,4 @@
-"""Histories: full contact, after an impact, free rocking, one swing with devices, earthquakes.
+"""Histories: full contact, impact, free rocking, devices, earthquakes, compliant ends.
 
 The earthquakes are shipped motions that a second integrator followed. Its unknowns are the tilt and
 the storey drifts, its mass matrix is full, its steps are those of DOP853, and full contact is a
@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.modal import modal
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -32,9 +33,11 @@ from rpscli.analyses.verification.known import (
     slender_block,
     within,
 )
+from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.model.superstructure import Superstructure
+from rpscli.model.superstructure import ModalDamping, Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 from rpscli.shipped import shipped_cases
@@ -46,6 +49,14 @@ IMPACT = "One storey after its first well separated impact (closed form)"
 def shear_at_samples(result: TimeHistoryResult) -> float:
     """Largest base shear at the samples [N], where the reference values know it."""
     return float(np.max(np.abs(result.trace.storey_shears[:, 0])))
+
+
+def released(
+    structure: PodiumStructure, rotation: float, seconds: float, dt: float = 1e-3
+) -> TimeHistoryResult:
+    """So many seconds after a release from a tilt [rad], on still ground."""
+    settings = TimeHistorySettings(free_vibration=seconds, initial_rotation=rotation)
+    return time_history(structure, motion(np.zeros(2), dt), settings, with_fixed_base=False)
 
 
 def buildings() -> Iterator[Comparison]:
@@ -104,8 +115,7 @@ def _after_impact() -> Comparison:
     base += structure.cap_beam_mass + structure.superstructure_mass * structure.bearing.alpha**2
     xi = 0.05 * math.sqrt(1.0 + structure.superstructure_mass / base)
     expected = 1.0 + 2.0 * math.exp(-math.pi * xi / math.sqrt(1.0 - xi**2))
-    settings = replace(TimeHistorySettings(free_vibration=3.0), initial_rotation=0.12)
-    result = time_history(structure, motion(np.zeros(2), 0.001), settings, with_fixed_base=False)
+    result = released(structure, 0.12, 3.0)
     first = next(event.time for event in result.events if event.kind == "impact")
     after = (result.trace.time > first) & (result.trace.time < first + 0.1)
     swing = np.max(np.abs(result.trace.storey_shears[after, 0])) / structure.static_base_shear
@@ -125,8 +135,7 @@ def free_rocking() -> Iterator[Comparison]:
     structure = slender_block(1.0, RESTITUTION)
     p, alpha = math.sqrt(0.75 * structure.gravity), math.atan(SLENDER)
     for start in STARTS:
-        settings = TimeHistorySettings(free_vibration=6.0, initial_rotation=start * alpha)
-        result = time_history(structure, motion(np.zeros(2), STEP), settings, with_fixed_base=False)
+        result = released(structure, start * alpha, 6.0, STEP)
         impacts = [event.time for event in result.events if event.kind == "impact"]
         quarter = within(math.acosh(1.0 / (1.0 - start)) / p, LINEAR)
         where = f"phi_0 = {start:g}"
@@ -177,9 +186,7 @@ def devices() -> Iterator[Comparison]:
 
 def energy_of_impact(structure: PodiumStructure, rotation: float) -> float:
     """Kinetic energy of the first impact after a release [J]."""
-    settings = TimeHistorySettings(initial_rotation=rotation, free_vibration=3.0)
-    still = GroundMotion(np.zeros(2), 0.01, "stillness", "made", "made")
-    result = time_history(structure, still, settings)
+    result = released(structure, rotation, 3.0, 0.01)
     rate = next(event.rotation_rate_before for event in result.events if event.kind == "impact")
     at = np.zeros(1)
     b = structure.bearing
@@ -240,3 +247,64 @@ def histories() -> Iterator[Comparison]:
             ("impacts", "-", Known(float(row.impacts), 0.0), float(result.impacts)),
         ):
             yield compare(EARTHQUAKES, f"{name}, {where}", unit, known, computed)
+
+
+PERIODS = "Full contact of compliant ends, r = 1.2 (periods over T1)"
+RELEASES = "Release at 0.4 alpha, undamped building on compliant plane ends"
+TILTED = 0.4 * math.atan(0.15), 2.4
+"""0.4 alpha [rad], and how long it is followed [s]."""
+SECOND_PERIOD = 0.4899030
+"""Of one storey, over T1; by another program, as are the releases."""
+
+BACK_SWINGS = (
+    (1, 2.868200132581778e-05, 1.0, 0.35612, 5.649),
+    (3, 2.1e-4, 0.0, 0.38034, 3.4081),
+    (3, 2.1e-4, 0.3, 0.36964, 3.922),
+)
+"""Of plane ends: storeys, phi_u, loss; back swing over alpha and V_b/V_st."""
+
+
+def of_paper(storeys: int, contact: Contact, loss: float = 1.0) -> PodiumStructure:
+    """The paper's podium with flat ends, and stiffnesses that are equal, without damping."""
+    masses = np.full(storeys, 2e5)
+    stiffnesses = profile_stiffnesses(masses, storeys / 10.0, "uniform")
+    return replace(
+        paper_podium(storeys, 0.15, FLAT),
+        superstructure=Superstructure(masses, stiffnesses, ModalDamping(0.0)),
+        impact_law=ImpactLaw(loss=loss),
+        contact=contact,
+    )
+
+
+def compliant_ends() -> Iterator[Comparison]:
+    """T/T_1 = r, swings and shears of releases, kept energy, and stiff edges."""
+    for storeys, kind in ((6, "plane"), (6, "edges"), (1, "plane")):
+        ends = Contact(kind, period_ratio=1.2, damping=0.0)  # type: ignore[arg-type]
+        structure = of_paper(storeys, ends)
+        full, where = modal(structure).full_contact, f"{kind}, n = {storeys}"
+        assert full is not None, "its ends are compliant"
+        ratios = full.periods / (0.1 * storeys)
+        yield compare(PERIODS, f"first, {where}", "-", within(1.2, 1e-9), ratios[0])
+    # The reference has the C of rigid columns in the mass at the beam.
+    yield compare(PERIODS, f"second, {where}", "-", within(SECOND_PERIOD, 1e-6), ratios[1])
+    half_width = structure.bearing.half_width
+    for storeys, phi_u, loss, back, shear in BACK_SWINGS:
+        ends = Contact("plane", settlement=phi_u * half_width, damping=0.0)
+        where = f"n = {storeys}, loss = {loss:g}"
+        found = released(of_paper(storeys, ends, loss), *TILTED)
+        # Half of the last digit, and what lies between samples of 1 ms.
+        known = Known(back, 1e-5), Known(shear, 5e-4)
+        yield compare(RELEASES, f"back swing/alpha, {where}", "-", known[0], back_swing(found))
+        yield compare(RELEASES, f"V_b/V_st, {where}", "-", known[1], found.base_shear_ratio or 0.0)
+        if loss == 0.0:
+            kept = found.trace.energy_stored[-1] / found.trace.energy_stored[0]
+            yield compare(RELEASES, f"energy kept, {where}", "-", within(1.0, 1e-6), kept)
+    stiff = Contact("edges", settlement=1e-5 * structure.bearing.alpha * half_width, damping=0.0)
+    edges, rigid = (back_swing(released(of_paper(1, ends), *TILTED)) for ends in (stiff, Contact()))
+    name = "back swing/alpha, stiff edges against rigid ends, n = 1"
+    yield compare(RELEASES, name, "-", Known(rigid, 1e-4), edges)
+
+
+def back_swing(result: TimeHistoryResult) -> float:
+    """The largest rotation to the other side, over alpha."""
+    return -float(result.trace.rotation.min()) / result.structure.bearing.alpha

@@ -26,7 +26,7 @@ from rpscli.errors import RecordError
 from rpscli.model.devices import DEVICES
 from rpscli.model.impact import CONTACT_TIME, LONGEST_CONTACT
 from rpscli.records.clusters import ONE_FACTOR, Pair, pairs
-from rpscli.records.pair_measure import Of
+from rpscli.records.measures import Of
 from rpscli.records.source import parts_of
 
 DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {

@@ -16,8 +16,7 @@ from pydantic import (
 
 from rpscli.case.schema.fields import DampingRatio, NameOf, Quantity, Section, refuse
 from rpscli.errors import hint
-from rpscli.records.measures import MEASURES, Measure, needs_period
-from rpscli.records.pair_measure import OF, Of
+from rpscli.records.measures import MEASURES, OF, Measure, Of, needs_period
 from rpscli.units import Written
 
 _TARGET = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")

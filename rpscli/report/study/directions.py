@@ -18,12 +18,10 @@ from rpscli.report.study.panels import by_values, left_out, panel_figure, remark
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.report.study.statistics import reached
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import HIGH, LOW, demand, fractiles
+from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
-
-FRACTILES = (LOW, 0.50, HIGH)
 
 NO_BOUND = (
     "even the worst direction is not a bound: both components together may turn columns further;"
@@ -140,7 +138,7 @@ def _panel(group: Histories, known: dict[ResultQuantity, Array], drawn: ResultQu
         results = [curve.results[quantity] for curve in curves if quantity in curve.results]
         of = np.array([(each.worst, each.rotd50, each.both) for each in results]).T
         spreads[quantity] = tuple(
-            fractiles(np.where(np.isnan(each).any(), np.nan, each), FRACTILES) for each in of
+            fractiles(np.where(np.isnan(each).any(), np.nan, each), THREE) for each in of
         )
     return Panel(group.values, curves, spreads)
 

@@ -21,8 +21,7 @@ from rpscli.case.schema.limits import described
 from rpscli.case.schema.scale_to import MeasureName
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Seed
-from rpscli.records.measures import MEASURES, needs_period
-from rpscli.records.pair_measure import measure_label
+from rpscli.records.measures import MEASURES, measure_label, needs_period
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import Layout, colour, left_out, marker, over, panel_figure, remarks

@@ -26,7 +26,7 @@ from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import HIGH, LOW, fractiles
+from rpscli.sweep.statistics.fractiles import HIGH, THREE, fractiles
 from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Indices, groups
@@ -185,7 +185,6 @@ class Floors(NamedTuple):
     fractiles: Array
 
 
-FRACTILES = (LOW, 0.50, HIGH)
 STATES = {"isolated": ("on bearings", style.BLUE), "fixed_base": ("fixed base", style.BLACK)}
 SPECTRA = {"pseudo_acceleration": "m/s2", "displacement": "m"}
 
@@ -198,13 +197,13 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
         spectra = np.array([study.floor_spectra(n, options.damping) for n in group.points.tolist()])
         # An overturned history is larger than any demand; its building on a fixed base is not.
         spectra[group.fallen, 0] = np.inf
-        spread = np.quantile(spectra, FRACTILES, axis=0, method="inverted_cdf")
+        spread = np.quantile(spectra, THREE, axis=0, method="inverted_cdf")
         floors.append(Floors(group.values, spread))
     heads = {
         f"{state}_{name}_{100 * share:.0f}": unit
         for state in STATES
         for name, unit in SPECTRA.items()
-        for share in FRACTILES
+        for share in THREE
     }
     rows = [
         (one.values, floor, float(period), *map(reached, cells.ravel().tolist()))

@@ -18,12 +18,11 @@ from rpscli.report.study.panels import in_panels, noted
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.sweep.evaluation.results import SCALARS
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.statistics.fractiles import HIGH, LOW, demand, fractiles
+from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array
 
-FRACTILES = (LOW, 0.50, HIGH)
 MOST_CURVES = 200
 LINES = ((style.BLUE, ":"), (style.BLUE, "-"), (style.BLUE, "--"))
 
@@ -58,7 +57,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
     (name,) = shown_keys(table.layout, (INTENSITY,))
     quantity, level_unit = SCALARS["timehistory"][options.demand], unit_of(name)
     heads = {name: level_unit}
-    heads |= {f"{options.demand}_{round(100 * share)}": quantity.unit for share in FRACTILES}
+    heads |= {f"{options.demand}_{round(100 * share)}": quantity.unit for share in THREE}
     heads |= dict.fromkeys(("counted", "overturned", "failed"), "-")
     rows = [
         (panel.values, height, *spread, len(level), level.overturned.number, level.failed)
@@ -81,7 +80,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
                 *_run_out(curve, levels, edge), color=style.GREY, lw=0.8,
                 label="single curves",
             )  # fmt: skip
-        for fractile, (colour, line), share in zip(panel.fractiles, LINES, FRACTILES, strict=True):
+        for fractile, (colour, line), share in zip(panel.fractiles, LINES, THREE, strict=True):
             axes.plot(
                 *_run_out(fractile, levels, edge), color=colour, ls=line, lw=1.8,
                 label="median" if share == 0.5 else f"{style.percent(share)} fractile",
@@ -110,7 +109,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
 def _panel(group: Histories, demands: Array) -> Panel:
     levels = sorted(group.parts([INTENSITY]), key=height)
     curves = np.column_stack([demands[level.every] for level in levels])
-    spread = np.column_stack([fractiles(column, FRACTILES) for column in curves.T])
+    spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
     return Panel(group.values, levels, np.array(list(map(height, levels))), curves, spread)
 
 

@@ -13,8 +13,7 @@ from pydantic import Field
 from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.schema import HazardSection
 from rpscli.errors import CaseError
-from rpscli.records.measures import needs_period
-from rpscli.records.pair_measure import Of
+from rpscli.records.measures import Of, needs_period
 from rpscli.report.figures import style
 from rpscli.report.study.fragility import (
     BEYOND_COMPUTED,

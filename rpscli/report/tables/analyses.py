@@ -28,14 +28,14 @@ def mode_columns(result: ModalResult) -> list[Column]:
 
 
 def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, ...]]:
-    if (full := result.full_contact) is not None:
-        for i, (w, xi) in enumerate(zip(full.frequencies, full.damping, strict=True)):
-            yield "full_contact", i + 1, float(w), 2.0 * math.pi / w, float(xi), *4 * (None,)
-    if (fixed := result.fixed_base) is not None:
-        for i, (w, xi) in enumerate(zip(fixed.frequencies, fixed.damping, strict=True)):
-            of_itself = (1.0, 1.0, None, None)
-            state = result.fixed_base_state
-            yield state, i + 1, float(w), 2.0 * math.pi / w, float(xi), *of_itself
+    for state, alone, of_itself in (
+        ("full_contact", result.full_contact, None),
+        (result.fixed_base_state, result.fixed_base, 1.0),
+    ):
+        pairs = zip(alone.frequencies, alone.damping, strict=True) if alone else ()
+        for i, (w, xi) in enumerate(pairs):
+            numbers = float(w), 2.0 * math.pi / w, float(xi), of_itself, of_itself
+            yield state, i + 1, *numbers, None, None
     for name, (modes, first) in result.both_orders.items():
         for i, (w, xi) in enumerate(zip(modes.frequencies, modes.damping, strict=True)):
             ratios = float(modes.frequency_ratio[i]), float(modes.damping_ratio[i])

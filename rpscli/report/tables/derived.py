@@ -79,15 +79,10 @@ DYNAMICS = (
 """Masses and statics."""
 
 BOTH = (
-    Derived("pass_turn", "turn in a pass near upright", "Delta phi", "rad", lambda s: s.pass_turn),
-    Derived(
-        "turning_inertia", "inertia of turning, upright", "K(0)", "-", lambda s: s.turning_inertia
-    ),
-    Derived(
-        "contact_time", "contact time of an impact", "t_c", "s",
-        lambda s: s.impact_law.contact_time,
-    ),
-)  # fmt: skip
+    Derived("pass_turn", "turn in a pass near upright", "Delta phi", "rad"),
+    Derived("turning_inertia", "inertia of turning, upright", "K(0)", "-"),
+    Derived("contact_time", "contact time of an impact", "t_c", "s", "impact_law.contact_time"),
+)
 """Where both horizontal components act."""
 
 CONTACT = (

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from rpscli.case.study.schema import Analysis, MeasureScale
 from rpscli.records.clusters import Pair
-from rpscli.records.pair_measure import USUAL, Of
+from rpscli.records.measures import USUAL, Of
 from rpscli.records.source import parts_of
 from rpscli.version import VERSION
 

@@ -47,13 +47,10 @@ def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
     ends = np.unique(x)
     if len(ends) < 2 * FEWEST:
         return None
-    left, right = ends[FEWEST - 1 : -FEWEST], ends[FEWEST : len(ends) - FEWEST + 1]
-    sums = _Sums(x, y)
-    crossing, squares = _crossings(sums, left, right)
-    knees = np.concatenate([crossing, left, right])
-    squares = np.concatenate([squares, _squares_at(sums, left), _squares_at(sums, right)])
-    finalists = knees[np.argsort(squares, kind="stable")[:FINALISTS]]
-    curves = [_curve(x, y, knee) for knee in finalists.tolist()]
+    inner, sums = ends[FEWEST - 1 : len(ends) - FEWEST + 1], _Sums(x, y)
+    knees = np.concatenate([_crossings(sums, inner[:-1], inner[1:]), inner])
+    best_first = knees[np.argsort(_squares_at(sums, knees), kind="stable")].tolist()
+    curves = [_curve(x, y, knee) for knee in [*dict.fromkeys(best_first)][:FINALISTS]]
     return min(curves, key=lambda curve: curve.residual)
 
 
@@ -73,23 +70,20 @@ class _Sums:
         return np.asarray(self._running[:, np.searchsorted(self.x, abscissae, side="right") - 1])
 
 
-def _crossings(sums: _Sums, left: Array, right: Array) -> tuple[Array, Array]:
-    """Where two free lines cross, and their sum of squares; infinite if not between neighbours."""
+def _crossings(sums: _Sums, left: Array, right: Array) -> Array:
+    """Where two free lines cross; the left neighbour of the split if not between both."""
     before = sums.up_to(left)
-    a, b, s = _lines(before)
-    c, d, t = _lines(sums.total - before)
+    (a, b), (c, d) = _lines(before), _lines(sums.total - before)
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = sums.middle + (c - a) / (b - d)
-    inside = (left <= crossing) & (crossing <= right)
-    return np.where(inside, crossing, left), np.where(inside, s + t, np.inf)
+    return np.where((left <= crossing) & (crossing <= right), crossing, left)
 
 
-def _lines(sums: Array) -> tuple[Array, Array, Array]:
-    """Intercept, slope and sum of squares of the best lines."""
-    n, x, y, xx, xy, yy = sums
-    spread, joint = xx - x * x / n, xy - x * y / n
-    slope = joint / spread
-    return (y - slope * x) / n, slope, yy - y * y / n - slope * joint
+def _lines(sums: Array) -> tuple[Array, Array]:
+    """Intercept and slope of the best lines."""
+    n, x, y, xx, xy, _ = sums
+    slope = (xy - x * y / n) / (xx - x * x / n)
+    return (y - slope * x) / n, slope
 
 
 def _squares_at(sums: _Sums, knees: Array) -> Array:

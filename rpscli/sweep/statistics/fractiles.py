@@ -18,6 +18,8 @@ CONFIDENCE = 0.95
 LEAST_SHOWN = 5e-4
 """Lower ends of intervals below this are shown as 0."""
 LOW, HIGH = 0.16, 0.84
+THREE = (LOW, 0.50, HIGH)
+"""Fractiles of bands about a median."""
 ROUNDING = 1e-9
 """Of shares times numbers of histories, which are meant as whole numbers."""
 

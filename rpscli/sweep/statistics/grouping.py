@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.records.pair_measure import measure_label
+from rpscli.records.measures import measure_label
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys

@@ -21,10 +21,9 @@ from rpscli.sweep.table import Array, Indices, groups
 
 
 class Pairs(NamedTuple):
-    """Points (pairs,), their records, what was observed (quantities, pairs), what was left out."""
+    """Points (pairs,), what was observed (quantities, pairs), what was left out."""
 
     points: Indices
-    records: Indices
     values: Array
     notes: tuple[str, ...]
 
@@ -41,7 +40,7 @@ def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
     for group in groups(layout, observed.keys):
         system = tuple(map(comparable, observed.keys, group.values))
         row_of = np.array([rows.get((n, system), -1) for n in range(len(layout.records))])
-        place = row_of[record_of(layout, group.points)]
+        place = row_of[layout.places[1][group.points]]
         points.append(group.points[place >= 0])
         places.append(place[place >= 0])
     found, row = np.concatenate(points), np.concatenate(places)
@@ -49,13 +48,7 @@ def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
     found, row = found[order], row[order]
     values = np.array([seen.values for seen in observed.rows]).T[:, row]
     notes = _left_out(layout, observed, found, row)
-    return Pairs(found, record_of(layout, found), values, tuple(notes))
-
-
-def record_of(layout: StudyPoints, points: Indices) -> Indices:
-    """(points,) number of the record of each point."""
-    of_system = layout.points_of_system
-    return points % of_system // (of_system // len(layout.records))
+    return Pairs(found, values, tuple(notes))
 
 
 def _record_numbers(layout: StudyPoints) -> dict[str, int]:

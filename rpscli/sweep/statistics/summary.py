@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.records.clusters import By, clusters
 from rpscli.records.ground_motion import LEAST, MOST
-from rpscli.records.pair_measure import measure_label
+from rpscli.records.measures import measure_label
 from rpscli.records.pulses import SCHEME
 from rpscli.sweep.evaluation.results import FAILED
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rpscli.case.conditions import EVENTS, NOT_SHOWN, RATE, Condition
 from rpscli.case.text.document import Fault
-from rpscli.records.pair_measure import SHOWN, Of
+from rpscli.records.measures import SHOWN, Of
 from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, share_of, shown_by
