@@ -267,18 +267,62 @@ def test_code_of_one_record_is_not_called_for_another(tmp_path: Path) -> None:
 
 
 @needs_compiled_kernels
-def test_the_second_process_runs_nothing_from_the_working_folder(
+def test_other_processes_compile_and_run_nothing_from_the_working_folder(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "numba.py").write_text("open('was_run', 'w').close()\n")
     fresh_folder.chdir(tmp_path)
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
-    fresh_folder.setenv("NUMBA_DISABLE_JIT", "1")  # the other process: it has nothing to compile
-    fresh_folder.setattr(prepare, "compile_phases", lambda *_: None)
-    fresh_folder.setattr(prepare, "integrate_lanes", lambda *_: None)
+    fresh_folder.setenv("NUMBA_DISABLE_JIT", "1")  # the others: they have nothing to compile
+
+    def called_here(*_: object) -> None:
+        raise AssertionError("compiled by this process")
+
+    for part in ("follow_full_contact", "advance_lanes", "integrate_lanes"):
+        fresh_folder.setattr(prepare, part, called_here)
     fresh_folder.setattr(sys, "path", [place for place in sys.path if place])
     prepare.compile_kernel("plain")
     assert not (tmp_path / "was_run").exists()
+
+
+HISTORIES = """
+import hashlib
+from random import Random
+from hunt.test_random_histories import motions, settings, structure
+from rpscli.analyses.kernels.history import Request, follow, run_of
+from rpscli.analyses.kernels.systems import most_seconds, stacked_systems
+from rpscli.records.ground_motion import MotionComponents
+
+for seed in range(200):
+    random = Random(f"bits {seed}")
+    system = structure(random)
+    record, up = motions(random)
+    chosen = settings(random, system, record)
+    if most_seconds(system, chosen, record.duration) < 0.3:
+        motion = MotionComponents(record, up)
+        run = run_of(stacked_systems([(system, chosen)]), [motion], [Request(0, 0)])
+        follow(run, lanes=1)
+        print(seed, hashlib.sha256(run.results.tobytes()).hexdigest())
+"""
+
+
+@pytest.mark.long
+@needs_compiled_kernels
+def test_right_after_the_compilation_bits_are_those_of_later(tmp_path: Path) -> None:
+    """Parts of the kernel in memory took the places of its own, with other last bits."""
+    places = [str(Path(__file__).parents[1]), *sys.path]
+    environment = {"RPS_CACHE_DIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(places)}
+
+    def run() -> list[str]:
+        command = [sys.executable, "-c", HISTORIES]
+        done = subprocess.run(
+            command, env=os.environ | environment, capture_output=True, text=True, check=True
+        )
+        return done.stdout.splitlines()
+
+    first = run()
+    assert len(first) > 100
+    assert first == run()
 
 
 @needs_compiled_kernels

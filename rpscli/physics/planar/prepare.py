@@ -1,8 +1,12 @@
-"""The first compilation of the kernels, by two processes side by side.
+"""The first compilation of the kernels, by other processes, two of them side by side.
 
-numba takes one core for most of a minute. What the kernel calls is compiled into numba's cache, one
-part here and one by a second process, each by calls that have nothing to do; the kernel then finds
-it there. The parts are chosen so that what they have in common, which is compiled twice, is little.
+numba takes one core for most of a minute. What the kernel calls is compiled into numba's cache, in
+two parts, each by calls that have nothing to do; a third process finds them there and compiles the
+kernel. The parts are chosen so that what they have in common, which is compiled twice, is little.
+
+This process compiles nothing, but loads the kernel as later ones do. Had it parts in memory, it
+would run theirs in place of the kernel's own copies of some functions, with other products and sums
+rounded once, and other last bits.
 """
 
 from __future__ import annotations
@@ -11,8 +15,8 @@ import gc
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from typing import Any, cast
 
 import numba
@@ -29,26 +33,26 @@ from rpscli.physics.planar.run import empty_block, empty_run, empty_state
 
 def compile_kernel(variant: str) -> None:
     """Compile the kernel, of any variant; what fails in a part is left to the first call."""
-    compile_in_parts(__name__, variant, compile_phases, compile_whole)
+    compile_in_parts(__name__, variant)
 
 
-def compile_in_parts(
-    module: str, what: str, here: Callable[[str], None], whole: Callable[[str], None]
-) -> None:
-    """Compile one part here and one by running a module, then the whole.
+def compile_in_parts(module: str, variant: str) -> None:
+    """Compile two parts, then the whole, by running a module like this one.
 
     Without a cache, or without machine code at all, there is nothing to prepare.
     """
     if not can_prepare():
         return
-    with garbage_kept(), compiling(module, what) as other:
-        try:
-            here(what)
-            other.wait()
-            whole(what)
-        except BaseException:
-            other.kill()
-            raise
+    for parts in (("phases", "steps"), ("whole",)):
+        with ExitStack() as running:
+            others = [running.enter_context(compiling(module, part, variant)) for part in parts]
+            try:
+                for other in others:
+                    other.wait()
+            except BaseException:
+                for other in others:
+                    other.kill()
+                raise
 
 
 def can_prepare() -> bool:
@@ -57,10 +61,10 @@ def can_prepare() -> bool:
     return bool(not no_code and cache_folder() is not None and sys.executable)
 
 
-def compiling(module: str, what: str) -> subprocess.Popen[bytes]:
+def compiling(module: str, part: str, variant: str) -> subprocess.Popen[bytes]:
     """Another process that compiles a part: it runs a module like this one."""
     # Without -P a numba.py in the working folder would be run.
-    command = [sys.executable, "-P", "-m", module, what]
+    command = [sys.executable, "-P", "-m", module, part, variant]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     silent = subprocess.DEVNULL
     return subprocess.Popen(  # noqa: S603 -- this very program
@@ -114,4 +118,4 @@ def garbage_kept() -> Iterator[None]:
 
 if __name__ == "__main__":
     with garbage_kept():
-        compile_steps(sys.argv[1])
+        globals()[f"compile_{sys.argv[1]}"](sys.argv[2])

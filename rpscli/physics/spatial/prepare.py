@@ -18,7 +18,7 @@ from rpscli.physics.spatial.state import EVENT_3D, RESULT_3D, SAMPLE_3D, STATES_
 
 def compile_pairs(variant: str) -> None:
     """Compile the kernel; what fails in a part is left to the first call."""
-    compile_in_parts(__name__, variant, compile_phases, compile_whole)
+    compile_in_parts(__name__, variant)
 
 
 def nothing_to_do(variant: str) -> tuple[Record, Record, Run]:
@@ -57,4 +57,4 @@ def compile_steps(variant: str) -> None:
 
 if __name__ == "__main__":
     with garbage_kept():
-        compile_steps(sys.argv[1])
+        globals()[f"compile_{sys.argv[1]}"](sys.argv[2])
