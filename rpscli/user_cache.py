@@ -6,7 +6,7 @@ import os
 import stat
 import tempfile
 import warnings
-from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 VARIABLE = "RPS_CACHE_DIR"
@@ -14,22 +14,24 @@ VARIABLE = "RPS_CACHE_DIR"
 
 
 def user_cache() -> Path | None:
-    """A folder that only this user may write to, made if needed; None if there is no such place.
-
-    ``RPS_CACHE_DIR`` wins, then the user's cache folder, then one in the system's temporary folder.
-    """
-    return next((place for place in _places() if _is_writable(place) and is_private(place)), None)
+    """The first place that only this user may write to, made if needed; None if there is none."""
+    return next((each for each in cache_places() if is_writable(each) and is_private(each)), None)
 
 
-def _places() -> Iterator[Path]:
-    if named := os.environ.get(VARIABLE):
-        yield Path(named)
-    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
-    yield Path(home) / "rps"
+def cache_places() -> list[Path]:
+    """What ``RPS_CACHE_DIR`` names, the user's cache folder, one in the temporary folder."""
+    places = [users_folder(VARIABLE), users_folder("XDG_CACHE_HOME", "~/.cache", "rps")]
     user = os.getuid() if hasattr(os, "getuid") else 0
-    place = Path(tempfile.gettempdir()) / f"rps-{user}"
-    if not place.is_symlink():  # everybody may put one there
-        yield place
+    with suppress(FileNotFoundError):  # not even temporary files can be written
+        place = Path(tempfile.gettempdir()) / f"rps-{user}"
+        places += [] if place.is_symlink() else [place]  # everybody may put one there
+    return [place for place in places if place]
+
+
+def users_folder(variable: str, usual: str = "", *below: str) -> Path | None:
+    """What a variable names, else the usual folder; None where neither is, or nobody's home."""
+    found = os.path.expanduser(os.environ.get(variable) or usual)  # noqa: PTH111 -- which raises
+    return None if found[:1] in {"", "~"} else Path(found, *below)
 
 
 def is_private(folder: Path) -> bool:
@@ -39,21 +41,18 @@ def is_private(folder: Path) -> bool:
     """
     if os.name == "nt":
         return True
-    found = folder.stat()
+    found, amiss = folder.stat(), ""
     if found.st_uid != os.getuid():
-        warnings.warn(f"{folder} belongs to somebody else and is not used", stacklevel=2)
+        amiss = f"{folder} belongs to somebody else"
     elif found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-        warnings.warn(
-            f"others may write to {folder}, where code is kept, so it is not used;"
-            f" chmod go-w {folder}",
-            stacklevel=2,
-        )
-    else:
-        return True
-    return False
+        amiss = f"others may write to {folder}, where code is kept: chmod go-w {folder}"
+    if amiss:
+        warnings.warn(f"{amiss}; it is not used", stacklevel=2)
+    return not amiss
 
 
-def _is_writable(folder: Path) -> bool:
+def is_writable(folder: Path) -> bool:
+    """Whether files can be made in a folder, which is made if needed."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

@@ -15,6 +15,7 @@ import signal
 import sqlite3
 import subprocess
 import sys
+import tempfile
 import threading
 from pathlib import Path
 from typing import Any
@@ -24,8 +25,10 @@ from click.testing import CliRunner, Result
 
 from rpscli import user_cache
 from rpscli.cli import program
+from rpscli.errors import RecordError
 from rpscli.machine import available_cores
 from rpscli.records.source import load_record
+from rpscli.report.figures.look import quiet_matplotlib
 from rpscli.report.files import locked, write_whole
 from rpscli.sweep.run.runner import first_interrupt
 from rpscli.sweep.store import Store
@@ -104,6 +107,33 @@ def test_windows_asks_nobody_whose_a_folder_is(
     with monkeypatch.context() as patch:
         patch.setattr(os, "name", "nt")
         assert user_cache.is_private(tmp_path)
+
+
+@pytest.mark.parametrize("system", ["linux", "darwin", "win32"])
+@pytest.mark.parametrize("home", ["home", "~"])
+def test_homes_get_no_folders_of_names_that_nobody_uses(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, system: str, home: str
+) -> None:
+    """In containers users may have no home: then Python leaves the `~` in a path."""
+    for variable in (user_cache.VARIABLE, "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR"):
+        monkeypatch.setenv(variable, "")  # to be put back
+        monkeypatch.delenv(variable)
+    monkeypatch.delitem(sys.modules, "matplotlib")
+    monkeypatch.setattr(sys, "platform", system)
+    expanded = str(tmp_path / home) if home != "~" else home
+    monkeypatch.setattr(os.path, "expanduser", lambda path: path.replace("~", expanded))
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "home").mkdir()
+    place = user_cache.user_cache()
+    quiet_matplotlib()
+    assert place is not None
+    assert place.is_relative_to(tmp_path / ("temporary" if home == "~" else "home/.cache"))
+    assert os.environ.get("MPLCONFIGDIR") == (str(place / "matplotlib") if home == "~" else None)
+    left = {path.name for path in (tmp_path / "home").iterdir()}
+    usual = {".cache", ".config"} if system == "linux" else {".cache"}
+    assert left == (set() if home == "~" else usual)
+    assert not (tmp_path / "~").exists()
 
 
 @pytest.mark.parametrize("number", [errno.ENOLCK, errno.EOPNOTSUPP])
@@ -241,7 +271,17 @@ def test_folders_of_any_name_hold_cases_and_results(
     assert (folder / name / "run.json").is_file()
 
 
-def test_a_path_that_is_too_long_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("silent", [False, True])
+def test_a_path_that_is_too_long_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, silent: bool
+) -> None:
+    """Also where paths keep to themselves what the system refuses, as from Python 3.14 on."""
+    if silent:
+        for asked in ("exists", "is_file", "is_dir"):
+            answer = getattr(os.path, asked.replace("_", ""))
+            monkeypatch.setattr(Path, asked, lambda path, answer=answer: answer(path))
+    with pytest.raises(RecordError, match="cannot be read: "):
+        load_record(str(tmp_path / ("d" * 300)))
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "cases" / "free_standing_block.yaml", "block.yaml")
     result = rps("pushover", "block.yaml", "--figures", "none", "-o", "d" * 300)

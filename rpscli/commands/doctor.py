@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import locale
+import os
 import platform
 import re
 import shutil
@@ -22,7 +23,7 @@ from rpscli.report.figures.film import ENCODER
 from rpscli.report.figures.look import font_file
 from rpscli.report.table import Table
 from rpscli.shipped import shipped_cases
-from rpscli.user_cache import VARIABLE, user_cache
+from rpscli.user_cache import VARIABLE, cache_places, user_cache
 from rpscli.version import VERSION
 
 EXTRAS = {
@@ -56,14 +57,14 @@ def command(terminal: Terminal) -> None:
 def _surroundings() -> list[tuple[str, str, str]]:
     anew = "" if installed("rpscli") == VERSION else "pip install rpscli: this runs from a folder"
     place, encoder = user_cache(), shutil.which(ENCODER)
-    nowhere = f"name a folder that is yours alone in {VARIABLE}, where kernels stay compiled"
+    mine = "" if place in cache_places()[:1] else f"set {VARIABLE} to a folder that is yours alone"
     return [
         ("rps", f"{VERSION}, cases in {shipped_cases()}", anew),
         ("Python", f"{platform.python_version()}, {sys.executable}", ""),
         ("system", f"{platform.platform()}, text in {locale.getencoding()}", ""),
         ("cores", str(available_cores()), ""),
-        ("cache", f"{place}, {_size(_bytes(place))}" if place else "-", "" if place else nowhere),
-        ("font of figures", font_file() if installed("matplotlib") else "-", ""),
+        ("cache", f"{place}, {_size(_bytes(place))}" if place else "-", mine),
+        ("font of figures", font_file() if place and installed("matplotlib") else "-", ""),
         (ENCODER, encoder or "-", "" if encoder else "animations as MP4"),
     ]
 
@@ -94,20 +95,20 @@ def clean(terminal: Terminal, *, dry_run: bool) -> None:
 
     Results are never touched. The next time history compiles its kernel anew.
     """
-    place, sizes = user_cache() or Path(), {}
+    place, sizes = user_cache(), {}
     for what, pattern in KEPT.items():
-        found = sorted(place.glob(pattern)) if user_cache() else []
+        found = sorted(place.glob(pattern)) if place else []
         sizes[what] = sum(map(_bytes, found))
         for path in [] if dry_run else found:
             shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-    document = {"folder": str(place), "dry_run": dry_run, "bytes": sizes}
-    head = f"{'would be deleted' if dry_run else 'deleted'} from {place}"
+    document = {"folder": str(place or "-"), "dry_run": dry_run, "bytes": sizes}
+    head = f"{'would be deleted' if dry_run else 'deleted'} from {place or '-'}"
     table = Table.of_texts((head, "size"), [(what, _size(size)) for what, size in sizes.items()])
     terminal.result({**heading("clean"), **document}, [table])
 
 
 def _bytes(path: Path) -> int:
-    return sum(each.lstat().st_size for each in (path, *path.rglob("*")))
+    return sum(each.lstat().st_size for each in (path, *path.rglob("*")) if os.path.lexists(each))
 
 
 def _size(count: float) -> str:

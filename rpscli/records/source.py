@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import glob
 import re
+import stat
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,6 +13,7 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from rpscli.errors import RecordError, beginning, nearest, require_kind, require_visible
+from rpscli.machine import mode_of
 from rpscli.records import pulses, sets, synthetic
 from rpscli.records.families import two_by_two
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
@@ -230,8 +232,6 @@ def _read(
     spelled = query.values.get("units")
     if units is not None and spelled is not None and _differ(units, spelled):
         raise RecordError(f"{source}: units = {units} contradicts the {spelled} in the source")
-    if path.is_dir():
-        raise RecordError(f"{path}: a folder; name one of its files")
     _require_file(path, source)
     from rpscli.records.formats import read_record  # sets and pulses are not files
 
@@ -408,10 +408,11 @@ def _located(place: str, folder: Path | None) -> Path:
 
 
 def _require_file(path: Path, source: str) -> None:
-    if path.is_file():
+    if stat.S_ISREG(found := mode_of(path)):
         return
-    if path.exists():
-        raise RecordError(f"{source}: {path} is not a regular file")
+    if found:
+        what = "a folder; name one of its files" if stat.S_ISDIR(found) else "not a regular file"
+        raise RecordError(f"{path}: {what}")
     if not path.parent.is_dir():
         raise RecordError(f"{source}: there is no folder {path.parent}")
     names = sorted(entry.name for entry in path.parent.iterdir())

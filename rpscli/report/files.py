@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import secrets
+import stat
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from rpscli.errors import OutputError, Refused
+from rpscli.machine import mode_of
 from rpscli.report.documents import SCHEMA_VERSION, json_text, versions
 
 Content: TypeAlias = bytes | Iterator[str]
@@ -26,23 +28,21 @@ def encoded(text: str) -> bytes:
 def write_whole(contents: Mapping[Path, Content]) -> None:
     """Write files so that each appears whole or not at all, in folders that are made if needed."""
     ready: dict[Path, Path] = {}
-    path = Path()
     try:
         for path, data in contents.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            if path.is_dir():
-                raise IsADirectoryError(0, "there is a folder of this name")
-            temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
-            ready[path] = temporary
-            if isinstance(data, bytes):
-                temporary.write_bytes(data)
-            else:
-                with temporary.open("wb") as file:
-                    file.writelines(map(encoded, data))
+            with _writing(path):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                if path.is_dir():
+                    raise IsADirectoryError(0, "there is a folder of this name")
+                ready[path] = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+                if isinstance(data, bytes):
+                    ready[path].write_bytes(data)
+                else:
+                    with ready[path].open("wb") as file:
+                        file.writelines(map(encoded, data))
         for path, temporary in ready.items():
-            temporary.replace(path)
-    except OSError as error:
-        raise _not_written(path, error) from None
+            with _writing(path):
+                temporary.replace(path)
     finally:
         for temporary in ready.values():
             temporary.unlink(missing_ok=True)
@@ -51,10 +51,8 @@ def write_whole(contents: Mapping[Path, Content]) -> None:
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """Make the folder, and wait until no other process that asks writes there."""
-    try:
+    with _writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise _not_written(folder, error) from None
     with ExitStack() as lock:
         # The system lets go when the process ends, however it ends. Where folders cannot be locked
         # (Windows, some file systems of networks), two processes must not write to one.
@@ -71,10 +69,8 @@ def require_writable(folder: Path) -> None:
     """Whether a folder can be made or written to: better known before the work than after."""
     if "\0" in str(folder):
         raise OutputError(f"{str(folder)[:200]!r}: no path holds a zero byte; correct the name")
-    try:
-        existing = next(place for place in (folder, *folder.absolute().parents) if place.exists())
-    except OSError as error:
-        raise _not_written(folder, error) from None
+    with _writing(folder):
+        existing = next(place for place in (folder, *folder.absolute().parents) if mode_of(place))
     if not existing.is_dir():
         raise OutputError(f"{folder}: cannot be a folder of results, {existing} is a file")
     if not os.access(existing, os.W_OK | os.X_OK):
@@ -84,18 +80,21 @@ def require_writable(folder: Path) -> None:
 def require_writable_file(file: Path) -> None:
     """Whether a file can be made or replaced."""
     require_writable(file.parent)
-    try:
-        if file.is_dir():
+    with _writing(file):
+        if stat.S_ISDIR(mode_of(file)):
             raise IsADirectoryError(0, "there is a folder of this name")
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    """What the system refuses to write, as an error of the program."""
+    try:
+        yield
     except OSError as error:
-        raise _not_written(file, error) from None
-
-
-def _not_written(path: Path, error: OSError) -> OutputError:
-    reason = error.strerror or str(error)
-    return OutputError(
-        f"{str(path)[:200]}: cannot be written: {reason}; name another place with -o"
-    )
+        reason = error.strerror or error
+        raise OutputError(
+            f"{str(path)[:200]}: cannot be written: {reason}; name another place with -o"
+        ) from None
 
 
 RUN_FILE = "run.json"

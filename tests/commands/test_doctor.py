@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import tempfile
 from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 import pytest
 from click.testing import Result
 
+from rpscli import user_cache
 from rpscli.commands import doctor
 from rpscli.user_cache import VARIABLE
 from rpscli.version import VERSION
@@ -66,11 +68,30 @@ def test_what_is_missing_is_told_with_its_remedy(rps: Invoke) -> None:
 def test_without_a_cache_a_place_is_asked_for(
     rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(doctor, "user_cache", lambda: None)
-    (row,) = (each for each in rps_json("doctor")["findings"] if each["subject"] == "cache")
-    assert row["found"] == "-"
-    assert VARIABLE in row["remedy"]
-    assert set(rps_json("clean")["bytes"].values()) == {0}
+    def nowhere() -> str:
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    monkeypatch.setattr(user_cache, "is_writable", lambda _: False)
+    monkeypatch.setattr(tempfile, "gettempdir", nowhere)
+    found = {row["subject"]: row for row in rps_json("doctor")["findings"]}
+    assert found["cache"]["found"] == found["font of figures"]["found"] == "-"
+    assert VARIABLE in found["cache"]["remedy"]
+    cleaned = rps_json("clean")
+    assert cleaned["folder"] == "-"
+    assert set(cleaned["bytes"].values()) == {0}
+
+
+def test_another_cache_than_the_wanted_one_is_told(
+    rps_json: InvokeJson, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("no folder", encoding="utf-8")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    for name, remedy in (("file", f"set {VARIABLE} to a folder"), ("own", "")):
+        monkeypatch.setenv(VARIABLE, str(tmp_path / name))
+        (row,) = (each for each in rps_json("doctor")["findings"] if each["subject"] == "cache")
+        assert row["found"].startswith(str(tmp_path / (name if not remedy else "rps")))
+        assert row["remedy"].startswith(remedy)
+        assert bool(row["remedy"]) == bool(remedy)
 
 
 @pytest.mark.posix

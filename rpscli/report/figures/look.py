@@ -15,7 +15,7 @@ from typing import Any, TypeAlias, cast
 
 from rpscli.errors import UsageError
 from rpscli.registry import Registry
-from rpscli.user_cache import user_cache
+from rpscli.user_cache import is_writable, user_cache, users_folder
 
 FIGURES: Registry[Callable[..., None]] = Registry("figures", {})
 """Panels of other packages, drawn into axes from a result; ours are in `rpscli.figures`."""
@@ -120,14 +120,10 @@ def quiet_matplotlib() -> None:
     # Otherwise it makes a new one each time, and prints two lines about it.
     if "MPLCONFIGDIR" in os.environ or "matplotlib" in sys.modules:
         return
-    home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")  # noqa: PTH111
-    usual = Path(home) if sys.platform == "linux" else Path(os.path.expanduser("~"))  # noqa: PTH111
-    try:
-        (usual / "matplotlib").mkdir(parents=True, exist_ok=True)
-        usable = os.access(usual / "matplotlib", os.W_OK)
-    except OSError:
-        usable = False
-    if not usable and (place := user_cache()):
+    # Elsewhere than on Linux the folder's name depends on the version of matplotlib.
+    where = ("XDG_CONFIG_HOME", "~/.config", "matplotlib") if sys.platform == "linux" else ("", "~")
+    usual = users_folder(*where)
+    if not (usual and is_writable(usual)) and (place := user_cache()):
         os.environ["MPLCONFIGDIR"] = str(place / "matplotlib")
 
 
