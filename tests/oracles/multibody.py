@@ -7,7 +7,7 @@ What it cannot do: a sphere goes on rolling where an arc would end, so tilts mus
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +26,7 @@ from rpscli.report.export.multibody import (
 
 from .crossings import Array
 from .devices import OracleDevice, RollingResistance
+from .multibody_departures import NO_DEPARTURES, Departures
 from .multibody_devices import (
     anchors,
     beam_joint,
@@ -49,12 +50,14 @@ class MultibodyResult:
 
     `apart` is the longest time during which a column touched only the ground or only the beam [s].
     `carried` is the force under the floors over their weight, where they stand on vertical springs.
+    `joints` has the position of each by its name [m or rad].
     """
 
     time: Array
     rotation: Array
     drifts: Array
     apart: float
+    joints: Mapping[str, Array]
     carried: Array | None = None
 
 
@@ -71,6 +74,7 @@ def simulate(
     closing_damping: float = 1.0,
     devices: Sequence[OracleDevice] = (),
     vertical_period: float | None = None,
+    departures: Departures = NO_DEPARTURES,
 ) -> MultibodyResult:
     """Response to ground acceleration samples [m/s2] from rest, or after release from a tilt.
 
@@ -90,7 +94,9 @@ def simulate(
         level=level,
         added=_added(system, columns, time_step, devices, upright),
     )
-    model = mujoco.MjModel.from_xml_string(text)
+    specification = mujoco.MjSpec.from_string(text)
+    departures.apply(specification, columns, len(system.masses))
+    model = specification.compile()
     data = mujoco.MjData(model)
     _place(data, system, columns, initial_rotation)
     if not initial_rotation:
@@ -99,27 +105,34 @@ def simulate(
     count = round(duration / interval)
     middles = (np.arange(count) + 0.5) * interval
     pushes = np.interp(middles, np.arange(len(ag)) * dt, ag, right=0.0)
-    tilts = _addresses(model, [f"tilt {c}" for c in range(columns)])
-    floors = _addresses(model, [f"floor {i}" for i in range(len(system.masses))])
-    rows = np.empty((count + 1, 1 + len(floors)))
+    rows = np.empty((count + 1, model.nq))
     touching, carried = np.empty(count + 1), np.ones(count + 1)
     for j in range(count + 1):
         if j:
             model.opt.gravity[0] = -pushes[j - 1]
             mujoco.mj_step(model, data, STEPS_TOGETHER)
-        rows[j] = data.qpos[tilts].mean(), *data.qpos[floors]
+        rows[j] = data.qpos
         touching[j] = data.ncon
         if upright:
             joint = data.joint("lift 0")
             carried[j] = upright.carried(float(joint.qpos[0]), float(joint.qvel[0]))
     needed = columns * (2 if system.cap_beam_mass else 1)
+    joints = {model.joint(k).name: rows[:, model.jnt_qposadr[k]] for k in range(model.njnt)}
+    floors = [np.zeros(count + 1), *(joints[f"floor {i}"] for i in range(len(system.masses)))]
     return MultibodyResult(
         time=np.arange(count + 1, dtype=np.float64) * interval,
-        rotation=rows[:, 0],
-        drifts=np.diff(rows[:, 1:], axis=1, prepend=0.0),
+        rotation=np.mean([joints[f"tilt {c}"] for c in range(columns)], axis=0),
+        drifts=np.diff(np.transpose(floors), axis=1),
         apart=interval * _longest(touching[1:] < needed),
+        joints=joints,
         carried=carried if upright else None,
     )
+
+
+def turning_points(rotation: Array) -> Array:
+    """Largest |theta| of each swing, one a side."""
+    swings = np.split(rotation, np.flatnonzero(np.diff(np.sign(rotation))) + 1)
+    return np.array([np.max(np.abs(swing)) for swing in swings])
 
 
 class Upright:
@@ -183,10 +196,6 @@ def _added(
         upright.joint if upright else lambda _: "",
         [*above, *springs(devices, columns, half_sizes(_bodies(system))[0])],
     )
-
-
-def _addresses(model: Any, names: list[str]) -> list[int]:
-    return [int(model.joint(name).qposadr[0]) for name in names]
 
 
 def _place(data: Any, system: OracleSystem, columns: int, rotation: float) -> None:

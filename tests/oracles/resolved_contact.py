@@ -76,14 +76,13 @@ class Row(NamedTuple):
     apart: float
 
 
-def structure_of(building: str, rho: float) -> PodiumStructure:
-    """R = 1.5 m, tan(alpha) = 0.15, arcs that no motion leaves; buildings of the paper."""
+def structure_of(building: str, rho: float, tan_alpha: float = TAN_ALPHA) -> PodiumStructure:
+    """R = 1.5 m, arcs that no motion leaves; buildings of the paper."""
     if building == "block":
         made = replace(block(0.15, 1.0), bearing=podium(0).bearing)
     else:
         made = podium(0 if building == "frame" else int(building))
-    wedge = TAN_ALPHA + 1.9 * rho
-    return replace(made, bearing=Bearing(1.5, TAN_ALPHA, wedge, rho))
+    return replace(made, bearing=Bearing(1.5, tan_alpha, tan_alpha + 1.9 * rho, rho))
 
 
 def strongest(record: GroundMotion, seconds: float) -> GroundMotion:
