@@ -9,7 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paper_structures import podium
+from oracles.test_assumptions import SIZES
+from paper_structures import Array, podium
+from scipy.optimize import brentq
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.contact import Contact, ContactKind
@@ -25,6 +27,22 @@ LABEL = re.compile(r"^(?: {4,6}|\|).* \((\d+)\.(\d+)\)(?: \|)?$", re.MULTILINE)
 LABELS = [(int(section), int(number)) for section, number in LABEL.findall(TEXT)]
 CITED = re.compile(r"\((\d+\.\d+)\)")
 CITATION = re.compile(r"T(?:heory|HEORY\.md),? (\(\d+\.\d+\)(?:(?:, | and | to )\(\d+\.\d+\))*)")
+
+PRINTED = {
+    "springs pass no impulse": ("springs", "base shear {most:.0f} to {least:.1f} %"),
+    "contacts that stay closed": ("contact is never lost", None),
+    "friction of 1.3": ("columns never slide", None),
+    "level, closed": ("the beam stays level", None),
+    "level, rebound": (
+        "the beam stays level",
+        "rotation {low:.0f} to {high:+.0f} %, base shear {least:.0f} to {most:+.0f} %",
+    ),
+    "vertical": (
+        "floors ride on the beam | vertical vibration, in the motion",
+        "rotation {low:.0f} to {high:.0f} %, base shear {least:.0f} to {most:+.0f} %",
+    ),
+}
+"""Where the table of section 2 has sizes of assumptions, and how; nothing but 0.1 % where None."""
 
 
 def cited_by(text: str) -> list[str]:
@@ -83,6 +101,33 @@ def test_weight_on_drifting_storeys(storeys: int, per_cent: float) -> None:
     share = float((weights / (3.0 * stiffnesses)).max())
     assert 100.0 * share == pytest.approx(per_cent, abs=0.05)
     assert f"{per_cent} %" in TEXT
+
+
+@pytest.mark.parametrize("assumption", sorted({size.assumption for size in SIZES}))
+def test_sizes_of_assumptions_are_those_that_are_computed(assumption: str) -> None:
+    """Rotation and base shear of bodies in contact, of which a long test computes each."""
+    sizes = [size for size in SIZES if size.assumption == assumption]
+    expected, number = PRINTED[assumption]
+    (row,) = (line for line in TEXT.splitlines() if line.startswith(f"| {expected}"))
+    if number is None:
+        assert {(size.rotation, size.base_shear, size.within) for size in sizes} == {(0, 0, 0.1)}
+    else:
+        rotations = [size.rotation for size in sizes]
+        shears = [size.base_shear for size in sizes]
+        ends = {"low": min(rotations), "high": max(rotations)}
+        assert number.format(**ends, least=min(shears), most=max(shears)) in row
+
+
+@pytest.mark.parametrize("share", [0.02, 2.0 / 30.0, 0.2])
+def test_edges_that_crush_take_their_share_of_the_moment(share: float) -> None:
+    """Fibres of a flat end that yield at f and do not pull, turned far; forces over N, B."""
+    place = np.linspace(-1.0, 1.0, 20_001)
+
+    def pressure(settlement: float) -> Array:
+        return np.clip(settlement + 1e5 * place, 0.0, 1.0 / share)
+
+    settlement = brentq(lambda d: pressure(d).mean() - 1.0, -1e5, 1e5)
+    assert (pressure(settlement) * place).mean() == pytest.approx(1.0 - share, abs=2e-4)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.25, 1.5])
