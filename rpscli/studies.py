@@ -36,7 +36,6 @@ from rpscli.case.text.document import Document, text_of_values
 from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint, require_kind
-from rpscli.frozen import frozen
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
 from rpscli.report.study.folder import study_folder
@@ -44,7 +43,7 @@ from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.report import Found
 from rpscli.report.study.statistics import summary_columns, verdict_columns
 from rpscli.report.table import Column
-from rpscli.shown import Shown, data_frame
+from rpscli.shown import Shown, data_frame, frozen
 from rpscli.study_run import StudyRun, require_results
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.check import Watched

@@ -13,10 +13,10 @@ from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
 from rpscli.analyses.kernels.systems import longest_free_vibration, paired_systems, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
-from rpscli.frozen import frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
+from rpscli.shown import frozen
 
 Item = TypeVar("Item")
 

@@ -13,10 +13,9 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import denser_trace
 from rpscli.analyses.trace import Trace
 from rpscli.errors import CaseError
-from rpscli.frozen import frozen
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.spectrum import response_spectrum
-from rpscli.shown import Shown
+from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
 

@@ -19,14 +19,13 @@ from rpscli.analyses.result_quantities import (
     values_of,
 )
 from rpscli.analyses.trace import DeviceDemand, device_demands
-from rpscli.frozen import frozen
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.core.records import Record, record_type
 from rpscli.physics.planar import geometry, state
 from rpscli.physics.spatial.state import RESULT_3D
-from rpscli.shown import Shown, with_unit
+from rpscli.shown import Shown, frozen, with_unit
 
 Array = NDArray[np.float64]
 T = TypeVar("T")

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import FIXED_BASE_MODES, LINEAR, UPLIFTED, values_of
 from rpscli.analyses.settings import require_structure
-from rpscli.frozen import frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.model.uplifted_state import UpliftedState, uplifted_state
-from rpscli.shown import Shown
+from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
 

@@ -22,10 +22,9 @@ from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
-from rpscli.frozen import frozen
 from rpscli.physics.planar import state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
-from rpscli.shown import data_frame
+from rpscli.shown import data_frame, frozen
 
 NEAR_CRITICAL = 0.8
 """Rotations above this part of the critical one are near it: a little more may overturn."""

@@ -17,12 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.history import SampledHistory
-from rpscli.frozen import Frozen
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.core.records import Record
 from rpscli.physics.planar import geometry, state
 from rpscli.records.ground_motion import MotionComponents
-from rpscli.shown import Shown
+from rpscli.shown import Frozen, Shown
 
 Array = NDArray[np.float64]
 Rows: TypeAlias = slice | NDArray[np.intp]

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rpscli.constants import MOST_STOREYS
-from rpscli.frozen import frozen
-from rpscli.shown import Shown
+from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
 

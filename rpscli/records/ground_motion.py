@@ -12,12 +12,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError, is_number
-from rpscli.frozen import Frozen, frozen
-from rpscli.records.recording import UNKNOWN, Recording
-from rpscli.shown import Shown, with_unit
+from rpscli.shown import Frozen, Shown, frozen, with_unit
 
 if TYPE_CHECKING:
     from rpscli.records.measures import Measure, Of
+from typing import NamedTuple
+
+
+class Recording(NamedTuple):
+    """An earthquake and a station; empty or None where the source does not say.
+
+    `event` is the earthquake with its year, `number` that of the record in the NGA-West databases
+    of PEER, `distance` the closest one to the rupture [m], `vs30` [m/s] that of the ground,
+    `usable_period` the longest that the filters of the record leave [s], `pulse` whether it was
+    found to have a velocity pulse.
+    """
+
+    event: str = ""
+    station: str = ""
+    number: int | None = None
+    magnitude: float | None = None
+    distance: float | None = None
+    vs30: float | None = None
+    usable_period: float | None = None
+    pulse: bool | None = None
+
+
+UNKNOWN = Recording()
 
 LEAST, MOST = 0.25, 4.0
 """Factors between these are usual."""
@@ -185,6 +206,12 @@ class GroundMotion(Shown):
             warnings=(*self.warnings, text) if lost else self.warnings,
         )
 
+    def finer(self, parts: int) -> GroundMotion:
+        """The same motion with that many even parts in each sampling interval."""
+        at = np.arange((self.npts - 1) * parts + 1) / parts
+        values = np.interp(at, np.arange(self.npts), self.acceleration)
+        return replace(self, acceleration=values, dt=self.dt / parts)
+
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion times `factor`, with a description that says so."""
         if not is_number(factor):
@@ -241,6 +268,7 @@ class GroundMotion(Shown):
             factor_to,
             measured,
             needs_period,
+            pair_measure,
         )
 
         if measure not in MEASURES and measure not in (names := MEASURES.names()):
@@ -257,8 +285,6 @@ class GroundMotion(Shown):
         if second is None:
             unscaled = measured(self, measure, period, damping)
         else:
-            from rpscli.records.measures import pair_measure  # which measures motions too
-
             unscaled = pair_measure(self, second, measure, of, period, damping)
         return self.scaled(factor_to(value, unscaled, measure, self.source))
 
@@ -349,15 +375,7 @@ class MotionComponents(Frozen):
 
     def finer(self, parts: int) -> MotionComponents:
         """The same motion with that many even parts in each sampling interval."""
-        if parts == 1:
-            return self
-
-        def parted(motion: GroundMotion) -> GroundMotion:
-            at = np.arange((motion.npts - 1) * parts + 1) / parts
-            values = np.interp(at, np.arange(motion.npts), motion.acceleration)
-            return replace(motion, acceleration=values, dt=motion.dt / parts)
-
-        return self._each(parted, 1.0)
+        return self if parts == 1 else self._each(lambda motion: motion.finer(parts), 1.0)
 
     def scaled(self, factor: float) -> MotionComponents:
         """All components times `factor`."""

@@ -48,7 +48,6 @@ def to_float(numeral: str) -> float:
 def numbers_in(line: str) -> list[float] | None:
     """The finite numbers of a line that holds nothing else, or None."""
     # Commas separate if each field holds one number: decimal commas are not read as separators.
-    # Commas separate if each field holds one number: decimal commas are not read as separators.
     if not _NUMERIC_LINE.fullmatch(line):
         return None
     fields = line.split()

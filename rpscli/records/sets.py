@@ -19,10 +19,9 @@ import numpy as np
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.pair import angle_of, rotated, together
 from rpscli.records.quantities import hint, parse_query
-from rpscli.records.recording import Recording
 
 SCHEME = "fema_p695"
 

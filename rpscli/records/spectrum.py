@@ -138,13 +138,9 @@ def _histories(motion: GroundMotion, period: float, damping: float) -> list[NDAr
 def _refined(motion: GroundMotion, period: float) -> tuple[NDArray[np.float64], float]:
     """The motion on a step that resolves the period, with one period of quiet after it."""
     parts = min(_FINEST, max(1, math.ceil(_SAMPLES_PER_PERIOD * motion.dt / period)))
-    dt = motion.dt / parts
-    fine = np.interp(
-        np.arange((motion.npts - 1) * parts + 1) / parts,
-        np.arange(motion.npts),
-        motion.acceleration,
-    )
-    return np.concatenate([fine, np.zeros(math.ceil(period / dt) + 1)]), dt
+    fine = motion.finer(parts)
+    quiet = np.zeros(math.ceil(period / fine.dt) + 1)
+    return np.concatenate([fine.acceleration, quiet]), fine.dt
 
 
 def _step_matrices(

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import STOREY_SHEARS
-from rpscli.frozen import Frozen, frozen
 from rpscli.records.clusters import By
+from rpscli.shown import Frozen, frozen
 from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS
 from rpscli.sweep.points.layout import StudyPoints
 from rpscli.sweep.store import Stored

@@ -9,8 +9,7 @@ import pytest
 
 from rpscli.errors import UsageError
 from rpscli.records.filters import parse_filter
-from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.recording import Recording
+from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.requirements import RULES, Component, Periods
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
@@ -33,6 +32,7 @@ from rpscli.records.quantities import (
     numbers_in,
     why_no_numbers,
 )
+from rpscli.version import VERSION
 
 FORMAT = "PEER AT2"
 
@@ -272,7 +272,7 @@ def at2_text(motion: GroundMotion) -> str:
         for start in range(0, motion.npts, _VALUES_PER_LINE)
     ]
     header = [
-        f"PEER AT2 LAYOUT, {origin} BY RPS {_version()}",
+        f"PEER AT2 LAYOUT, {origin} BY RPS {VERSION}",
         _one_line(title),
         "ACCELERATION TIME SERIES IN UNITS OF G",
         f"NPTS= {motion.npts:6d}, DT= {motion.dt!r} SEC",
@@ -288,10 +288,3 @@ def _one_line(title: str) -> str:
     line = re.sub(r"\b(u)(nits?\s*(?:of|in|[=:]))", r"\1-\2", line, flags=re.IGNORECASE)
     line = re.sub(r"\b(velocity|displacement)\s+time\b", r"\1-time", line, flags=re.IGNORECASE)
     return line[:_TITLE_WIDTH]
-
-
-def _version() -> str:
-    try:
-        return version("rpscli")
-    except PackageNotFoundError:  # run from a source tree
-        return "(not installed)"

@@ -16,7 +16,7 @@ from rpscli.case.study.axes import Values
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Place
-from rpscli.frozen import Frozen
+from rpscli.shown import Frozen
 
 Array = NDArray[np.float64]
 

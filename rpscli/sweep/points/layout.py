@@ -18,10 +18,10 @@ from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RecordError, RpsError
-from rpscli.frozen import frozen
 from rpscli.records.clusters import By, clusters, pairs
 from rpscli.records.measures import MEASURES, Of, measure_label, needs_period
 from rpscli.records.pair import turned_source
+from rpscli.shown import frozen
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
 from rpscli.sweep.evaluation.results import Array, Indices
