@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TypeAlias, TypeVar
 
 import numpy as np
@@ -79,10 +79,7 @@ def demand(
     vertical
         Vertical ground acceleration with the same time step, positive upwards.
     """
-    chosen = require_inputs(structure, record, settings)
-    motion = MotionComponents(record) if isinstance(record, GroundMotion) else record
-    if vertical is not None:
-        motion = replace(motion, vertical=vertical)
+    chosen, motion = require_inputs(structure, record, settings, vertical)
     return demands([Request(structure, motion, chosen)])[0]
 
 

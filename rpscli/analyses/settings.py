@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from rpscli.errors import require_kind
@@ -81,13 +81,16 @@ def require_structure(structure: object) -> None:
 
 
 def require_inputs(
-    structure: object, record: object, settings: TimeHistorySettings | None
-) -> TimeHistorySettings:
-    """Refuse inputs of other kinds, in one sentence; the settings, or the usual ones."""
+    structure: object,
+    record: GroundMotion | MotionComponents,
+    settings: TimeHistorySettings | None,
+    vertical: GroundMotion | None,
+) -> tuple[TimeHistorySettings, MotionComponents]:
+    """Settings, or the usual ones, and all components; refuses inputs of other kinds."""
     require_structure(structure)
     remedy = "load_record(...) reads one, GroundMotion(samples, dt) makes one"
     require_kind(record, (GroundMotion, MotionComponents), "the record", remedy)
-    if settings is None:
-        return TimeHistorySettings()
-    require_kind(settings, TimeHistorySettings, "settings", "use TimeHistorySettings(...)")
-    return settings
+    chosen = TimeHistorySettings() if settings is None else settings
+    require_kind(chosen, TimeHistorySettings, "settings", "use TimeHistorySettings(...)")
+    motion = MotionComponents(record) if isinstance(record, GroundMotion) else record
+    return chosen, motion if vertical is None else replace(motion, vertical=vertical)

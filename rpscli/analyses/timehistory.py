@@ -49,10 +49,7 @@ def time_history(
     RecordError
         If the two components have different time steps.
     """
-    settings = require_inputs(structure, record, settings)
-    motion = MotionComponents(record) if isinstance(record, GroundMotion) else record
-    if vertical is not None:
-        motion = replace(motion, vertical=vertical)
+    settings, motion = require_inputs(structure, record, settings, vertical)
     run = sampled_history(structure, motion, settings)
     fixed = None
     if with_fixed_base and structure.superstructure is not None:

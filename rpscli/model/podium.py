@@ -306,29 +306,24 @@ class PodiumStructure(Shown):
         Three arrays of the shape of `rotation`: F = W B/C [N], u_b [m], v_b [m]. On a bed the arm
         of the weight stands in place of B.
         """
-        b = self.bearing
-        if (bed := self.bed) is not None:
-            on_bed, diameter = bed.path(np.asarray(rotation)), 2.0 * b.semi_diagonal
-            force = self.weight * on_bed.arm / on_bed.height
-            return force, diameter * on_bed.displacement, diameter * on_bed.lift
-        B, C, u, v = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
-        diameter = 2.0 * b.semi_diagonal
-        return self.weight * B / C, diameter * u, diameter * v
+        (arm, C, u, v), diameter = self._along(rotation), 2.0 * self.bearing.semi_diagonal
+        return self.weight * arm / C, diameter * u, diameter * v
+
+    def _along(self, rotation: Array) -> tuple[Array, ...]:
+        """Arm of the weight and C over R, u_b and v_b over 2 R at |theta| [rad]."""
+        b, x = self.bearing, np.asarray(rotation)
+        if self.bed is None:
+            return geometry.path_along(b.rolling, b.rocking, b.beta, x)
+        on_bed = self.bed.path(x)
+        return on_bed.arm, on_bed.height, on_bed.displacement, on_bed.lift
 
     def weight_arm(self, rotation: Array) -> Array:
         """Arm of the weight over R at |theta| [rad]: the restoring moment is 2 R W times it."""
-        b = self.bearing
-        if self.bed is not None:
-            return self.bed.path(np.asarray(rotation)).arm
-        return geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))[0]
+        return self._along(rotation)[0]
 
     def lever_arm(self, rotation: Array) -> Array:
         """2 R C = |du_b/dtheta| at |theta| [rad]: the arm of a force at the cap beam [m]."""
-        b = self.bearing
-        if self.bed is not None:
-            return 2.0 * b.semi_diagonal * self.bed.path(np.asarray(rotation)).height
-        _, C, _, _ = geometry.path_along(b.rolling, b.rocking, b.beta, np.asarray(rotation))
-        return 2.0 * b.semi_diagonal * C
+        return 2.0 * self.bearing.semi_diagonal * self._along(rotation)[1]
 
 
 class AtRest(NamedTuple):

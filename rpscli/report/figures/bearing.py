@@ -18,6 +18,8 @@ from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.pushover import draw_force
 
 Array = NDArray[np.float64]
+At = tuple[float, float]
+"""A place in the axes."""
 
 ARC_POINTS = 12
 
@@ -288,14 +290,7 @@ def _frame(
     axes.set_box_aspect(aspect)
 
 
-def measure(
-    axes: style.Axes,
-    start: tuple[float, float],
-    end: tuple[float, float],
-    text: str,
-    *,
-    turned: bool = False,
-) -> None:
+def measure(axes: style.Axes, start: At, end: At, text: str, *, turned: bool = False) -> None:
     """A dimension line with arrows at both ends and its text beside: on its left or below."""
     upright = start[0] == end[0]
     _arrow(axes, start, end, text, (-3.0, 0.0) if upright else (0.0, -3.0), turned=turned)
@@ -303,10 +298,10 @@ def measure(
 
 def _arrow(
     axes: style.Axes,
-    start: tuple[float, float],
-    end: tuple[float, float],
+    start: At,
+    end: At,
     text: str,
-    offset: tuple[float, float],
+    offset: At,
     *,
     turned: bool = False,
     at_end: bool = False,
