@@ -196,11 +196,6 @@ def _finite(h: Histories, field: str) -> Array:
     return np.where(np.isfinite(values), values, np.nan)
 
 
-def _where_seen(azimuth: str, time: str) -> Callable[[Histories], Array]:
-    """An azimuth of what was seen at some time, which is negative if never."""
-    return lambda h: np.where(h.left[time] >= 0.0, h.known(azimuth), np.nan)
-
-
 def _drifts(h: Histories) -> Array:
     """Resultants over the stiffness; where that differs in y, the lesser of two upper bounds."""
     shears, k = h.column("storey_shears"), h.of_building(lambda b: b.stiffnesses)
@@ -393,7 +388,7 @@ class Demand(Shown):
     )
     critical_azimuth = _Optional(
         "Towards which it passed theta_cr for the first time [rad]; None if it did not.",
-        _where_seen("critical_azimuth", "critical_time"),
+        lambda h: np.where(h.left["critical_time"] >= 0.0, h.known("critical_azimuth"), np.nan),
     )
     residual_azimuth = _Optional(
         "Towards which it leans at the end [rad]; None if it does not.",

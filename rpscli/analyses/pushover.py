@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -90,8 +90,10 @@ class PushoverResult(Shown):
         return {q.name: with_unit(getattr(self, q.name), q.unit) for q in PUSHOVER}
 
     def results(self) -> dict[str, Any]:
-        """Scalars and the storey's curve."""
-        return {**values_of(self, PUSHOVER), "curve": values_of(self.curve, STOREY_CURVE)}
+        """Scalars, the storey's curve and one entry a load pattern; forces in N, lengths in m."""
+        curves = [asdict(curve) for curve in self.capacity]
+        found = {**values_of(self, PUSHOVER), "curve": values_of(self.curve, STOREY_CURVE)}
+        return {**found, "capacity": curves}
 
     def curve_ratios(self) -> dict[str, Array]:
         """The storey's curve without units."""

@@ -26,7 +26,6 @@ from rpscli.case.rules.podium import (
 )
 from rpscli.case.rules.superstructure import (
     column_rules,
-    ignored_keys,
     ignored_text,
     limits_rules,
     masses_rules,
@@ -214,9 +213,8 @@ def case_from_mapping(
     assert file is not None, "without faults the file is read"
     stem = stem_of(Path(name.strip("<>"))) or "case"
     podium = _podium(file, partial)
-    ignored = ignored_keys(partial)
     doubts = (
-        *((Doubt(ignored_text(ignored)),) if ignored else ()),
+        *((Doubt(ignored),) if (ignored := ignored_text(partial)) else ()),
         *doubts_of_storeys(file.superstructure, document),
     )
     written = document.content

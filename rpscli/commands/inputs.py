@@ -201,13 +201,6 @@ def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
     return {"scale": motion.scale, "horizontal": None, "vertical": None, **sources}
 
 
-def _required(case: Case, motion: MotionComponents) -> MotionComponents:
-    """A motion that the structure can be followed under."""
-    if motion.y is not None and (why := case.structure.planar_only):
-        raise CaseError(f"{case.source}: both components of {motion.horizontal.source}: {why}")
-    return motion
-
-
 def motion_source(case: Case, request: MotionRequest) -> Path | str:
     """Which record a motion is, whatever its scale: a file, or a source that is none."""
     from rpscli.records.source import file_and_options
@@ -235,7 +228,8 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
         motion = load_components(given.source, own, given.y, rotation, **how)
         if request.vertical is not None:
             motion = replace(motion, vertical=load_record(request.vertical))
-    motion = _required(case, motion)
+    if motion.y is not None and (why := case.structure.planar_only):
+        raise CaseError(f"{case.source}: both components of {motion.horizontal.source}: {why}")
     if (aim := _target(case, request)) is not None:
         return _scaled_to(case, request, motion, *aim, how)
     scale = request.scale

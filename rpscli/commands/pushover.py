@@ -12,7 +12,6 @@ from rpscli.commands.inputs import case_folder, conclude, read_case
 from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
-from rpscli.report.documents import pushover_document
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
@@ -56,8 +55,7 @@ def command(
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
     folder.add_all(pushover_files(result, given.case.title, look))
-    tables = _tables(result, given.case.title)
-    conclude(given, folder, pushover_document(result), tables, terminal)
+    conclude(given, folder, result.results(), _tables(result, given.case.title), terminal)
 
 
 def _pattern(text: str) -> PatternName | list[float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -138,7 +138,8 @@ def compute(
                 raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
         records = Records.of([result.outcome], [demands], [result.record.source])
         verdicts = judged_records(records, [request.label], limits)
-        error = _exceeded(verdicts)
+        over = [f"limit exceeded: {_found(verdict)}" for verdict in verdicts if verdict.exceeded]
+        error = LimitExceeded("\n".join(over)) if over else None
     document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]
     return HistoryResult(request, concluded(document, error), demands, verdicts, error), result
 
@@ -150,12 +151,6 @@ def look_beside(done: HistoryResult, result: TimeHistoryResult) -> list[Neighbou
     found = neighbours(result)
     done.document["neighbours"] = [each._asdict() for each in found]
     return found
-
-
-def _exceeded(verdicts: Iterable[Verdict]) -> LimitExceeded | None:
-    """The error that names all limits that a history does not keep; None if there are none."""
-    lines = [f"limit exceeded: {_found(verdict)}" for verdict in verdicts if verdict.exceeded]
-    return LimitExceeded("\n".join(lines)) if lines else None
 
 
 def _found(verdict: Verdict) -> str:

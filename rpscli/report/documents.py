@@ -12,7 +12,6 @@ from rpscli.analyses.result_quantities import SAMPLED, STOREYS, plain, values_of
 from rpscli.version import VERSION
 
 if TYPE_CHECKING:
-    from rpscli.analyses.pushover import PushoverResult
     from rpscli.analyses.results import TimeHistoryResult
 
 
@@ -86,11 +85,6 @@ def failure_document(kind: str, message: str, exit_code: int) -> Document:
         "exit_code": exit_code,
         "error": {"type": kind, "message": message, "exit_code": exit_code},
     }
-
-
-def pushover_document(result: PushoverResult) -> Document:
-    """Forces in N, displacements in m, the storey's curve and one entry a load pattern."""
-    return {**result.results(), "capacity": [asdict(curve) for curve in result.capacity]}
 
 
 def timehistory_document(result: TimeHistoryResult) -> Document:

@@ -40,11 +40,6 @@ def superstructure_rules(case: PartialCase) -> Iterator[Fault]:
     yield from _modes(case)
 
 
-def ignored_keys(case: PartialCase) -> list[str]:
-    """Keys of a building that have no effect because there is none."""
-    return case.present(SUPERSTRUCTURE, *BUILDING_KEYS) if case.storeys == 0 else []
-
-
 def _stiffness(case: PartialCase, owner: Path) -> Iterator[Fault]:
     whose = dotted(owner)
     period, profile, stiffness = ((*owner, n) for n in ("period", "profile", "stiffness"))
@@ -128,8 +123,11 @@ def column_rules(case: PartialCase) -> Iterator[Fault]:
             )
 
 
-def ignored_text(names: list[str]) -> str:
-    """The warning about `ignored_keys`."""
+def ignored_text(case: PartialCase) -> str:
+    """The warning about keys of a building that have no effect because there is none."""
+    names = case.present(SUPERSTRUCTURE, *BUILDING_KEYS)
+    if case.storeys != 0 or not names:
+        return ""
     keys = listed((f"superstructure.{name}" for name in names), "and")
     return f"superstructure.storeys = 0: there is no building, so {keys} had no effect"
 

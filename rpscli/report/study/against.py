@@ -24,7 +24,7 @@ from rpscli.report.study.statistics import share_columns
 from rpscli.report.table import Column
 from rpscli.sweep.points.layout import described
 from rpscli.sweep.statistics.fractiles import Share, fractiles
-from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping, own_keys
+from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
 
@@ -76,11 +76,14 @@ def pairs_of(table: Table, system: Group, reference: Group, within: Indices) -> 
 def rotation(study: StudyResults, options: RotationOptions) -> Found:
     """Largest rotations over alpha of each system and of the reference."""
     table, layout = study.table, study.table.layout
-    key = options.key or leading_keys(layout)[-1]
+    leading = leading_keys(layout)
+    key = options.key or leading[-1]
     systems = groups(layout, [key])
     wanted = [group for group in systems if group.values[0] == options.reference]
     reference = wanted[0] if wanted else systems[-1]
-    found = panels_of(table, options.panels)
+    # Each intensity has a panel, unless the study says else.
+    keys = own_keys(layout, leading) if options.panels is None else options.panels
+    found = grouping(table, keys, leading)
     panels = {
         group: [
             pairs_of(table, system, reference, group.every)
@@ -130,12 +133,6 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
             ),
         ),
     )
-
-
-def panels_of(table: Table, keys: tuple[str, ...] | None) -> Grouping:
-    """Panels of points that are drawn one by one: each intensity, unless the study says else."""
-    leading = leading_keys(table.layout)
-    return grouping(table, own_keys(table.layout, leading) if keys is None else keys, leading)
 
 
 def _pair_columns(

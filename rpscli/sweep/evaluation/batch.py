@@ -123,8 +123,9 @@ def _parametric(context: StudyContext, points: Sequence[Point]) -> PointResults:
     """Of an analysis without histories."""
     found = failures([""] * len(points))
     rows: list[dict[str, Any]] = []
+    analysis, systems = context.plan.analysis, context.systems
     for row, point in enumerate(points):
-        results = _attempt(_parametric_results, context, point)
+        results = _attempt(lambda p: parametric_results(analysis, systems[p].structure), point)
         if isinstance(results, str):
             found.messages[row] = results
         else:
@@ -134,10 +135,6 @@ def _parametric(context: StudyContext, points: Sequence[Point]) -> PointResults:
     for name in dict.fromkeys(name for row in rows for name in row):
         found.columns[name] = stacked([row.get(name) for row in rows])
     return found
-
-
-def _parametric_results(context: StudyContext, point: Point) -> dict[str, Any]:
-    return parametric_results(context.plan.analysis, context.systems[point].structure)
 
 
 def _attempt(work: Callable[..., Result], *given: Any) -> Result | str:

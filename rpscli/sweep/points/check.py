@@ -96,7 +96,8 @@ def check_systems(
                 examined[system] = found
             _refuse_restitution(study, case, members)
             _refuse_missing(study, plan, case)
-            _refuse_pairs(plan, case, both=both)
+            if both and plan.analysis == "timehistory" and (why := case.structure.planar_only):
+                raise CaseError(f"both components together: {why}")  # noqa: TRY301 -- placed below
         except CaseError as error:
             places = combinations.places(system)
             complaints |= dict.fromkeys(_placed(study, plan, values, places, error))
@@ -138,12 +139,6 @@ def _properties(
         lacking=lacking(study, case),
         doubts=(*case.doubts, *doubts_of_directions(structure, both=both)),
     )
-
-
-def _refuse_pairs(plan: Plan, case: Case, *, both: bool) -> None:
-    """What cannot be followed under both components of a record."""
-    if both and plan.analysis == "timehistory" and (why := case.structure.planar_only):
-        raise CaseError(f"both components together: {why}")
 
 
 def _request(study: Study, case: Case) -> RecordRequest | None:

@@ -259,7 +259,7 @@ def reproduction(layout: StudyPoints, context: StudyContext, point: Point, base_
             words += ["--set", f"record.rotation={point.record.rotation!r}"]
         if point.record.vertical and point.record.y is None:
             words += ["--vertical", _source(point.record._replace(source=point.record.vertical))]
-        words += ["--scale", repr(_factor(context, point))]
+        words += ["--scale", repr(known_factor(context, point))]
     return shlex.join(words)
 
 
@@ -277,7 +277,8 @@ def _restitution(layout: StudyPoints, point: Point) -> Iterator[str]:
         yield f"podium.impact={json.dumps(law)}"
 
 
-def _factor(context: StudyContext, point: Point) -> float:
+def known_factor(context: StudyContext, point: Point) -> float:
+    """Factor on the record of a point, or what is written where that cannot be read."""
     try:
         return context.factor(point)
     except RpsError:

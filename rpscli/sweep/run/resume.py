@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from rpscli.case.text.document import shown
-from rpscli.errors import Refused, RpsError
+from rpscli.errors import Refused
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points.layout import StudyPoints, known_factor
 from rpscli.sweep.store import Store
 
 
@@ -40,10 +40,7 @@ def _of_motion(context: StudyContext, point: Point) -> bytes:
     if context.plan.analysis != "timehistory":
         return b""
     assert point.record is not None, "points of histories have a record"
-    try:
-        factor = context.factor(point)
-    except RpsError:
-        factor = point.scale
+    factor = known_factor(context, point)
     change = struct.pack("<2d?", factor, point.restitution_change, context.plan.whole)
     return context.records.digest(point.record) + change
 
@@ -81,8 +78,12 @@ def resume(layout: StudyPoints, keys: list[bytes], store: Store, *, retry_failed
             pending.append(number)
     unused = len(known.keys() - wanted)
     before = store.meta("study")
-    if before is not None and known and not wanted & known.keys():
-        _refuse_other_study(layout, store)
+    foreign = before is not None and known and not wanted & known.keys()
+    if foreign and (name := store.meta("name")) != layout.study.name:
+        raise Refused(
+            f"{store.path} holds the results of another study ({name}); name another folder with"
+            " -o, or discard them with --fresh"
+        )
     notes = tuple(_notes(layout, store, before, kept, unused, len(keys) - kept))
     return Resume(keys, pending, kept, failed, unused, notes)
 
@@ -96,15 +97,6 @@ def written(layout: StudyPoints) -> str:
     """The study and its case as they are written, with overrides."""
     content = {**layout.study.document.content, "base": layout.plan.base}
     return json.dumps(content, sort_keys=True)
-
-
-def _refuse_other_study(layout: StudyPoints, store: Store) -> None:
-    name = store.meta("name")
-    if name != layout.study.name:
-        raise Refused(
-            f"{store.path} holds the results of another study ({name}); name another folder with"
-            " -o, or discard them with --fresh"
-        )
 
 
 def _notes(
