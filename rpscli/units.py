@@ -216,7 +216,7 @@ def si_factor(written: str, unit: str) -> float:
         meant = hint(written, units, f"use {listed(units)}")
         raise ValueError(f"has the unknown unit {written!r}; it must be {kind}: {meant}")
     if found.dimension != wanted.dimension:
-        weight = "; the mass of a weight W is W/g" if found.dimension == FORCE else ""
+        weight = "; the mass of a weight W is W/g" * (found.dimension == FORCE and unit == "kg")
         raise ValueError(
             f"is {_kind(found.dimension)}, but must be {kind}: {listed(units)}{weight}"
         )

@@ -12,7 +12,7 @@ import click
 from rpscli.analyses.result_quantities import EVERY, ResultQuantity
 from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import UsageError, nearest
+from rpscli.errors import UsageError, hint
 from rpscli.report.documents import heading
 from rpscli.report.table import Heading, Part, Table
 
@@ -62,8 +62,8 @@ def command(word: str, terminal: Terminal) -> None:
     from rpscli.report.study.registry import REPORTS
 
     keys = _keys(word)
-    results = [EVERY[word]] if word in EVERY else []
     words = [row for row in glossary() if word.lower() in _names(row[0])]
+    results = [q for q in EVERY.values() if word == q.name or (word == q.label and not words)]
     offers = [] if (keys or results or words) else list(_offers(word))
     report = (REPORTS.everything() if offers else REPORTS).get(word)
     reports = [] if report is None else [(word, (report.options.__doc__ or "").split("\n")[0])]
@@ -76,7 +76,8 @@ def command(word: str, terminal: Terminal) -> None:
     if not (keys or results or words or offers or report):
         options = list(_options(word))
     if not (keys or results or words or options or offers or word == PLUGINS):
-        raise UsageError(f"explain {word}: {_hint(word)}")
+        instead = hint(word, _words(), "`rps explain podium` and the like list a section's keys")
+        raise UsageError(f"explain {word}: there is no such name; {instead}")
     document = {
         **heading("explain"),
         "word": word,
@@ -165,14 +166,7 @@ def glossary() -> list[tuple[str, str]]:
 
 
 def _names(entry: str) -> list[str]:
-    return [part.strip().lower() for part in re.split(r"[,()]", entry)]
-
-
-def _hint(word: str) -> str:
-    close = nearest(word, _words())
-    if close:
-        return f"there is no such name; did you mean {close}?"
-    return "there is no such name; `rps explain podium` and the like list the keys of a section"
+    return [part.strip().lower() for part in (entry, *re.split(r"[,()]", entry))]
 
 
 def _tables(

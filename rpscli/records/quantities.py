@@ -10,7 +10,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from rpscli.errors import RecordError, nearest
+from rpscli import errors
+from rpscli.errors import RecordError
 from rpscli.units import si_factor
 
 # Digits are matched in one way only: otherwise a long word of them is tried at every division.
@@ -136,11 +137,9 @@ SOME = 12
 
 def hint(word: str, known: Sequence[str]) -> str:
     """What might have been meant: the nearest known word, or else all of them, or some of many."""
-    close = nearest(word, known, LIKENESS)
-    if close:
-        return f"did you mean {close}?"
     rest = f" and {len(known) - SOME} more" if len(known) > 2 * SOME else ""
-    return f"known: {', '.join(known[:SOME] if rest else known)}{rest}"
+    some = ", ".join(known[:SOME] if rest else known)
+    return errors.hint(word, known, f"known: {some}{rest}", LIKENESS)
 
 
 @dataclass(frozen=True)

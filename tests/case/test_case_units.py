@@ -133,6 +133,7 @@ def test_si(text: str, unit: str, value: float) -> None:
         ("200 tons", "kg", ["has the unit 'tons'", "write t for 1000 kg"]),
         ("3 kg", "m", ["is a mass", "must be a length: m, cm, mm"]),
         ("3 kN m", "N/m", ["[length]", "must be a stiffness"]),
+        ("500 kN", "N s/m", ["is a force", "N s/m, kN s/m, MN s/m or kN s/mm"]),
         ("3 kN/mmm", "N/m", ["'kN/mmm'", "did you mean kN/mm?"]),
         ("3 zorks", "m", ["unknown unit 'zorks'", "use m, cm"]),
         ("5 %", "m", ["unknown unit '%'"]),
@@ -153,6 +154,7 @@ def test_refusals_name_the_dimension(text: str, unit: str, parts: list[str]) -> 
         si_value(text, unit)
     for part in parts:
         assert part in str(error.value)
+    assert ("W/g" in str(error.value)) == ("W/g" in parts)
 
 
 @given(st.from_regex(r"[0-9.]{1,3} ?[a-zA-Zµ0-9*/^() %.-]{0,12}", fullmatch=True))

@@ -49,6 +49,12 @@ def test_a_usual_building_raises_no_doubt() -> None:
                 "storey 2 has 2e+05 kg, storey 3 240 kg",
             ],
         ),
+        # tonnes forgotten in the columns
+        (
+            "cap_beam_mass_ratio: 10",
+            "column_mass: 3\n  columns: 4",
+            ["a column = 0.003 t is unusual"],
+        ),
         # tonnes forgotten in all storeys: T1 is too short as well
         (
             "[200 t, 200 t, 240 t]",

@@ -123,6 +123,9 @@ def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
         ("friction_demand", ["friction demand |F|/N", "limits.friction_demand"]),
         ("p_ext", ["frequency parameter"]),
         ("demand", ["demand, a report of studies", "its bilinear summary", "option series"]),
+        ("uplifts and comes back", ["survived", "uplift, and no overturning"]),
+        ("met, not shown", ["too few to exclude"]),
+        ("base shear over uplift with devices", ["uplift_shear_ratio, a result"]),
         ("law", ["flexible, rigid, value", "left out", "section 4"]),
     ],
 )

@@ -94,7 +94,7 @@ def test_times_that_do_not_begin_at_zero_are_a_warning(tmp_path: Path) -> None:
     ("text", "message"),
     [
         ("0 .1\n.02 .1\n.04 .2\n.07 .1\n.08 .2\n", "after sample 3 is 0.03 s"),
-        ("0 .1\n.02 .1\n.02 .2\n.04 .3\n", "do not increase after sample 2"),
+        ("0 .1\n.02 .1\n.02 .2\n.04 .3\n", "do not increase after sample 2; sort them"),
         (".3 0.0\n.1 .02\n.2 .04\n.1 .06\n", "do not increase"),
         ("0 .1 1\n.02 .1 2\n.04 .2 3\n", "time and several quantities"),
         ("0 .1\n.02\n.04 .2\n", "a row of 1 numbers among rows of 2"),

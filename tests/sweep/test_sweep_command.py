@@ -63,7 +63,7 @@ def test_what_is_unusual_about_systems_is_told_once(
         encoding="utf-8",
     )
     told = [
-        f"2 of 3 systems: {name} is unusual: {usual} m is; check the units"
+        f"2 of 3 systems: {name} is unusual: {usual} m is usual; check the units"
         for name, usual in {
             "the height of the columns 2H = 39.56 to 59.34 m": "0.3 to 10",
             "the semi-diagonal of the columns R = 20 to 30 m": "0.15 to 6",

@@ -63,7 +63,7 @@ class TypicalRange(NamedTuple):
             unit = f" {self.unit}" if self.unit else ""
             usual = f"{self.least:g} to {self.most:g}{unit}"
             advice = "; check the units" if unit else ""
-            yield Doubt(f"{self.name} = {{0}}{unit} is unusual: {usual} is{advice}", value)
+            yield Doubt(f"{self.name} = {{0}}{unit} is unusual: {usual} is usual{advice}", value)
 
 
 HEIGHT = TypicalRange("the height of the columns 2H", "m", 0.3, 10.0)
@@ -71,6 +71,7 @@ SEMI_DIAGONAL = TypicalRange("the semi-diagonal of the columns R", "m", 0.15, 6.
 PERIOD = TypicalRange("the first period on a fixed base T1", "s", 0.02, 5.0)
 VERTICAL_PERIOD = TypicalRange("superstructure.vertical_period", "s", 0.01, 1.0)
 STOREY_MASS = TypicalRange("the mean mass of a storey", "t", 1.0, 10_000.0)
+COLUMN_MASS = TypicalRange("the mean mass of a column", "t", 0.02, 10_000.0)
 RESTITUTION = TypicalRange("the restitution at impact e", "", 0.5, 1.0)
 FRICTION = TypicalRange("the coefficient podium.friction", "", 0.1, 1.5)
 
@@ -120,6 +121,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     if building is None:
         return
     yield from STOREY_MASS.doubts(1e-3 * float(building.masses.mean()))
+    yield from COLUMN_MASS.doubts(1e-3 * structure.columns_mass / structure.columns)
     yield from PERIOD.doubts(float(building.periods[0]))
     if building.vertical_period is not None:
         yield from VERTICAL_PERIOD.doubts(building.vertical_period)

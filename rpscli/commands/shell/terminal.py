@@ -265,7 +265,7 @@ def _message(error: BaseException) -> str:
     if isinstance(error, click.ClickException):
         return error.format_message()
     if exit_code_of(error) == INTERRUPTED:
-        return "interrupted; no file was changed"
+        return "interrupted; no file is half written; the same command may be given again"
     if isinstance(error, RpsError):
         return str(error)
     if isinstance(error, OSError):

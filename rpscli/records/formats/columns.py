@@ -130,8 +130,7 @@ def _two_columns(text: RecordText, table: _Table) -> GroundMotion:
         step = uniform_step(values[:, 0], resolution)
     except ValueError as error:
         raise text.fault(
-            f"two columns should be time and acceleration at a uniform step, but {error}; "
-            f"resample the record to a uniform step first"
+            f"two columns should be time and acceleration at a uniform step, but {error}"
         ) from error
     header_step = _stated_step(text, table.header)
     # Rounded times know the step to one unit of their last digit over the whole record.

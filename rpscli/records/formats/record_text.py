@@ -193,7 +193,10 @@ def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | f
     """The step of uniform times, the shortest decimal number that fits all of them."""
     steps = np.diff(times)
     if not steps.min() > 0.0:
-        raise ValueError(f"the times do not increase after sample {int(np.argmin(steps)) + 1}")
+        after = int(np.argmin(steps)) + 1
+        raise ValueError(
+            f"the times do not increase after sample {after}; sort them, or print more digits"
+        )
     typical = _median(steps)
     rounding = np.minimum(0.5 * np.asarray(resolution), _COARSEST * typical)
     for summed in _SUMMED:
@@ -203,7 +206,8 @@ def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | f
     off = np.abs(steps - typical)
     first = int(np.argmax(off > 0.5 * off.max()))
     raise ValueError(
-        f"the step after sample {first + 1} is {steps[first]:.6g} s, most others {typical:.6g} s"
+        f"the step after sample {first + 1} is {steps[first]:.6g} s, most others {typical:.6g} s;"
+        " resample the record to a uniform step first"
     )
 
 

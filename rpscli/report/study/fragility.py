@@ -411,6 +411,8 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     shown = {"": main} | ({"_at": {}} if options.at else {})
     figure = (lambda title: fragility_figure(found, title)) if drawable else None
     remark = what_bands_hold(study.table.layout, options)
+    if any(curve.fit.median > curve.largest for curve in found.curves):
+        remark += "; a median beyond the largest intensity computed is extrapolated"
     return Found(tables, figure, found.notes, shown=shown, remark=remark)
 
 

@@ -333,6 +333,6 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
     for verdict in verdicts:
         condition = verdict.condition
         value = "overturned" if verdict.overturned else shown(verdict.value)
-        numbers = ("", "") if condition.name in EVENTS else (value, condition.bound)
+        numbers = ("", "not allowed") if condition.name in EVENTS else (value, condition.bound)
         rows.append((condition.name, verdict.word, condition.source, *numbers))
     return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)
