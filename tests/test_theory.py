@@ -37,6 +37,10 @@ PRINTED = {
         "the beam stays level",
         "rotation {low:.0f} to {high:+.0f} %, base shear {least:.0f} to {most:+.0f} %",
     ),
+    "level, lifts off": (
+        "the beam stays level",
+        "rotation {high:+.0f} %, base shear {least:.0f} %",
+    ),
     "vertical": (
         "floors ride on the beam | vertical vibration, in the motion",
         "rotation {low:.0f} to {high:.0f} %, base shear {least:.0f} to {most:+.0f} %",
