@@ -14,37 +14,33 @@ from rpscli.version import VERSION
 
 COMMANDS = {
     "init": Member("rpscli.commands.init", "write a commented case or study to start from"),
-    "check": Member("rpscli.commands.check", "what follows from a case, and what is wrong in it"),
+    "check": Member("rpscli.commands.check", "derived quantities of a case, and mistakes in it"),
     "explain": Member("rpscli.commands.explain", "what a key, a result, a report or a word means"),
-    "schema": Member(
-        "rpscli.commands.init", "the formats of files and of results as JSON schemas", "schema"
-    ),
+    "schema": Member("rpscli.commands.init", "JSON schemas of files and of results", "schema"),
     "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
     "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
     "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
-    "sweep": Member("rpscli.commands.sweep", "all points of a study, stored as they end; reports"),
+    "sweep": Member("rpscli.commands.sweep", "compute the points of a study and draw its reports"),
     "design": Member(
         "rpscli.commands.design",
-        "the values of a case that meet limits and minimise an objective",
+        "values of a case that meet limits and minimise an objective",
     ),
     "report": Member(
-        "rpscli.commands.report", "one page to check, print and keep, from all of these"
+        "rpscli.commands.report", "one page for a checking engineer, from all of these"
     ),
-    "budget": Member("rpscli.commands.budget", "what moves each limited result, and its verdict"),
+    "budget": Member("rpscli.commands.budget", "sensitivity of limited results and verdicts"),
     "compare": Member(
         "rpscli.commands.compare", "what differs between two cases or folders of results"
     ),
-    "export": Member("rpscli.commands.export", "a model that mujoco or OpenSees runs"),
-    "identify": Member(
-        "rpscli.commands.identify", "what a test of the standing building says about its case"
-    ),
-    "record": Member("rpscli.commands.record", "look at ground motions, convert, make them"),
+    "export": Member("rpscli.commands.export", "write a case as a model for mujoco or OpenSees"),
+    "identify": Member("rpscli.commands.identify", "properties of a case from measured motion"),
+    "record": Member("rpscli.commands.record", "read, draw, select, convert, make ground motions"),
     "completion": Member(
-        "rpscli.commands.init", "let your shell complete what you type", "completion"
+        "rpscli.commands.init", "complete commands, files and keys in your shell", "completion"
     ),
     "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
-    "doctor": Member("rpscli.commands.doctor", "what rps finds on this machine, what is missing"),
-    "clean": Member("rpscli.commands.doctor", "delete what rps keeps and can make again", "clean"),
+    "doctor": Member("rpscli.commands.doctor", "what is installed, what is missing"),
+    "clean": Member("rpscli.commands.doctor", "delete cached kernels and lists of fonts", "clean"),
 }
 
 

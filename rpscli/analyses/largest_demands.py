@@ -345,7 +345,7 @@ class Demand(Shown):
         lambda h: _largest(h.column("max_drifts") / h.of_building(lambda b: b.storey_heights)),
     )
     friction_demand = _Result[float](
-        "Largest |F|/N at either end of the columns: the friction that no sliding needs.",
+        "Largest |F|/N at either end of the columns: the friction required to prevent sliding.",
         lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"]),
     )
     friction_ratio = _Optional(

@@ -85,8 +85,8 @@ class UpliftedModes(Shown):
         if self.own_period is not None:
             return f"swings with T = {self.own_period:.4g} s"
         if self.own_growth_time is not None:
-            return f"falls away, e-fold in {self.own_growth_time:.4g} s"
-        return "creeps back" if self.eigenvalues[0] != 0.0 else "stays where it is put"
+            return f"diverges, e-fold in {self.own_growth_time:.4g} s"
+        return "creeps back" if self.eigenvalues[0] != 0.0 else "is in neutral equilibrium"
 
     @property
     def elastic_shapes(self) -> Array:

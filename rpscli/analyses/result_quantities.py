@@ -254,7 +254,7 @@ PAIR = (
     ResultQuantity("energy_passes", "J", "energy lost in passes", kernel="energy_passes"),
     ResultQuantity(
         "torsion_lever", "m", "torsion in a contact over its weight", kernel="torsion_lever",
-        meaning="what friction in the contacts must hold, to keep columns in their place",
+        meaning="which friction in the contacts must resist to keep columns in place",
     ),
 )  # fmt: skip
 """What a history besides has where both horizontal components act: its other results are those of
@@ -326,9 +326,9 @@ LINEAR = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS)
 """What both orders have, the exact one and the paper's."""
 
 OWN_MOTION = (
-    ResultQuantity("own_motion", "", "what the storey's own mode does"),
-    ResultQuantity("own_period", "s", "its period, if it swings", "$T$"),
-    ResultQuantity("own_growth_time", "s", "time of e-fold growth, if it falls away"),
+    ResultQuantity("own_motion", "", "the storey's own mode"),
+    ResultQuantity("own_period", "s", "its period, if it oscillates", "$T$"),
+    ResultQuantity("own_growth_time", "s", "time of e-fold growth, if it diverges"),
 )
 """The same in words and times."""
 

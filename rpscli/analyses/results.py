@@ -337,8 +337,8 @@ class TimeHistoryResult(Demand):
             and (self.history["phase"] not in RESTING and self.settings.free_vibration is None)
         ):
             notes.append(
-                "at the end the storey still wobbles round, which loses nothing in this model; no"
-                " larger rotation can come (rolling resistance would bring it to rest)"
+                "at the end the storey still wobbles, without loss in this model; no larger"
+                " rotation can occur (rolling resistance would bring it to rest)"
             )
         elif self.outcome == "survived" and self.history["phase"] not in RESTING:
             if self.structure.bearing.is_spherical:
@@ -361,12 +361,12 @@ class TimeHistoryResult(Demand):
         if chi is not None and chi > LARGEST_TRIED and self.structure.contact.kind == "plane":
             yield (
                 f"the strongest re-contact has chi = {chi:.3g}, records with more than"
-                f" {LARGEST_TRIED:g} were not tried; vary `podium.impact.loss`"
+                f" {LARGEST_TRIED:g} were not tested; vary `podium.impact.loss`"
             )
         if pressure is not None and pressure > CRUSHING:
             yield (
                 f"the pressure at an edge reaches {pressure:.3g} times the mean under permanent"
-                " load, by which concrete crushes at usual ones: it loses more at impacts and"
+                " load, at which concrete crushes under usual loads: it loses more at impacts and"
                 " restores less than an elastic bed"
             )
 

@@ -188,7 +188,7 @@ def parse_case(
     if is_study(document):
         kind, command = ("design", "design") if is_design(document) else ("study", "sweep")
         raise CaseError(
-            f"{name}: this is a {kind}, but a case is wanted here; `rps {command} {name}` runs it"
+            f"{name}: this is a {kind}, but a case is needed here; `rps {command} {name}` runs it"
         )
     case = case_from_mapping(document, name, folder, overrides)
     return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())

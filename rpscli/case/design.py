@@ -318,7 +318,7 @@ def parse_design(
     if not is_design(document):
         kind = "case" if is_case(document) else "study" if "base" in document.content else "file"
         raise CaseError(
-            f"{name}: this is a {kind} without `variables`, but a design is wanted here: a base"
+            f"{name}: this is a {kind} without `variables`, but a design is needed here: a base"
             " case, variables, records, limits and minimise; see `rps explain variables`"
         )
     document, notes = _in_new_words(document)

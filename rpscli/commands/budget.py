@@ -64,12 +64,12 @@ def command(
     motion: MotionRequest,
     period_ratio: float | None,
 ) -> None:
-    """What moves each limited result of CASE, one input at a time, in the unit of its limit.
+    """Change of each limited result of CASE for one input at a time, in the unit of its limit.
 
     Numerics, loss at impacts, contact, the other component, damping, 1 % of the motion and of the
     dimensions, vertical motion, records: of several --record the first is the history itself, else
     the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
-    which `rps timehistory CASE` gives its numbers. Exit code 0 whatever the verdicts are.
+    which `rps timehistory CASE` gives its numbers. The exit code is 0 whatever the verdicts are.
     """
     from rpscli.report.budget import budget_document, budget_files, budget_tables
 

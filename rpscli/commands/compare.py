@@ -50,10 +50,10 @@ def command(
 ) -> None:
     """What differs between A and B: each a case, a study, a folder of results, or its run.json.
 
-    Inputs are compared with all defaults written out, then versions, then every result, beside what
-    1 % less or more of the motion does to it. Of a case the history is computed, or what `rps
-    check` says if neither names a record; of a study the points that are not stored yet, which is
-    all that is written.
+    Inputs are compared with all defaults written out, then versions, then every result, with the
+    change that 1 % less or more motion makes. For a case the history is computed, or only what `rps
+    check` shows if neither names a record. For a study missing points are computed and stored;
+    nothing else is written.
     """
     from rpscli.report.differences import comparison_document, differences, tables
 

@@ -43,12 +43,12 @@ def command(
 ) -> None:
     """Find the values of DESIGN that meet its limits and minimise its objective.
 
-    The file has a base case, `variables`, records and `limits` as a study, and `minimise`. An
-    even sample comes first, then designs where the verdict changes. The recommended design is the
-    best one of a region in which all designs examined pass, within their tolerances. The answer has
-    the least that passes as well, what governs, and how far the choice of records moves it.
+    The file has a base case, `variables`, records and `limits` as a study, and `minimise`. The
+    search starts from an even sample and continues where the verdict changes. The recommended
+    design is the best one of a region in which all designs examined pass, within their tolerances.
+    The answer also has the least design that passes, what governs, and the effect of the records.
 
-    Every point is stored as it ends: after an interruption the same command continues. The exit
+    Every point is stored at once: after an interruption the same command continues. The exit
     code is 10 if no design passes, or if the recommended one fails the limits in its validation.
     """
     done = designed(design, overrides, SweepChoices(**choices), output, look, terminal)

@@ -40,7 +40,7 @@ KEPT = {"compiled kernels": "kernels-*", "times of compilation": TIMES_FILE, "fo
 @click.command("doctor")
 @terminal_options
 def command(terminal: Terminal) -> None:
-    """What rps finds on this machine, what is missing, and the remedy; 6 without what it needs."""
+    """Show what is installed, what is missing, and the remedy; exit code 6 if it cannot run."""
     needed = _packages(None)
     optional = [row for extra in EXTRAS for row in _packages(extra)]
     rows = [*_surroundings(), *needed, *optional]
@@ -91,7 +91,7 @@ def _numbers(version: str) -> list[int]:
 @click.option("--dry-run", is_flag=True, help="Only say what would be deleted.")
 @terminal_options
 def clean(terminal: Terminal, *, dry_run: bool) -> None:
-    """Delete what rps keeps on this machine and can make again: compiled kernels, lists of fonts.
+    """Delete the files that rps caches on this machine: compiled kernels, lists of fonts.
 
     Results are never touched. The next time history compiles its kernel anew.
     """

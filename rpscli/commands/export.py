@@ -52,12 +52,12 @@ def command(
     output: OutputRequest,
     terminal: Terminal,
 ) -> None:
-    """CASE under its record as a model that another program runs.
+    """Write CASE and its record as a model for another program.
 
     mujoco: rigid bodies in contact, which know no impact law. opensees: floors on a spring that
-    uplifts, impacts as a damper. Beside the model stand timehistory.csv, the record with the
-    history that rps finds, and rerun.py, which runs the model and draws both; it needs openseespy
-    or mujoco, and matplotlib, but no rps.
+    uplifts, impacts as a damper. Further files are timehistory.csv, the record with the history
+    that rps computes, and rerun.py, which runs the model and draws both; it needs openseespy or
+    mujoco, and matplotlib, but not rps.
     """
     from importlib import resources
 

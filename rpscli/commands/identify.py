@@ -52,13 +52,13 @@ def command(
     *,
     force: bool,
 ) -> None:
-    """What DATA.csv, measured on the structure of CASE, says about it, with intervals of 90 %.
+    """Identify properties of CASE from DATA.csv, measured on the structure, with 90 % intervals.
 
     Its header has names and units, as in `time [s],rotation [mrad]`. rocking: free rocking after a
     release from rest, `rotation` or `cap_beam_displacement`, gives the loss at impacts, and the
     lever of a rolling_resistance in the case. Before uplift the period and the damping follow from
     a `floor_acceleration`: ambient vibration, the release of a pull, or an earthquake with
-    `ground_acceleration` beside it.
+    `ground_acceleration` as well.
     """
     if place is not None and place.exists() and not force:
         raise Refused(f"{place} exists; name another file with -o, or overwrite it with --force")

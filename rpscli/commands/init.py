@@ -28,8 +28,8 @@ from rpscli.shipped import FOLDER, example_files, examples
     flag_value="",
     metavar="[NAME]",
     **completing(examples),
-    help="A case or study that comes with rps, and the files that it names, into the folder FILE"
-    " (cases by default); without NAME, what there is.",
+    help="Write a case or study that comes with rps, and the files that it names, into the"
+    " folder FILE (cases by default); without NAME, list them.",
 )
 @click.option(
     "--editor",
@@ -151,7 +151,7 @@ SHELLS = {"bash": BashComplete, "zsh": ZshComplete, "fish": FishComplete}
 @click.command("completion")
 @click.argument("shell", type=click.Choice(tuple(SHELLS)))
 def completion(shell: str) -> None:
-    """Print the lines by which SHELL completes commands, options, files, keys and names.
+    """Print the lines with which SHELL completes commands, options, files, keys and names.
 
     For bash put `eval "$(rps completion bash)"` into ~/.bashrc, for zsh the same with zsh into
     ~/.zshrc; for fish, `rps completion fish > ~/.config/fish/completions/rps.fish`.

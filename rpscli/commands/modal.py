@@ -40,7 +40,7 @@ def command(
 ) -> None:
     """Modes of CASE in full contact and, linearised where they begin, rolling and rocking.
 
-    Beside exact values stand the paper's, of first order in alpha.
+    The paper's values, of first order in alpha, are given beside the exact ones.
 
     Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
     """

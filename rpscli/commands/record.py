@@ -120,7 +120,7 @@ def _result(
 @terminal_options
 @source_options
 def info(motions: Sequence[GroundMotion], terminal: Terminal) -> None:
-    """What was understood of SRC, and its intensity measures in SI units."""
+    """How SRC was read, and its intensity measures in SI units."""
     _result("info", motions, terminal)
 
 
@@ -190,11 +190,11 @@ def write_record(
     "--to",
     "form",
     type=click.Choice(tuple(FORMATS)),
-    help="at2: PEER AT2, in g. text: two columns, s and m/s2. By default what the name after -o"
-    " says, else at2.",
+    help="at2: PEER AT2, in g. text: two columns, s and m/s2. By default by the name after -o,"
+    " otherwise at2.",
 )
 @click.option(
-    "--resample", type=float, metavar="S", help="Time step to sample it at, linear between [s]."
+    "--resample", type=float, metavar="S", help="New time step, by linear interpolation [s]."
 )
 @output_options
 def convert(
@@ -246,7 +246,7 @@ MEMBERS = {
 
 @click.command("record", cls=LazyGroup, members=MEMBERS)
 def command() -> None:
-    """Look at ground motions, choose them, convert them, make them.
+    """Read, draw, select, convert and make ground motions.
 
     SRC is a file (PEER AT2, columns of numbers, and more; options as in rec.txt?dt=0.01&units=g),
     a member of a set (fema_p695:farfield/1/b), two components at an angle in degrees

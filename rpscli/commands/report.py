@@ -49,7 +49,7 @@ from rpscli.version import VERSION
 )
 @overrides_option("Override a value of the case or study")
 @motion_options
-@fail_on_option("A limit besides those of the case or study, as in `rps timehistory`; repeatable.")
+@fail_on_option("A further limit, as in `rps timehistory`; repeatable.")
 @click.option("--project", metavar="TEXT", help="Name or number of the project, for the page.")
 @click.option("--author", metavar="NAME", help="Who made the page and signs it.")
 @click.option("--checker", metavar="NAME", help="Who checks the page and signs it.")
@@ -57,7 +57,7 @@ from rpscli.version import VERSION
     "--budget",
     "with_budget",
     is_flag=True,
-    help="Add what moves each limited result of a CASE, as in `rps budget`.",
+    help="Add the sensitivity of each limited result of a CASE, as in `rps budget`.",
 )
 @style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
@@ -80,7 +80,7 @@ def command(
 ) -> None:
     """One page about a CASE, a STUDY, a DESIGN or a FOLDER of results.
 
-    It has the structure, the input, the formulas with their numbers, the ground motions, verdicts,
+    It has the structure, the input, the formulas with their values, the ground motions, verdicts,
     tables and figures, and the command that repeats it. It needs no network and no scripts, and
     prints on A4. Histories of a CASE are computed, with mean and largest of several records; so are
     points of a STUDY or DESIGN that are not stored yet. Those of a FOLDER are computed again and

@@ -57,7 +57,7 @@ OF_A_REPORT = 12
     " units), or not-shown if too few records show that a limit is met; repeatable. The limits of"
     " study and case count as well."
 )
-@click.option("--report-only", is_flag=True, help="Draw the reports again from what is stored.")
+@click.option("--report-only", is_flag=True, help="Draw the reports again from the stored points.")
 @result_options
 def command(
     study: str,
@@ -70,7 +70,7 @@ def command(
 ) -> None:
     """Compute all points of STUDY, and draw its reports.
 
-    Every point is stored as it ends: after an interruption the same command continues. If points
+    Every point is stored at once: after an interruption the same command continues. If points
     failed the exit code is 5, and failed.csv has the command that computes each of them alone. It
     is 10 if a limit of the study, of its base case or of --fail-on is exceeded.
     """

@@ -45,7 +45,7 @@ from rpscli.report.figures.look import Look, drawn_with
 @click.option(
     "--floor-spectra",
     is_flag=True,
-    help="Also spectra of equipment on every floor, beside those on a fixed base.",
+    help="Also compute spectra of every floor, on bearings and on a fixed base.",
 )
 @result_options
 def command(

@@ -39,14 +39,14 @@ INSTALLATION = (
     "--score",
     metavar="FILE.csv",
     type=FILE,
-    help="Correct digits of any program's answers to them (columns problem, quantity, value).",
+    help="Count correct digits of any program's answers (columns problem, quantity, value).",
 )
 @click.option(
     "--digits",
     type=click.FloatRange(min=0.0, max=12.0),
     default=3.0,
     show_default=True,
-    help="That answers of --score should have: one with fewer ends with exit code 6.",
+    help="Correct digits that --score requires; fewer in one answer end with exit code 6.",
 )
 @terminal_options
 def command(*, problems: Path | None, score: str | None, digits: float, terminal: Terminal) -> None:

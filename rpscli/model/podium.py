@@ -103,7 +103,7 @@ class PodiumStructure(Shown):
             raise ValueError(f"friction = {self.friction!r} must be a number >= 0, or None")
         self._refuse_buildings()
         if self.rows and (len(self.rows) < 2 or max(self.rows) <= min(self.rows)):
-            raise ValueError("rows must be at least two places that differ")
+            raise ValueError("rows must be at least two different positions")
         if not (isinstance(self.columns, Integral) and 1 <= self.columns <= MOST_COLUMNS):
             raise ValueError(f"columns = {self.columns!r} must be a whole number from 1 on")
         if len(self.devices) > MOST_DEVICES:
@@ -121,7 +121,7 @@ class PodiumStructure(Shown):
         if not 0.0 < self.restitution <= 1.0:
             raise ValueError(
                 f"restitution e = {self.restitution:.4g} must be in (0, 1]: with e <= 0 the"
-                " columns would not go over to their other edge; use more slender columns"
+                " columns would not pass to their other edge; use more slender columns"
                 " (a smaller tan alpha), with the law `flexible` a lighter building over the cap"
                 " beam, a smaller loss (0.5), or give a measured value"
             )

@@ -144,7 +144,7 @@ class SelectionRequest:
     factors: tuple[float, float] = (0.25, 4.0)
     """Least and largest factor on a motion."""
     per_event: int = 2
-    """At most so many motions of one earthquake."""
+    """Largest number of motions from one earthquake."""
     pgv: float | None = None
     """Bring every motion to this peak velocity, in place of the factor that fits it best
     [m/s]."""
@@ -307,7 +307,7 @@ def _measured(
         both = (over_directions(first, motions[1], measure) for measure in ("PGV", "PGD"))
         pgv, pgd = (float(_of_pair(peaks, of)) for peaks in both)
     if not spectrum.all() or pgv <= 0.0:
-        raise RecordError(f"{first.source}: does not move the ground; leave it out")
+        raise RecordError(f"{first.source}: is zero throughout; leave it out")
     return Candidate(motions, event_of(first) or "", float(spectrum[0]), pgv, pgd, spectrum[1:])
 
 

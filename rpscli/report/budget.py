@@ -18,8 +18,8 @@ from rpscli.report.table import Table, columns_of, csv_text, headed, large, show
 from rpscli.sweep.budget import FACTOR, RECORDS, SHARES, Effect, Row
 
 REMARK = (
-    "one input at a time, and no error of the model itself; without podium.impact.loss the loss of"
-    " plane contact is 0.3, of edges 1"
+    "one input at a time, without the error of the model itself; the default loss is 0.3 for"
+    " plane contact, 1 for edges"
 )
 
 CAPTION = "orange: factor 2, red: other verdict, dots: records; overturned at the right end"
@@ -50,7 +50,9 @@ def budget_tables(rows: Sequence[Row], found: Sequence[Effect]) -> Iterator[Tabl
         share = f" Beyond it in {RECORDS}: {effect.beyond}." if effect.limit else ""
         yield sentences(known, effect) + share
     told = [(_named(r), r.refused or r.options) for r in rows if r.refused or r.cause != RECORDS]
-    yield Table.of_texts(("", "options of rps timehistory CASE, or why not"), told, words=2)
+    yield Table.of_texts(
+        ("", "options of rps timehistory CASE, or why there are none"), told, words=2
+    )
     yield REMARK
 
 
@@ -118,7 +120,7 @@ def budget_section(
     blocks: list[Block] = [
         Picture(files, f"What moves {name} under {record}; {CAPTION}.") for name, files in drawn
     ]
-    return Section("What moves the results", [*blocks, *budget_tables(rows, found)])
+    return Section("Sensitivity of the results", [*blocks, *budget_tables(rows, found)])
 
 
 def budget_figure(rows: Sequence[Row], effect: Effect, title: str) -> bytes:

@@ -190,13 +190,13 @@ def tables(
             yield f"only {side.source} has {', '.join(only[:5])}{' ...' * (len(only) > 5)}"
     if any(each.noise is not None for each in found):
         yield (
-            "noise: the most by which 1 % less or more of the motion moves it, in A or B; steps of"
-            " half the length move rotation and shear by less than 0.01 %, or are warned of"
+            "noise: the largest change by 1 % less or more motion, in A or B; half the step"
+            " changes rotation and shear by less than 0.01 %, or a warning says so"
         )
     if any(each.ratios for each in found):
         yield (
-            "of tables with a history in each row the largest difference is shown; what counts is"
-            " the median of B over A, beside it with its fractiles of 16 and 84 %"
+            "for tables with a history in each row the largest difference is shown; the median"
+            " of B over A, with its 16 and 84 % fractiles, is what counts"
         )
 
 

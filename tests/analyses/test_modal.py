@@ -199,7 +199,7 @@ def test_the_storeys_own_mode_in_words() -> None:
     assert swings.own_period == pytest.approx(2.0 * math.pi / 1.82253, rel=1e-5)
     assert (swings.own_growth_time, swings.own_motion) == (None, "swings with T = 3.448 s")
     assert falls.own_growth_time == pytest.approx(1.0 / 1.82253, rel=1e-5)
-    assert (falls.own_period, falls.own_motion) == (None, "falls away, e-fold in 0.5487 s")
+    assert (falls.own_period, falls.own_motion) == (None, "diverges, e-fold in 0.5487 s")
     neutral = modal(podium(0, 0.15, 0.5)).rolling
     assert neutral is not None
-    assert neutral.own_motion == "stays where it is put"
+    assert neutral.own_motion == "is in neutral equilibrium"

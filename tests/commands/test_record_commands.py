@@ -167,7 +167,7 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     # EN 1998-1 asks for three.
     made = rps(*SELECT, "pool", "-o", "made/inside")
     said = " ".join(made.stdout.split())
-    assert "Sa(T1) is the wrong objective for rocking" in said
+    assert "Sa(T1) is a poor measure for rocking" in said
     assert "number of motions >= 3 2 NOT MET" in said
     assert made.exit_code == 10
     assert "not met: number of motions, 2; required >= 3" in made.stderr

@@ -159,7 +159,7 @@ def doubts_of_contact(bed: Bed) -> Iterator[Doubt]:
     if share > SOFTEST:
         yield Doubt(
             f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the settlement is"
-            " no longer small beside the width of the joint",
+            " no longer small compared with the width of the joint",
             share,
         )
 
@@ -172,13 +172,14 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
         return
     if structure.gamma == 0.0:
         yield Doubt(
-            "free-standing columns (no cap beam) are assumed to roll round their own ends and to"
-            " keep their place, which torsion under their weight hardly ensures: they may roll away"
+            "free-standing columns (no cap beam) are assumed to roll on their own ends and to"
+            " stay in place, which torsion under their weight hardly ensures: they may roll"
+            " away"
         )
     if structure.impact_law.contact_time == 0.0 and structure.restitution < 1.0:
         yield Doubt(
-            "podium.impact.contact_time = 0: passes near upright lose nothing, however near they"
-            " are, and impacts do: results jump, and rounding decides them"
+            "podium.impact.contact_time = 0: passes near upright lose nothing, however close,"
+            " but impacts do: results are discontinuous, and rounding decides them"
         )
 
 

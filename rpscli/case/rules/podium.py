@@ -61,7 +61,7 @@ def bearing_rules(case: PartialCase) -> Iterator[Fault]:
         path = (*DIMENSIONS, "wedge_width") if sizes else (*BEARING, "wedge_slenderness")
         if sizes.radius if sizes else bearing.curvature_ratio:
             meaning = "2B', across the outer edges of the arcs" if sizes else "tan(alpha') = B'/H"
-            yield from case.missing(path, f"{meaning}; only flat ends do without")
+            yield from case.missing(path, f"{meaning}; only flat ends need none")
         if case.shape and case.shape.slenderness == 0.0 and case.shape.curvature_ratio <= 0.5:
             yield _small_sphere(case, case.shape)
         elif case.shape and case.shape.curvature_ratio:
@@ -137,8 +137,8 @@ def impact_rules(case: PartialCase) -> Iterator[Fault]:
         yield from case.missing(path, "law value needs one, as in 0.92")
         if case.document.has((*IMPACT, "loss")) and case.document.at((*IMPACT, "loss")) != 1.0:
             text = (
-                "podium.impact.loss does not go with law value: a measured restitution holds what"
-                " was lost; remove it, or scale the restitution by factor"
+                "podium.impact.loss does not go with law value: a measured restitution includes"
+                " the loss; remove it, or scale the restitution by factor"
             )
             yield Fault((*IMPACT, "loss"), text, at_key=True)
     elif case.document.has(path):
@@ -245,7 +245,7 @@ def restitution_rule(podium: Podium, document: Document) -> Iterator[Fault]:
             (*BEARING, name),
             f"podium.bearing: the slenderness tan(alpha) = {column.slenderness:g}{under} gives the"
             f" restitution {e:.4g} (impact law {law.kind}{lost}), which must be > 0 for the columns"
-            f" to go over to their other edge; use less than {below(widest)}{lighter}, a part of"
+            f" to pass to their other edge; use less than {below(widest)}{lighter}, a part of"
             " the loss with impact: {loss: 0.5}, or a measured value with"
             " impact: {law: value, restitution: ...}",
         )

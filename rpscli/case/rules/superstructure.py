@@ -104,7 +104,7 @@ def column_rules(case: PartialCase) -> Iterator[Fault]:
         rows = case.plan and case.plan.rows
         if rows is not None and len(set(rows)) < 2:
             written = shown(case.document.at((*plan, "rows")))
-            text = f"podium.plan.rows = {written} must be two places or more that differ"
+            text = f"podium.plan.rows = {written} must be two or more different positions"
             yield Fault((*plan, "rows"), f"{text}, as in [0, 4 m, 8 m]")
         if case.storeys and not case.has(height):
             text = "podium.plan needs superstructure.storey_height: the moment has lever arms"
@@ -254,5 +254,5 @@ def _pair_rules(case: PartialCase) -> Iterator[Fault]:
             yield Fault(path, f"{dotted(path)} {text}, or leave y out and write `?both`")
         pair = pair or parts.both
     if case.document.has(ROTATION) and not pair:
-        text = "record.rotation turns a pair: give y besides, or write `?both` behind the source"
+        text = "record.rotation turns a pair: give y as well, or write `?both` behind the source"
         yield Fault(ROTATION, f"{text}; angle= is one direction between two", at_key=True)

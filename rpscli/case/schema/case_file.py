@@ -84,8 +84,8 @@ class DeviceSection(Section):
     """tendon: P_y of one; left out: it never yields"""
     lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = Field(
         None,
-        description="rolling_resistance: f, by which the normal force runs ahead of the contact;"
-        " a moment f N at either end of the columns",
+        description="rolling_resistance: f, lever by which the normal force lies ahead of the"
+        " contact; a moment f N at either end of the columns",
     )
 
 
@@ -138,7 +138,7 @@ class SuperstructureSection(Section):
     """first period on a fixed base; scales the profile"""
     profile: Profile | None = Field(
         None,
-        description="what distributes the stiffness: a sine, linear or flexural first mode, or"
+        description="distribution of the stiffness: a sine, linear or flexural first mode, or"
         " uniform stiffness; sine if a period is given without it",
     )
     stiffness: Stiffnesses | None = None
@@ -372,8 +372,9 @@ class AnalysisSection(Section):
     """an excursion below this part of alpha after an impact is contact"""
     recontact_rule: Literal["limit", "relative"] = Field(
         "limit",
-        description="limit: floors get at re-contact what ever smaller bounces would have given"
-        " them; relative: they keep their velocity relative to the cap beam (converges slower)",
+        description="limit: at re-contact floors get the velocity that the infinite series of"
+        " bounces would give them; relative: they keep their velocity relative to"
+        " the cap beam (converges slower)",
     )
     initial_rotation: Annotated[float, Quantity(symbol="rad")] = 0.0
     """rotation from which the structure is released at rest; 0 = full contact"""

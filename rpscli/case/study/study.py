@@ -100,12 +100,12 @@ def parse_study(
     document = read_yaml(text, name)
     if is_case(document):
         raise CaseError(
-            f"{name}: this is a case, but a study is wanted here; `rps timehistory {name}` computes"
+            f"{name}: this is a case, but a study is needed here; `rps timehistory {name}` computes"
             " it, `rps init --study` writes a study"
         )
     if is_design(document):
         raise CaseError(
-            f"{name}: this is a design, but a study is wanted here; use `rps design {name}`"
+            f"{name}: this is a design, but a study is needed here; use `rps design {name}`"
         )
     of_study, of_base = shared_out(overrides, StudyFile)
     document = apply_overrides(document, of_study, model=StudyFile)

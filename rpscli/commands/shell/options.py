@@ -60,7 +60,7 @@ def _condition_names() -> dict[str, str | None]:
 
     return {
         **{name: f"records that {verb}" for name, verb in EVENTS.items()},
-        NOT_SHOWN: "limits that so few records cannot show to be met",
+        NOT_SHOWN: "limits met by too few records to show it",
         **{name: f"{quantity.label} [{quantity.unit}]" for name, quantity in LIMITS.items()},
     }
 
@@ -210,7 +210,7 @@ figure_options = gathered(
         "--figures",
         metavar="FORMATS",
         **completing(lambda: (*FORMATS, "svg,pdf", "none")),
-        help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none; besides them"
+        help="Formats of the figures: png, svg, pdf, several as in svg,pdf, or none; also"
         " figures that other packages add.",
     ),
     click.option(
@@ -260,16 +260,16 @@ _PART = (
         "speed",
         type=click.FloatRange(min=0.0, min_open=True),
         metavar="FACTOR",
-        help="Times real time: 0.5 shows it half as fast; by default it fits 9 s.",
+        help="Speed over real time, such as 0.5; by default the animation lasts 9 s.",
     ),
     click.option(
         "--animate-from",
         "first",
         type=_SECOND,
         metavar="S",
-        help="Its beginning, in seconds; where the motion begins by default.",
+        help="Start of the animation [s]; by default where the motion begins.",
     ),
-    click.option("--animate-to", "last", type=_SECOND, metavar="S", help="Its end, in seconds."),
+    click.option("--animate-to", "last", type=_SECOND, metavar="S", help="Its end [s]."),
 )
 film_options = gathered("film", _film, *_FILM)
 """--animate and --animate-size, as `film`."""

@@ -115,10 +115,10 @@ CAPTIONS = {
     " building about the contacts, beyond whose circle upright columns uplift; time in colour.",
     "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
     " the events.",
-    "displacements": "Displacements to the ground against time.",
-    "moment_rotation": "Moment about the contact points against rotation, and what the weight alone"
-    " does.",
-    "energy": "What became of the energy supplied by the ground.",
+    "displacements": "Displacements relative to the ground against time.",
+    "moment_rotation": "Moment about the contact points against rotation, and that of the"
+    " weight alone.",
+    "energy": "Balance of the energy supplied by the ground.",
     "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
     "devices": "Force against displacement of each device between ground and cap beam.",
 }
@@ -147,7 +147,7 @@ def page_sections(
         Section("Input", [*inputs]),
         Section("Derived quantities", [*which, *derived_blocks(structure, podium)]),
         *results,
-        Section("What the model leaves out", [hidden_table()]),
+        Section("Limits of the model", [hidden_table()]),
         Section("How to repeat it", [*repeat]),
     ]
 
@@ -236,7 +236,7 @@ def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> lis
 
 
 def hidden_table() -> Table:
-    """What the model leaves out, in the words of the theory."""
+    """Limits of the model, in the words of the theory."""
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
     lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
     head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
@@ -374,7 +374,7 @@ def case_sections(
 ) -> list[Section]:
     """Everything about a case, and its histories if there are any; `stored`: what was before."""
     short: Iterable[Block] = [
-        "The case names no ground motion: this page ends with what follows without one."
+        "The case names no ground motion: this page has only the results that need none."
     ]
     results, grounds = list[Section](), list[MotionComponents]()
     if history is not None:

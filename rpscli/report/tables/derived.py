@@ -79,8 +79,8 @@ DYNAMICS = (
 """Masses and statics."""
 
 BOTH = (
-    Derived("pass_turn", "turn in a pass near upright", "Delta phi", "rad"),
-    Derived("turning_inertia", "inertia of turning, upright", "K(0)", "-"),
+    Derived("pass_turn", "azimuth change in a pass near upright", "Delta phi", "rad"),
+    Derived("turning_inertia", "rotational inertia, upright", "K(0)", "-"),
     Derived("contact_time", "contact time of an impact", "t_c", "s", "impact_law.contact_time"),
 )
 """Where both horizontal components act."""
