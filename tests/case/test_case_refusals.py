@@ -23,7 +23,7 @@ SINGLE_VALUES = [
     ("200 t", ".nan", "4:16: superstructure.storey_mass = nan", ["finite"]),
     ("200 t", "{a: 1}", "4:16: superstructure.storey_mass = {a: 1}", ["a mass in kg"]),
     ("  impact", "  plan: {rows: 200}\n  impact", "17:16", ["podium.plan.rows = 200", "[0, 4 m"]),
-    ("  impact", "  plan: {rows: [0 m]}\n  impact", "17:16", ["rows = ['0 m']", "different positions"]),
+    ("  impact", "  plan: {rows: [0 m]}\n  impact", "17:16", ["rows = ['0 m']", "positions"]),
     ("  impact", "  plan: {rows: [4, 4 m]}\n  impact", "17:16", ["podium.plan.rows", "as in [0, "]),
     ("period: 0.3", "period: .inf", "6:11", ["finite"]),
     (
