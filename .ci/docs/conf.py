@@ -51,6 +51,8 @@ python_maximum_signature_line_length = 80
 numpydoc_show_class_members = False
 
 html_theme = "pydata_sphinx_theme"
+html_context = {"default_mode": "auto"}  # of colours; without it browsers report an error
+html_favicon = "static/icon.svg"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import csv
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +28,7 @@ KEPT = 4
 BAND = (0.1, 25.0)  # Hz
 SPECIMENS = ("specimen 1", "specimen 2")
 WORKBOOK = "Results_Granite.xlsx"
+Outcomes = dict[int, list[tuple[str, int]]]
 
 
 def motion(path: Path) -> GroundMotion:
@@ -40,7 +41,7 @@ def motion(path: Path) -> GroundMotion:
     return GroundMotion(kept * STANDARD_GRAVITY, KEPT / RATE, path.stem, path.name, "table motion")
 
 
-def outcomes(workbook: Path) -> dict[int, list[tuple[str, int]]]:
+def outcomes(workbook: Path) -> Outcomes:
     """Of each test: titles of the columns, of which the first two are measured, and outcomes."""
     import openpyxl  # not among what rps needs
 
@@ -59,20 +60,27 @@ def outcomes(workbook: Path) -> dict[int, list[tuple[str, int]]]:
 
 def convert(source: Path, target: Path) -> int:
     """Write everything; returns the number of tests that have a motion and outcomes."""
-    folder = target / "motions"
-    folder.mkdir(parents=True, exist_ok=True)
     found = outcomes(source / WORKBOOK)
-    observed: list[tuple[str, str, int]] = []
-    published: list[tuple[str, str, int]] = []
-    count = 0
+    tests = {}
     for path in sorted(source.glob("Test*.txt")):
         test = int(path.stem.removeprefix("Test"))
-        if test not in found:
+        if test in found:
+            tests[test] = motion(path)
+        else:
             print(f"{path.name}: has no outcome in {WORKBOOK}; left out", file=sys.stderr)
-            continue
+    write(tests, found, target)
+    return len(tests)
+
+
+def write(tests: Mapping[int, GroundMotion], found: Outcomes, target: Path) -> None:
+    """Motions, and what specimens and models did under them."""
+    folder = target / "motions"
+    folder.mkdir(parents=True, exist_ok=True)
+    observed: list[tuple[str, str, int]] = []
+    published: list[tuple[str, str, int]] = []
+    for test, record in tests.items():
         name = f"Test{test:03d}"
-        (folder / f"{name}.at2").write_text(at2_text(motion(path)), encoding="utf-8")
-        count += 1
+        (folder / f"{name}.at2").write_text(at2_text(record), encoding="utf-8")
         for head, outcome in found[test]:
             if head.startswith("Experimental"):
                 observed.append((name, f"specimen {head.strip()[-1]}", outcome))
@@ -80,7 +88,6 @@ def convert(source: Path, target: Path) -> int:
                 published.append((name, head, outcome))
     _write(target / "observed.csv", ("record", "title", "overturned"), observed)
     _write(target / "published.csv", ("record", "model", "overturned"), published)
-    return count
 
 
 def _write(path: Path, head: tuple[str, ...], rows: Iterable[tuple[str, str, int]]) -> None:

@@ -317,7 +317,8 @@ def region_figure(answer: Answer, title: str) -> bytes:
             _mark(axes, answer, answer.values[:, [x, y]])
             axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
         handles = grid[0][0].get_legend_handles_labels()
-        figure.legend(*handles, loc="outside lower center", ncols=2 if narrow else 5)
+        in_row = 2 if narrow else 3 if len(handles[0]) > 5 else 5
+        figure.legend(*handles, loc="outside lower center", ncols=in_row)
 
     return style.picture(draw, 1.1 + (4.2 if len(pairs) == 1 else 2.6) * rows)
 

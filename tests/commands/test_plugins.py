@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import importlib
 import os
-import subprocess
+import shlex
+import shutil
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
@@ -15,6 +16,7 @@ import click
 import numpy as np
 import pytest
 from click.testing import Result
+from shown_commands import ROOT, command, of_blocks, run_in_shell
 
 import rpscli
 from rpscli import registry
@@ -211,14 +213,18 @@ def test_nobody_is_asked_for_names_of_ours(
 @pytest.mark.long
 def test_the_example_is_installed_by_pip(tmp_path: Path, workplace: Path) -> None:
     """As users do it, into a folder of its own; pip fetches what builds it."""
-    options = ["--no-deps", "--quiet", "--target", str(tmp_path / "site")]
-    subprocess.run([sys.executable, "-m", "pip", "install", *options, str(EXAMPLE)], check=True)
-    search = os.pathsep.join([str(tmp_path / "site"), str(EXAMPLE.parents[1])])
-    found = subprocess.run(
-        [sys.executable, "-m", "rpscli", "explain", "plugins"],
-        env={**os.environ, "PYTHONPATH": search},
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    assert found.stdout.count("rps-example 1.0") == 5
+    site = tmp_path / "site"
+    install, *lines = of_blocks(EXAMPLE / "README.md")
+    shutil.copytree(EXAMPLE, tmp_path / "package")  # where what is built may stay
+    install = install.replace("-e .", f"--no-deps --quiet --target {site} {tmp_path / 'package'}")
+    search = os.pathsep.join([str(site), str(ROOT)])
+    run_in_shell(install)
+    printed = []
+    for line in lines:
+        words = [sys.executable, "-m", "rpscli", *command(line).words]
+        words = [str(ROOT / word) if word.startswith("cases/") else word for word in words]
+        printed.append(run_in_shell(shlex.join(words), PYTHONPATH=search))
+    assert printed[0].count("rps-example 1.0") == 5
+    assert "ASI" in printed[1]
+    assert list(workplace.rglob("phase_plane.png"))
+    assert list(workplace.rglob("selection.txt"))

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from paper_structures import needs_compiled_kernels, oracle_system, stillness
+from shown_commands import ROOT, of_blocks, run_in_shell
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -81,3 +84,18 @@ def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound() ->
     closed = [differences("6", 0.0, level=way, closing_damping=4.0) for way in (True, False)]
     assert closed[1]["flexible"] == pytest.approx(closed[0]["flexible"], rel=1e-3)
     assert closed[1]["flexible"] < level["flexible"]
+
+
+def test_blocks_of_the_table_of_the_verification(tmp_path: Path) -> None:
+    """The command of its section 11, which takes twenty minutes for all rows."""
+    verification = ROOT / "rpscli" / "VERIFICATION.md"
+    (line,) = (line for line in of_blocks(verification) if "oracles.resolved_contact" in line)
+    line = line.replace("../.venv/bin/", "").replace("table.csv)", f"{tmp_path / 't.csv'} block)")
+    printed = run_in_shell(f"cd {ROOT}; {line}").replace("| block | 0 |", "| block | flat |")
+    rows = re.findall(r"^\| block .*$", verification.read_text("utf-8"), re.MULTILINE)
+    told, found = ([row.split("|")[2:7] for row in t] for t in (rows, printed.splitlines()))
+    assert [row[0] for row in found] == [row[0] for row in told]
+    for ours, theirs in zip(found, told, strict=True):
+        # the last digit that is shown, or a tenth between versions of the engine
+        numbers = [float(cell) for cell in theirs[1:]]
+        assert [float(cell) for cell in ours[1:]] == pytest.approx(numbers, rel=0.1, abs=0.15)

@@ -127,7 +127,7 @@ def test_results_over_the_direction() -> None:
     shown_there = {line.get_label() for line in second.lines}
     assert not {"worst direction", levels[0], levels[2]} & shown_there
     assert set(legend(figure)) == {"pairs", "overturned", "worst direction", *levels}
-    assert "medians are not drawn where so many overturned" in figure.get_suptitle()
+    assert "no median where half of the pairs overturned" in figure.get_suptitle()
 
 
 def fit_of(probabilities: Array) -> Lognormal:

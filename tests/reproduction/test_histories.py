@@ -171,40 +171,6 @@ def test_figure_9(reproduce: Reproduce, fema_record: RecordLoader) -> None:
     assert spread[2] > 1.1 * max(spread[:2])
 
 
-@pytest.mark.long
-def test_the_rigid_law_creates_energy(points: list[Row]) -> None:
-    impacts, creating = (column(points, name) for name in ("impacts", "creating_impacts"))
-    created, net = (column(points, name) for name in ("energy_created", "energy_impact"))
-    # numbers of the reproduction's README
-    assert creating.sum() / impacts.sum() == pytest.approx(0.44, abs=0.02)
-    assert created.sum() / (created + net).sum() == pytest.approx(0.12, abs=0.02)
-
-
-@pytest.mark.long
-def test_the_flexible_law_does_not(reproduce: Reproduce, fema_record: RecordLoader) -> None:
-    points = reproduce("figure_9", "points", "podium.impact.law=flexible")
-    assert column(points, "impacts").sum() > 5e4
-    assert column(points, "energy_created").sum() == 0.0
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("override", "least", "most"),
-    [
-        ('records=["fema_p695:*?normalised"]', 2.5, 4.0),
-        ("superstructure.profile=uniform", 1.0, 2.5),
-        ("podium.impact.law=flexible", 1.0, 2.5),
-        ("analysis.overturning_limit=1", 1.0, 2.5),
-        ("analysis.overturning_limit=4", 1.0, 2.5),
-    ],
-)
-def test_table_3_with_other_choices(
-    override: str, least: float, most: float, reproduce: Reproduce, fema_record: RecordLoader
-) -> None:
-    counts = overturned(reproduce("table_3", "points", override)).sum(axis=3)
-    assert least < np.mean(np.abs(counts - PRINTED)) < most
-
-
 def test_the_printed_table_is_that_of_the_readme() -> None:
     readme = (CASES / "README.md").read_text(encoding="utf-8")
     section = readme.partition("## Table 3")[2].partition("\n## ")[0]

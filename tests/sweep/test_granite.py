@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import importlib.util
 import os
+import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -12,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shown_commands import of_blocks, run_all, run_in_shell, table
 
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
@@ -115,3 +118,65 @@ reports: [comparison: {{measure: PGV, resamples: 0}}]
         computed = int(counts["overturned_computed [-]"])
         # A standard deviation of the count over different halves of the tests is 10 to 19 %.
         assert computed == pytest.approx(int(counts["overturned_observed [-]"]), rel=0.2)
+
+
+@pytest.mark.long
+def test_the_readme_shows_what_its_commands_give(
+    granite: Path, convert: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The public folder is not here: its converter runs on two text files of it, and writes the
+    motions of the others from the half that is at hand.
+    """
+    pytest.importorskip("openpyxl")
+    shutil.copytree(CASES, tmp_path / "cases/granite")
+    monkeypatch.chdir(tmp_path)
+    _, converter, sweep, published = of_blocks(CASES / "README.md")
+    run_in_shell(converter.replace(".../data/Shake_Table_Response", str(granite / "raw")))
+    assert len(list(Path("cases/granite/motions").iterdir())) == 2
+    stored = motions_of(granite)
+    numbers = [int(row["test"]) for row in observed_rows(granite)]
+    tests = {
+        k: GroundMotion(stored[f"t{k:03d}"] * float(stored[f"s{k:03d}"]), 0.005, f"{k}", "", "")
+        for k in numbers
+    }
+    convert.write(
+        tests, convert.outcomes(granite / "raw" / convert.WORKBOOK), Path("cases/granite")
+    )
+    run_all([sweep])
+    printed = run_in_shell(published)
+    readme = CASES / "README.md"
+    assert f"the {len(numbers)} even-numbered tests" in readme.read_text(encoding="utf-8")
+    with Path("results/granite/sweep/comparison.csv").open(encoding="utf-8") as file:
+        held = [row for row in csv.DictReader(file) if row["records [-]"] == "held out"]
+    found = {
+        told: [
+            tuple(int(row[f"{name} [-]"]) for name in ("agreed", "counted", "overturned_computed"))
+            for row in held
+            if row["told_by [-]"] == by
+        ]
+        for told, by in {
+            "model, nine runs within 3 % of each motion": "model",
+            "threshold of PGV": "threshold of PGV",
+            "threshold of PGA": "threshold of PGA",
+        }.items()
+    }
+    models = re.findall(
+        r"^(.*), (fitted|held out): (\d+) of (\d+) .*?(\d+) over", printed, re.MULTILINE
+    )
+    outcomes = {(name, part): tuple(map(int, counts)) for name, part, *counts in models}
+    best = [
+        max((n for n, part in outcomes if part == "fitted" and n.startswith(f"Specimen {k}")),
+            key=lambda name: outcomes[name, "fitted"][0])
+        for k in (1, 2)
+    ]  # fmt: skip
+    found["published discrete elements"] = [outcomes[name, "held out"] for name in best]
+    shown = {name: rest for name, *rest in table(readme, "split by seed 1")[1:]}
+    for told, parts in found.items():
+        agreed, counted, _ = map(sum, zip(*parts, strict=True))
+        shares = [*(a / of for a, of, _ in parts), agreed / counted]
+        assert [float(cell.removesuffix(" %")) for cell in shown[told][:3]] == [
+            round(100 * share, 1) for share in shares
+        ]
+        digits = 1 if told.startswith("model") else 0
+        fallen = (f"{fell / (of / 126):.{digits}f}" for _, of, fell in parts)
+        assert shown[told][3] == " + ".join(fallen)

@@ -301,7 +301,8 @@ def heading(figure: Figure, *parts: str) -> None:
     lines = ["   |   ".join((title, *others))]
     if others and len(lines[0]) > most:
         remarks = "   |   ".join(others)
-        lines = [title, *wrap(remarks, most, max_lines=6 if narrow else 2, placeholder="...")]
+        lines = wrap(title, most, max_lines=2, placeholder="...") if narrow else [title]
+        lines += wrap(remarks, most, max_lines=6 if narrow else 2, placeholder="...")
     cut = [line if len(line) <= most else f"{line[: most - 3]}..." for line in lines]
     # A dollar sign in a title begins no formula.
     figure.suptitle("\n".join(cut), fontsize=small(), color=GREY, parse_math=False)

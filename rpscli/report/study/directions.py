@@ -207,7 +207,7 @@ def directions_figure(
 
     # A median is larger than any demand where half of the pairs overturn.
     medians = [of[1] for p in panels for q, s in p.spreads.items() if q == quantity for of in s]
-    beyond = "medians are not drawn where so many overturned" if np.isinf(medians).any() else ""
+    beyond = "no median where half of the pairs overturned" if np.isinf(medians).any() else ""
     return panel_figure(
         by_values(keys, panels),
         panels,

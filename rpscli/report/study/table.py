@@ -153,12 +153,13 @@ def _table(table: Table, options: OverturningOptions, shown: Shown) -> Found:
     width = min(style.WIDTH, 3.4 + 1.25 * len(heads))
 
     def picture(title: str) -> bytes:
-        beside = 0.3 + max(map(len, names), default=0) / style.LETTERS_PER_INCH
+        rows_named = [_folded(name, 12) for name in names] if style.narrow() else names
+        beside = 0.3 + max(map(len, "\n".join(rows_named).split("\n"))) / style.LETTERS_PER_INCH
         # Names may be as wide as the figure.
         letters = max(int(style.LETTERS_PER_INCH * (style.room(width) - beside) / len(heads)), 1)
         # What would run into the next column, or off the figure, goes on in further lines.
         above = ["\n".join(fill(line, letters) for line in head.split("\n")) for head in heads]
-        below = [[fill(text, int(letters / SMALLER)) for _, text in row] for row in texts]
+        below = [[_folded(text, int(letters / SMALLER)) for _, text in row] for row in texts]
         further = max((text.count("\n") for row in below for text in row), default=0)
         height = 0.34 + 0.11 * further  # of a row
 
@@ -175,16 +176,23 @@ def _table(table: Table, options: OverturningOptions, shown: Shown) -> Found:
                 first, middle = texts[y][x][0], y - 0.055 * further / height
                 size = small * min(1.0 / SMALL, letters / len(first))
                 axes.text(x, middle, first, va="bottom", fontsize=size, **inside)
-                second = below[y][x]
-                axes.text(x, middle + 0.08, second, va="top", fontsize=SMALLER * small, **inside)
+                size = SMALLER * small
+                axes.text(x, middle + 0.08, below[y][x], va="top", fontsize=size, **inside)
             axes.set_xticks(range(len(heads)), above)
-            axes.set_yticks(range(len(names)), names)
+            axes.set_yticks(range(len(names)), rows_named)
             axes.tick_params(length=0, labeltop=True, labelbottom=False)
             axes.grid(visible=False)
 
         return style.picture(draw, 1.1 + height * len(texts), width)
 
     return Found({"": written}, picture, rows.notes)
+
+
+def _folded(text: str, letters: int) -> str:
+    """In lines of so many letters, of which a comma ends the first ones."""
+    if len(text) <= letters:
+        return text
+    return "\n".join(fill(part, letters) for part in text.split(", "))
 
 
 TABLE = Report(TableOptions, table_report, results=lambda options: [options.result])
