@@ -5,6 +5,9 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import os
+import subprocess
+import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,10 +18,12 @@ from hypothesis import settings
 # each other, a thousand times as long as a matrix exponential of four rows takes.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import kernel_locks
+from kernel_locks import locked
 from paper_structures import RecordLoader
 
 from rpscli.analyses.kernels.compilation import compiled, is_ready
-from rpscli.physics.core.compile import cache_folder
+from rpscli.physics.planar.prepare import can_prepare
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 
@@ -28,7 +33,11 @@ settings.load_profile("untimed")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out tests marked `long` unless the marker expression speaks of them."""
+    """Leave out tests marked `long` unless the marker expression speaks of them.
+
+    What takes longest, the README's commands, begins first: at the end one worker would wait.
+    """
+    items.sort(key=lambda item: item.path.parent != config.rootpath / "tests")
     if "long" in config.option.markexpr:
         return
     config.hook.pytest_deselected(items=[i for i in items if i.get_closest_marker("long")])
@@ -42,29 +51,47 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 
 @contextlib.contextmanager
-def _alone() -> Iterator[None]:
-    """No other process that uses the same cache is here; Windows has no such lock."""
-    if os.name != "posix" or (folder := cache_folder()) is None:
-        yield
-        return
-    import fcntl
-
-    with (folder / "lock").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
-@contextlib.contextmanager
 def _compiled_once(variant: str) -> Iterator[None]:
-    with contextlib.nullcontext() if is_ready(variant) else _alone(), compiled(variant):
+    with contextlib.ExitStack() as held:
+        if not is_ready(variant) and not held.enter_context(locked(variant, wait=False)):
+            if threading.current_thread() is threading.main_thread():
+                _compile_another(variant)
+            held.enter_context(locked(variant))
+        held.enter_context(compiled(variant))
         yield
+
+
+def _compile_another(variant: str) -> None:
+    """While another worker compiles this one; what a test listens to does not hear of it."""
+    for other in ("pairs", "plain", "devices", "compliant"):  # what the suite without `long` needs
+        if other == variant or is_ready(other):
+            continue
+        with locked(other, wait=False) as mine, pytest.MonkeyPatch.context() as patch:
+            if mine:
+                patch.setattr("rpscli.analyses.kernels.compilation._listeners", [])
+                with compiled(other):
+                    return
+
+
+def _compile_in_one_process(module: str, variant: str) -> None:
+    if can_prepare():
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        command = [sys.executable, "-P", str(kernel_locks.__file__), module, variant]
+        subprocess.run(command, env=environment, check=False)  # what fails, the call tells
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _compile_once() -> Iterator[None]:
-    """Of workers that need the same kernel one compiles it, with two processes; the others wait."""
+    """Of workers that need the same kernel one compiles it; one that waits compiles another kernel.
+
+    Each then in one process: what two have in common, an eighth, would be compiled twice.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rpscli.analyses.kernels.history.compiled", _compiled_once)
+        if os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1") != "1":
+            for motion in ("planar", "spatial"):
+                place = f"rpscli.physics.{motion}.prepare.compile_in_parts"
+                patch.setattr(place, _compile_in_one_process)
         yield
 
 

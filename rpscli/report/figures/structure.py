@@ -91,7 +91,7 @@ def _tonnes(mass: float) -> str:
 MOST_MODES = 3
 """Vibration modes that are drawn, at most."""
 ELASTIC = "elastic shape (over the cap beam)"
-NORMALISED = "total shapes scaled to 1 at their largest component"
+NORMALISED = "shapes scaled to 1 at their largest component"
 
 
 def modes_figure(result: ModalResult, title: str) -> bytes:

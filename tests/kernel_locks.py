@@ -1,0 +1,50 @@
+"""Locks of the kernel cache, by which test workers share compilations out.
+
+Run as a program: compiles a kernel, beside other such programs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+
+from numba.core.caching import IndexDataCacheFile
+
+from rpscli.physics.core.compile import cache_folder
+from rpscli.physics.planar.prepare import garbage_kept
+
+
+@contextlib.contextmanager
+def locked(name: str, *, wait: bool = True) -> Iterator[bool]:
+    """Whether no other process that uses the same cache has this lock; Windows has none."""
+    if os.name != "posix" or (folder := cache_folder()) is None:
+        yield True
+        return
+    import fcntl
+
+    with (folder / f"{name}.lock").open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+        else:
+            yield True
+
+
+_save: Callable[..., None] = IndexDataCacheFile.save
+
+
+def save(file: IndexDataCacheFile, *code: object) -> None:
+    """Kernels have functions in common, and numba reads their index, adds to it and writes it."""
+    with locked("index"):
+        _save(file, *code)
+
+
+if __name__ == "__main__":
+    module, variant = sys.argv[1:]
+    IndexDataCacheFile.save = save  # type: ignore[method-assign]
+    with garbage_kept():
+        importlib.import_module(module).compile_whole(variant)
