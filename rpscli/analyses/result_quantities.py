@@ -244,7 +244,7 @@ PAIR = (
         )
         for way in "xy"
     ),
-    ResultQuantity("passes", "-", "passes by the upright", whole=True),
+    ResultQuantity("passes", "-", "passes near upright", whole=True),
     ResultQuantity(
         "passes_as_impacts", "-", "passes that lose like an impact", whole=True,
         kernel="passes_as_impacts", meaning="more than half of what an impact would lose",

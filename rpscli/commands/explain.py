@@ -213,7 +213,7 @@ def _lines(key: KeyReference) -> Table:
     """What is known of a key."""
     from rpscli.report.study.registry import REPORTS
 
-    needed = "not if its section is given" if key.required else ""
+    needed = "none, required in its section" if key.required else ""
     names = f"{', '.join(REPORTS.names())}; `rps explain NAME` lists the options of one"
     rows = {
         "means": key.meaning,
@@ -223,7 +223,7 @@ def _lines(key: KeyReference) -> Table:
         "words": ", ".join(key.words),
         "names": names if key.key.split(".")[-1] == "reports" else "",
         "keys": ", ".join(key.keys),
-        "left out": needed if key.default is None else str(key.default),
+        "default": needed if key.default is None else str(key.default),
         "enters": f"THEORY.md, section {key.sections}" if key.sections else "",
     }
     return Table.listing(rows.items())

@@ -126,7 +126,7 @@ def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
         ("uplifts and comes back", ["survived", "uplift, and no overturning"]),
         ("met, not shown", ["too few to exclude"]),
         ("base shear over uplift with devices", ["uplift_shear_ratio, a result"]),
-        ("law", ["flexible, rigid, value", "left out", "section 4"]),
+        ("law", ["flexible, rigid, value", "default", "section 4"]),
     ],
 )
 def test_what_a_word_means(rps: Invoke, word: str, said: list[str]) -> None:

@@ -144,7 +144,7 @@ class SuperstructureSection(Section):
     stiffness: Stiffnesses | None = None
     """storey stiffness in place of period and profile: one value, or a list"""
     damping: DampingSection | None = None
-    """on a fixed base"""
+    """damping of the building on a fixed base"""
     vertical_period: Time | None = None
     """first period of the vertical vibration on the cap beam; gives the shock of impacts in the
     forces of columns"""

@@ -116,8 +116,7 @@ CAPTIONS = {
     "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
     " the events.",
     "displacements": "Displacements relative to the ground against time.",
-    "moment_rotation": "Moment about the contact points against rotation, and that of the"
-    " weight alone.",
+    "moment_rotation": "Driving and restoring moment about the contact points against rotation.",
     "energy": "Balance of the energy supplied by the ground.",
     "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
     "devices": "Force against displacement of each device between ground and cap beam.",

@@ -236,7 +236,7 @@ def _ways(result: TimeHistoryResult, name: str) -> str:
 
 
 def _passes(result: TimeHistoryResult) -> list[Row]:
-    """How often it passed by the upright, how near, and what that takes."""
+    """How often it passed near upright, how closely, and what that takes."""
     rows = [("uplifts, passes", f"{result.uplifts}, {result.passes}", "", "")]
     if result.passes:
         rows.append(_row(result, "passes_as_impacts"))
@@ -253,7 +253,7 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         return None
     lost = 0 if result.passes_as_impacts is None else int(result.passes_as_impacts)
     return (
-        f"{result.passes} passes by the upright, however wide, of which {lost} lose like an impact"
+        f"{result.passes} passes near upright, however wide, of which {lost} lose like an impact"
         " (l > 0.5);"
         f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
         " how the end of the motion dies, and hardly how large it becomes"
