@@ -45,7 +45,7 @@ def is_ready(variant: str) -> bool:
 def compiled(variant: str) -> Iterator[None]:
     """Around a call of the kernel: announce the compilation if there is one, and remember it."""
     from rpscli.physics.core.compile import cache_folder, remember_compiled
-    from rpscli.physics.planar.prepare import compile_kernel
+    from rpscli.physics.planar.prepare import can_prepare, compile_kernel
 
     name = KERNELS[variant]
     if is_ready(variant):
@@ -67,4 +67,7 @@ def compiled(variant: str) -> Iterator[None]:
             if cache_folder() is not None:  # else the first call compiles
                 told.close()
         yield
-    remember_compiled(name)
+    if can_prepare():
+        remember_compiled(name)
+    else:  # there is no machine code that other processes find
+        _ready.add(name)

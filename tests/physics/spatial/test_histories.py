@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -189,12 +190,14 @@ def test_alone_and_in_company() -> None:
         assert one.history.tobytes() == other.history.tobytes()
 
 
-def test_python_and_machine_code_agree_to_the_last_bit() -> None:
+def test_python_and_machine_code_agree_to_the_last_bit(tmp_path: Path) -> None:
     script = str(short_history.__file__)
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
+    environment["RPS_CACHE_DIR"] = str(tmp_path)
     command = [sys.executable, "-P", "-W", "error", script]
     done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
     assert done.stdout.strip() == short_history.digest()
+    assert not [*tmp_path.rglob("*.compiled")]  # which would tell others that they have it
 
 
 def test_more_instants_change_nothing() -> None:
