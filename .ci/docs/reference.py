@@ -200,7 +200,7 @@ def keys(theory: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
         if shared:
             parts.insert(
                 2,
-                "As in a [case](case.md) or a [study](study.md): "
+                f"As in a [case](case.md){' or a [study](study.md)' * (name != 'study')}: "
                 f"{', '.join(f'`{section}`' for section in shared)}.\n",
             )
         known |= {key.key: key for key in key_references(model) if key.key not in known}
