@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from paper_structures import Array, RecordLoader, needs_compiled_kernels
+from shown_commands import table
 from sweep.small_studies import study_file
 
 from reproduction.conftest import CASES, Reproduce, Row
@@ -177,5 +178,8 @@ def test_the_printed_table_is_that_of_the_readme() -> None:
     cells = re.findall(r"0\.(\d\d) / 0\.(\d\d)", section)
     assert len(cells) == PRINTED.size
     assert [int(printed) for _, printed in cells] == PRINTED.ravel().tolist()
+    head, *rows = table(CASES / "README.md", "The counts themselves")
+    counts = [row[head.index("as recorded")] for row in rows]
+    assert [int(computed) for computed, _ in cells] == list(map(int, counts))
     differences = [int(computed) - int(printed) for computed, printed in cells]
     assert np.mean(np.abs(differences)) <= 2.0
