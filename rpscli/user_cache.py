@@ -35,10 +35,7 @@ def users_folder(variable: str, usual: str = "", *below: str) -> Path | None:
 
 
 def is_private(folder: Path) -> bool:
-    """Whether nobody but its owner, who is this user, may write to a folder; else says so.
-
-    What is cached is run as code.
-    """
+    """Whether only this user may write to a folder, from which code is run; else says so."""
     if os.name == "nt":
         return True
     found, amiss = folder.stat(), ""

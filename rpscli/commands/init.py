@@ -51,9 +51,7 @@ def command(
     """Write a commented case to FILE (case.yaml or study.yaml by default; - prints it)."""
     if example is not None:
         if study or editor or str(file) == "-":
-            raise UsageError(
-                "--example writes files as they are, into a folder; leave out the rest"
-            )
+            raise UsageError("--example writes files as they are into a folder; leave out the rest")
         _example(example, file or Path(FOLDER), terminal, force=force)
         return
     from rpscli.case.text.files import starter_text
