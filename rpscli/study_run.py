@@ -29,10 +29,9 @@ from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.check import needs_of
 from rpscli.sweep.points.layout import StudyPoints, reproduction
 from rpscli.sweep.points_csv import points_csv
-from rpscli.sweep.run.cluster import Cluster
+from rpscli.sweep.run.engines import Cluster, Threads
 from rpscli.sweep.run.resume import all_keys, remember, resume
 from rpscli.sweep.run.runner import Finish, Progress, run
-from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, judged, rate_notes
 from rpscli.sweep.store import Store

@@ -17,7 +17,7 @@ from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import PointResults
-from rpscli.sweep.run import threads
+from rpscli.sweep.run import engines
 from rpscli.sweep.store import Store
 
 LAST = 3
@@ -58,6 +58,6 @@ if __name__ == "__main__":
     NUMBER = signal.Signals[sys.argv.pop(1)]
     # Shells have what runs in the background ignore SIGINT, and its children inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    threads.run_batch = compute  # type: ignore[attr-defined]
+    engines.run_batch = compute  # type: ignore[attr-defined]
     Store.add = add  # type: ignore[method-assign, assignment]
     program()

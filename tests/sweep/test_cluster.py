@@ -16,11 +16,10 @@ from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Plan, Point
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.points_csv import points_csv
-from rpscli.sweep.run.cluster import Cluster, compute
+from rpscli.sweep.run.engines import Cluster, Threads, compute
 from rpscli.sweep.run.resume import all_keys, resume
 from rpscli.sweep.run.runner import Progress, run
 from rpscli.sweep.run.schedule import Engine
-from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import tabulate
 from sweep.small_studies import STUDY, Make
@@ -100,6 +99,6 @@ def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make, sched
 
 
 def test_no_scheduler_is_told(study_of: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rpscli.sweep.run.cluster.PATIENCE", 0.3)
+    monkeypatch.setattr("rpscli.sweep.run.engines.PATIENCE", 0.3)
     with pytest.raises(UsageError, match="no Dask scheduler"):
         Cluster("tcp://127.0.0.1:9", lay_out(study_of()).plan)

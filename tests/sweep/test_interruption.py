@@ -20,9 +20,9 @@ from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.evaluation.points import Point
 from rpscli.sweep.evaluation.results import MISSING, PointResults
 from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.run.engines import Threads
 from rpscli.sweep.run.resume import all_keys, resume
 from rpscli.sweep.run.runner import Progress, run
-from rpscli.sweep.run.threads import Threads
 from rpscli.sweep.store import Store
 from sweep.small_studies import ROOT, STUDY, Make
 
@@ -114,7 +114,7 @@ def test_the_second_ctrl_c_stops_at_once(
         told.append("first")
         os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr("rpscli.sweep.run.threads.run_batch", one_batch)
+    monkeypatch.setattr("rpscli.sweep.run.engines.run_batch", one_batch)
     before = signal.getsignal(signal.SIGINT)
     with Store(workplace) as store:
         begin = resume(layout, keys, store, retry_failed=False)
@@ -141,7 +141,7 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
         assert heard.wait(20.0)
         return run_batch(context, points)
 
-    monkeypatch.setattr("rpscli.sweep.run.threads.run_batch", one_batch)
+    monkeypatch.setattr("rpscli.sweep.run.engines.run_batch", one_batch)
     keys = all_keys(layout, context)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:

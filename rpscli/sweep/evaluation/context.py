@@ -139,6 +139,7 @@ class System:
     structure: PodiumStructure
     settings: TimeHistorySettings
     digest: bytes
+    """Of everything in its resolved case that decides about results."""
 
     def perturbed(self, restitution_change: float) -> PodiumStructure:
         """The structure with its restitution times a factor; the building is shared."""
@@ -151,13 +152,9 @@ class System:
 
 def system_of(case: Case) -> System:
     """The system that a case describes."""
-    return System(case.structure, case.analysis, digest_of(case.document))
-
-
-def digest_of(document: Mapping[str, Any]) -> bytes:
-    """Digest of everything in a resolved case that decides about results."""
-    deciding = {name: document.get(name) for name in DECIDING}
-    return hashlib.sha256(json.dumps(deciding, sort_keys=True).encode()).digest()
+    deciding = {name: case.document.get(name) for name in DECIDING}
+    digest = hashlib.sha256(json.dumps(deciding, sort_keys=True).encode()).digest()
+    return System(case.structure, case.analysis, digest)
 
 
 def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
