@@ -66,6 +66,7 @@ LITTLE: dict[ModuleType, dict[str, Any]] = {
 
 @pytest.mark.long
 @pytest.mark.posix
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of a package that the records need
 @needs_compiled_kernels
 @pytest.mark.parametrize("module", LITTLE, ids=lambda module: module.__name__)
 def test_a_little_of_each_benchmark_runs(
