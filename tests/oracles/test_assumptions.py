@@ -258,5 +258,4 @@ def test_demands_of_far_field_records(
     assert np.median(shear) == pytest.approx(median, abs=0.01)
     assert max(shear) == pytest.approx(largest, abs=0.01)
     assert min(friction) > 1.01
-    # columns that come down and lift at the same instant count as standing there: two of 161
-    assert sum(demand > 1.06 for demand in friction) <= (2 if storeys == 6 else 0)
+    assert max(friction) < 1.06

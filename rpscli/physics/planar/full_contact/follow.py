@@ -197,7 +197,8 @@ def leave_contact(
         set_ground_of_part(of, at, h)
         fill_map(of, each, SHORT_STEP, h)
         follow_modes(of, each, SHORT_STEP)
-    observe_block(s, l, system, block, pull, h, 1)
+    if h > 0.0:  # columns that lift off at the instant at which they came down have not stood
+        observe_block(s, l, system, block, pull, h, 1)
     if output.samples.shape[0] > 0:
         book_blocks(s, system, block, SHORT_STEP, h)
         book_step(s, l, block, 0)
