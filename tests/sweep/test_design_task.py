@@ -502,7 +502,7 @@ def test_the_shipped_design_against_a_grid(workplace: Path, no_figures: None) ->
     """
     file = str(ROOT / "cases/designs/column_width.yaml")
     result = CliRunner().invoke(program, ["design", file, "--json", "-o", "out"])
-    assert result.exit_code == 0, result.stderr
+    assert result.exit_code == 10, result.stderr  # two of the 14 other motions overturn the best
     found = json.loads(result.stdout)
     text, axis = read_text(file), np.linspace(0.0, 1.0, 31)
     task = parse_design(text, file)
