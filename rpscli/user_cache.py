@@ -6,7 +6,8 @@ import os
 import stat
 import tempfile
 import warnings
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 
 VARIABLE = "RPS_CACHE_DIR"
@@ -56,3 +57,15 @@ def is_writable(folder: Path) -> bool:
             return True
     except OSError:
         return False
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """One process at a time, where files can be locked; a lock ends with its process."""
+    import sqlite3
+
+    with ExitStack() as held:
+        with suppress(sqlite3.Error):
+            connection = sqlite3.connect(folder / "saving", timeout=60.0)
+            held.enter_context(closing(connection)).execute("BEGIN EXCLUSIVE")
+        yield

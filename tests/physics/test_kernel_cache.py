@@ -7,11 +7,13 @@ import errno
 import os
 import runpy
 import shutil
+import sqlite3
 import stat
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -28,7 +30,7 @@ from rpscli.physics.core.compile import (
 )
 from rpscli.physics.planar import prepare
 from rpscli.physics.planar.prepare import compile_in_parts  # workers have one of their own
-from rpscli.user_cache import user_cache
+from rpscli.user_cache import alone_in, user_cache
 
 
 @pytest.fixture(autouse=True)
@@ -46,6 +48,15 @@ def test_the_user_may_name_the_place(fresh_folder: pytest.MonkeyPatch, tmp_path:
     assert folder is not None
     assert folder.parent == tmp_path / "here"
     assert folder.is_dir()
+
+
+def test_one_process_keeps_machine_code_at_a_time(tmp_path: Path) -> None:
+    with (
+        alone_in(tmp_path),
+        closing(sqlite3.connect(tmp_path / "saving", 0)) as other,
+        pytest.raises(sqlite3.OperationalError, match="locked"),
+    ):
+        other.execute("BEGIN EXCLUSIVE")
 
 
 def test_a_place_that_cannot_be_written_is_passed_over(

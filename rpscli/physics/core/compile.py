@@ -21,7 +21,7 @@ import numba
 from numba.core import cgutils, types
 from numba.extending import intrinsic, overload, register_jitable
 
-from rpscli.user_cache import VARIABLE, is_private, user_cache
+from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Array = TypeVar("Array")
@@ -116,7 +116,8 @@ def _kept_if_there_is_room(made: Any, folder: Path) -> None:
 
     def saved(*compiled_code: Any) -> None:
         try:
-            save(*compiled_code)
+            with alone_in(folder):  # numba numbers the files of a function without a lock
+                save(*compiled_code)
         except OSError as error:
             _not_kept(folder, error.strerror or str(error))
 

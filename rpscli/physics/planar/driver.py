@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from threading import Thread, current_thread, main_thread
+from threading import Event, Thread, current_thread, main_thread
 
 import numpy as np
 
@@ -108,15 +108,22 @@ def run_interruptible(
     if not interruptible or current_thread() is not main_thread():
         lanes_of(state, block, run)
         return
-    plain = state.view(np.ndarray)
-    worker = Thread(target=lanes_of, args=(state, block, run), daemon=True)
-    worker.start()
+    plain, ended = state.view(np.ndarray), Event()
+
+    def work() -> None:
+        try:
+            lanes_of(state, block, run)
+        finally:
+            ended.set()
+
+    Thread(target=work, daemon=True).start()
     try:
-        while worker.is_alive():
-            worker.join(HEARS)
+        # Not Thread.join: interrupted, it takes a running thread for ended before Python 3.13.
+        while not ended.wait(HEARS):
+            pass
     except BaseException:
         plain["stop"] = 1
-        worker.join()
+        ended.wait()
         raise
 
 
