@@ -51,7 +51,7 @@ SEAMS = {
     "SIGTERM": set[str](),
     "SIGKILL": set[str](),
     "SIGINT": {"sweep/run/runner.py"},
-    "sqlite3": {"sweep/store.py"},
+    "sqlite3": {"sweep/store.py", "user_cache.py"},
 }
 """What is not the same everywhere, and the only files that may name it."""
 
