@@ -118,7 +118,7 @@ def test_homes_get_no_folders_of_names_that_nobody_uses(
     for variable in (user_cache.VARIABLE, "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR"):
         monkeypatch.setenv(variable, "")  # to be put back
         monkeypatch.delenv(variable)
-    monkeypatch.delitem(sys.modules, "matplotlib")
+    monkeypatch.delitem(sys.modules, "matplotlib", raising=False)
     monkeypatch.setattr(sys, "platform", system)
     expanded = str(tmp_path / home) if home != "~" else home
     monkeypatch.setattr(os.path, "expanduser", lambda path: path.replace("~", expanded))
