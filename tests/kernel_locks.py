@@ -9,9 +9,7 @@ import contextlib
 import importlib
 import os
 import sys
-from collections.abc import Callable, Iterator
-
-from numba.core.caching import IndexDataCacheFile
+from collections.abc import Iterator
 
 from rpscli.physics.core.compile import cache_folder
 from rpscli.physics.planar.prepare import garbage_kept
@@ -34,17 +32,7 @@ def locked(name: str, *, wait: bool = True) -> Iterator[bool]:
             yield True
 
 
-_save: Callable[..., None] = IndexDataCacheFile.save
-
-
-def save(file: IndexDataCacheFile, *code: object) -> None:
-    """Kernels have functions in common, and numba reads their index, adds to it and writes it."""
-    with locked("index"):
-        _save(file, *code)
-
-
 if __name__ == "__main__":
     module, variant = sys.argv[1:]
-    IndexDataCacheFile.save = save  # type: ignore[method-assign]
     with garbage_kept():
         importlib.import_module(module).compile_whole(variant)
