@@ -77,6 +77,14 @@ def sampled(distribution: str) -> tuple[str, str]:
         # reports
         (SCALE, f"reports: demand\n{SCALE}", ("study.yaml:10:10", "must be a list")),
         (SCALE, f"reports: [3]\n{SCALE}", ("reports.0 = 3", "must be a name")),
+        *(
+            (
+                SCALE,
+                f"reports: [{{fragility: {{name: {name}}}}}]\n{SCALE}",
+                ("study.yaml:10:30: reports.0.fragility.name", "must be the name of a file"),
+            )
+            for name in ("../up", "/top", "'a:b'", ".hidden", "x" * 101, '"two\\nlines"')
+        ),
         (
             SCALE,
             f"reports: [xyzzy]\n{SCALE}",

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Generic, TypeVar, get_args
 
-from rpscli.case.schema.fields import Section, Text
+from pydantic import AfterValidator
+
+from rpscli.case.schema.fields import Section, Text, refuse
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.schema import Analysis, AnyKeys, StudyFile, study_file
 from rpscli.case.text.document import Document, Fault, Path
@@ -37,10 +39,20 @@ def _is_varied(annotation: Any) -> bool:
     return _VARIED in getattr(annotation, "__metadata__", ()) or any(map(_is_varied, parts))
 
 
+def _file_name(text: str) -> str:
+    fits = len(text.encode()) <= 100 and text[0] not in ". " and text.isprintable()
+    if not fits or {*text} & {*'/\\:*?"<>|'}:
+        refuse(
+            'must be the name of a file: at most 100 bytes, no / \\ : * ? " < > | or line end in it'
+            " and no dot or space first"
+        )
+    return text
+
+
 class ReportOptions(Section):
     """Options that every report has."""
 
-    name: Text | None = None
+    name: Annotated[Text, AfterValidator(_file_name)] | None = None
     """stem of its files; the report's kind by default"""
     title: Text | None = None
     """heading of the figure; the study's by default"""
