@@ -123,7 +123,7 @@ def test_an_interruption_ends_with_130(rps: Invoke, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("rpscli.analyses.modal.modal", interrupted)
     result = rps("modal", "small.yaml", "--json")
     assert result.exit_code == 130
-    assert "interrupted" in result.stderr
+    assert "interrupted; no file is half written" in result.stderr
     assert json.loads(result.stdout)["error"]["type"] == "Interrupted"
     assert not Path("results").exists()
 

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from rpscli.errors import CaseError
-from rpscli.report.study.fragility import FragilityOptions, LimitStates, fragilities
+from rpscli.report.study.fragility import FragilityOptions, LimitStates, fragilities, fragility
 from rpscli.report.study.scatter import (
     PulseSection,
     SpectrumOptions,
@@ -278,6 +278,31 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     assert report.notes[2].startswith("drift_ratio > 0.01; overturning: the data are separated")
     assert report.notes[0].startswith("pools 2 values of podium.bearing.slenderness and 3 values")
     assert report.notes[1].endswith(counts)
+
+
+@pytest.mark.parametrize(("one_in", "beyond"), [(5, True), (1, False)])
+def test_a_median_beyond_all_intensities_is_called_extrapolated(
+    study_of: Make, one_in: int, beyond: bool
+) -> None:
+    layout = lay_out(
+        study_of(STUDY, ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}"))
+    )
+
+    def answer(number: int) -> Stored:
+        point = layout[number]
+        high = (
+            number % 7 == 0 if point.scale == 0.4 else point.scale == 0.8 and number % one_in == 0
+        )
+        return Stored("survived", None, {"scale": 1.0, "rotation_ratio": 0.9 if high else 0.1})
+
+    options = FragilityOptions(
+        limits=LimitStates(rotation_ratio=(0.5,), overturning=False), series=(), resamples=0
+    )
+    results = results_of(tabulate(layout, map(answer, range(len(layout)))))
+    (curve,) = fragilities(results, options).curves
+    assert curve.fit.fitted
+    assert (curve.fit.median > 0.8) == beyond
+    assert ("extrapolated" in fragility(results, options).remark) == beyond
 
 
 def test_intensities_follow_records_and_scales(study_of: Make) -> None:
