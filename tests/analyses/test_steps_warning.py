@@ -47,13 +47,13 @@ def error(result: TimeHistoryResult, accuracy: float) -> float:
 
 
 @pytest.mark.parametrize(
-    ("seed", "amplitude", "enough"), [(190, 1.3, 2), (281, 1.4, 2), (50, 1.3, 4)]
+    ("seed", "amplitude", "enough"), [(7, 1.4, 2), (155, 1.5, 2), (328, 1.4, 4)]
 )
 def test_a_fast_vibration_between_devices_is_seen(seed: int, amplitude: float, enough: int) -> None:
-    """The energy closes to 1e-7, and yet the default step is 5e-4 and more off."""
+    """The energy closes to 1e-7, and yet the default step is 1e-3 and more off."""
     result = ringing(0.002, seed, amplitude)
     assert abs(result.energy.residual) < 2e-7 * result.energy.input
-    assert error(result, 1.0) > 3e-4
+    assert error(result, 1.0) > 1e-3
     assert error(result, enough) < 1e-4
     warning = steps_warning(result)
     assert warning is not None
@@ -71,7 +71,7 @@ def test_ordinary_damping_settles_it() -> None:
 def test_motions_that_never_converge_are_called_samples(monkeypatch: pytest.MonkeyPatch) -> None:
     above = building(1, 0.06, damping=ModalDamping(0.001))
     structure = podium(1, 0.15, 0.3, superstructure=above)
-    result = history(structure, waves(60.0, 0.01, 3.0 * structure.uplift_acceleration, seed=3))
+    result = history(structure, waves(60.0, 0.01, 3.0 * structure.uplift_acceleration, seed=7))
     warning = steps_warning(result)
     assert warning is not None
     assert warning.endswith("judge by many records")

@@ -213,8 +213,13 @@ UPLIFTED_ANGLE = 0.6
 """Largest Taylor step times the highest uplifted frequency [rad], at accuracy 1."""
 
 MOST_LOST = 5e-6
-"""What steps may take from the energy of the fastest vibration, which has some hundredths of all at
-most. It shortens the steps of buildings with less than some 7 % of damping in their last mode."""
+"""What steps may take from the energy of the fastest vibration, which has `USUAL_SHARE` of all at
+most. It shortens the steps of buildings with less than some 7 % of damping in their last mode, of
+one storey, whose only mode may have all energy, with less than some 30 %."""
+
+USUAL_SHARE = 0.2
+"""Effective mass of the last mode over all, which is its share of what impacts give: less than
+this in nearly all buildings of several storeys."""
 
 UPLIFTED_DECAY = 1.0
 """Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
@@ -290,7 +295,9 @@ def uplifted_angle(structure: PodiumStructure) -> float:
         return UPLIFTED_ANGLE
     damped = float(2.0 * building.damping_ratios[-1] * building.frequencies[-1])
     lasting = 1.0 / max(damped, 1.0 / LONGEST_FREE_VIBRATION)
-    drift = MOST_LOST * math.factorial(8) / (highest_frequency(structure) * lasting)
+    share = float(building.participation[-1] ** 2 / np.sum(building.participation**2))
+    lost = MOST_LOST * min(1.0, USUAL_SHARE / share)
+    drift = lost * math.factorial(8) / (highest_frequency(structure) * lasting)
     return float(min(UPLIFTED_ANGLE, drift ** (1.0 / 7.0)))
 
 
