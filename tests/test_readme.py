@@ -181,7 +181,7 @@ def test_set_up_commands_run(tmp_path: Path) -> None:
     """
     left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*cache", "results", "dist")
     shutil.copytree(ROOT, tmp_path / "clone", ignore=left_out)
-    variables = {"PYTHONPATH": "", "RPS_CACHE_DIR": str(tmp_path / "kernels")}
+    variables = {"PYTHONPATH": "", "COLUMNS": "", "RPS_CACHE_DIR": str(tmp_path / "kernels")}
     first, _, then = SET_UP
     enter = f"cd {tmp_path / 'clone'}; "
     printed = run_in_shell(enter + first, **variables)

@@ -310,10 +310,12 @@ PAIR_ERRORS: list[float] = []
         "20271-histories 2-608",
         "20281-histories 0-735",
         "20411-histories 0-489",
+        "20412-histories 0-908",
     ],
 )
 def test_histories_that_lost_too_much(seed: str) -> None:
-    # at coarser steps, also of one storey, and where the last term happened to be small
+    # at coarser steps, also of one storey; where the last term happened to be small; and the
+    # last mode of sixty storeys has no mass that could lose any
     assert judged_history(Random(seed)) in OUTCOMES  # noqa: S311 -- no secret
 
 

@@ -296,7 +296,7 @@ def uplifted_angle(structure: PodiumStructure) -> float:
     damped = float(2.0 * building.damping_ratios[-1] * building.frequencies[-1])
     lasting = 1.0 / max(damped, 1.0 / LONGEST_FREE_VIBRATION)
     share = float(building.participation[-1] ** 2 / np.sum(building.participation**2))
-    lost = MOST_LOST * min(1.0, USUAL_SHARE / share)
+    lost = MOST_LOST * USUAL_SHARE / max(share, USUAL_SHARE)
     drift = lost * math.factorial(8) / (highest_frequency(structure) * lasting)
     return float(min(UPLIFTED_ANGLE, drift ** (1.0 / 7.0)))
 
