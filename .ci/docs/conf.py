@@ -31,11 +31,11 @@ nitpick_ignore_regex = [
     ("py:obj", r".*"),  # single backticks of docstrings: a link if there is one, else code
     (
         "py:.*",
-        r"rpscli\.(case|physics|report|sweep|study_run|studies\._\w+|records\.(quantities|recording)|model\.contact\.Bed)\b.*",
+        r"rpscli\.(case|physics|report|sweep|study_run|studies\._\w+|records\.(quantities|ground_motion\.Recording)|model\.contact\.Bed)\b.*",
     ),
     (
         "py:.*",
-        r"(Record|Way|Standing|Target|Measure|Of|ReportRequest|Bed|tuple\[.*)",
+        r"(Record|Way|FileName|Standing|Target|Measure|Of|ReportRequest|Bed|tuple\[.*)",
     ),  # names of types
     ("py:.*", r"(numpy|np|collections|pathlib|typing|types|matplotlib|pandas|pydantic)\..*"),
     (

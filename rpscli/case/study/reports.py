@@ -49,10 +49,14 @@ def _file_name(text: str) -> str:
     return text
 
 
+FileName = Annotated[Text, AfterValidator(_file_name)]
+"""Name of a file in the folder of results, without its ending."""
+
+
 class ReportOptions(Section):
     """Options that every report has."""
 
-    name: Annotated[Text, AfterValidator(_file_name)] | None = None
+    name: FileName | None = None
     """stem of its files; the report's kind by default"""
     title: Text | None = None
     """heading of the figure; the study's by default"""

@@ -168,7 +168,7 @@ def rendered(tables: Iterable[Part]) -> str:
     console = Console(
         file=page,
         force_terminal=screen or None,  # None leaves it to FORCE_COLOR
-        width=None if screen or "COLUMNS" in os.environ else PLAIN_WIDTH,
+        width=None if screen or os.environ.get("COLUMNS") else PLAIN_WIDTH,
         # rich leaves bold letters where NO_COLOR asks for none.
         color_system=None if os.environ.get("NO_COLOR") else "auto",
         highlight=False,
