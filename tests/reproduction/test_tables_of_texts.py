@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from shown_commands import ROOT, run_all, table
 
 from reproduction.conftest import CASES, Reproduce, Row, rows_of
 from reproduction.test_histories import PRINTED, arranged, column, overturned
+from rpscli import load_study
 from rpscli.constants import STANDARD_GRAVITY
 
 pytestmark = [pytest.mark.long, needs_compiled_kernels]
@@ -175,3 +177,51 @@ def test_what_the_ends_bear_on(contact: list[Row], fema_record: RecordLoader) ->
     assert {(row[0], row[1]): row[2:] for row in told} == {
         key: contact_cells(rows) for key, rows in groups.items()
     }
+
+
+BUILDING = (
+    "superstructure.storeys",
+    "superstructure.period",
+    "podium.superstructure_mass_ratio",
+    "podium.bearing.slenderness",
+    "podium.bearing.curvature_ratio",
+)
+
+
+def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
+    """Rotations and shears are of motions under which both stand and uplift."""
+    folder = ROOT / "cases/studies/impact_law"
+    text = " ".join((folder / "README.md").read_text("utf-8").split())
+    found = load_study(folder / "impact_law.yaml").run(tmp_path / "run").columns
+    names = [found[name].astype(str) for name in ("record", *BUILDING, "podium.impact.law")]
+    order = np.lexsort(names).reshape(2, 576, 44)  # flexible, then rigid
+    fell = np.char.startswith(found["outcome"][order], "overturned")
+    stood = (~fell & (found["uplifts"][order] > 0)).all(axis=0)
+
+    def ratios(name: str) -> Array:
+        """Of rigid over flexible, (576, 44); NaN where one of them overturns or does not uplift."""
+        flexible, rigid = np.where(stood, found[name][order], np.nan)
+        return np.asarray(rigid / flexible)
+
+    of_all, differ = 100 * fell.mean(axis=(1, 2)), np.abs(np.diff(fell.sum(axis=2), axis=0))
+    assert "{:.2f} % with `flexible` and {:.2f} % with `rigid`".format(*of_all) in text
+    assert f"in {(differ <= 1).sum()} of 576 buildings the counts differ" in text
+    assert differ.max() == 5
+    rotation = ratios("max_rotation")
+    off = np.abs(np.nanmedian(rotation, axis=1) - 1)
+    assert f"within 2 % in {100 * (off <= 0.02).mean():.0f} % of" in text
+    assert f"within {100 * off.max():.1f} % in all" in text
+    low, high = np.nanquantile(rotation, [0.05, 0.95])
+    assert f"is below {low:.2f} or above {high:.2f} times its other value" in text
+    shear = ratios("max_base_shear")
+    period, eta, slope = (found[name][order[0, :, 0]].astype(float) for name in BUILDING[1:4])
+    stout = eta * slope**2 > 0.12 - 1e-9
+    stiff = shear[stout & (period == 0.15)]
+    lowest = np.nanmedian(stiff, axis=1).min()
+    words = f"{100 * (1 - np.nanmedian(stiff)):.0f} % lower in the median, up to"
+    assert f"{words} {100 * (1 - lowest):.0f} % in a building" in text
+    assert np.nanquantile(stiff, 0.05) < 0.5
+    less = 100 * (1 - np.nanquantile(shear[stout & (period == 0.3)], [0.5, 0.05]))
+    assert "{:.0f} % lower in the median, {:.0f} % in one motion of twenty".format(*less) in text
+    ends = 100 * (np.nanquantile(shear[period >= 0.6], [0.05, 0.95]) - 1)
+    assert "nine of ten motions are within {:.0f} and {:+.0f} %".format(*ends) in text
