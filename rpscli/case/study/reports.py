@@ -40,7 +40,7 @@ def _is_varied(annotation: Any) -> bool:
 
 
 def _file_name(text: str) -> str:
-    fits = len(text.encode()) <= 100 and text[0] not in ". " and text.isprintable()
+    fits = text.isprintable() and text[0] not in ". " and len(text.encode()) <= 100
     if not fits or {*text} & {*'/\\:*?"<>|'}:
         refuse(
             'must be the name of a file: at most 100 bytes, no / \\ : * ? " < > | or line end in it'
