@@ -1,0 +1,68 @@
+"""Ends that give way: full contact with a stiffness, and gradual uplift (Theory, section 12).
+
+In full contact, BEDDED, the tilt is a signed number within -phi_u and phi_u with B = 0 and C = C_u:
+constants of a phase like others, with `bed_k` and `bed_c`. Beyond it a plane end lifts gradually,
+by `sink` and `root` of what `laws` takes from both arms.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.core.compile import compiled
+from rpscli.physics.laws import lanes_of, patch, polar, ways_of
+from rpscli.physics.state import BEDDED, ROCKING, ROLLING, Record
+
+
+@compiled
+def set_patches(s: Record) -> None:
+    """Write w and its slope of all lanes at a stage."""
+    for l in range(lanes_of(s)):
+        tilt = s.new_tilt[0, l], (s.new_tilt[1, l] if ways_of(s) == 2 else 0.0)
+        x, _, _, _, _ = polar(s, l, tilt, (0.0, 0.0))
+        s.w[l], s.dw[l] = patch(s, l, x)
+
+
+@compiled
+def load_bed(s: Record, l: int, system: Record) -> None:
+    """Begin a history on its bed, or on rigid ends."""
+    s.bed_u[l], s.fade[l] = system.bed_uplift, 0.0
+    s.bed_energy[l], s.bedded_time[l], s.impact_number[l] = 0.0, 0.0, 0.0
+    if system.bed_full > 0.0:
+        s.fade[l] = 1.0 / (system.bed_full - system.bed_uplift)
+
+
+@compiled
+def first_phase(system: Record) -> int:
+    """The phase in which a tilt grows from zero: rolling, unless the edges are sharp."""
+    return ROLLING if system.beta > 0.0 else ROCKING
+
+
+@compiled
+def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
+    """What a bed changes in a phase of motion that is entered: constants, range, steps."""
+    s.bed_k[l], s.bed_c[l], s.sink[l], s.root[l] = 0.0, 0.0, 0.0, 0.0
+    if system.compliant == 0:
+        return
+    uplift, full = system.bed_uplift, system.bed_full
+    if phase == BEDDED:
+        s.p[l], s.q0[l], s.c[l], s.u0[l], s.v0[l] = 0.0, 0.0, system.bed_height, 0.0, 0.0
+        s.x_low[l], s.x_high[l] = -uplift, uplift
+        s.bed_k[l], s.bed_c[l] = system.bed_k, system.bed_c
+        s.h_most[l] = 1.0 / system.bedded_rate
+    elif phase == first_phase(system):
+        s.x_low[l] = uplift
+        lifts = s.x[l] < full or (s.x[l] == full and s.v[l] < 0.0)
+        if full == 0.0 or lifts:
+            s.sink[l], s.root[l] = system.sink, system.root
+        if full > 0.0 and lifts:
+            s.x_high[l] = min(s.x_high[l], full)
+        elif full > 0.0:
+            s.x_low[l] = full
+
+
+@compiled
+def impact_number(s: Record, l: int, system: Record, rate: float) -> float:
+    """chi of a re-entry at a rate of the tilt [rad/s]."""
+    half_width = system.R * math.sin(system.alpha)
+    return abs(rate) * math.sqrt(2.0 * half_width / (system.gravity * system.bed_uplift))

@@ -1,0 +1,538 @@
+"""Devices of the rocking storey: what they do at a motion, and where their laws change (section 11).
+
+Dampers and stops push the cap beam, a tendon pulls both ends of its column together, rolling
+resistance turns the columns back. Which branch of its law a device follows is part of the state, so
+that all is smooth within a step; a law changes where a watched value falls below zero. A new law is
+its force and its power in `resistance` and `power_of`, and what it watches in `watched`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.core.compile import compiled
+from rpscli.physics.laws import lanes_of, path_at, place_of, polar, rate_of, stands, tilt_of, ways_of
+from rpscli.physics.ground import log_event
+from rpscli.physics.core.series import peak
+from rpscli.physics.state import (
+    BEYOND,
+    DAMPER_COEFFICIENT,
+    DAMPER_EXPONENT,
+    FRICTION,
+    FRICTION_FORCE,
+    FULL_CONTACT,
+    IDLE,
+    ROLLING_MOMENT,
+    ROLLING_RESISTANCE,
+    SLOTS,
+    STICKING,
+    STOP,
+    STOP_DAMPING,
+    STOP_GAP,
+    STOP_LEFT,
+    STOP_MET,
+    STOP_STIFFNESS,
+    STUCK,
+    TENDON,
+    TENDON_PRESTRESS,
+    TENDON_SLACK,
+    TENDON_STIFFNESS,
+    TENDON_TAUT,
+    TENDON_YIELD,
+    TENDON_YIELDING,
+    VISCOUS,
+    WORKING,
+    Floats,
+    Record,
+)
+
+
+class Worked(NamedTuple):
+    """How the devices of a lane are worked at a motion."""
+
+    n: float  # the azimuth of the tilt
+    t: float
+    p: float  # x'
+    path: float  # |u_b| [m]
+    along: float  # u_b' along the tilt and across it [m/s]
+    across: float
+    C: float  # height of the cap beam's path, over R
+    e: float  # elongation of a tendon [m], de/dx, and the angle psi of its end from the vertical
+    lever: float
+    sin_psi: float
+    cos_psi: float
+
+
+@compiled
+def worked(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Worked:
+    """How devices are worked at a tilt and its rate."""
+    x, n, t, p, q = polar(s, l, tilt, rate)
+    if s.phase[l] == FULL_CONTACT:
+        return Worked(n, t, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    at, diameter = place_of(s, l, x), s.diameter[l]
+    e, lever, sin_psi, cos_psi = 0.0, 0.0, 0.0, 1.0
+    if s.tendons[l] > 0:
+        e, lever, sin_psi, cos_psi = tendon_elongation(s, l, x)
+    return Worked(
+        n, t, p, diameter * path_at(s, l, x), diameter * at.C * p, diameter * at.h * q, at.C,
+        e, lever, sin_psi, cos_psi,
+    )  # fmt: skip
+
+
+@compiled
+def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float, float]:
+    """Elongation e of a tendon, de/dx, and sine and cosine of psi, at a tilt x (11.7) to (11.10).
+
+    The middle of either end moves by (M_1, M_2) from where it stood; with E its distance from there
+    a tendon is longer by e = 2 E. Seen from the contact, which lies B + r x from that place along
+    the ground while rolling and B + r beta while rocking, de/dx = 2 cos(psi) times that distance.
+    """
+    sine, cosine = math.sin(x), math.cos(x)
+    less = 2.0 * math.sin(0.5 * x) ** 2
+    B, r = s.half_width[l], s.arc_radius[l]
+    reach = B + r * x
+    across, upwards = B * less + r * (x - sine), B * sine + r * less
+    if s.rolls[l] == 0.0 and s.beta[l] > 0.0:
+        sine_end, cosine_end = math.sin(s.beta[l]), math.cos(s.beta[l])
+        reach = B + r * s.beta[l]
+        along, above = B + r * sine_end, r * (1.0 - cosine_end)
+        across = reach - (along * cosine + above * sine)
+        upwards = along * sine - above * cosine
+    distance = math.sqrt(across * across + upwards * upwards)
+    sin_psi, cos_psi = 0.0, 1.0
+    if distance > 0.0:
+        sin_psi, cos_psi = across / distance, upwards / distance
+    return 2.0 * distance, 2.0 * cos_psi * reach, sin_psi, cos_psi
+
+
+@compiled
+def tension(s: Record, l: int, i: int, e: float) -> float:
+    """Tension of one tendon of a device that is one [N], at its elongation [m]; else 0."""
+    if s.device_kind[i, l] != TENDON or s.branch[i, l] == IDLE:
+        return 0.0
+    if s.branch[i, l] == WORKING:
+        stretch = e - s.permanent[i, l]
+        return float(s.law[i, TENDON_PRESTRESS, l] + s.law[i, TENDON_STIFFNESS, l] * stretch)
+    return float(s.law[i, TENDON_YIELD, l])
+
+
+@compiled
+def drag_of(s: Record, l: int, i: int, speed: float) -> float:
+    """Resistance of a viscous damper over |u_b'|; else 0 [N s/m]."""
+    if s.device_kind[i, l] != VISCOUS:
+        return 0.0
+    exponent = s.law[i, DAMPER_EXPONENT, l] - 1.0
+    constant = s.law[i, DAMPER_COEFFICIENT, l]
+    if exponent == 0.0:
+        return float(constant)
+    return float(constant * max(speed, s.linear_speed[l]) ** exponent)
+
+
+@compiled
+def resistance(s: Record, l: int, i: int, path: float, along: float) -> float:
+    """Resistance of friction and stops along the tilt [N]; 0 of others."""
+    kind = s.device_kind[i, l]
+    if kind == FRICTION:
+        return float(s.direction[l] * s.law[i, FRICTION_FORCE, l])
+    if kind == STOP and s.branch[i, l] == WORKING:
+        beyond = path - s.law[i, STOP_GAP, l]
+        return float(s.law[i, STOP_STIFFNESS, l] * beyond + s.law[i, STOP_DAMPING, l] * along)
+    return 0.0
+
+
+@compiled
+def power_of(s: Record, l: int, i: int, at: Worked) -> float:
+    """What a device dissipates [W]."""
+    kind = s.device_kind[i, l]
+    if kind == VISCOUS:
+        speed = math.sqrt(at.along * at.along + at.across * at.across)
+        return drag_of(s, l, i, speed) * (speed * speed)
+    if kind == FRICTION:
+        return float(s.direction[l] * s.law[i, FRICTION_FORCE, l] * at.along)
+    if kind == ROLLING_RESISTANCE:
+        return float(s.direction[l] * s.law[i, ROLLING_MOMENT, l] * at.p)
+    if kind == STOP and s.branch[i, l] == WORKING:
+        return float(s.law[i, STOP_DAMPING, l] * (at.along * at.along))
+    if kind == STOP and s.branch[i, l] == BEYOND:  # it recovers by itself
+        beyond = at.path - s.law[i, STOP_GAP, l]
+        return float(-s.law[i, STOP_STIFFNESS, l] * beyond * at.along)
+    if kind == TENDON and s.branch[i, l] == BEYOND:
+        return float(s.columns[l] * s.law[i, TENDON_YIELD, l] * at.lever * at.p)
+    return 0.0
+
+
+@compiled
+def act(s: Record, l: int, at: Worked) -> None:
+    """Write what the devices of a lane do at a motion: `drive`, `turning`, `tied` and `pull`."""
+    speed = math.sqrt(at.along * at.along + at.across * at.across)
+    drag, resisting, tense = 0.0, 0.0, 0.0
+    for i in range(s.devices[l]):
+        drag += drag_of(s, l, i, speed)
+        resisting += resistance(s, l, i, at.path, at.along)
+        tense += s.columns[l] * tension(s, l, i, at.e)
+    moment = tense * at.lever + s.direction[l] * s.friction_moment[l]
+    s.turning[l] = -s.share[l] * moment / s.diameter[l]
+    s.tied[l], s.pull[l] = -tense * at.sin_psi, tense * at.cos_psi
+    out, aside = -(drag * at.along + resisting), -drag * at.across
+    s.drive[0, l] = out * at.n - aside * at.t
+    if ways_of(s) == 2:
+        s.drive[1, l] = out * at.t + aside * at.n
+    if stands(s, l):
+        s.turning[l] = 0.0
+        for axis in range(ways_of(s)):
+            s.drive[axis, l] = 0.0
+
+
+@compiled
+def act_at_stage(s: Record, weight: float) -> None:
+    """The same at a stage of the step, in all lanes with devices; adds to the step's work."""
+    for l in range(lanes_of(s)):
+        if s.devices[l] == 0:
+            continue
+        tilt = s.new_tilt[0, l], (s.new_tilt[1, l] if ways_of(s) == 2 else 0.0)
+        rate = s.new_tilt_rate[0, l], (s.new_tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
+        at = worked(s, l, tilt, rate)
+        act(s, l, at)
+        for i in range(s.devices[l]):
+            s.device_work[i, l] += weight * power_of(s, l, i, at)
+
+
+@compiled
+def begin_work(s: Record, weight: float) -> None:
+    """Begin the sums of the step's work with the power at its start."""
+    for l in range(lanes_of(s)):
+        if s.devices[l] > 0:
+            at = worked(s, l, tilt_of(s, l), rate_of(s, l))
+            for i in range(s.devices[l]):
+                s.device_work[i, l] = weight * power_of(s, l, i, at)
+
+
+# Loading, beginning an excursion, being held.
+
+
+@compiled
+def load_devices(s: Record, l: int, system: Record) -> None:
+    """Begin a history with its devices as they are at rest and upright."""
+    s.devices[l], s.columns[l], s.tendons[l] = system.devices, system.columns, 0
+    s.linear_speed[l], s.direction[l] = system.linear_speed, 1.0
+    s.friction_force[l], s.friction_moment[l], s.kinks[l] = 0.0, 0.0, 0.0
+    s.turning[l], s.tied[l], s.pull[l] = 0.0, 0.0, 0.0
+    for axis in range(ways_of(s)):
+        s.drive[axis, l] = 0.0
+    for i in range(system.devices):
+        kind, of = system.device_kind[i], system.device_constants[i]
+        s.device_kind[i, l], s.branch[i, l], s.permanent[i, l] = kind, IDLE, 0.0
+        s.device_force[i, l], s.device_velocity[i, l], s.device_energy[i, l] = 0.0, 0.0, 0.0
+        for k in range(4):
+            s.law[i, k, l] = of[k]
+        if kind == VISCOUS and of[DAMPER_EXPONENT] != 1.0:
+            s.kinks[l] = 1.0
+        elif kind == FRICTION:
+            s.friction_force[l] += of[FRICTION_FORCE]
+        elif kind == ROLLING_RESISTANCE:
+            s.friction_moment[l] += of[ROLLING_MOMENT]
+        elif kind == TENDON:
+            s.tendons[l] += 1
+            s.branch[i, l], s.device_force[i, l] = WORKING, of[TENDON_PRESTRESS]
+            s.pull[l] += system.columns * of[TENDON_PRESTRESS]
+
+
+@compiled
+def begin_excursion(s: Record, l: int, log: Record) -> None:
+    """Leave x = 0: friction acts against growing tilts, and a stop without a gap is met at once."""
+    s.direction[l] = 1.0
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == STOP:
+            s.branch[i, l] = IDLE
+            if s.law[i, STOP_GAP, l] == 0.0:
+                s.branch[i, l] = WORKING
+                log_event(s, l, log, STOP_MET, s.v[l], s.v[l], 0.0)
+
+
+@compiled
+def release_devices(s: Record, l: int) -> None:
+    """Be held at a tilt: stops push, and tendons that cannot hold it have yielded."""
+    at = worked(s, l, tilt_of(s, l), (0.0, 0.0))
+    for i in range(s.devices[l]):
+        kind = s.device_kind[i, l]
+        if kind == STOP and at.path > s.law[i, STOP_GAP, l]:
+            s.branch[i, l] = WORKING
+        elif kind == TENDON and tension(s, l, i, at.e) > s.law[i, TENDON_YIELD, l]:
+            s.branch[i, l] = BEYOND
+    reset_yielded_tendons(s, l)
+
+
+@compiled
+def reset_yielded_tendons(s: Record, l: int) -> None:
+    """Tendons that yielded are elastic again, longer by what they yielded."""
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == TENDON and s.branch[i, l] == BEYOND:
+            e = worked(s, l, tilt_of(s, l), (0.0, 0.0)).e
+            until_yield = s.law[i, TENDON_YIELD, l] - s.law[i, TENDON_PRESTRESS, l]
+            s.permanent[i, l] = e - until_yield / s.law[i, TENDON_STIFFNESS, l]
+            s.branch[i, l] = WORKING
+
+
+@compiled
+def has_friction(s: Record, l: int) -> bool:
+    """Whether something holds the tilt at rest."""
+    return bool(s.friction_force[l] + s.friction_moment[l] > 0.0)
+
+
+@compiled
+def force_at_rest(s: Record, l: int) -> tuple[float, float]:
+    """Horizontal force at the cap beam against a tilt at rest [N].
+
+    Returns: That of stops and tendons, towards smaller x, and what friction may add to either side.
+    """
+    if s.devices[l] == 0:
+        return 0.0, 0.0
+    e, lever, _, _ = tendon_elongation(s, l, s.x[l])
+    C, path = place_of(s, l, s.x[l]).C, s.diameter[l] * path_at(s, l, s.x[l])
+    arm, elastic = s.diameter[l] * C, 0.0
+    for i in range(s.devices[l]):
+        elastic += s.columns[l] * tension(s, l, i, e) * lever / arm
+        if s.device_kind[i, l] == STOP:
+            elastic += resistance(s, l, i, path, 0.0)
+    return elastic, s.friction_force[l] + s.friction_moment[l] / arm
+
+
+@compiled
+def set_limits(s: Record, l: int) -> None:
+    """Write what holds a lane at rest to either side, in full contact or stuck (3.2), (11.14)."""
+    R = 0.5 * s.diameter[l]
+    weigh = R * s.weigh[l]
+    elastic, friction = force_at_rest(s, l)
+    elastic, friction = R * s.share[l] * elastic, R * s.share[l] * friction
+    right = s.tan_a[l] * weigh
+    s.limit_right[l], s.limit_left[l] = right, right
+    s.held_right[l], s.held_left[l] = elastic + friction, elastic + friction
+    if s.phase[l] == STUCK:
+        at, side = place_of(s, l, s.x[l]), s.side[l]
+        missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
+        elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
+        right, elastic = side * at.Bv / at.C * weigh, side * elastic
+        s.limit_right[l], s.limit_left[l] = right, -right
+        s.held_right[l], s.held_left[l] = friction + elastic, friction - elastic
+
+
+@compiled
+def push_at_rest(s: Record, l: int, V: float, a_g: float, g_up: float) -> float:
+    """What friction dampers push the cap beam with while a lane is at rest [N]; writes `drive`.
+
+    In full contact the columns hold what they can, and friction dampers the rest: no less, or the
+    columns would turn (11.13). A stuck storey is held by dampers and rolling resistance in
+    proportion to what each could. Returns the share of their friction that is asked for, against
+    growing tilts: -1 to 1.
+    """
+    R, side = 0.5 * s.diameter[l], s.side[l]
+    if s.friction_force[l] + s.friction_moment[l] == 0.0:
+        return 0.0
+    action = side * R * (s.load[l] * a_g - s.share[l] * V)
+    per_N = R * s.share[l]
+    _, friction = force_at_rest(s, l)
+    friction *= per_N
+    resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_up
+    if s.phase[l] == STUCK:
+        resists += 0.5 * side * (s.held_right[l] - s.held_left[l])
+        share = -(resists + action) / friction
+        steady = 0.0
+        path = s.diameter[l] * path_at(s, l, s.x[l])
+        for i in range(s.devices[l]):
+            if s.device_kind[i, l] == STOP:
+                steady += resistance(s, l, i, path, 0.0)
+        s.drive[0, l] = -side * (steady + share * s.friction_force[l])
+        return float(share)
+    dampers = per_N * s.friction_force[l]
+    if dampers == 0.0:
+        return 0.0
+    resists = s.limit_right[l] * g_up + s.held_right[l]
+    beyond = min(max(abs(action) - (resists - dampers), 0.0), dampers)
+    share = -math.copysign(beyond / dampers, action)
+    s.drive[0, l] = -side * share * s.friction_force[l]
+    return share
+
+
+@compiled
+def sticks(s: Record, l: int, log: Record) -> bool:
+    """After x' = 0 under friction: go on to the side that is pushed to; True if neither is."""
+    if not has_friction(s, l):
+        return False
+    at = place_of(s, l, s.x[l])
+    moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
+    held = s.share[l] * moment / at.A
+    free = s.a[l] + s.direction[l] * held
+    if abs(free) > held:
+        s.direction[l] = 1.0 if free > 0.0 else -1.0
+        return False
+    s.phase[l] = STUCK
+    log_event(s, l, log, STICKING, 0.0, 0.0, 0.0)
+    return True
+
+
+# Where laws change.
+
+
+@compiled
+def watched(s: Record, l: int, which: int, end: int) -> tuple[bool, float, float]:
+    """A watched value and its slope, at the start (0) or the end (1) of the step.
+
+    Number 0 is the rate of the tilt in the direction of friction, 1 + i and 1 + SLOTS + i belong to
+    device i. Returns first whether there is such a one.
+    """
+    x, p, a = (s.new_x[l], s.new_v[l], s.new_a[l]) if end > 0 else (s.x[l], s.v[l], s.a[l])
+    if which == 0:
+        there = has_friction(s, l)
+        for i in range(s.devices[l]):
+            there |= s.device_kind[i, l] == TENDON and s.branch[i, l] == BEYOND
+        return there, s.direction[l] * p, s.direction[l] * a
+    second = which > SLOTS
+    i = which - 1 - (SLOTS if second else 0)
+    if i >= s.devices[l]:
+        return False, 0.0, 0.0
+    kind, branch = s.device_kind[i, l], s.branch[i, l]
+    if kind == STOP:  # its gap is open; it pushes, or does not; second, it may again
+        if second and branch != BEYOND:
+            return False, 0.0, 0.0
+        at, diameter = place_of(s, l, x), s.diameter[l]
+        stiffness, damping = s.law[i, STOP_STIFFNESS, l], s.law[i, STOP_DAMPING, l]
+        if branch == IDLE or second:
+            stiffness, damping = 1.0, 0.0
+        sign = 1.0 if branch == WORKING or second else -1.0
+        beyond = diameter * path_at(s, l, x) - s.law[i, STOP_GAP, l]
+        along, faster = diameter * at.C * p, diameter * (at.C * a + at.B * p * p)
+        value = sign * (stiffness * beyond + damping * along)
+        return True, value, sign * (stiffness * along + damping * faster)
+    if kind != TENDON or branch == BEYOND:
+        return False, 0.0, 0.0
+    limit, stiffness = s.law[i, TENDON_YIELD, l], s.law[i, TENDON_STIFFNESS, l]
+    if second and (branch == IDLE or limit == math.inf):
+        return False, 0.0, 0.0
+    e, lever, _, _ = tendon_elongation(s, l, x)
+    tense = s.law[i, TENDON_PRESTRESS, l] + stiffness * (e - s.permanent[i, l])
+    sign = -1.0 if second or branch == IDLE else 1.0  # tight, or slack; second, not yielding
+    return True, (limit - tense if second else sign * tense), sign * stiffness * lever * p
+
+
+@compiled
+def change_law(s: Record, l: int, log: Record, which: int) -> bool:
+    """What a watched value that fell below zero stands for; True if friction now holds the tilt."""
+    if which == 0:
+        s.tilt_rate[0, l], s.v[l] = 0.0, 0.0
+        reset_yielded_tendons(s, l)
+        return True
+    second = which > SLOTS
+    i = which - 1 - (SLOTS if second else 0)
+    branch, event = s.branch[i, l], -1
+    if s.device_kind[i, l] == STOP:
+        if branch == WORKING:
+            branch, event = (BEYOND if s.law[i, STOP_DAMPING, l] > 0.0 else IDLE), STOP_LEFT
+        elif second:
+            branch = IDLE
+        else:
+            branch, event = WORKING, STOP_MET
+    elif second:
+        branch, event = BEYOND, TENDON_YIELDING
+    elif branch == WORKING:
+        branch, event = IDLE, TENDON_SLACK
+    else:
+        branch, event = WORKING, TENDON_TAUT
+    s.branch[i, l] = branch
+    if event >= 0:
+        log_event(s, l, log, event, s.v[l], s.v[l], 0.0)
+    return False
+
+
+@compiled
+def take_up_stops(s: Record, l: int, log: Record) -> None:
+    """At a closest approach: what moves outwards again is met by stops that had let go."""
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == STOP and s.branch[i, l] == BEYOND:
+            s.branch[i, l] = WORKING
+            log_event(s, l, log, STOP_MET, 0.0, 0.0, 0.0)
+
+
+# What they see.
+
+
+@compiled
+def device_at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
+    """Force of a device, the rate at which it is worked, and its displacement.
+
+    Of horizontal devices the resistance with |u_b|; of a tendon the tension of one with its
+    elongation; of rolling resistance the horizontal force that does the same, M/(2 R C).
+    """
+    kind = s.device_kind[i, l]
+    if kind == TENDON:
+        return tension(s, l, i, at.e), at.lever * at.p, at.e
+    if kind == ROLLING_RESISTANCE:
+        moment = s.direction[l] * s.law[i, ROLLING_MOMENT, l]
+        return moment / (s.diameter[l] * at.C), at.along, at.path
+    if kind == VISCOUS:
+        speed = at.along
+        if ways_of(s) == 2:
+            speed = math.sqrt(at.along * at.along + at.across * at.across)
+        return drag_of(s, l, i, abs(speed)) * speed, speed, at.path
+    return resistance(s, l, i, at.path, at.along), at.along, at.path
+
+
+@compiled
+def raise_devices(s: Record, l: int, start: Worked, middle: Worked, end: Worked) -> None:
+    """Raise the largest forces and rates of devices by those of three instants, and between."""
+    for i in range(s.devices[l]):
+        one, two, three = (
+            device_at(s, l, i, start),
+            device_at(s, l, i, middle),
+            device_at(s, l, i, end),
+        )
+        force = peak(one[0], two[0], three[0])
+        s.device_force[i, l] = max(s.device_force[i, l], force)
+        s.device_velocity[i, l] = max(s.device_velocity[i, l], peak(one[1], two[1], three[1]))
+
+
+@compiled
+def stored_in(s: Record, l: int, i: int, at: Worked) -> float:
+    """Energy stored in a device over that at the start [J]; a yielded tendon's may be negative."""
+    kind = s.device_kind[i, l]
+    if kind == STOP:
+        beyond = max(at.path - s.law[i, STOP_GAP, l], 0.0)
+        return float(0.5 * s.law[i, STOP_STIFFNESS, l] * (beyond * beyond))
+    if kind == TENDON:
+        tense, prestress = tension(s, l, i, at.e), s.law[i, TENDON_PRESTRESS, l]
+        change = tense * tense - prestress * prestress
+        return float(0.5 * s.columns[l] * change / s.law[i, TENDON_STIFFNESS, l])
+    return 0.0
+
+
+@compiled
+def stored_in_devices(s: Record, l: int) -> float:
+    """The same of all devices of a lane."""
+    energy = 0.0
+    if s.devices[l] > 0:
+        at = worked(s, l, tilt_of(s, l), rate_of(s, l))
+        for i in range(s.devices[l]):
+            energy += stored_in(s, l, i, at)
+    return energy
+
+
+@compiled
+def store_devices(s: Record, l: int, at: Worked, share: float, sample: Floats) -> None:
+    """Keep force, displacement, dissipated and stored energy of each device of a lane.
+
+    Horizontal forces are those on the cap beam, positive to the right, and go with u_b; of a tendon
+    the tension of one goes with its elongation. Friction at rest is what equilibrium asks for while
+    the storey is stuck, and in full contact the least that it can be: `share` of what it can.
+    """
+    side = s.side[l] if ways_of(s) == 1 else 1.0
+    for i in range(s.devices[l]):
+        kind = s.device_kind[i, l]
+        force, _, displacement = device_at(s, l, i, at)
+        if kind != TENDON:
+            if stands(s, l) and kind in (FRICTION, ROLLING_RESISTANCE):
+                force *= share * s.direction[l]
+                if s.phase[l] == FULL_CONTACT and kind == ROLLING_RESISTANCE:
+                    force = 0.0
+            force, displacement = -side * force, side * displacement
+        sample[0, i], sample[1, i] = force + 0.0, displacement + 0.0
+        sample[2, i], sample[3, i] = s.device_energy[i, l], stored_in(s, l, i, at)

@@ -1,0 +1,323 @@
+"""Where a step is to end: found between its ends, then taken again to the root.
+
+What is watched is smooth and leaves a range downwards: the tilt its phase's, the margin of a storey
+at rest its zero, a device's value its branch. Hulls of the polynomials through both ends tell, for
+all lanes together, which steps surely hold no event; only the others are looked at alone. A step
+that is to end on an event is taken again, its length corrected by Newton's method.
+"""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.core.compile import compiled, inlined
+from rpscli.physics.core.quintic import (
+    NO_PASSAGE,
+    SETTLED,
+    Quintic,
+    first_descent,
+    lower_hull,
+    offset,
+    quintic,
+    upper_hull,
+)
+from rpscli.physics.devices import watched
+from rpscli.physics.laws import lanes_of, ways_of
+from rpscli.physics.state import (
+    CHANGE,
+    FAILED_NOT_FINITE,
+    HIGH,
+    LET_GO,
+    LOW,
+    NEAREST,
+    NO_HISTORY,
+    NOTHING,
+    SLOTS,
+    Record,
+)
+
+LEAST_STEP = 1e-13
+"""Of the sampling interval: a step is not made shorter."""
+
+CLOSE = 1e-6
+"""Of the sampling interval: what is missing to an event is so short that rates lead there."""
+
+MOST_TRIES = 8
+
+ROUNDING = 1e-13
+"""Share of the limit within which the margin at rest is zero. Were it the last bit that decides, a
+motion whose peak is the limit itself would uplift and land again and again."""
+
+
+@inlined
+def path_of(s: Record, l: int) -> Quintic:
+    """The tilt over the step just taken."""
+    return quintic(s.h[l], s.x[l], s.v[l], s.a[l], s.new_x[l], s.new_v[l], s.new_a[l])
+
+
+@inlined
+def push_path(s: Record, l: int, axis: int) -> Quintic:
+    """R z over the step, what pushes a storey at rest [m/s2]."""
+    R, h = 0.5 * s.diameter[l], s.h[l]
+    share, load = R * s.share[l], R * s.load[l]
+    slope = s.a_g_slope[axis, l]
+    start = s.a_g[axis, l] + s.time[l] * slope
+    return quintic(
+        h,
+        share * s.V[axis, l] - load * start,
+        share * s.dV[axis, l] - load * slope,
+        share * s.ddV[axis, l],
+        share * s.new_V[axis, l] - load * (start + h * slope),
+        share * s.new_dV[axis, l] - load * slope,
+        share * s.new_ddV[axis, l],
+    )
+
+
+@inlined
+def surely_held(s: Record, l: int) -> bool:
+    """Whether the margin of a lane at rest surely stays positive over the step."""
+    start = s.g_up[l] + s.time[l] * s.g_up_slope[l]
+    end = start + s.h[l] * s.g_up_slope[l]
+    x = push_path(s, l, 0)
+    right = min(s.limit_right[l] * start, s.limit_right[l] * end) + s.held_right[l]
+    if ways_of(s) == 2:
+        y, most = push_path(s, l, 1), 0.0
+        for i in range(6):
+            most = max(most, x[i] * x[i] + y[i] * y[i])
+        return (right >= 0.0) & (most <= right * right)
+    left = min(s.limit_left[l] * start, s.limit_left[l] * end) + s.held_left[l]
+    return (max(upper_hull(x), x[0]) <= right) & (-min(lower_hull(x), x[0]) <= left)
+
+
+@compiled
+def check_steps(s: Record) -> None:
+    """Accept the steps that are short enough and surely hold no event."""
+    for l in range(lanes_of(s)):
+        path, moves = path_of(s, l), s.moves[l] > 0.0
+        lowest, highest = min(lower_hull(path), path[0]), max(upper_hull(path), path[0])
+        inside = (lowest >= s.x_low[l]) & (highest <= s.x_high[l])
+        if ways_of(s) == 2:
+            inside &= (s.v[l] >= 0.0) | (s.new_v[l] < 0.0)
+        clear = inside if moves else surely_held(s, l)
+        short = (s.error[l] <= 1.0) | (s.h[l] <= LEAST_STEP * s.dt[l])
+        s.accepted[l] = 1.0 if clear & short & (s.wanted[l] == NOTHING) else 0.0
+    if s.equipped > 0:
+        for l in range(lanes_of(s)):
+            if s.devices[l] > 0 and s.accepted[l] > 0.0 and s.moves[l] > 0.0 and may_change(s, l):
+                s.accepted[l] = 0.0
+
+
+@compiled
+def watched_path(s: Record, l: int, which: int) -> tuple[bool, Quintic]:
+    """The cubic through a watched value at both ends; what has just changed begins at zero."""
+    there, value, slope = watched(s, l, which, 0)
+    if not there:
+        return False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    _, end, end_slope = watched(s, l, which, 1)
+    h, value = s.h[l], max(value, 0.0)
+    mean = (end - value) / h if h > 0.0 else 0.0
+    per_h = 1.0 / h if h > 0.0 else 0.0
+    bend = (6.0 * mean - 4.0 * slope - 2.0 * end_slope) * per_h
+    end_bend = (2.0 * slope + 4.0 * end_slope - 6.0 * mean) * per_h
+    return True, quintic(h, value, slope, bend, end, end_slope, end_bend)
+
+
+@compiled
+def may_change(s: Record, l: int) -> bool:
+    """Whether a device may change its law in the step."""
+    for which in range(1 + 2 * SLOTS):
+        there, path = watched_path(s, l, which)
+        if there and min(lower_hull(path), path[0]) < 0.0:
+            return True
+    return False
+
+
+@compiled
+def first_event(s: Record, l: int) -> tuple[float, int, int]:
+    """Fraction of the step at which its first event happens, its kind, and which of it."""
+    first, kind, which, piece = NO_PASSAGE, NOTHING, 0, s.piece
+    if s.moves[l] == 0.0:
+        return let_go(s, l)
+    path = path_of(s, l)
+    t = first_descent(offset(path, 1.0, s.x_low[l]), SETTLED, piece)
+    if t < first:
+        first, kind = t, LOW
+    t = first_descent(offset(path, -1.0, s.x_high[l]), SETTLED, piece)
+    if t < first:
+        first, kind = t, HIGH
+    if ways_of(s) == 2 and s.v[l] < 0.0 and s.new_v[l] >= 0.0:
+        t = nearest(s, l)
+        if t < first:
+            first, kind = t, NEAREST
+    for number in range(1 + 2 * SLOTS if s.devices[l] > 0 else 0):
+        there, path = watched_path(s, l, number)
+        if there:
+            t = first_descent(path, SETTLED, piece)
+            if t < first:
+                first, kind, which = t, CHANGE, number
+    return first, kind, which
+
+
+@compiled
+def nearest(s: Record, l: int) -> float:
+    """Fraction of the step at which x' rises through zero: by the cubic through x' and x''."""
+    low, high, h = 0.0, 1.0, s.h[l]
+    for _ in range(40):
+        t = 0.5 * (low + high)
+        r = 1.0 - t
+        rate = r * r * (1.0 + 2.0 * t) * s.v[l] + t * t * (3.0 - 2.0 * t) * s.new_v[l]
+        rate += h * t * r * (r * s.a[l] - t * s.new_a[l])
+        if rate < 0.0:
+            low = t
+        else:
+            high = t
+    return high
+
+
+@compiled
+def let_go(s: Record, l: int) -> tuple[float, int, int]:
+    """The same of a storey at rest: to the right (1), or to the left (-1)."""
+    piece, h = s.piece, s.h[l]
+    start = s.g_up[l] + s.time[l] * s.g_up_slope[l]
+    rise, x = h * s.g_up_slope[l], push_path(s, l, 0)
+    if ways_of(s) == 2:
+        t = first_descent(squared_margin(s, l), SETTLED, piece)
+        return t, (LET_GO if t <= 1.0 else NOTHING), 1
+    # Where gravity is lost both margins are negative at once: then the push decides.
+    push = 0.0
+    for i in range(6):
+        push = push if push != 0.0 else x[i]
+    likelier = -1 if push < 0.0 else 1
+    first, side = NO_PASSAGE, 0
+    for sign in (likelier, -likelier):
+        factor, held = s.limit_right[l], s.held_right[l]
+        if sign < 0:
+            factor, held = s.limit_left[l], s.held_left[l]
+        limit, change = factor * start, factor * rise
+        limit += ROUNDING * (abs(limit) + abs(held)) + held
+        path = (
+            limit - sign * x[0],
+            limit + 0.2 * change - sign * x[1],
+            limit + 0.4 * change - sign * x[2],
+            limit + 0.6 * change - sign * x[3],
+            limit + 0.8 * change - sign * x[4],
+            limit + change - sign * x[5],
+        )
+        t = first_descent(path, SETTLED, piece)
+        if t < first:
+            first, side = t, sign
+    return first, (LET_GO if side != 0 else NOTHING), side
+
+
+@compiled
+def squared_margin(s: Record, l: int) -> Quintic:
+    """The limit's square less that of R z, through both ends of the step with two derivatives."""
+    h, R, rise = s.h[l], 0.5 * s.diameter[l], s.limit_right[l] * s.g_up_slope[l]
+    share, load = R * s.share[l], R * s.load[l]
+    ends = s.piece
+    for end in range(2):
+        time = s.time[l] + end * h
+        limit = s.limit_right[l] * (s.g_up[l] + time * s.g_up_slope[l]) + s.held_right[l]
+        beyond = limit * (1.0 + ROUNDING)
+        value, slope, bend = beyond * abs(beyond), 2.0 * limit * rise, 2.0 * rise * rise
+        for axis in range(2):
+            V, dV, ddV = s.V[axis, l], s.dV[axis, l], s.ddV[axis, l]
+            if end > 0:
+                V, dV, ddV = s.new_V[axis, l], s.new_dV[axis, l], s.new_ddV[axis, l]
+            a_g = s.a_g[axis, l] + time * s.a_g_slope[axis, l]
+            push, rate = share * V - load * a_g, share * dV - load * s.a_g_slope[axis, l]
+            value -= push * push
+            slope -= 2.0 * push * rate
+            bend -= 2.0 * (rate * rate + push * (share * ddV))
+        ends[3 * end], ends[3 * end + 1], ends[3 * end + 2] = value, slope, bend
+    return quintic(h, ends[0], ends[1], ends[2], ends[3], ends[4], ends[5])
+
+
+@compiled
+def missing(s: Record, l: int) -> tuple[float, float]:
+    """What the end of the step still is above the event on which it is to end, and its rate."""
+    kind, which = s.wanted[l], s.which[l]
+    if kind == LOW:
+        return s.new_x[l] - s.x_low[l], s.new_v[l]
+    if kind == HIGH:
+        return s.x_high[l] - s.new_x[l], -s.new_v[l]
+    if kind == NEAREST:
+        return -s.new_v[l], -s.new_a[l]
+    if kind == CHANGE:
+        _, value, slope = watched(s, l, which, 1)
+        return value, slope
+    R, h = 0.5 * s.diameter[l], s.h[l]
+    g_up = s.g_up[l] + (s.time[l] + h) * s.g_up_slope[l]
+    factor, held, size, growth = s.limit_right[l], s.held_right[l], 0.0, 0.0
+    if which < 0:
+        factor, held = s.limit_left[l], s.held_left[l]
+    for axis in range(ways_of(s)):
+        a_g = s.a_g[axis, l] + (s.time[l] + h) * s.a_g_slope[axis, l]
+        push = R * (s.share[l] * s.new_V[axis, l] - s.load[l] * a_g)
+        rate = R * (s.share[l] * s.new_dV[axis, l] - s.load[l] * s.a_g_slope[axis, l])
+        if ways_of(s) == 1:
+            size, growth = which * push, which * rate
+        else:
+            size, growth = size + push * push, growth + push * rate
+    if ways_of(s) == 2:
+        size = math.sqrt(size)
+        growth /= max(size, 1e-300)
+    return factor * g_up + held - size, factor * s.g_up_slope[l] - growth
+
+
+@compiled
+def resolve_step(s: Record, l: int) -> bool:
+    """A step that was not accepted: accept it, or have it taken again; False if it is no number."""
+    if s.history[l] == NO_HISTORY:
+        s.accepted[l] = 1.0
+        return True
+    total = s.new_x[l] + s.new_v[l] + s.new_a[l]
+    for axis in range(ways_of(s)):
+        total += s.new_V[axis, l] + s.new_dV[axis, l]
+    if not math.isfinite(total):
+        s.outcome[l] = FAILED_NOT_FINITE
+        return False
+    if s.wanted[l] != NOTHING:
+        land(s, l)
+        return True
+    if s.error[l] > 1.0 and s.h[l] > LEAST_STEP * s.dt[l]:
+        s.h[l] *= 0.5 if s.error[l] < 64.0 else 0.25
+        s.h_limit[l] = s.h[l]
+        return True
+    fraction, kind, which = first_event(s, l)
+    if kind == NOTHING:
+        s.accepted[l] = 1.0
+        return True
+    s.wanted[l], s.which[l], s.tries[l], s.h_now[l] = kind, which, 0, s.h[l]
+    s.h[l] *= fraction
+    return True
+
+
+@compiled
+def land(s: Record, l: int) -> None:
+    """A step that was to end on an event: near enough, or once more."""
+    value, slope = missing(s, l)
+    change = -value / slope if slope < 0.0 else 0.0
+    change = min(max(change, -0.5 * s.h[l]), s.h_now[l] - s.h[l])
+    s.tries[l] += 1
+    if abs(change) > CLOSE * s.dt[l] and s.tries[l] < MOST_TRIES:
+        s.h[l] += change
+        return
+    go_on_by(s, l, change)
+    s.accepted[l], s.kind[l], s.wanted[l] = 1.0, s.wanted[l], NOTHING
+
+
+@compiled
+def go_on_by(s: Record, l: int, time: float) -> None:
+    """Lead the end of the step on by rates: so short a time that its square is rounding."""
+    for axis in range(ways_of(s)):
+        bend = s.new_bend[axis, l]
+        s.new_tilt[axis, l] += time * (s.new_tilt_rate[axis, l] + 0.5 * time * bend)
+        s.new_tilt_rate[axis, l] += time * bend
+        for r in range(axis * s.n, (axis + 1) * s.n):
+            ddq = -(s.Gamma[r, l] * s.new_base[axis, l]) - s.force[r, l]
+            s.new_q[r, l] += time * (s.new_dq[r, l] + 0.5 * time * ddq)
+            s.new_dq[r, l] += time * ddq
+    s.new_x[l] += time * (s.new_v[l] + 0.5 * time * s.new_a[l])
+    s.new_v[l] += time * s.new_a[l]
+    s.h[l] += time

@@ -1,0 +1,672 @@
+"""Histories in lanes: step, detect, locate, switch, store.
+
+All lanes take a step together, each as long as its own motion allows. What has come to a sample
+goes on into the next interval; what has come to an event, or to the end of its record, is looked at
+alone. A lane whose history is over takes the next one.
+"""
+
+from __future__ import annotations
+
+import math
+from threading import Event, Thread, current_thread, main_thread
+
+import numpy as np
+
+from rpscli.physics.bed import first_phase, load_bed
+from rpscli.physics.core.compile import compiled, exact_kernel, inlined, uncounted
+from rpscli.physics.demands import observe, observe_start
+from rpscli.physics.devices import (
+    change_law,
+    has_friction,
+    load_devices,
+    release_devices,
+    set_limits,
+    sticks,
+    stored_in,
+    worked,
+)
+from rpscli.physics.events import check_steps, resolve_step
+from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
+from rpscli.physics.laws import (
+    inertia_unit,
+    lanes_of,
+    lift_at,
+    lifted_mass,
+    place_of,
+    path_at,
+    rate_of,
+    tilt_of,
+    total_energy,
+    ways_of,
+)
+from rpscli.physics.rest import is_over
+from rpscli.physics.run import Output, Run
+from rpscli.physics.samples import store_sample, store_within
+from rpscli.physics.state import (
+    AT_REST,
+    BEDDED,
+    CHANGE,
+    EVENT_KINDS,
+    FAILED_STEP_TOO_SMALL,
+    FAILED_TOO_MANY_EVENTS,
+    FAILED_TOO_MANY_STEPS,
+    FULL_CONTACT,
+    HIGH,
+    LANES,
+    LET_GO,
+    LOW,
+    NEAREST,
+    NO_HISTORY,
+    NO_RECORD,
+    NOTHING,
+    OVERTURNED_ROCKING,
+    OVERTURNED_ROLLING,
+    OVERTURNING,
+    ROCKING,
+    ROCKING_TO_ROLLING,
+    ROLLING,
+    ROLLING_TO_ROCKING,
+    RUNNING,
+    SLIDING,
+    STUCK,
+    SURVIVED,
+    UPLIFT,
+    Floats,
+    Record,
+    scratch,
+)
+from rpscli.physics.step import renew, take_steps
+from rpscli.physics.upright import enter_phase, pass_on_bed, pass_upright, settles, uplift
+
+HEARS = 0.1
+"""A Ctrl-C is heard within so many seconds."""
+
+
+def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> None:
+    """Follow every history of `run.requests` from rest; writes `run.results`.
+
+    Machine code hears no signal: to be `interruptible` by Ctrl-C it runs in another thread, which
+    costs a tenth of a millisecond. Of many histories the longest begin first, so that no lane is
+    left with one at the end.
+    """
+    if len(run.requests) > lanes and not run.output.samples.size:
+        given = run.requests.view(np.ndarray)
+        order = np.argsort(-given["npts"] * given["dt"], kind="stable")
+        if np.any(order[1:] < order[:-1]):
+            ordered = run._replace(requests=run.requests[order], results=run.results[order])
+            integrate(ordered, lanes, interruptible=interruptible)
+            run.results[order] = ordered.results
+            return
+    systems = run.systems.view(np.ndarray)  # fields of records take ten times as long
+    state = scratch(run.ways, lanes)
+    plain = state.view(np.ndarray)
+    plain["n"], plain["stop"] = systems["n"][0], 0
+    plain["equipped"] = int(systems["devices"].any())
+    plain["gives_way"] = int(systems["compliant"].any())
+    given = run.systems, run.requests, run.acceleration, run.results, run.output
+    if not interruptible or current_thread() is not main_thread():
+        follow(state, *given)
+        return
+    ended = Event()
+
+    def work() -> None:
+        try:
+            follow(state, *given)
+        finally:
+            ended.set()
+
+    Thread(target=work, daemon=True).start()
+    try:
+        # Not Thread.join: interrupted, it takes a running thread for ended before Python 3.13.
+        while not ended.wait(HEARS):
+            pass
+    except BaseException:
+        plain["stop"] = 1
+        ended.wait()
+        raise
+
+
+@exact_kernel
+def follow(
+    state: Record,
+    systems: Record,
+    requests: Record,
+    acceleration: Floats,
+    results: Record,
+    output: Output,
+) -> None:
+    """The same, in a state that is made already: an array of one record."""
+    s, lanes = state[0], lanes_of(state[0])
+    s.audited = 1 if output.samples.shape[0] > 0 else 0
+    s.waiting, active = 0, 0
+    for l in range(lanes):
+        s.history[l] = NO_HISTORY
+        next_history(s, l, systems, requests, acceleration, results, output)
+        active += 1 if s.history[l] != NO_HISTORY else 0
+    while active > 0 and s.stop == 0:
+        advance(s, systems, output)
+        next_intervals(s, acceleration)
+        for l in range(lanes):
+            if s.attention[l] == 0.0 or s.history[l] == NO_HISTORY:
+                continue
+            first = s.system[l]
+            both = systems[first : first + ways_of(s)]
+            if look_after(s, l, both, output):
+                next_history(s, l, systems, requests, acceleration, results, output)
+                active -= 1 if s.history[l] == NO_HISTORY else 0
+
+
+@compiled
+def advance(s: Record, systems: Record, output: Output) -> None:
+    """A step of all lanes together."""
+    take_steps(s)
+    check_steps(s)
+    for l in range(lanes_of(s)):
+        if s.accepted[l] == 0.0 and not resolve_step(s, l):
+            s.accepted[l] = 0.0
+    observe(s, systems, output.log)
+    if lanes_of(s) == 1 and s.accepted[0] > 0.0:
+        book_flows(s, systems, output)
+    accept_steps(s)
+
+
+@compiled
+def book_flows(s: Record, systems: Record, output: Output) -> None:
+    """Book what flowed in the only lane's step, and keep what lies within it."""
+    if s.audited > 0:
+        s.energy_input[0] += s.h[0] * s.power_input[0]
+        s.energy_damped[0] += s.h[0] * s.power_damped[0]
+        s.bed_energy[0] += s.h[0] * s.power_bed[0]
+        if output.finer > 1:
+            first = s.system[0]
+            store_within(s, 0, systems[first : first + ways_of(s)], output)
+
+
+@inlined
+def chosen(accepted: float, end: float, start: float) -> float:
+    """The end of an accepted step, else its start."""
+    # Adding zero keeps the compiler from choosing between addresses, lane by lane.
+    new = end + 0.0
+    return new if accepted > 0.0 else start
+
+
+@compiled
+def accept_steps(s: Record) -> None:
+    """Make the ends of accepted steps the states of their lanes."""
+    lanes = lanes_of(s)
+    for axis in range(ways_of(s)):
+        for l in range(lanes):
+            yes = s.accepted[l]
+            s.tilt[axis, l] = chosen(yes, s.new_tilt[axis, l], s.tilt[axis, l])
+            s.tilt_rate[axis, l] = chosen(yes, s.new_tilt_rate[axis, l], s.tilt_rate[axis, l])
+            s.bend[axis, l] = chosen(yes, s.new_bend[axis, l], s.bend[axis, l])
+            s.base[axis, l] = chosen(yes, s.new_base[axis, l], s.base[axis, l])
+        for l in range(lanes):
+            yes = s.accepted[l]
+            s.V[axis, l] = chosen(yes, s.new_V[axis, l], s.V[axis, l])
+            s.dV[axis, l] = chosen(yes, s.new_dV[axis, l], s.dV[axis, l])
+            s.ddV[axis, l] = chosen(yes, s.new_ddV[axis, l], s.ddV[axis, l])
+        for l in range(lanes):
+            yes = s.accepted[l]
+            sums, before = s.shear_sum[axis, l], s.shear_before[axis, l]
+            s.shear_before[axis, l] = chosen(yes, sums, before)
+            sums, before = s.acceleration_sum[axis, l], s.acceleration_before[axis, l]
+            s.acceleration_before[axis, l] = chosen(yes, sums, before)
+    for r in range(ways_of(s) * s.n):
+        for l in range(lanes):
+            s.q[r, l] = chosen(s.accepted[l], s.new_q[r, l], s.q[r, l])
+            s.dq[r, l] = chosen(s.accepted[l], s.new_dq[r, l], s.dq[r, l])
+    for l in range(lanes):
+        yes = s.accepted[l]
+        s.x[l], s.v[l] = chosen(yes, s.new_x[l], s.x[l]), chosen(yes, s.new_v[l], s.v[l])
+        s.a[l], s.lift[l] = chosen(yes, s.new_a[l], s.a[l]), chosen(yes, s.new_lift[l], s.lift[l])
+    for l in range(lanes):
+        s.time[l] += s.h[l] if s.accepted[l] > 0.0 else 0.0
+        s.steps[l] += 1.0
+    if s.gives_way > 0:
+        for l in range(lanes):
+            bedded = (s.accepted[l] > 0.0) & (s.phase[l] == BEDDED)
+            s.bedded_time[l] += s.h[l] if bedded else 0.0
+
+
+# How long the next step is.
+
+ARC = 0.2
+"""Longest step over x/|r'| near upright, where the tilt may go to any side."""
+
+SAME = 1e-12
+"""Of the sampling interval: nothing is left of it."""
+
+KINK = 0.25
+"""Largest change of |u_b'| over a step, where a damper has a kink at its zero."""
+
+CALM, EASY = 1 / 128, 0.25
+"""Errors of a step below which the next may be twice as long, or a fifth longer."""
+
+
+@inlined
+def even_part(left: float, longest: float) -> float:
+    """The longest even part of what is left of an interval."""
+    return left / max(math.ceil(left / longest - 1e-9), 1.0)
+
+
+@inlined
+def near_limit(s: Record, l: int) -> float:
+    """Longest step that the distance from upright allows."""
+    x, fast, pulled = s.x[l], 0.0, 0.0
+    for axis in range(ways_of(s)):
+        fast += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
+        pulled += s.bend[axis, l] * s.bend[axis, l]
+    turns = x / (math.sqrt(pulled) + 2.0 * s.tan_a[l] * s.weigh[l] * s.gravity[l] / s.one[l])
+    return ARC * min(x / math.sqrt(fast + 1e-300), 2.0 * math.sqrt(turns))
+
+
+@inlined
+def plan(s: Record, l: int) -> float:
+    """Length of a lane's next step: an even part of what is left, or what its motion allows."""
+    step = min(even_part(max(s.dt[l] - s.time[l], 0.0), s.h_most[l]), s.h_limit[l])
+    if ways_of(s) == 2:
+        near = near_limit(s, l)
+        step = min(step, near if s.moves[l] > 0.0 else step)
+    return step
+
+
+@compiled
+def kink_limit(s: Record, l: int) -> float:
+    """Longest step over which |u_b'| changes by a part of itself only."""
+    at = worked(s, l, tilt_of(s, l), rate_of(s, l))
+    speed = math.sqrt(at.along * at.along + at.across * at.across)
+    change, least = 0.0, s.linear_speed[l]
+    for axis in range(ways_of(s)):
+        faster = s.base[axis, l] - (s.a_g[axis, l] + s.time[l] * s.a_g_slope[axis, l])
+        change += faster * faster
+    most = 2.0 * least if speed <= least else KINK * speed
+    return most / max(math.sqrt(change), 1e-300)
+
+
+@compiled
+def next_intervals(s: Record, acceleration: Floats) -> None:
+    """Lanes that have come to a sample enter the next interval; plan the steps of all.
+
+    `attention` to those at an event, at a jump of the ground's acceleration, or whose end may be
+    near.
+    """
+    lanes = lanes_of(s)
+    for l in range(lanes):
+        there = (s.accepted[l] > 0.0) & (s.kind[l] == NOTHING)
+        there &= s.dt[l] - s.time[l] <= SAME * s.dt[l]
+        interval = s.interval[l] + (1 if there else 0)
+        at_end = there & (interval + 1 >= s.npts[l])
+        looks = at_end | (s.kind[l] != NOTHING) | (s.outcome[l] >= 0)
+        looks |= (s.audited > 0) & there
+        s.attention[l] = 1.0 if looks else (0.5 if there else 0.0)
+        s.interval[l] = interval
+    for l in range(lanes):
+        if s.attention[l] > 0.0 and s.kind[l] == NOTHING and s.history[l] != NO_HISTORY:
+            set_ground(s, l, acceleration)
+        s.attention[l] = 1.0 if s.attention[l] == 1.0 else 0.0
+    for l in range(lanes):
+        goes_on, limit = (s.accepted[l] > 0.0) & (s.attention[l] == 0.0), s.h_limit[l]
+        factor = 2.0 if s.error[l] < CALM else (1.2 if s.error[l] < EASY else 1.0)
+        limit = factor * limit
+        limit = limit if limit < s.h_most[l] else math.inf
+        s.h_limit[l] = limit if goes_on else s.h_limit[l]
+        s.h[l] = plan(s, l) if goes_on else s.h[l]
+    if s.equipped > 0:
+        for l in range(lanes):
+            if s.kinks[l] > 0.0 and s.accepted[l] > 0.0 and s.moves[l] > 0.0:
+                s.h[l] = min(s.h[l], kink_limit(s, l))
+
+
+STALL = 100
+"""So many events in a row without time passing: the step cannot be made small enough."""
+
+MOST_STEPS_AN_EVENT = 1e7
+
+
+@compiled
+def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
+    """What a lane alone is to do: switch at an event, store, end; True if its history is over."""
+    if s.outcome[l] != RUNNING:
+        return True
+    kind, system = s.kind[l], systems[0]
+    if kind != NOTHING:
+        s.kind[l] = NOTHING
+        s.stalled[l] = s.stalled[l] + 1 if s.h[l] <= 0.0 else 0
+        switch(s, l, systems, output, kind)
+        if s.outcome[l] != RUNNING or too_many(s, l, system):
+            return True
+        observe_start(s, l)
+    else:
+        if s.interval[l] + 1 == s.npts[l]:  # the ground acceleration may jump to zero
+            renew(s, l)
+            observe_start(s, l)
+        if s.audited > 0:
+            store_sample(s, l, systems, output)
+        if s.interval[l] >= s.intervals[l] or is_over(s, l, systems):
+            return True
+        if s.steps[l] > system.most_steps:
+            s.outcome[l] = FAILED_TOO_MANY_STEPS
+            return True
+    s.h[l] = plan(s, l)
+    if s.kinks[l] > 0.0 and s.moves[l] > 0.0:
+        s.h[l] = min(s.h[l], kink_limit(s, l))
+    return False
+
+
+@compiled
+def too_many(s: Record, l: int, system: Record) -> bool:
+    """Whether events pile up; sets the outcome."""
+    events = 0
+    for i in range(EVENT_KINDS):
+        events += s.events[l, i]
+    if events > system.max_events:
+        s.outcome[l] = FAILED_TOO_MANY_EVENTS
+    elif s.stalled[l] > STALL:
+        s.outcome[l] = FAILED_STEP_TOO_SMALL
+    elif s.steps[l] > system.most_steps:
+        s.outcome[l] = FAILED_TOO_MANY_STEPS
+    return bool(s.outcome[l] != RUNNING)
+
+
+@compiled
+def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> None:
+    """What an event does; the lane is where it happens."""
+    system, log, phase = systems[0], output.log, s.phase[l]
+    if kind == LET_GO:
+        if phase == STUCK:
+            slide(s, l, system, log, s.which[l])
+        else:
+            uplift(s, l, system, log, s.which[l])
+        return
+    if kind == CHANGE:
+        if change_law(s, l, log, s.which[l]):
+            renew(s, l)
+            reverse(s, l, system, log)
+        else:
+            renew(s, l)
+        return
+    if kind == NEAREST or (kind == LOW and is_upright(s, l, system)):
+        pass_upright(s, l, system, log, kind == LOW)
+        renew(s, l)
+        settles(s, l, system, log, kind == LOW)
+        return
+    if phase == BEDDED or (kind == LOW and s.x_low[l] == system.bed_uplift):
+        pass_on_bed(s, l, system, log, phase != BEDDED)
+    elif kind == HIGH and s.x_high[l] == system.theta_limit:
+        log_event(s, l, log, OVERTURNING, s.v[l], s.v[l], 0.0)
+        rolls = s.theta_cr[l] < system.beta
+        s.outcome[l] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
+        return
+    elif system.beta > 0.0 and (s.x_high[l] if kind == HIGH else s.x_low[l]) == system.beta:
+        rises = kind == HIGH
+        event = ROLLING_TO_ROCKING if rises else ROCKING_TO_ROLLING
+        s.x[l] = system.beta
+        log_event(s, l, log, event, s.v[l], s.v[l], 0.0)
+        enter_phase(s, l, system, ROCKING if rises else ROLLING)
+    else:  # curved ends leave their flat part, or come back to it
+        enter_phase(s, l, system, phase)
+    renew(s, l)
+
+
+@compiled
+def is_upright(s: Record, l: int, system: Record) -> bool:
+    """Whether the range of the present phase ends upright."""
+    if s.phase[l] == BEDDED or system.compliant > 0:
+        return False
+    return bool(s.phase[l] == ROLLING or system.beta == 0.0)
+
+
+@compiled
+def reverse(s: Record, l: int, system: Record, log: Record) -> None:
+    """At a standstill of the tilt: go on, or be held by friction."""
+    if sticks(s, l, log):
+        hold(s, l, system)
+    else:
+        renew(s, l)
+
+
+@compiled
+def hold(s: Record, l: int, system: Record) -> None:
+    """Be held where the tilt stands."""
+    enter_phase(s, l, system, STUCK)
+    set_limits(s, l)
+    renew(s, l)
+
+
+@compiled
+def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
+    """Leave a tilt that friction held, to the right or to the left."""
+    phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
+    s.direction[l] = side * s.side[l]
+    log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
+    s.phase[l], s.moves[l] = (BEDDED if s.bed_k[l] > 0.0 else phase), 1.0
+    renew(s, l)
+    # At the threshold it is zero but for rounding, and about to grow.
+    s.a[l] = s.direction[l] * max(s.direction[l] * s.a[l], 0.0)
+    s.bend[0, l] = s.side[l] * s.a[l]
+
+
+# Histories begin and end.
+
+
+@compiled
+def next_history(
+    s: Record,
+    l: int,
+    systems: Record,
+    requests: Record,
+    acceleration: Floats,
+    results: Record,
+    output: Output,
+) -> None:
+    """A lane's history is over: leave its results, and take the next, if there is one."""
+    if s.history[l] != NO_HISTORY:
+        finish_history(s, l, systems[s.system[l]], results)
+    if s.waiting < requests.shape[0]:
+        s.waiting += 1
+        begin_history(s, l, systems, requests, s.waiting - 1, acceleration, output)
+    else:
+        idle(s, l)
+
+
+@compiled
+def idle(s: Record, l: int) -> None:
+    """Leave a lane without a history: it makes steps of nothing."""
+    s.history[l], s.devices[l], s.kinks[l], s.outcome[l] = NO_HISTORY, 0, 0.0, RUNNING
+    s.kind[l], s.wanted[l], s.phase[l], s.moves[l] = NOTHING, NOTHING, FULL_CONTACT, 0.0
+    s.time[l], s.dt[l], s.h[l], s.h_most[l], s.h_limit[l] = 0.0, 1.0, 0.0, 1.0, 0.0
+    s.x[l], s.v[l], s.a[l], s.interval[l], s.npts[l] = 0.0, 0.0, 0.0, 0, 2
+    for axis in range(ways_of(s)):
+        s.tilt[axis, l], s.tilt_rate[axis, l], s.bend[axis, l] = 0.0, 0.0, 0.0
+        s.a_g[axis, l], s.a_g_slope[axis, l], s.base[axis, l] = 0.0, 0.0, 0.0
+    for r in range(ways_of(s) * s.n):
+        s.q[r, l], s.dq[r, l] = 0.0, 0.0
+
+
+@compiled
+def begin_history(
+    s: Record,
+    l: int,
+    systems: Record,
+    requests: Record,
+    history: int,
+    acceleration: Floats,
+    output: Output,
+) -> None:
+    """Load a history into a lane, at rest in full contact or released from a tilt."""
+    request, ways = requests[history], ways_of(s)
+    s.history[l], s.system[l] = history, ways * request.system
+    both = systems[s.system[l] : s.system[l] + ways]
+    system = both[0]
+    load_system(s, l, system)
+    for axis in range(ways):
+        load_modes(s, l, both[axis], axis)
+    load_request(s, l, request, system)
+    load_devices(s, l, system)
+    load_bed(s, l, system)
+    clear_results(s, l)
+    s.side[l], s.x[l], s.v[l] = 1.0, 0.0, 0.0
+    for axis in range(ways):
+        s.tilt[axis, l], s.tilt_rate[axis, l] = 0.0, 0.0
+    set_ground(s, l, acceleration)
+    enter_phase(s, l, system, first_phase(system))
+    s.kappa[l] = 1.0
+    if ways == 2:
+        upright = place_of(s, l, 1e-30)
+        s.kappa[l] = math.sqrt(upright.K / upright.A)
+    if system.initial_rotation != 0.0 or system.alpha == 0.0 or system.compliant > 0:
+        release(s, l, system, output.log)
+    else:
+        enter_phase(s, l, system, FULL_CONTACT)
+        renew(s, l)
+    observe_start(s, l)
+    store_sample(s, l, both, output)
+    s.h[l] = plan(s, l)
+
+
+@compiled
+def load_system(s: Record, l: int, system: Record) -> None:
+    """Constants of the structure, folded as the laws want them."""
+    ground, building = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
+    s.diameter[l], s.io_1[l], s.i_3[l] = 2.0 * system.R, system.Io - 1.0, system.inertia_axial
+    s.one[l], s.four[l] = 1.0 + 4.0 * system.gamma, 2.0 * building
+    s.weigh[l], s.load[l] = (ground + building) / system.R, ground / system.R
+    s.share[l] = 2.0 / (system.columns_mass * system.R)
+    s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
+    s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
+    s.sin_a[l], s.tan_a[l], s.spin[l] = (
+        math.sin(system.alpha),
+        math.tan(system.alpha),
+        system.rolling[2] if system.beta > 0.0 else 0.0,
+    )
+    s.beta[l], s.sin_beta[l] = system.beta, math.sin(system.beta)
+    s.excess_beta[l] = system.beta - math.sin(system.beta)
+    s.half_width[l] = system.R * math.sin(system.alpha)
+    s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
+    s.theta_cr[l], s.restitution[l] = system.theta_cr, system.restitution
+    s.contact_time[l], s.shock_time[l] = system.contact_time, system.shock_time
+    s.step_error[l], s.bend_ratio[l] = system.step_error, system.bend_ratio
+
+
+@compiled
+def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
+    """The building's modes at rest, in a direction."""
+    damping = 0.0
+    for of in range(system.n):
+        r = axis * system.n + of
+        s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[of], system.two_xi_omega[of]
+        s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[of], system.shear_weight[of]
+        s.acceleration_weight[r, l] = system.acceleration_weight[of]
+        s.q[r, l], s.dq[r, l], s.seen_q[r, l], s.seen_force[r, l] = 0.0, 0.0, 0.0, 0.0
+        damping += system.Gamma[of] * system.Gamma[of] * system.two_xi_omega[of]
+    s.damping_sum[axis, l] = damping
+    s.bend_ratio[l] = max(s.bend_ratio[l], system.bend_ratio)
+
+
+@compiled
+def load_request(s: Record, l: int, request: Record, system: Record) -> None:
+    """What is followed, and for how long."""
+    s.record[0, l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
+    if ways_of(s) == 2:
+        s.record[ways_of(s) - 1, l] = request.record_y
+    s.scale[l], s.dt[l], s.rate[l] = request.scale, request.dt, 1.0 / request.dt
+    s.outcome[l], s.kind[l], s.wanted[l], s.which[l] = RUNNING, NOTHING, NOTHING, 0
+    s.interval[l], s.h_limit[l], s.stalled[l] = 0, math.inf, 0
+    s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
+
+
+@compiled
+def clear_results(s: Record, l: int) -> None:
+    """Nothing has happened yet."""
+    s.max_theta[l], s.max_theta_time[l], s.critical_time[l] = 0.0, 0.0, -1.0
+    s.max_azimuth[l], s.critical_azimuth[l] = 0.0, 0.0
+    s.friction_top[l], s.friction_bottom[l] = 0.0, 0.0
+    s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
+    s.heavy_top[l], s.heavy_bottom[l] = 0.0, 0.0
+    s.shear_top[l], s.shear_bottom[l] = 0.0, 0.0
+    for k in range(s.room.shape[0]):
+        s.room[k, l] = 0.0
+        for i in range(s.n):
+            s.largest[k, l, i], s.last[k, l, i] = 0.0, 0.0
+    for axis in range(ways_of(s)):
+        s.max_beam[axis, l] = 0.0
+    s.torsion_lever[l], s.passes_as_impacts[l] = 0.0, 0.0
+    s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
+    s.energy_input[l], s.energy_damped[l], s.energy_passes[l] = 0.0, 0.0, 0.0
+    s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
+    s.steps[l], s.creating_impacts[l] = 0.0, 0
+    for i in range(EVENT_KINDS):
+        s.events[l, i] = 0
+
+
+@compiled
+def release(s: Record, l: int, system: Record, log: Record) -> None:
+    """Start from rest at a rotation, the building unstrained; without a flat part perhaps at 0."""
+    theta = abs(system.initial_rotation)
+    s.side[l] = math.copysign(1.0, system.initial_rotation)
+    s.x[l], s.max_theta[l] = theta, theta
+    s.tilt[0, l] = s.side[l] * theta
+    if ways_of(s) == 2:
+        s.max_azimuth[l] = azimuth_of(s, l)
+        s.tilt_rate[ways_of(s) - 1, l] = s.tilt[0, l] * system.initial_turning
+    phase = ROLLING if theta < system.beta else ROCKING
+    bedded = theta < system.bed_uplift
+    enter_phase(s, l, system, BEDDED if bedded else phase)
+    release_devices(s, l)
+    renew(s, l)
+    if has_friction(s, l):
+        reverse(s, l, system, log)
+
+
+@compiled
+def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
+    """Write what the history leaves behind [results (P,)]."""
+    result, ways = results[s.history[l]], ways_of(s)
+    result.energy_stored = total_energy(s, l, system)
+    if s.outcome[l] == RUNNING:
+        released = system.initial_rotation != 0.0 or s.max_theta[l] > system.bed_uplift
+        s.outcome[l] = SURVIVED if released or s.events[l, UPLIFT] > 0 else AT_REST
+    result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
+    if s.phase[l] == STUCK and s.bed_k[l] > 0.0:
+        result.phase = BEDDED
+    result.steps, result.creating_impacts = int(s.steps[l]), s.creating_impacts[l]
+    result.time = time_of(s, l)
+    result.rotation = s.tilt[0, l] if ways == 1 else s.x[l]
+    result.azimuth, result.max_azimuth = azimuth_of(s, l), s.max_azimuth[l]
+    result.max_theta, result.max_theta_time = s.max_theta[l], s.max_theta_time[l]
+    result.critical_time, result.critical_azimuth = s.critical_time[l], s.critical_azimuth[l]
+    result.friction_top, result.friction_bottom = s.friction_top[l], s.friction_bottom[l]
+    result.normal_top, result.normal_bottom = s.normal_top[l], s.normal_bottom[l]
+    result.heavy_top, result.heavy_bottom = s.heavy_top[l], s.heavy_bottom[l]
+    result.shear_top, result.shear_bottom = s.shear_top[l], s.shear_bottom[l]
+    result.energy_input, result.energy_damped = s.energy_input[l], s.energy_damped[l]
+    result.energy_lost, result.energy_created = s.energy_lost[l], s.energy_created[l]
+    result.energy_passes, result.torsion_lever = s.energy_passes[l], s.torsion_lever[l]
+    result.passes_as_impacts = int(s.passes_as_impacts[l])
+    result.closest_pass, result.shortest_pass = s.closest_pass[l], s.shortest_pass[l]
+    result.bed_energy, result.bedded_time = s.bed_energy[l], s.bedded_time[l]
+    result.impact_number = s.impact_number[l]
+    for i in range(EVENT_KINDS):
+        result.events[i] = s.events[l, i]
+    half = 2 * ways - 1
+    for i in range(s.n):
+        result.storey_shear[i] = s.largest[0, l, i]
+        result.floor_acceleration[i] = s.largest[half, l, i]
+        if ways == 2:
+            result.storey_shear_x[i], result.storey_shear_y[i] = (
+                s.largest[half - 2, l, i],
+                s.largest[half - 1, l, i],
+            )
+            result.floor_acceleration_x[i] = s.largest[half + ways - 1, l, i]
+            result.floor_acceleration_y[i] = s.largest[half + ways, l, i]
+    result.max_x = s.max_beam[0, l]
+    result.max_y = s.max_beam[ways - 1, l]
+    if s.devices[l] > 0:
+        at = worked(s, l, tilt_of(s, l), (0.0, 0.0))
+        for i in range(s.devices[l]):
+            result.device_force[i] = s.device_force[i, l]
+            result.device_velocity[i] = s.device_velocity[i, l]
+            result.device_energy[i] = s.device_energy[i, l]
+            result.device_stored[i] = stored_in(s, l, i, at)
+            result.permanent[i] = s.permanent[i, l]

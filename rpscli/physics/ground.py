@@ -1,0 +1,91 @@
+"""Ground acceleration of a lane, linear between samples and zero after the last; and its log."""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.core.compile import compiled
+from rpscli.physics.laws import ways_of
+from rpscli.physics.state import FULL_CONTACT, NO_RECORD, Floats, Record
+
+
+@compiled
+def set_ground(s: Record, l: int, acceleration: Floats) -> None:
+    """Set how the ground moves in the interval that begins."""
+    i = s.interval[l]
+    inside, scale, rate = i + 1 < s.npts[l], s.scale[l], s.rate[l]
+    s.time[l] = 0.0
+    for axis in range(ways_of(s)):
+        start, end = 0.0, 0.0
+        if inside:
+            at = s.record[axis, l] + i
+            start, end = scale * acceleration[at], scale * acceleration[at + 1]
+        s.a_g[axis, l], s.a_g_slope[axis, l] = start, (end - start) * rate
+    start, end = 0.0, 0.0
+    if inside and s.vertical[l] != NO_RECORD:
+        at = s.vertical[l] + i
+        start, end = scale * acceleration[at], scale * acceleration[at + 1]
+    s.g_up[l], s.g_up_slope[l] = s.gravity[l] + start, (end - start) * rate
+
+
+@compiled
+def ground_now(s: Record, l: int, axis: int) -> float:
+    """a_g at the start of the step [m/s2]."""
+    return float(s.a_g[axis, l] + s.time[l] * s.a_g_slope[axis, l])
+
+
+@compiled
+def g_up_now(s: Record, l: int) -> float:
+    """The sum g + a_v at the start of the step [m/s2]."""
+    return float(s.g_up[l] + s.time[l] * s.g_up_slope[l])
+
+
+@compiled
+def time_of(s: Record, l: int) -> float:
+    """Time of a lane since the start of its record [s]."""
+    return float(s.interval[l] * s.dt[l] + s.time[l])
+
+
+@compiled
+def azimuth_of(s: Record, l: int) -> float:
+    """Of the tilt at the start of the step, from x towards y [rad]."""
+    if ways_of(s) == 1:
+        return 0.0
+    return math.atan2(s.tilt[1, l], s.tilt[0, l])
+
+
+@compiled
+def log_row(s: Record, l: int, log: Record, kind: int) -> int:
+    """Count an event; its row in the log, or -1 if there is no room."""
+    row = -1
+    if log.shape[0] > 0:
+        row = 0
+        for i in range(s.events.shape[1]):
+            row += s.events[l, i]
+        if row >= log.shape[0]:
+            row = -1
+    s.events[l, kind] += 1
+    return row
+
+
+@compiled
+def log_event(
+    s: Record, l: int, log: Record, kind: int, before: float, after: float, lost: float
+) -> int:
+    """Count an event at the present state, and log it if there is room; its row, or -1.
+
+    Rates of the tilt before and after are those along its side.
+    """
+    row = log_row(s, l, log, kind)
+    if row >= 0:
+        entry, sign = log[row], (s.side[l] if ways_of(s) == 1 else 1.0)
+        theta = 0.0 if s.phase[l] == FULL_CONTACT else sign * s.x[l]
+        entry.time, entry.kind, entry.theta, entry.energy_lost = time_of(s, l), kind, theta, lost
+        entry.theta_dot_before, entry.theta_dot_after = sign * before, sign * after
+        entry.azimuth, entry.least_tilt, entry.nearness, entry.loss_share = (
+            azimuth_of(s, l),
+            0.0,
+            0.0,
+            0.0,
+        )
+    return row

@@ -1,0 +1,346 @@
+"""The equation of motion, each law once, as a value (Theory, sections 2, 12 and 13).
+
+The tilt is a vector (a, b) = x (cos phi, sin phi); along it and across it its rate is p = x' and
+q = x phi'. One plane is its first component alone, signed by the side s: x = s a may then pass
+through zero, and nothing across it exists. With K = J/x^2, over N m_c R^2,
+
+    A r''_n = C z_n - arms - bed - c_r p + G + [(K - A)/x + K'/2] q^2 - D p^2          D = A'/2
+    K r''_t = h z_t - K' p q                                                           h = u/x
+    u_b''   = 2 R (C r''_n + B p^2 + h' q^2) along it,  2 R (h r''_t + 2 h' p q) across it
+    z       = 2 (V + P)/(N m_c R) - (1 + 2 gamma) a_g/R
+    arms    = [(B - sink w) g + B_v a_v] (1 + 2 gamma + 2 gamma eta)/R,   B_v = B - root w
+
+G is what tendons and rolling resistance do, P what dampers and stops push the cap beam with. Kept
+beyond the ends of a phase of motion all is smooth, which is what the search of events needs.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.core.compile import compiled, inlined
+from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Record
+
+SERIES = 0.3
+"""Below this tilt [rad] differences of sines are taken by their series."""
+
+
+@inlined
+def ways_of(s: Record) -> int:
+    """Horizontal directions in which the ground moves; known to the compiler."""
+    return s.tilt.shape[0]  # type: ignore[no-any-return]
+
+
+@inlined
+def lanes_of(s: Record) -> int:
+    """Lanes of a state; known to the compiler."""
+    return s.x.shape[0] - PADDING  # type: ignore[no-any-return]
+
+
+S3, S5, S7, S9, S11, S13, S15, S17, S19 = (
+    1 / math.factorial(k) * (-1) ** (k // 2 + 1) for k in range(3, 20, 2)
+)
+C2, C4, C6, C8, C10, C12, C14, C16, C18, C20 = (
+    1 / math.factorial(k) * (-1) ** (k // 2 + 1) for k in range(2, 21, 2)
+)
+
+
+@inlined
+def sines(x: float) -> tuple[float, float, float]:
+    """sin x, 1 - cos x and x - sin x by their series, without loss near zero [rad].
+
+    They leave less than 5e-16 for |x| <= pi/2, which no standing column exceeds. Terms are added in
+    pairs, and pairs of pairs (G. Estrin, 1960): what follows waits for five operations, not ten.
+    """
+    z = x * x
+    z2 = z * z
+    z4 = z2 * z2
+    low, high = (S3 + z * S5) + (S7 + z * S9) * z2, (S11 + z * S13) + (S15 + z * S17) * z2
+    excess = x * z * ((low + high * z4) + S19 * z4 * z4)
+    low, high = (C2 + z * C4) + (C6 + z * C8) * z2, (C10 + z * C12) + (C14 + z * C16) * z2
+    return x - excess, z * ((low + high * z4) + (C18 + z * C20) * z4 * z4), excess
+
+
+@inlined
+def patch(s: Record, l: int, x: float) -> tuple[float, float]:
+    """w = x^(-1/2) (1 - fade (x - phi_u))^4 and its slope, while a plane end lifts (12.6)."""
+    lifts = (s.root[l] > 0.0) & (x > 0.0)
+    root, shape = 1.0 / math.sqrt(x if lifts else 1.0), 1.0 - s.fade[l] * (x - s.bed_u[l])
+    cube = shape * shape * shape
+    w = root * cube * shape
+    slope = -(0.5 * w * (root * root) + 4.0 * s.fade[l] * cube * root)
+    return (w if lifts else 0.0), (slope if lifts else 0.0)
+
+
+class Place(NamedTuple):
+    """Geometry and inertia at a tilt; lengths over R, ' by x."""
+
+    B: float  # arm of the contact, B' = c - C
+    C: float  # height of the cap beam's path
+    Bv: float  # arm of the lift, and its slope
+    dBv: float
+    A: float  # inertia against p, and D = A'/2
+    D: float
+    h: float  # u/x, and its slope
+    dh: float
+    K: float  # inertia against q, and its slope
+    dK: float
+    cone: float  # (K - A)/x
+    G: float  # columns spin by G phi' against it, and the slope
+    dG: float
+
+
+@inlined
+def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
+    """Geometry and inertia of a lane at a tilt, where the patch is known."""
+    sine, less, excess = sines(x)
+    p, q0, c = s.p[l], s.q0[l], s.c[l]
+    B, C = p * (1.0 - less) + q0 * sine, c + p * sine - q0 * (1.0 - less)
+    dB, one, both = c - C, s.one[l], s.one[l] + s.four[l]
+    Bv, dBv = B - s.root[l] * w, dB - s.root[l] * dw
+    A = s.io_1[l] + one * (C * C) + both * (Bv * Bv)
+    D = one * (C * B) + both * (Bv * dBv)
+    if ways_of(s) == 1:
+        return Place(B, C, Bv, dBv, A, D, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+    io_1, i_3, per_x = s.io_1[l], s.i_3[l], 1.0 / (x if x > 0.0 else 1.0)
+    sine_x, less_x, excess_x = sine * per_x, less * per_x, excess * per_x
+    gap = p * (sine - less_x) + q0 * (less - excess_x) - (s.u0[l] - p) * per_x
+    h, rolls = C - gap, s.rolls[l] > 0.0
+    base = s.sin_a[l] + s.spin[l] * (sine if rolls else s.sin_beta[l])
+    more = s.spin[l] * (excess if rolls else s.excess_beta[l]) / base
+    slope = s.spin[l] * (less - more * (1.0 - less)) / base if rolls else 0.0
+    G, dG = less + more, sine + slope
+    G_x, flat = G * per_x, less - excess_x
+    K = io_1 * (sine_x * sine_x) + i_3 * (G_x * G_x) + one * (h * h)
+    dK = 2.0 * per_x * (-io_1 * sine_x * flat + i_3 * G_x * (dG - G_x) + one * h * gap)
+    cone = i_3 * (G_x * G_x) - io_1 * excess_x * (1.0 + sine_x)
+    cone = (cone - one * gap * (h + C) - both * (Bv * Bv)) * per_x
+    return Place(B, C, Bv, dBv, A, D, h, gap * per_x, K, dK, cone, G, dG)
+
+
+@compiled
+def place_of(s: Record, l: int, x: float) -> Place:
+    """Geometry and inertia of a lane at a tilt."""
+    w, dw = patch(s, l, x)
+    return place_with(s, l, x, w, dw)
+
+
+class Motion(NamedTuple):
+    """Accelerations of a lane's tilt, and what they make of the cap beam."""
+
+    bend_x: float  # of the tilt vector [rad/s2]
+    bend_y: float
+    beam_x: float  # u_b'' [m/s2]
+    beam_y: float
+    lift: float  # v_b'' [m/s2]
+    a: float  # x'' [rad/s2]
+
+
+@inlined
+def motion_at(
+    s: Record,
+    l: int,
+    at: Place,
+    w: float,
+    tilt: tuple[float, float],
+    rate: tuple[float, float],
+    z: tuple[float, float],
+    g_up: float,
+) -> Motion:
+    """Accelerations at a tilt and its rate, under z [1/s2] and g + a_v [m/s2]."""
+    gravity, diameter, moves = s.gravity[l], s.diameter[l], s.moves[l] > 0.0
+    arms = ((at.B - s.sink[l] * w) * gravity + at.Bv * (g_up - gravity)) * s.weigh[l]
+    if ways_of(s) == 1:
+        side = s.side[l]
+        x, p = side * tilt[0], side * rate[0]
+        held = arms + at.D * (p * p) + s.bed_k[l] * x + s.bed_c[l] * p - s.turning[l]
+        a = (at.C * (side * z[0]) - held) / at.A
+        beam = side * diameter * (at.C * a + at.B * (p * p))
+        lift = diameter * (at.Bv * a + at.dBv * (p * p))
+        a, beam, lift = (a if moves else 0.0), (beam if moves else 0.0), (lift if moves else 0.0)
+        return Motion(side * a, 0.0, beam, 0.0, lift, a)
+    x = math.sqrt(tilt[0] * tilt[0] + tilt[1] * tilt[1])
+    per_x = 1.0 / (x if x > 0.0 else 1.0)
+    n, t = (tilt[0] * per_x if x > 0.0 else 1.0), tilt[1] * per_x
+    p, q = rate[0] * n + rate[1] * t, rate[1] * n - rate[0] * t
+    held = arms + at.D * (p * p) - (at.cone + 0.5 * at.dK) * (q * q) - s.turning[l]
+    out = (at.C * (z[0] * n + z[1] * t) - held) / at.A
+    across = (at.h * (z[1] * n - z[0] * t) - at.dK * (p * q)) / at.K
+    along = diameter * (at.C * out + at.B * (p * p) + at.dh * (q * q))
+    aside = diameter * (at.h * across + 2.0 * at.dh * (p * q))
+    a = out + q * q * per_x
+    lift = diameter * (at.Bv * a + at.dBv * (p * p))
+    return Motion(
+        out * n - across * t if moves else 0.0,
+        out * t + across * n if moves else 0.0,
+        along * n - aside * t if moves else 0.0,
+        along * t + aside * n if moves else 0.0,
+        lift if moves else 0.0,
+        a if moves else 0.0,
+    )
+
+
+# What follows from it: the cap beam's motion, energy, forces of contacts.
+
+
+@inlined
+def polar(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> tuple[float, ...]:
+    """x, cosine and sine of the azimuth, p and q; upright the azimuth is 0."""
+    if ways_of(s) == 1:
+        side = s.side[l]
+        return side * tilt[0], side, 0.0, side * rate[0], 0.0
+    x = math.sqrt(tilt[0] * tilt[0] + tilt[1] * tilt[1])
+    n, t = (tilt[0] / x, tilt[1] / x) if x > 0.0 else (1.0, 0.0)
+    return x, n, t, rate[0] * n + rate[1] * t, rate[1] * n - rate[0] * t
+
+
+@inlined
+def tilt_of(s: Record, l: int) -> tuple[float, float]:
+    """The tilt vector at the start of the step."""
+    return s.tilt[0, l], (s.tilt[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
+def rate_of(s: Record, l: int) -> tuple[float, float]:
+    """Its rate."""
+    return s.tilt_rate[0, l], (s.tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
+def path_at(s: Record, l: int, x: float) -> float:
+    """|u_b| over 2 R (1.4)."""
+    sine, less, _ = sines(x)
+    p, c = s.p[l], s.c[l]
+    return float((s.u0[l] - p) + p * less + (c * x - s.q0[l] * sine))
+
+
+@compiled
+def beam_at(
+    s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
+) -> tuple[float, float, float, float]:
+    """u_b and u_b' in x and in y [m, m/s]; zero in full contact on rigid ends."""
+    if s.phase[l] == FULL_CONTACT:
+        return 0.0, 0.0, 0.0, 0.0
+    x, n, t, p, q = polar(s, l, tilt, rate)
+    diameter, u, at = s.diameter[l], path_at(s, l, x), place_of(s, l, x)
+    way, along = diameter * u, diameter * at.C * p
+    if ways_of(s) == 1:
+        return way * n, 0.0, along * n, 0.0
+    across = diameter * at.h * q
+    return way * n, way * t, along * n - across * t, along * t + across * n
+
+
+@compiled
+def beam_now(s: Record, l: int) -> tuple[float, float, float, float]:
+    """The same at the start of the step."""
+    return beam_at(s, l, tilt_of(s, l), rate_of(s, l))
+
+
+@compiled
+def lifted_mass(s: Record, l: int) -> float:
+    """Mass that moves with the cap beam, half of the columns' included [kg]."""
+    return float(0.5 * s.columns_mass[l] + s.cap_beam_mass[l] + s.floors_mass[l])
+
+
+@compiled
+def inertia_unit(s: Record, l: int) -> float:
+    """N m_c R^2 [kg m2]."""
+    return float(0.25 * s.columns_mass[l] * (s.diameter[l] * s.diameter[l]))
+
+
+@compiled
+def tilting_energy(s: Record, l: int, at: Place, p: float, q: float) -> float:
+    """Kinetic energy of columns and cap beam, and of the floors' vertical motion [J]."""
+    return float(0.5 * inertia_unit(s, l) * (at.A * (p * p) + at.K * (q * q)))
+
+
+@compiled
+def lift_at(s: Record, l: int, x: float) -> float:
+    """v_b of rigid ends [m] (1.5)."""
+    sine, less, _ = sines(x)
+    return float(s.diameter[l] * (s.v0[l] + s.p[l] * sine - s.q0[l] * (1.0 - less)))
+
+
+@inlined
+def patch_integral(x: float, fade: float, uplift: float) -> float:
+    """The integral of w over x from 0, by the powers of x in w."""
+    a, root = 1.0 + fade * uplift, math.sqrt(x)
+    z, a2 = fade * x, a * a
+    series = a2 * a2 / 0.5 - 4.0 * a2 * a * z / 1.5 + 6.0 * a2 * z * z / 2.5
+    return root * (series - 4.0 * a * z * z * z / 3.5 + z * z * z * z / 4.5)
+
+
+@compiled
+def potential(s: Record, l: int, system: Record, x: float) -> float:
+    """Energy of the weight, and of the bed of compliant ends [J]."""
+    weight = lifted_mass(s, l) * s.gravity[l]
+    if system.compliant == 0:
+        return float(weight * lift_at(s, l, x))
+    unit = inertia_unit(s, l)
+    if s.bed_k[l] > 0.0:
+        return float(0.5 * unit * s.bed_k[l] * (x * x))
+    u, first = system.bed_uplift, system.rolling if system.beta > 0.0 else system.rocking
+    lift_there = s.diameter[l] * (first[4] + first[0] * math.sin(u) - first[1] * math.cos(u))
+    end = min(x, system.bed_full) if system.bed_full > 0.0 else x
+    sunk = patch_integral(end, s.fade[l], u) - patch_integral(u, s.fade[l], u)
+    stored = 0.5 * unit * system.bed_k * (u * u)
+    rises = lift_at(s, l, x) - lift_there - s.diameter[l] * system.sink * sunk
+    return float(stored + weight * rises)
+
+
+@compiled
+def strain_energy(s: Record, l: int) -> float:
+    """Energy of the building's springs [J]."""
+    energy = 0.0
+    for r in range(ways_of(s) * s.n):
+        energy += 0.5 * s.omega2[r, l] * (s.q[r, l] * s.q[r, l])
+    return energy
+
+
+@compiled
+def relative_momentum(s: Record, l: int, axis: int) -> float:
+    """1^T M v' [kg m/s] in a direction: that of the floors relative to the cap beam."""
+    momentum = 0.0
+    for r in range(axis * s.n, (axis + 1) * s.n):
+        momentum += s.Gamma[r, l] * s.dq[r, l]
+    return momentum
+
+
+@compiled
+def total_energy(s: Record, l: int, system: Record) -> float:
+    """Kinetic, strain and potential energy of a lane without its devices [J]."""
+    _, _, u_x, u_y = beam_now(s, l)
+    energy = strain_energy(s, l) + 0.5 * s.floors_mass[l] * (u_x * u_x + u_y * u_y)
+    for axis in range(ways_of(s)):
+        u = u_x if axis == 0 else u_y
+        energy += u * relative_momentum(s, l, axis)
+    for r in range(ways_of(s) * s.n):
+        energy += 0.5 * (s.dq[r, l] * s.dq[r, l])
+    if s.phase[l] == FULL_CONTACT:
+        return float(energy)
+    x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    return float(
+        energy + tilting_energy(s, l, place_of(s, l, x), p, q) + potential(s, l, system, abs(x))
+    )
+
+
+@inlined
+def contact_forces(
+    s: Record, l: int, beam: float, lift: float, V: float, a_g: float, g_up: float
+) -> tuple[float, float, float, float]:
+    """F and N of all columns together at their upper and lower ends, in one direction [N] (8.4).
+
+    F acts to the right and N upwards on what is above; V is the base shear and what devices push
+    the beam with.
+    """
+    shear = s.cap_beam_mass[l] * (beam + a_g) - V
+    shear_bottom = shear + s.columns_mass[l] * (0.5 * beam + a_g)
+    normal = (s.cap_beam_mass[l] + s.floors_mass[l]) * (g_up + lift) + s.pull[l]
+    return shear, shear_bottom, normal, normal + s.columns_mass[l] * (g_up + 0.5 * lift)
+
+
+@compiled
+def stands(s: Record, l: int) -> bool:
+    """Whether the tilt of a lane is held: on rigid ends upright, or by friction."""
+    return bool(s.phase[l] == FULL_CONTACT or s.phase[l] == STUCK)

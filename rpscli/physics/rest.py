@@ -1,0 +1,131 @@
+"""When the free vibration after the record can be left off: nothing new can come."""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.core.compile import compiled
+from rpscli.physics.laws import (
+    inertia_unit,
+    lift_at,
+    lifted_mass,
+    total_energy,
+    ways_of,
+)
+from rpscli.physics.state import BEDDED, FULL_CONTACT, STUCK, Record
+
+REST_EVERY = 8
+"""After the record, so many samples pass between looks at whether anything can still happen."""
+
+WOBBLES = 20.0
+"""So long after the record a wobbling structure is left, once no larger tilt can come [s]."""
+
+
+@compiled
+def is_over(s: Record, l: int, systems: Record) -> bool:
+    """Whether no later moment of the free vibration can bring a new maximum.
+
+    At rest each mode decays from its present energy, which bounds every demand and the push that
+    could uplift the storey again. Uplifted in one plane a history is never over: impacts excite the
+    building until the storey is down.
+    """
+    system, free = systems[0], s.interval[l] + 1 - s.npts[l]
+    if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
+        return False
+    if s.phase[l] in (FULL_CONTACT, STUCK):
+        return stays_down(s, l, systems) and demands_stand(s, l, systems)
+    if s.phase[l] == BEDDED:
+        return rests_on_bed(s, l, system)
+    return ways_of(s) == 2 and free * s.dt[l] >= WOBBLES and tilts_no_more(s, l, system)
+
+
+@compiled
+def modal_speed(s: Record, l: int, r: int) -> float:
+    """sqrt(2 E_r): mode r never moves faster than this, nor farther than this over w."""
+    return math.sqrt(s.dq[r, l] * s.dq[r, l] + s.omega2[r, l] * (s.q[r, l] * s.q[r, l]))
+
+
+@compiled
+def stays_down(s: Record, l: int, systems: Record) -> bool:
+    """Whether the freely vibrating building can never again push hard enough to let go."""
+    square = 0.0
+    for axis in range(ways_of(s)):
+        largest = 0.0
+        for r in range(axis * s.n, (axis + 1) * s.n):
+            force = math.sqrt(s.omega2[r, l]) + s.two_xi_omega[r, l]
+            largest += abs(s.Gamma[r, l]) * force * modal_speed(s, l, r)
+        square += largest * largest
+    limit = s.gravity[l] * s.limit_right[l] + s.held_right[l]
+    if ways_of(s) == 1:
+        limit = min(limit, s.gravity[l] * s.limit_left[l] + s.held_left[l])
+    return s.n == 0 or bool(0.5 * s.diameter[l] * s.share[l] * math.sqrt(square) < limit)
+
+
+@compiled
+def demands_stand(s: Record, l: int, systems: Record) -> bool:
+    """Whether free vibration in full contact can raise no storey shear and no acceleration."""
+    rows = 2 * ways_of(s) - 1
+    for i in range(s.n):
+        shears, accelerations = 0.0, 0.0
+        for axis in range(ways_of(s)):
+            system, shear, acceleration = systems[axis], 0.0, 0.0
+            for of in range(s.n):
+                r, omega = axis * s.n + of, system.omega[of]
+                speed = modal_speed(s, l, r)
+                shear += abs(system.storey_shear_of[of, i]) * speed / omega
+                force = omega + system.two_xi_omega[of]
+                acceleration += abs(system.phi[of, i]) * force * speed
+            if ways_of(s) == 2:
+                if shear > s.largest[1 + axis, l, i]:
+                    return False
+                if acceleration > s.largest[rows + 1 + axis, l, i]:
+                    return False
+            shears, accelerations = shears + shear * shear, accelerations + acceleration**2
+        if math.sqrt(shears) > s.largest[0, l, i]:
+            return False
+        if math.sqrt(accelerations) > s.largest[rows, l, i]:
+            return False
+    return True
+
+
+@compiled
+def tilts_no_more(s: Record, l: int, system: Record) -> bool:
+    """Whether the energy no longer suffices for a larger tilt, or for theta_cr."""
+    level = min(s.max_theta[l], s.theta_cr[l])
+    of = system.rolling if level < system.beta else system.rocking
+    lift = s.diameter[l] * (of[4] + of[0] * math.sin(level) - of[1] * math.cos(level))
+    least = lifted_mass(s, l) * s.gravity[l] * lift
+    return s.x[l] < level and bool(total_energy(s, l, system) < least)
+
+
+@compiled
+def rests_on_bed(s: Record, l: int, system: Record) -> bool:
+    """Whether free vibration in full contact can bring nothing new: energy bounds all of it.
+
+    All springs together hold no more than the energy, nor do all masses: with E = v^2/2 the tilt is
+    below v/sqrt(N m_c R^2 k), a storey's shear below v sqrt(k_i), and the force of mode r below
+    w_r v, with what its dampers add at velocities against the beam of v (1 + Gamma/sqrt(m_0)).
+    """
+    v = math.sqrt(2.0 * total_energy(s, l, system))
+    per_tilt = math.sqrt(inertia_unit(s, l))
+    farthest = v / (per_tilt * math.sqrt(system.bed_k))
+    if farthest >= min(system.bed_uplift, s.max_theta[l]):
+        return False
+    C = system.bed_height
+    A = s.io_1[l] + s.one[l] * C * C
+    per_beam = s.diameter[l] * C / (per_tilt * math.sqrt(A))  # 1/sqrt(m_0)
+    for i in range(s.n):
+        stiffness, spring, damper, beam = 0.0, 0.0, 0.0, 0.0
+        for r in range(s.n):
+            shear = system.storey_shear_of[r, i] / system.omega[r]
+            force = system.phi[r, i] * system.omega[r]
+            damped = system.phi[r, i] * system.two_xi_omega[r]
+            stiffness, spring = stiffness + shear * shear, spring + force * force
+            damper += damped * damped
+            beam += abs(damped * system.Gamma[r]) * per_beam
+        acceleration = math.sqrt(spring) + math.sqrt(damper) + beam
+        if v * math.sqrt(stiffness) > s.largest[0, l, i]:
+            return False
+        if v * acceleration > s.largest[1, l, i]:
+            return False
+    return True

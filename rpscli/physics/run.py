@@ -1,0 +1,34 @@
+"""What histories need while they run, and where their results go."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from numpy.typing import NDArray
+import numpy as np
+
+from rpscli.physics.state import Floats, Record
+
+
+class Output(NamedTuple):
+    """Samples and events of a history that is run by itself; of many, give no rows to keep none.
+
+    Without room for samples no energy is audited; events beyond the log's rows are only counted.
+    """
+
+    samples: Record  # (rows,) `state.SAMPLE`
+    floors: NDArray[np.float64]  # (rows, 2, n) u and u' of the floors over the ground [m, m/s]
+    log: Record  # (rows,) `state.EVENT`
+    devices: NDArray[np.float64]  # (rows, 4, devices) force [N], path [m], energy lost, stored [J]
+    finer: int = 1  # rows a sample: even parts of the interval at which the motion is kept as well
+
+
+class Run(NamedTuple):
+    """Histories to run, and what they leave behind; all arrays of records but the floats."""
+
+    systems: Record  # (S,) `state.SYSTEM`, all of the same number of storeys n
+    requests: Record  # (P,) `state.REQUEST`: the histories
+    acceleration: Floats  # records of the ground end to end [m/s2], linear between their samples
+    results: Record  # (P,) `state.RESULT`: written
+    output: Output  # samples and events, where there is one history: written
+    ways: int = 1  # horizontal components: 2 with two systems of each structure

@@ -1,0 +1,556 @@
+"""What the kernel reads and writes: structured records, every field named once, here.
+
+* ``system``: a structure and how it is followed; filled by `rpscli.analyses`, read only; where both
+  components act two stand together, of the directions x and y, which differ in their buildings;
+* ``request``: a history to run, a system under a record; likewise;
+* ``state``: all lanes side by side, last; ``q`` has one row a mode, ``tilt`` one a direction;
+* ``result``: what a history leaves behind.
+
+Letters are those of Theory: x the tilt, s its side, B and C the arms of contact over R. Lanes come
+last, so that a loop over them is one vector instruction; what such loops test is a number, 1 or 0.
+Sizes are part of a record's type: `ways`, the horizontal directions in which the ground moves, and
+the lanes are so known when the kernel is compiled, which is one source for all of them.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from threading import local
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.constants import MOST_STOREYS
+from rpscli.physics.tableau import END
+
+Floats = NDArray[np.float64]
+Record: TypeAlias = Any
+"""One entry of an array of records: its fields are attributes, in Python as in machine code."""
+
+LANES = 32
+"""Histories that one core follows at once. Loops over fewer are unrolled by the compiler before it
+looks for vector instructions; more do not fit into the processor's first cache."""
+
+PADDING = 8
+"""Rows that no mode uses, and entries that no lane uses. Without them the rows of one lane would
+all fall into a few lines of the processor's cache, and drive each other out."""
+
+NO_HISTORY = -1
+"""`history` of a lane that has nothing left to do."""
+
+NO_RECORD = -1
+"""Offset of a record that a history does not have."""
+
+SLOTS = 8
+"""Devices that a structure may have."""
+
+# Kinds of device.
+VISCOUS, FRICTION, STOP, TENDON, ROLLING_RESISTANCE = range(5)
+
+# Where the constants of their laws stand in `device_constants`.
+DAMPER_COEFFICIENT, DAMPER_EXPONENT = range(2)  # c, a
+FRICTION_FORCE = 0  # F_d
+STOP_GAP, STOP_STIFFNESS, STOP_DAMPING = range(3)  # d, k_s, c_s
+TENDON_PRESTRESS, TENDON_STIFFNESS, TENDON_YIELD = range(3)  # P_0, k_t, P_y of one column
+ROLLING_MOMENT = 0  # 2 W f
+
+# Branches of a device's law: of a stop with its gap open, pushing back, let go before its gap; of
+# a tendon slack, elastic, yielding. The others have one.
+IDLE, WORKING, BEYOND = range(3)
+
+# Phases of motion; STUCK is held by friction while tilted, BEDDED in full contact that gives way.
+FULL_CONTACT, ROLLING, ROCKING, STUCK, BEDDED = range(5)
+
+# Kinds of event, in the log and in the counts.
+(
+    UPLIFT,
+    IMPACT,
+    RECONTACT,
+    ROLLING_TO_ROCKING,
+    ROCKING_TO_ROLLING,
+    CRITICAL_PASSAGE,
+    OVERTURNING,
+    STICKING,
+    SLIDING,
+    STOP_MET,
+    STOP_LEFT,
+    TENDON_YIELDING,
+    TENDON_SLACK,
+    TENDON_TAUT,
+    PASS,  # of the upright position, by columns that are free to tilt to any side
+) = range(15)
+EVENT_KINDS = 15
+
+# How a history ended; it has not while RUNNING.
+RUNNING = -1
+(
+    AT_REST,
+    SURVIVED,
+    OVERTURNED_ROLLING,
+    OVERTURNED_ROCKING,
+    FAILED_NOT_FINITE,
+    FAILED_TOO_MANY_EVENTS,
+    FAILED_STEP_TOO_SMALL,
+    FAILED_TOO_MANY_STEPS,
+) = range(8)
+
+# Where a step is to end: the tilt leaves its range, passes nearest to upright; a storey at rest is
+# no longer held; behind these a device changes its law.
+NOTHING, LOW, HIGH, NEAREST, LET_GO, CHANGE = range(6)
+
+WHOLE = "integer"
+"""Unit of what is counted: such fields are integers."""
+
+
+class Field(NamedTuple):
+    """A field of a record: a number, or an array of the named sizes."""
+
+    name: str
+    sizes: str  # of its axes, by name or as a number; none of a number
+    unit: str  # SI; ``-`` for plain numbers, ``mixed`` where entries or cases differ
+    meaning: str  # symbol or formula, and words
+
+    def __str__(self) -> str:
+        """One line, as `describe` prints it."""
+        sizes = f"({self.sizes})" if self.sizes else "number"
+        return f"{self.name:22} {sizes:18} [{self.unit}] {self.meaning}"
+
+
+def _fields(sizes: str, unit: str, **meanings: str) -> tuple[Field, ...]:
+    """Fields of the same sizes and unit."""
+    return tuple(Field(name, sizes, unit, text) for name, text in meanings.items())
+
+
+SYSTEM = (
+    Field("n", "", WHOLE, "storeys, and modes"),
+    *_fields("", "m", R="semi-diagonal of a column"),
+    *_fields(
+        "",
+        "rad",
+        alpha="slenderness angle of its flat part",
+        beta="rotation at which the arc ends; 0 for flat ends",
+        theta_cr="static limit: B = 0",
+        theta_limit="counts as overturned",
+        initial_rotation="theta at the start, released from rest",
+    ),
+    Field("initial_turning", "", "rad/s", "rate of its azimuth then, for tests of free motion"),
+    Field("rolling", "5", "-", "p, q, c, u0, v0 of `geometry.Phase`"),
+    Field("rocking", "5", "-", "the same beyond beta"),
+    *_fields(
+        "",
+        "-",
+        Io="I_o/(m_c R^2)",
+        inertia_axial="I_3/(m_c R^2), about a column's own axis",
+        gamma="m_b/(N m_c)",
+        eta="M_tot/m_b",
+        restitution="e",
+        columns="N",
+        accuracy="divides errors and lengths of steps",
+        step_error="largest error of a step, over the velocities of the tilt",
+        most_steps="more of them are a failure",
+        recontact_tolerance="of alpha: a lower excursion is not followed",
+        bounces="what bounces left out add to the floors' velocity, over u_b'",
+        lifts="j = sqrt(A_u/A(phi_u+)), of theta' at uplift from a bed",
+        bed_height="C_u = C(phi_u)",
+    ),
+    *_fields("", "kg", columns_mass="N m_c", cap_beam_mass="m_b", floors_mass="M_tot"),
+    Field("gravity", "", "m/s2", "g"),
+    *_fields(
+        "",
+        "s",
+        contact_time="t_c, what a pass near upright is compared with",
+        shock_time="tau: passes that take less are not among the largest forces",
+        free_vibration="time after the record, at most",
+    ),
+    *_fields(
+        "",
+        WHOLE,
+        floors_jump="1 if the floors jump with the cap beam at an impact",
+        max_events="more of them are a failure",
+        until_rest="1 if it may end earlier, with nothing new to come",
+        devices="number of devices",
+        compliant="1 if full contact gives way, on a bed",
+    ),
+    *_fields("modes", "rad/s", omega="frequencies of the fixed base"),
+    *_fields("modes", "-", xi="damping ratios"),
+    *_fields("modes", "1/s2", omega2="w^2"),
+    *_fields("modes", "1/s", two_xi_omega="2 xi w"),
+    *_fields("modes", "sqrt(kg)", Gamma="participation Phi^T M 1, shapes mass-normalised"),
+    *_fields(
+        "modes",
+        "mixed",
+        shear_weight="g_r of `demands`, for storey shears",
+        acceleration_weight="g_r for floor accelerations",
+        shear_bound_of="of a storey: shear times this <= sqrt(sum g q^2)",
+        acceleration_bound_of="of a floor: likewise",
+    ),
+    Field("phi", "modes modes", "1/sqrt(kg)", "shapes: mode, floor"),
+    Field("storey_shear_of", "modes modes", "N/(m sqrt(kg))", "k_i (phi_i - phi_(i-1))"),
+    Field("bend_ratio", "", "mixed", "largest w^4 times the latter weight over the former"),
+    *_fields(
+        "",
+        "1/s",
+        step_rate="least number of steps a second",
+        bedded_rate="likewise in full contact on a bed",
+        bed_c="damping of full contact, over N m_c R^2",
+    ),
+    Field("device_kind", f"{SLOTS}", WHOLE, "VISCOUS to ROLLING_RESISTANCE"),
+    Field("device_constants", f"{SLOTS} 4", "mixed", "of its law, see the kinds"),
+    Field("linear_speed", "", "m/s", "up to which |u_b'|^a is followed as linear"),
+    *_fields(
+        "",
+        "rad",
+        bed_uplift="phi_u, at which full contact ends",
+        bed_full="x_full of curved ends on a plane bed; else 0",
+    ),
+    Field("bed_k", "", "1/s2", "k of full contact, over N m_c R^2"),
+    *_fields(
+        "",
+        "sqrt(rad)",
+        sink="what a plane bed takes from the weight's arm, times w",
+        root="and from that of the lift",
+    ),
+)
+
+REQUEST = (
+    Field("system", "", WHOLE, "number of the structure"),
+    Field("record", "", WHOLE, "offset of the record among all"),
+    Field("record_y", "", WHOLE, "offset of the second horizontal record, or NO_RECORD"),
+    Field("npts", "", WHOLE, "its samples"),
+    Field("vertical", "", WHOLE, "offset of the vertical record, or NO_RECORD"),
+    Field("scale", "", "-", "factor on all"),
+    Field("dt", "", "s", "sampling interval"),
+)
+
+STATE = (
+    # The structure, folded as the laws want it.
+    *_fields("lanes", "m", diameter="2 R", half_width="B of the flat part", arc_radius="r, or 0"),
+    *_fields(
+        "lanes",
+        "-",
+        io_1="Io - 1",
+        i_3="I_3/(m_c R^2)",
+        one="1 + 4 gamma",
+        four="4 gamma eta",
+        sin_a="sin(alpha)",
+        tan_a="tan(alpha)",
+        spin="k while rolling: columns spin by (13.1)",
+        sin_beta="sine of beta",
+        excess_beta="beta - sin(beta)",
+        kappa="sqrt(K(0)/A(0)) of passes near upright",
+        restitution="e",
+        step_error="see `system`",
+    ),
+    *_fields("lanes", "1/m", weigh="(1 + 2 gamma + 2 gamma eta)/R", load="(1 + 2 gamma)/R"),
+    *_fields("lanes", "1/(kg m)", share="2/(N m_c R)"),
+    *_fields("lanes", "kg", columns_mass="N m_c", cap_beam_mass="m_b", floors_mass="M_tot"),
+    *_fields("lanes", "m/s2", gravity="g"),
+    *_fields("lanes", "rad", beta="end of the arc", theta_cr="static limit"),
+    *_fields("lanes", "s", contact_time="t_c", shock_time="see `system`"),
+    Field("damping_sum", "ways lanes", "kg/s", "sum Gamma^2 2 xi w"),
+    *_fields("rows lanes", "1/s2", omega2="w^2"),
+    *_fields("rows lanes", "1/s", two_xi_omega="2 xi w"),
+    *_fields("rows lanes", "sqrt(kg)", Gamma="participation"),
+    *_fields("rows lanes", "mixed", shear_weight="see `system`", acceleration_weight="likewise"),
+    # The history and its records.
+    *_fields(
+        "lanes",
+        WHOLE,
+        history="number of the request, or NO_HISTORY",
+        system="number of its first structure",
+        npts="samples of the record",
+        vertical="offset of the vertical one",
+        interval="present sampling interval",
+        intervals="of the history, at most",
+        outcome="how it ended, or RUNNING",
+        phase="FULL_CONTACT to BEDDED",
+        kind="of the event that ends the step",
+        wanted="of that which it is to end on",
+        which="what of it: device, side",
+        tries="to end there",
+        stalled="events in a row at one instant",
+        creating_impacts="impacts that created energy",
+    ),
+    Field("record", "ways lanes", WHOLE, "offsets of its records"),
+    Field("events", f"lanes {EVENT_KINDS}", WHOLE, "of each kind"),
+    *_fields("lanes", "-", scale="factor on the records", steps="taken"),
+    # The phase of motion and the range of the tilt in it.
+    *_fields(
+        "lanes",
+        "-",
+        p="B = p cos x + q sin x",
+        q0="C = c + p sin x - q0 cos x",
+        c="k while rolling, 0 rocking",
+        u0="of u_b",
+        v0="of v_b",
+        side="s: of one direction",
+        moves="1: the tilt is free",
+        rolls="1: on the arcs",
+        direction="sign of x' for friction",
+    ),
+    *_fields("lanes", "rad", x_low="the phase ends below", x_high="and above", bed_u="phi_u"),
+    *_fields("lanes", "1/s2", bed_k="k in full contact, else 0"),
+    *_fields("lanes", "1/s", bed_c="damping there, else 0"),
+    *_fields("lanes", "sqrt(rad)", sink="while a plane end lifts, else 0", root="likewise"),
+    *_fields("lanes", "1/rad", fade="1/(x_full - phi_u) of curved ends, else 0"),
+    *_fields("lanes", "1/sqrt(rad)", w="w of (12.6)"),
+    *_fields("lanes", "rad^-1.5", dw="its slope"),
+    # At rest: what multiplies g + a_v in the limits of R |z| to either side, and what adds to it.
+    *_fields("lanes", "-", limit_right="tan(alpha) (1 + 2 gamma + 2 gamma eta)", limit_left="too"),
+    *_fields("lanes", "m/s2", held_right="of devices and beds", held_left="likewise"),
+    # The ground, linear over the interval; and time.
+    Field("a_g", "ways lanes", "m/s2", "at the interval's start"),
+    Field("a_g_slope", "ways lanes", "m/s3", "over it"),
+    *_fields("lanes", "m/s2", g_up="g + a_v at the interval's start"),
+    *_fields("lanes", "m/s3", g_up_slope="over it"),
+    *_fields(
+        "lanes",
+        "s",
+        time="since the interval's start",
+        h="length of the step",
+        h_most="longest of this phase",
+        h_limit="longest next one",
+        h_now="after which the end of a step is looked for",
+        dt="sampling interval",
+    ),
+    *_fields("lanes", "1/s", rate="1/dt"),
+    # The motion at the start of the step and at its end.
+    *_fields("ways lanes", "rad", tilt="(a, b) = x (cos phi, sin phi)", new_tilt="at the end"),
+    *_fields("ways lanes", "rad/s", tilt_rate="its rate", new_tilt_rate="at the end"),
+    *_fields("ways lanes", "rad/s2", bend="its acceleration", new_bend="at the end"),
+    Field("bends", "stages ways lanes", "rad/s2", "at all stages"),
+    *_fields("ways lanes", "m/s2", base="a_g + u_b''", new_base="at the end"),
+    *_fields("ways lanes", "N", V="base shear, springs and dampers", new_V="at the end"),
+    *_fields("ways lanes", "N/s", dV="its rate", new_dV="at the end"),
+    *_fields("ways lanes", "N/s2", ddV="while it stands", new_ddV="at the end"),
+    *_fields("lanes", "rad", x="tilt, along its side in one plane", new_x="at the end"),
+    *_fields("lanes", "rad/s", v="x'", new_v="at the end"),
+    *_fields("lanes", "rad/s2", a="x''", new_a="at the end"),
+    *_fields("lanes", "m/s2", lift="v_b''", new_lift="at the end"),
+    *_fields("rows lanes", "m sqrt(kg)", q="of modes", new_q="at the end"),
+    *_fields("rows lanes", "m sqrt(kg)/s", dq="velocities", new_dq="at the end"),
+    *_fields("rows lanes", "m sqrt(kg)/s2", force="f_r of the last stage"),
+    Field("ddq", "stages rows lanes", "m sqrt(kg)/s2", "accelerations at all stages"),
+    # What is known of the step.
+    *_fields(
+        "lanes",
+        "-",
+        error="of the step over what it may be",
+        accepted="1: no event, not too long",
+        cleared="1: a closer look found no event",
+        attention="1: must be looked at alone",
+        demands_rise="1: a floor's may be raised",
+        contacts_rise="1: forces of the columns may be, within",
+    ),
+    # Devices: what they do at a stage, of the beam's force in z, of moments along the tilt.
+    *_fields("lanes", WHOLE, devices="number of devices", tendons="of tendons in a column"),
+    Field("device_kind", f"{SLOTS} lanes", WHOLE, "see `system`"),
+    Field("law", f"{SLOTS} 4 lanes", "mixed", "`device_constants` of `system`"),
+    Field("branch", f"{SLOTS} lanes", WHOLE, "IDLE, WORKING or BEYOND"),
+    Field("permanent", f"{SLOTS} lanes", "m", "plastic elongation of a tendon"),
+    *_fields("lanes", "-", columns="N", kinks="1: a force has a kink at u_b' = 0"),
+    *_fields("lanes", "m/s", linear_speed="see `system`"),
+    *_fields("lanes", "N", friction_force="of all friction dampers", tied="by tendons, along it"),
+    *_fields("lanes", "N", pull="on the cap beam, downwards"),
+    *_fields("lanes", "N m", friction_moment="of all rolling resistance"),
+    *_fields("ways lanes", "N", drive="of dampers and stops on the cap beam"),
+    *_fields("lanes", "1/s2", turning="of tendons and rolling resistance, over N m_c R^2"),
+    Field("device_work", f"{SLOTS} lanes", "W", "mean power of the step"),
+    Field("device_energy", f"{SLOTS} lanes", "J", "dissipated"),
+    Field("device_force", f"{SLOTS} lanes", "N", "largest |force|"),
+    Field("device_velocity", f"{SLOTS} lanes", "m/s", "largest |rate|"),
+    # Maxima so far; times that never came are negative.
+    *_fields("lanes", "rad", max_theta="largest x", max_azimuth="its azimuth"),
+    *_fields("lanes", "s", max_theta_time="when", critical_time="when theta_cr was first passed"),
+    *_fields("lanes", "rad", critical_azimuth="of that passage"),
+    *_fields(
+        "lanes",
+        "-",
+        friction_top="largest |F|/N, upper ends",
+        friction_bottom="lower ends",
+        normal_top="least N over the weight on it, upper ends",
+        normal_bottom="lower ends",
+        heavy_top="largest N over it",
+        heavy_bottom="lower ends",
+    ),
+    *_fields("lanes", "N", shear_top="largest |F|", shear_bottom="lower ends"),
+    Field("largest", "demands lanes modes", "mixed", "shears, then accelerations, see `demands`"),
+    Field("last", "demands lanes modes", "mixed", "when last looked at"),
+    Field("room", "demands lanes", "mixed", "no demand rises with a sum to this"),
+    Field("looked_at", "12 modes", "mixed", "scratch: shears, accelerations"),
+    *_fields("rows lanes", "m sqrt(kg)", seen_q="modes when floors were last looked at"),
+    *_fields("rows lanes", "m sqrt(kg)/s2", seen_force="their forces"),
+    *_fields("ways lanes", "mixed", shear_sum="sum g (q - seen_q)^2 at the end"),
+    *_fields("ways lanes", "mixed", shear_before="at its start", bent="sum g (q' - new_q')^2"),
+    *_fields("ways lanes", "mixed", acceleration_sum="over modal forces", acceleration_before="so"),
+    *_fields("lanes", "mixed", bend_ratio="see `system`"),
+    Field("max_beam", "ways lanes", "m", "largest |u_b| in either direction"),
+    *_fields("lanes", "m", torsion_lever="largest so far"),
+    *_fields("lanes", "-", passes_as_impacts="passes with l > .5", closest_pass="least x/alpha"),
+    *_fields("lanes", "s", shortest_pass="least x/|q| of a pass"),
+    # Energy.
+    *_fields(
+        "lanes",
+        "J",
+        energy_input="of the ground, audited",
+        energy_damped="in the building, if audited",
+        energy_lost="at impacts, passes and re-contacts",
+        energy_created="at impacts that create it",
+        energy_passes="lost in passes",
+        bed_energy="dissipated in the bed, audited",
+    ),
+    *_fields("lanes", "W", power_input="mean of the step", power_damped="so", power_bed="so"),
+    *_fields("lanes", "s", bedded_time="in full contact on a bed"),
+    *_fields("lanes", "-", impact_number="largest chi"),
+    Field("piece", "8", "mixed", "scratch of the search for roots"),
+    Field("n", "", WHOLE, "storeys, and modes in each direction: the same in all lanes"),
+    Field("equipped", "", WHOLE, "1 if any lane has devices"),
+    Field("gives_way", "", WHOLE, "1 if any lane stands on a bed"),
+    Field("audited", "", WHOLE, "1 where energy flows are integrated"),
+    Field("stop", "", WHOLE, "1: histories are to be left where they are"),
+    Field("waiting", "", WHOLE, "number of the next request"),
+)
+
+RESULT = (
+    Field("outcome", "", WHOLE, "how the history ended"),
+    Field("phase", "", WHOLE, "phase of motion at its end"),
+    Field("intervals", "", WHOLE, "sampling intervals that it lasted"),
+    Field("steps", "", WHOLE, "steps taken"),
+    Field("creating_impacts", "", WHOLE, "impacts that created energy"),
+    Field("events", f"{EVENT_KINDS}", WHOLE, "of each kind"),
+    Field("time", "", "s", "of its end"),
+    Field("rotation", "", "rad", "theta at its end"),
+    Field("azimuth", "", "rad", "of the tilt at the end, from x towards y"),
+    Field("max_theta", "", "rad", "largest |theta|"),
+    Field("max_theta_time", "", "s", "when"),
+    Field("max_azimuth", "", "rad", "of the largest tilt"),
+    Field("critical_time", "", "s", "first passage of theta_cr; negative if never"),
+    Field("critical_azimuth", "", "rad", "of that passage"),
+    Field("max_x", "", "m", "largest |u_b| in x"),
+    Field("max_y", "", "m", "in y"),
+    Field("friction_top", "", "-", "largest |F|/N at the upper ends"),
+    Field("friction_bottom", "", "-", "at the lower ends"),
+    Field("normal_top", "", "-", "least N over the weight on it, upper ends"),
+    Field("normal_bottom", "", "-", "lower ends"),
+    Field("heavy_top", "", "-", "largest N over it"),
+    Field("heavy_bottom", "", "-", "lower ends"),
+    Field("shear_top", "", "N", "largest |F| of all columns"),
+    Field("shear_bottom", "", "N", "lower ends"),
+    Field("energy_input", "", "J", "by the ground, if audited"),
+    Field("energy_damped", "", "J", "in the building, if audited"),
+    Field("energy_lost", "", "J", "at impacts and re-contacts, net"),
+    Field("energy_created", "", "J", "at impacts that create it"),
+    Field("energy_stored", "", "J", "at the end"),
+    Field("energy_passes", "", "J", "lost in passes, part of energy_lost"),
+    Field("passes_as_impacts", "", WHOLE, "passes that lost more than half of an impact's share"),
+    Field("closest_pass", "", "-", "least theta_min/alpha of a pass; infinite without passes"),
+    Field("shortest_pass", "", "s", "least theta_min/|theta phi'| of a pass; over t_c it is s"),
+    Field("torsion_lever", "", "m", "largest torsion in a contact over the weight on it"),
+    Field("storey_shear", "modes", "N", "largest |k_i d_i|"),
+    Field("floor_acceleration", "modes", "m/s2", "largest absolute one"),
+    *(
+        Field(f"{name}_{way}", "modes", unit, f"largest one in {way}")
+        for name, unit in (("storey_shear", "N"), ("floor_acceleration", "m/s2"))
+        for way in "xy"
+    ),
+    Field("device_force", f"{SLOTS}", "N", "largest |force|"),
+    Field("device_velocity", f"{SLOTS}", "m/s", "largest |rate|"),
+    Field("device_energy", f"{SLOTS}", "J", "dissipated"),
+    Field("device_stored", f"{SLOTS}", "J", "at the end, over the start"),
+    Field("permanent", f"{SLOTS}", "m", "plastic elongation of a tendon"),
+    Field("bed_energy", "", "J", "dissipated in the bed, if audited"),
+    Field("bedded_time", "", "s", "in full contact with a bed"),
+    Field("impact_number", "", "-", "largest chi"),
+)
+"""Of both components demands are resultants."""
+
+SAMPLE = (
+    Field("theta", "", "rad", "tilt, positive to the right; of both components its size"),
+    Field("theta_dot", "", "rad/s", "theta'"),
+    Field("theta_ddot", "", "rad/s2", "theta''; 0 in full contact"),
+    Field("phase", "", WHOLE, "FULL_CONTACT to BEDDED"),
+    Field("azimuth", "", "rad", "phi of the tilt, from x towards y; 0 in full contact"),
+    Field("turning", "", "rad/s", "phi'"),
+    Field("turning_rate", "", "rad/s2", "phi''"),
+    Field("push_x", "", "N", "of devices on the cap beam, in x"),
+    Field("push_y", "", "N", "in y"),
+    Field("energy_input", "", "J", "by the ground so far"),
+    Field("energy_damped", "", "J", "in the building so far"),
+    Field("energy_lost", "", "J", "at impacts and re-contacts so far, net"),
+    Field("bed_energy", "", "J", "dissipated in the bed so far"),
+)
+"""The floors' displacements and velocities stand in an array of their own: in x, then in y."""
+
+EVENT = (
+    Field("time", "", "s", "since the record's start"),
+    Field("kind", "", WHOLE, "UPLIFT to PASS"),
+    Field("theta", "", "rad", "tilt of the storey"),
+    Field("theta_dot_before", "", "rad/s", "theta' just before"),
+    Field("theta_dot_after", "", "rad/s", "theta' just after"),
+    Field("energy_lost", "", "J", "in the event; negative where it was created"),
+    Field("azimuth", "", "rad", "of the tilt, after a pass that towards which it goes on"),
+    Field("least_tilt", "", "rad", "of a pass: theta_min; else 0"),
+    Field("nearness", "", "-", "of a pass: s = theta_min/(|q| t_c); infinite for t_c = 0"),
+    Field("loss_share", "", "-", "of a pass: l, of what an impact would lose"),
+)
+
+
+@cache
+def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.dtype[Any]:
+    """The type of a record of such fields, for so many directions and lanes.
+
+    Fields of one shape stand together: a loop over a mode's lanes then writes either before or
+    behind what it reads, which the compiler can check at once.
+    """
+    sizes = {
+        "ways": ways,
+        "lanes": lanes + PADDING,
+        "modes": MOST_STOREYS + PADDING,
+        "rows": ways * MOST_STOREYS + PADDING,
+        "stages": END + 1,
+        "demands": 2 * (2 * ways - 1),
+    }
+    return np.dtype(
+        [
+            (
+                field.name,
+                np.int64 if field.unit == WHOLE else np.float64,
+                tuple(int(sizes.get(size, size)) for size in field.sizes.split()),
+            )
+            for field in sorted(fields, key=lambda field: (len(field.sizes.split()), field.sizes))
+        ]
+    )
+
+
+PAGE = 4096
+"""Bytes of a page of memory. numpy begins an array anywhere; begun within a page, a lane may take
+half as long again, as its rows fall on other lines of the processor's cache in each process."""
+
+
+def records(fields: tuple[Field, ...], count: int = 1, ways: int = 1, lanes: int = 1) -> Record:
+    """An array (count,) of records of zeros that begins with a page."""
+    kind = record_type(fields, ways, lanes)
+    size = kind.itemsize * count
+    room = np.zeros(size + PAGE, np.uint8)
+    first = -room.ctypes.data % PAGE
+    return room[first : first + size].view(kind).view(np.recarray)
+
+
+_kept = local()
+
+
+def scratch(ways: int, lanes: int) -> Record:
+    """A state that this thread keeps, with whatever its last use left there.
+
+    A state takes megabytes: made anew for each short history, it would take as long as the history.
+    """
+    kept, name = vars(_kept), f"{ways} {lanes}"
+    if name not in kept:
+        kept[name] = records(STATE, 1, ways, lanes)
+    return kept[name]
+
+
+def describe(fields: tuple[Field, ...]) -> str:
+    """A table of a record, for reading: ``print(describe(STATE))``."""
+    return "\n".join(map(str, fields))

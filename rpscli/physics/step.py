@@ -1,0 +1,273 @@
+"""A Runge-Kutta step of all lanes together, each by a length of its own (`tableau`).
+
+At rest the same step holds the tilt. Of each stage, modes come first: their displacements give the
+base shear, with it the laws the acceleration of the tilt and of the cap beam, and that what the
+modes do next. Sums are written as they are to be rounded: a history does not know its company.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from rpscli.physics.bed import set_patches
+from rpscli.physics.core.compile import compiled, fma, inlined
+from rpscli.physics.devices import act, act_at_stage, begin_work, worked
+from rpscli.physics.ground import g_up_now, ground_now
+from rpscli.physics.laws import (
+    lanes_of,
+    lifted_mass,
+    motion_at,
+    patch,
+    place_with,
+    polar,
+    rate_of,
+    tilt_of,
+    ways_of,
+)
+from rpscli.physics.state import Record
+from rpscli.physics.tableau import A2, A, C, END, ERROR
+
+
+@compiled
+def accelerate(s: Record, at: float) -> None:
+    """Accelerations of all lanes a part of the step behind its start, from `new_tilt` and the like.
+
+    Reads `new_V`; writes `new_bend`, `new_base` and the polar values of the tilt.
+    """
+    for l in range(lanes_of(s)):
+        time = s.time[l] + at * s.h[l]
+        ground = s.a_g[0, l] + time * s.a_g_slope[0, l]
+        z_x = s.share[l] * (s.new_V[0, l] + s.drive[0, l]) - s.load[l] * ground
+        tilt_y, rate_y, z_y, ground_y = 0.0, 0.0, 0.0, 0.0
+        if ways_of(s) == 2:
+            tilt_y, rate_y = s.new_tilt[1, l], s.new_tilt_rate[1, l]
+            ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
+            z_y = s.share[l] * (s.new_V[1, l] + s.drive[1, l]) - s.load[l] * ground_y
+        tilt, rate = (s.new_tilt[0, l], tilt_y), (s.new_tilt_rate[0, l], rate_y)
+        x, _, _, p, _ = polar(s, l, tilt, rate)
+        place = place_with(s, l, x, s.w[l], s.dw[l])
+        g_up = s.g_up[l] + time * s.g_up_slope[l]
+        motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_up)
+        s.new_bend[0, l], s.new_base[0, l] = motion.bend_x, ground + motion.beam_x
+        if ways_of(s) == 2:
+            s.new_bend[1, l], s.new_base[1, l] = motion.bend_y, ground_y + motion.beam_y
+        s.new_x[l], s.new_v[l], s.new_a[l], s.new_lift[l] = x, p, motion.a, motion.lift
+
+
+def stage_of(k: int) -> Callable[[Record], None]:
+    """The sums of a stage, specialised: modes and tilt from the accelerations before it."""
+    kept = [j for j in range(k) if abs(A[k, j]) + abs(A2[k, j]) > 1e-11]
+    terms, one, two = np.array(kept), A[k].copy(), A2[k].copy()
+    at, first, last = float(C[k]), k == 1, k - 1
+    weight = float(A[END, k]) if k < END else 0.0
+
+    @inlined
+    def mode(s: Record, r: int, l: int, base: float) -> float:
+        h, omega2, damping = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l]
+        q, dq = s.q[r, l], s.dq[r, l]
+        before = fma(omega2, q, damping * dq) if first else s.force[r, l]
+        ddq = fma(-s.Gamma[r, l], base, -before)
+        s.ddq[last, r, l] = ddq
+        far, fast = 0.0, 0.0
+        for i in range(len(terms)):
+            j = terms[i]
+            term = ddq if j == last else s.ddq[j, r, l]
+            far = fma(two[j], term, far)
+            fast = fma(one[j], term, fast)
+        q, dq = fma(h, fma(h, far, at * dq), q), fma(h, fast, dq)
+        force = fma(omega2, q, damping * dq)
+        s.force[r, l] = force
+        if k == END:
+            s.new_q[r, l] = q
+        if k == END or lanes_of(s) == 1:
+            s.new_dq[r, l] = dq
+        return s.Gamma[r, l] * force  # type: ignore[no-any-return]
+
+    @compiled
+    def stage(s: Record) -> None:
+        n, lanes = s.n, lanes_of(s)
+        for axis in range(ways_of(s)):
+            for l in range(lanes):
+                s.new_V[axis, l] = 0.0
+            for r in range(axis * n, (axis + 1) * n):
+                for l in range(lanes):
+                    base = s.base[axis, l] if first else s.new_base[axis, l]
+                    s.new_V[axis, l] += mode(s, r, l, base)
+        for axis in range(ways_of(s)):
+            for l in range(lanes):
+                far, fast = 0.0, 0.0
+                for i in range(len(terms)):
+                    far = fma(two[terms[i]], s.bends[terms[i], axis, l], far)
+                    fast = fma(one[terms[i]], s.bends[terms[i], axis, l], fast)
+                h, rate = s.h[l], s.tilt_rate[axis, l]
+                s.new_tilt[axis, l] = fma(h, fma(h, far, at * rate), s.tilt[axis, l])
+                s.new_tilt_rate[axis, l] = fma(h, fast, rate)
+        if s.gives_way > 0:
+            set_patches(s)
+        if s.equipped > 0:
+            act_at_stage(s, weight)
+        accelerate(s, at)
+        for axis in range(ways_of(s)):
+            for l in range(lanes):
+                s.bends[k, axis, l] = s.new_bend[axis, l]
+        if lanes == 1 and s.audited > 0:
+            book_powers(s, at, weight)
+
+    return stage  # type: ignore[no-any-return]
+
+
+def _stages_from(k: int) -> Any:
+    stage = stage_of(k)
+    if k == END:
+        return stage
+    rest = _stages_from(k + 1)
+
+    @inlined
+    def stages(s: Record) -> None:
+        stage(s)
+        rest(s)
+
+    return stages
+
+
+all_stages = _stages_from(1)
+
+
+@compiled
+def take_steps(s: Record) -> None:
+    """Take a step of all lanes: writes the end, and the error of the tilt over what it may be."""
+    lanes = lanes_of(s)
+    for axis in range(ways_of(s)):
+        for l in range(lanes):
+            s.bends[0, axis, l] = s.bend[axis, l]
+    if s.equipped > 0:
+        begin_work(s, A[END, 0])
+    if lanes == 1 and s.audited > 0:
+        begin_powers(s)
+    all_stages(s)
+    end_rates(s)
+    for l in range(lanes):
+        s.error[l] = error_of(s, l)
+
+
+@inlined
+def error_of(s: Record, l: int) -> float:
+    """Difference of the rules of order 6 and 5 in the tilt's rate, over what it may be."""
+    missed, speed = 0.0, 0.0
+    for axis in range(ways_of(s)):
+        error = 0.0
+        for k in range(END + 1):
+            error = fma(ERROR[k], s.bends[k, axis, l], error)
+        missed += error * error
+        faster = s.h[l] * (abs(s.bend[axis, l]) + abs(s.new_bend[axis, l]))
+        fast = abs(s.tilt_rate[axis, l]) + abs(s.new_tilt_rate[axis, l]) + faster
+        speed += fast * fast
+    limit = s.step_error[l] * math.sqrt(speed)
+    return s.h[l] * math.sqrt(missed) / (limit if limit > 0.0 else 1.0)  # type: ignore[no-any-return]
+
+
+@inlined
+def end_rates(s: Record) -> None:
+    """Rates of the base shear at the ends of steps (10.3); the second of buildings at rest."""
+    n, lanes = s.n, lanes_of(s)
+    for axis in range(ways_of(s)):
+        for l in range(lanes):
+            s.new_dV[axis, l], s.new_ddV[axis, l] = 0.0, 0.0
+        for r in range(axis * n, (axis + 1) * n):
+            for l in range(lanes):
+                Gamma, omega2, damping = s.Gamma[r, l], s.omega2[r, l], s.two_xi_omega[r, l]
+                ddq = -(Gamma * s.new_base[axis, l]) - s.force[r, l]
+                faster = omega2 * s.new_dq[r, l] + damping * ddq
+                s.new_dV[axis, l] += Gamma * faster
+                s.new_ddV[axis, l] += Gamma * (omega2 * ddq - damping * faster)
+
+
+@compiled
+def renew(s: Record, l: int) -> None:
+    """Accelerations of one lane at its present state and time, and what the next step begins with."""
+    tilt, rate = tilt_of(s, l), rate_of(s, l)
+    x, _, _, p, _ = polar(s, l, tilt, rate)
+    s.w[l], s.dw[l] = patch(s, l, x)
+    if s.devices[l] > 0:
+        act(s, l, worked(s, l, tilt, rate))
+    z_x, z_y, ground, ground_y = 0.0, 0.0, 0.0, 0.0
+    for axis in range(ways_of(s)):
+        V = 0.0
+        for r in range(axis * s.n, (axis + 1) * s.n):
+            V += s.Gamma[r, l] * fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l])
+        s.V[axis, l] = V
+        z = s.share[l] * (V + s.drive[axis, l]) - s.load[l] * ground_now(s, l, axis)
+        if axis == 0:
+            z_x, ground = z, ground_now(s, l, 0)
+        else:
+            z_y, ground_y = z, ground_now(s, l, 1)
+    place = place_with(s, l, x, s.w[l], s.dw[l])
+    motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_up_now(s, l))
+    s.x[l], s.v[l], s.a[l], s.lift[l] = x, p, motion.a, motion.lift
+    s.bend[0, l], s.base[0, l] = motion.bend_x, ground + motion.beam_x
+    if ways_of(s) == 2:
+        s.bend[1, l], s.base[1, l] = motion.bend_y, ground_y + motion.beam_y
+    for axis in range(ways_of(s)):
+        s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0
+        for r in range(axis * s.n, (axis + 1) * s.n):
+            omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
+            ddq = -(s.Gamma[r, l] * s.base[axis, l]) - fma(omega2, s.q[r, l], damping * s.dq[r, l])
+            faster = omega2 * s.dq[r, l] + damping * ddq
+            s.dV[axis, l] += s.Gamma[r, l] * faster
+            s.ddV[axis, l] += s.Gamma[r, l] * (omega2 * ddq - damping * faster)
+
+
+# Where energy is audited its flows are integrated by the weights of the step (8.2).
+
+
+@compiled
+def book_power(
+    s: Record,
+    time: float,
+    weight: float,
+    tilt: tuple[float, float],
+    rate: tuple[float, float],
+) -> None:
+    """Add the power of ground, dampers and bed in the only lane, its velocities in `new_dq`."""
+    supplied, damped, moving = 0.0, 0.0, s.moves[0] > 0.0
+    out, aside, n, t, p, q, lift = 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
+    if moving:
+        x, n, t, p, q = polar(s, 0, tilt, rate)
+        w, dw = patch(s, 0, x)
+        at = place_with(s, 0, x, w, dw)
+        out, aside = s.diameter[0] * at.C * p, s.diameter[0] * at.h * q
+        lift = s.diameter[0] * at.Bv * p
+    for axis in range(ways_of(s)):
+        velocity = out * n - aside * t if axis == 0 else out * t + aside * n
+        momentum = lifted_mass(s, 0) * velocity
+        for r in range(axis * s.n, (axis + 1) * s.n):
+            momentum += s.Gamma[r, 0] * s.new_dq[r, 0]
+            damped += s.two_xi_omega[r, 0] * (s.new_dq[r, 0] * s.new_dq[r, 0])
+        supplied += (s.a_g[axis, 0] + time * s.a_g_slope[axis, 0]) * momentum
+    a_v = s.g_up[0] + time * s.g_up_slope[0] - s.gravity[0]
+    supplied += a_v * lifted_mass(s, 0) * lift
+    bed = 0.25 * s.columns_mass[0] * s.diameter[0] * s.diameter[0] * s.bed_c[0]
+    s.power_input[0] -= weight * supplied
+    s.power_damped[0] += weight * damped
+    s.power_bed[0] += weight * bed * (p * p)
+
+
+@compiled
+def begin_powers(s: Record) -> None:
+    """Begin with those at the start of the step."""
+    s.power_input[0], s.power_damped[0], s.power_bed[0] = 0.0, 0.0, 0.0
+    for r in range(ways_of(s) * s.n):
+        s.new_dq[r, 0] = s.dq[r, 0]
+    book_power(s, s.time[0], A[END, 0], tilt_of(s, 0), rate_of(s, 0))
+
+
+@compiled
+def book_powers(s: Record, at: float, weight: float) -> None:
+    """Add those of a stage."""
+    tilt = s.new_tilt[0, 0], (s.new_tilt[1, 0] if ways_of(s) == 2 else 0.0)
+    rate = s.new_tilt_rate[0, 0], (s.new_tilt_rate[1, 0] if ways_of(s) == 2 else 0.0)
+    book_power(s, s.time[0] + at * s.h[0], weight, tilt, rate)

@@ -1,0 +1,368 @@
+"""Near the upright position: uplift, impact or pass, and how a storey comes to rest.
+
+In one plane a column goes over from one edge to the other: an impact (4.7). Of columns that tilt to
+any side the motion becomes one on a cone: what passes near upright turns its azimuth by pi/kappa in
+all, kappa = sqrt(K(0)/A(0)), however near. A real contact takes a time t_c of its own. A pass whose
+own time x/|q| is short beside it loses what an impact does and goes straight on; between the two
+stands a fit, the share l of that loss (13.14) to (13.16).
+"""
+
+from __future__ import annotations
+
+import math
+
+from rpscli.physics.bed import enter_on_bed, first_phase, impact_number
+from rpscli.physics.core.compile import compiled
+from rpscli.physics.devices import (
+    begin_excursion,
+    force_at_rest,
+    push_at_rest,
+    set_limits,
+    take_up_stops,
+)
+from rpscli.physics.ground import azimuth_of, g_up_now, ground_now, log_event
+from rpscli.physics.laws import (
+    beam_now,
+    inertia_unit,
+    lift_at,
+    lifted_mass,
+    place_of,
+    polar,
+    potential,
+    rate_of,
+    relative_momentum,
+    strain_energy,
+    tilt_of,
+    tilting_energy,
+    ways_of,
+)
+from rpscli.physics.state import (
+    BEDDED,
+    FULL_CONTACT,
+    IMPACT,
+    PASS,
+    RECONTACT,
+    ROCKING,
+    ROLLING,
+    STUCK,
+    UPLIFT,
+    Record,
+)
+from rpscli.physics.step import renew
+
+UPRIGHT_TILT = 5e-10
+"""theta_c [rad]: what passes nearer is taken over by a map."""
+
+UPLIFT_TILT = 1e-9
+"""Tilt with which an uplift to any side begins [rad]; its azimuth is that of the push."""
+
+FIRST_STEP = 3e-5
+"""Longest step at the start of such an uplift [s]."""
+
+SLOW = 20.0
+"""Below this times (|z| + limit) theta_c/A a v^2 does not carry a pass away from upright."""
+
+
+@compiled
+def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
+    """Set the constants of a phase of motion and the range that the tilt has in it."""
+    s.phase[l], s.moves[l] = phase, 0.0 if phase in (FULL_CONTACT, STUCK) else 1.0
+    if phase == STUCK:
+        return
+    s.rolls[l] = 1.0 if phase == ROLLING else 0.0
+    constants = system.rolling if phase == ROLLING else system.rocking
+    s.p[l], s.q0[l], s.c[l] = constants[0], constants[1], constants[2]
+    s.u0[l], s.v0[l] = constants[3], constants[4]
+    upright = 0.0 if ways_of(s) == 1 else UPRIGHT_TILT
+    s.x_low[l], s.x_high[l] = max(system.beta, upright), system.theta_limit
+    if phase == ROLLING:
+        s.x_low[l], s.x_high[l] = upright, min(system.beta, system.theta_limit)
+    s.h_most[l] = 1.0 / system.step_rate
+    enter_on_bed(s, l, system, phase)
+    if phase == FULL_CONTACT:
+        enter_full_contact(s, l, system)
+
+
+@compiled
+def enter_full_contact(s: Record, l: int, system: Record) -> None:
+    """Stand: constants are those with which a tilt would begin."""
+    constants = system.rolling if system.beta > 0.0 else system.rocking
+    s.rolls[l] = 1.0 if system.beta > 0.0 else 0.0
+    s.p[l], s.q0[l], s.c[l] = constants[0], constants[1], constants[2]
+    s.u0[l], s.v0[l] = constants[3], constants[4]
+    s.x[l], s.v[l] = 0.0, 0.0
+    for axis in range(ways_of(s)):
+        s.tilt[axis, l], s.tilt_rate[axis, l] = 0.0, 0.0
+    set_limits(s, l)
+
+
+@compiled
+def move_floors(s: Record, l: int, before: tuple[float, float, float, float]) -> None:
+    """The cap beam has left u_b and u_b' of `before` without the floors."""
+    now = beam_now(s, l)
+    for axis in range(ways_of(s)):
+        moved, faster = now[axis] - before[axis], now[2 + axis] - before[2 + axis]
+        for r in range(axis * s.n, (axis + 1) * s.n):
+            s.q[r, l] -= s.Gamma[r, l] * moved
+            s.dq[r, l] -= s.Gamma[r, l] * faster
+
+
+@compiled
+def set_polar(s: Record, l: int, x: float, n: float, t: float, p: float, q: float) -> None:
+    """Set tilt and rate of a lane by x, the azimuth, x' and the rate across it."""
+    s.x[l], s.v[l] = x, p
+    s.tilt[0, l], s.tilt_rate[0, l] = n * x, n * p - t * q
+    if ways_of(s) == 2:
+        s.tilt[1, l], s.tilt_rate[1, l] = t * x, t * p + n * q
+
+
+@compiled
+def loss_share(nearness: float) -> float:
+    """l(s): of what an impact loses, what a pass of s = theta_min/(|q| t_c) does (13.14).
+
+    Fitted within .04 to passes of single columns on plastic contacts of t_c from 80 us to 8 ms.
+    """
+    if not nearness < 1e6:
+        return 0.0
+    return float(1.0 / (1.0 + 3.5 * nearness**1.04 + 2.0 * nearness**2.7))
+
+
+@compiled
+def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> None:  # noqa: FBT001
+    """An impact of one plane, or a pass of columns free to tilt; `near`: by the map from theta_c."""
+    if ways_of(s) == 1:
+        impact(s, l, system, log)
+        return
+    x, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    if not near and x <= 2.0 * UPLIFT_TILT and abs(q) < x:
+        set_polar(s, l, x, n, t, 0.0, q)
+        return  # it has only begun to tilt, a little too early
+    at, before, strain, kappa = place_of(s, l, x), beam_now(s, l), strain_energy(s, l), s.kappa[l]
+    moving, least, speed = tilting_energy(s, l, at, p, q), x, abs(q)
+    if near:
+        speed = math.sqrt(p * p + kappa * kappa * q * q) / kappa
+        least = x * abs(q) / speed
+    own = s.contact_time[l]
+    nearness = math.inf if own == 0.0 else least / max(speed * own, 1e-300)
+    share, e = loss_share(nearness), s.restitution[l]
+    left, sign = 1.0 - share * (1.0 - e * e), math.copysign(1.0, q)
+    keeps, extra, angle = math.sqrt(left), math.pi / kappa - math.pi, 0.0
+    if near:
+        n, t = -n, -t
+        if q != 0.0:
+            inside = 2.0 * math.asin(min(1.0, least / x)) / kappa
+            angle = sign * (extra * (1.0 - share) - inside)
+    else:
+        angle = -sign * share * extra
+    if angle != 0.0:
+        cosine, sine = math.cos(angle), math.sin(angle)
+        n, t = n * cosine - t * sine, t * cosine + n * sine
+    set_polar(s, l, x, n, t, max(-keeps * p, 0.0) if near else 0.0, keeps * q)
+    move_floors(s, l, before)
+    lost = (1.0 - left) * moving + strain - strain_energy(s, l)
+    s.energy_lost[l] += lost
+    s.energy_passes[l] += lost
+    row = log_event(s, l, log, PASS, p, s.v[l], lost)
+    if row >= 0:
+        log[row].least_tilt, log[row].nearness, log[row].loss_share = least, nearness, share
+    s.closest_pass[l] = min(s.closest_pass[l], least / system.alpha)
+    s.shortest_pass[l] = min(s.shortest_pass[l], least / max(speed, 1e-300))
+    s.passes_as_impacts[l] += 1.0 if share > 0.5 else 0.0
+    take_up_stops(s, l, log)
+
+
+@compiled
+def impact(s: Record, l: int, system: Record, log: Record) -> None:
+    """From the edge on one side to the other (4.7); without a flat part the same motion goes on.
+
+    theta'+ = e theta'-, and floors that move with the cap beam jump by
+    -2 R cos(alpha) (1 - e) theta'- (paper, Eq. 6); those that do not keep their own velocity.
+    """
+    if s.phase[l] != first_phase(system):
+        enter_phase(s, l, system, first_phase(system))
+    side, e = s.side[l], system.restitution
+    arriving = min(s.v[l], 0.0)
+    if system.alpha == 0.0:
+        s.side[l] = -side
+        set_polar(s, l, 0.0, -side, 0.0, -arriving, 0.0)
+        begin_excursion(s, l, log)
+        return
+    at, rate = place_of(s, l, 0.0), side * arriving
+    arm = s.diameter[l] * at.C
+    jump = -arm * (1.0 - e) * rate
+    lost = tilting_energy(s, l, at, arriving, 0.0)
+    if system.floors_jump > 0:
+        momentum = relative_momentum(s, l, 0) + s.floors_mass[l] * (arm * rate + 0.5 * jump)
+        lost -= jump * momentum
+    else:
+        for r in range(s.n):
+            s.dq[r, l] -= s.Gamma[r, l] * jump
+    s.side[l] = -side
+    leaving = -e * arriving
+    set_polar(s, l, 0.0, -side, 0.0, leaving, 0.0)
+    lost -= tilting_energy(s, l, at, leaving, 0.0)
+    s.energy_lost[l] += lost
+    if lost < 0.0:
+        s.energy_created[l] -= lost
+        s.creating_impacts[l] += 1
+    row = log_event(s, l, log, IMPACT, arriving, leaving, lost)
+    if row >= 0:  # before it the tilt was to the other side
+        log[row].theta_dot_before = rate
+    begin_excursion(s, l, log)
+
+
+@compiled
+def pushes(s: Record, l: int) -> tuple[float, float, float, float]:
+    """z in x and y, its size, and its limit of a lane that would stand [1/s2]."""
+    z_x = s.share[l] * s.V[0, l] - s.load[l] * ground_now(s, l, 0)
+    z_y = 0.0
+    if ways_of(s) == 2:
+        z_y = s.share[l] * s.V[1, l] - s.load[l] * ground_now(s, l, 1)
+    limit = s.tan_a[l] * g_up_now(s, l) * s.weigh[l] + s.share[l] * force_at_rest(s, l)[0]
+    return z_x, z_y, math.sqrt(z_x * z_x + z_y * z_y), limit
+
+
+@compiled
+def settles(s: Record, l: int, system: Record, log: Record, near: bool) -> bool:  # noqa: FBT001
+    """After it: True if the storey comes to rest; what is too slow to get away starts anew.
+
+    Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
+    one reaches v^2/(2 |x''|). Reads the accelerations behind the impact or the pass.
+    """
+    low = system.recontact_tolerance * system.alpha
+    x, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    at = place_of(s, l, x)
+    if ways_of(s) == 1:
+        if not (s.a[l] < 0.0 and p * p < 2.0 * abs(s.a[l]) * low):
+            return False
+        come_to_rest(s, l, system, log)
+        return True
+    z_x, z_y, push, limit = pushes(s, l)
+    v2 = p * p + (s.kappa[l] * q) * (s.kappa[l] * q)
+    if near and push >= limit and v2 < SLOW * (push + limit) * UPRIGHT_TILT / at.A:
+        begin_tilt(s, l, system, z_x, z_y)
+        renew(s, l)
+        return False
+    slows = math.cos(system.alpha) * (limit - push) / at.A
+    if slows <= 0.0 or v2 >= 2.0 * slows * low or x >= low:
+        return False
+    come_to_rest(s, l, system, log)
+    return True
+
+
+@compiled
+def bounces_left_out(s: Record, l: int, system: Record) -> float:
+    """What the bounces left out add to the floors' velocity, over u_b', as the rule asks for.
+
+    Friction lets the beam come back with k of the rate with which it left: k = 1 without it, 0 if
+    it holds the beam where it turns (11.17), (11.18).
+    """
+    bounces = system.bounces
+    friction = s.friction_force[l] + s.friction_moment[l]
+    if system.floors_jump > 0 and friction > 0.0:
+        at = place_of(s, l, 0.0)
+        moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
+        slowed = s.share[l] * moment / at.A
+        k = math.sqrt(max(0.0, 1.0 + 2.0 * slowed / s.a[l]))
+        bounces = (1.0 + k) / (1.0 + system.restitution * k)
+    return float(bounces)
+
+
+@compiled
+def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
+    """Full contact from now on.
+
+    The floors lose the cap beam's velocity u_b' and would keep the relative one; the bounces that
+    are left out change it by a multiple of u_b' (3.5). What they lose of u_b' is lost: the mean of
+    both velocities times the change.
+    """
+    x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    before, strain, kept = beam_now(s, l), strain_energy(s, l), bounces_left_out(s, l, system)
+    # What stops and tendons hold at so small a tilt is theirs, and given back (ABOVE rounding).
+    held = force_at_rest(s, l)[0] * s.diameter[l] * math.cos(system.alpha) * x
+    lost = tilting_energy(s, l, place_of(s, l, x), p, q) + held
+    lost += lifted_mass(s, l) * s.gravity[l] * lift_at(s, l, x)
+    for axis in range(ways_of(s)):
+        u = before[2 + axis]
+        carried = relative_momentum(s, l, axis) + 0.5 * (1.0 + kept) * s.floors_mass[l] * u
+        lost += (1.0 - kept) * u * carried
+        for r in range(axis * s.n, (axis + 1) * s.n):
+            s.q[r, l] += s.Gamma[r, l] * before[axis]
+            s.dq[r, l] += s.Gamma[r, l] * (kept * u)
+    lost += strain - strain_energy(s, l)
+    s.energy_lost[l] += lost
+    row = log_event(s, l, log, RECONTACT, p, 0.0, lost)
+    if row >= 0:
+        log[row].theta = 0.0
+    enter_phase(s, l, system, FULL_CONTACT)
+    renew(s, l)
+
+
+@compiled
+def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> None:
+    """Tilt along z, at rest: by 1e-9 where it may be to any side; the work of that is booked."""
+    size = math.sqrt(z_x * z_x + z_y * z_y)
+    if size == 0.0:  # what falls freely may tilt to any side
+        z_x, size = 1.0, 1.0
+    if ways_of(s) == 1:
+        s.side[l] = math.copysign(1.0, z_x)
+        enter_phase(s, l, system, first_phase(system))
+        set_polar(s, l, 0.0, s.side[l], 0.0, 0.0, 0.0)
+        return
+    strain, lifted, rise, before = strain_energy(s, l), 0.0, UPLIFT_TILT, beam_now(s, l)
+    if s.phase[l] != FULL_CONTACT:
+        x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+        rise -= x
+        lifted = potential(s, l, system, x) + tilting_energy(s, l, place_of(s, l, x), p, q)
+    else:
+        lifted = potential(s, l, system, 0.0)
+    enter_phase(s, l, system, first_phase(system))
+    set_polar(s, l, UPLIFT_TILT, z_x / size, z_y / size, 0.0, 0.0)
+    move_floors(s, l, before)
+    s.energy_input[l] += potential(s, l, system, UPLIFT_TILT) - lifted
+    s.energy_input[l] += strain_energy(s, l) - strain
+    arm = s.diameter[l] * math.cos(system.alpha)
+    s.energy_input[l] += force_at_rest(s, l)[0] * arm * rise
+    s.h_limit[l] = FIRST_STEP
+
+
+@compiled
+def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
+    """Leave full contact along z, in one plane to a side."""
+    renew(s, l)
+    z_x, z_y, _, _ = pushes(s, l)
+    begin_tilt(s, l, system, float(side) if ways_of(s) == 1 else z_x, z_y)
+    row = log_event(s, l, log, UPLIFT, 0.0, 0.0, 0.0)
+    if row >= 0:
+        log[row].theta = 0.0
+    begin_excursion(s, l, log)
+    renew(s, l)
+    if ways_of(s) == 1:  # at the threshold theta'' is zero but for rounding, and about to grow
+        s.a[l] = max(s.a[l], 0.0)
+        s.bend[0, l] = s.side[l] * s.a[l]
+
+
+@compiled
+def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) -> None:  # noqa: FBT001
+    """Uplift from a bed, or contact with it again; floors keep their velocities."""
+    if s.x[l] < 0.0:  # over to the other side
+        s.side[l], s.direction[l] = -s.side[l], -s.direction[l]
+        s.v[l] = -s.v[l]
+    side, before, change = s.side[l], s.v[l], system.lifts
+    beam = side * s.diameter[l] * system.bed_height * before
+    if enters:
+        change = system.restitution / change
+        chi = impact_number(s, l, system, before)
+        s.impact_number[l] = max(s.impact_number[l], chi)
+    set_polar(s, l, system.bed_uplift, side, 0.0, change * before, 0.0)
+    enter_phase(s, l, system, BEDDED if enters else first_phase(system))
+    for r in range(s.n):
+        s.dq[r, l] += s.Gamma[r, l] * ((1.0 - change) * beam)
+    lost = 0.0
+    if enters:  # A just outside of phi_u is A_u/j^2
+        C = system.bed_height
+        A = s.io_1[l] + s.one[l] * (C * C)
+        outside = before / system.lifts
+        lost = 0.5 * inertia_unit(s, l) * A * (outside * outside - s.v[l] * s.v[l])
+    s.energy_lost[l] += lost
+    log_event(s, l, log, IMPACT if enters else UPLIFT, before, s.v[l], lost)
