@@ -33,7 +33,7 @@ from rpscli.physics.laws import (
     lift_at,
     lifted_mass,
     place_of,
-    path_at,
+    polar,
     rate_of,
     tilt_of,
     total_energy,
@@ -76,7 +76,14 @@ from rpscli.physics.state import (
     scratch,
 )
 from rpscli.physics.step import renew, take_steps
-from rpscli.physics.upright import enter_phase, pass_on_bed, pass_upright, settles, uplift
+from rpscli.physics.upright import (
+    enter_phase,
+    pass_on_bed,
+    pass_upright,
+    set_polar,
+    settles,
+    uplift,
+)
 
 HEARS = 0.1
 """A Ctrl-C is heard within so many seconds."""
@@ -389,7 +396,8 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
     if kind == NEAREST or (kind == LOW and is_upright(s, l, system)):
         pass_upright(s, l, system, log, kind == LOW)
         renew(s, l)
-        settles(s, l, system, log, kind == LOW)
+        if not settles(s, l, system, log, kind == LOW):
+            stay_inside(s, l)
         return
     if phase == BEDDED or (kind == LOW and s.x_low[l] == system.bed_uplift):
         pass_on_bed(s, l, system, log, phase != BEDDED)
@@ -401,12 +409,26 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
     elif system.beta > 0.0 and (s.x_high[l] if kind == HIGH else s.x_low[l]) == system.beta:
         rises = kind == HIGH
         event = ROLLING_TO_ROCKING if rises else ROCKING_TO_ROLLING
-        s.x[l] = system.beta
-        log_event(s, l, log, event, s.v[l], s.v[l], 0.0)
+        _, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+        set_polar(s, l, system.beta, n, t, p, q)
+        log_event(s, l, log, event, p, p, 0.0)
         enter_phase(s, l, system, ROCKING if rises else ROLLING)
     else:  # curved ends leave their flat part, or come back to it
         enter_phase(s, l, system, phase)
     renew(s, l)
+    stay_inside(s, l)
+
+
+@compiled
+def stay_inside(s: Record, l: int) -> None:
+    """Have the next step begin within its range: of a tilt to any side x is a root, and rounded."""
+    s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
+    if ways_of(s) == 2 and abs(s.v[l]) < AT_REST_BELOW * s.x[l]:
+        s.v[l] = max(s.v[l], 0.0)
+
+
+AT_REST_BELOW = 1e-12
+"""Rate of a tilt over it that is none [1/s]."""
 
 
 @compiled

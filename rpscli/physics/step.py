@@ -8,13 +8,8 @@ modes do next. Sums are written as they are to be rounded: a history does not kn
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
-
-import numpy as np
-
 from rpscli.physics.bed import set_patches
-from rpscli.physics.core.compile import compiled, fma, inlined
+from rpscli.physics.core.compile import compiled, fma, inlined, together
 from rpscli.physics.devices import act, act_at_stage, begin_work, worked
 from rpscli.physics.ground import g_up_now, ground_now
 from rpscli.physics.laws import (
@@ -29,7 +24,7 @@ from rpscli.physics.laws import (
     ways_of,
 )
 from rpscli.physics.state import Record
-from rpscli.physics.tableau import A2, A, C, END, ERROR
+from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
 
 
 @compiled
@@ -58,83 +53,89 @@ def accelerate(s: Record, at: float) -> None:
         s.new_x[l], s.new_v[l], s.new_a[l], s.new_lift[l] = x, p, motion.a, motion.lift
 
 
-def stage_of(k: int) -> Callable[[Record], None]:
-    """The sums of a stage, specialised: modes and tilt from the accelerations before it."""
-    kept = [j for j in range(k) if abs(A[k, j]) + abs(A2[k, j]) > 1e-11]
-    terms, one, two = np.array(kept), A[k].copy(), A2[k].copy()
-    at, first, last = float(C[k]), k == 1, k - 1
-    weight = float(A[END, k]) if k < END else 0.0
-
-    @inlined
-    def mode(s: Record, r: int, l: int, base: float) -> float:
-        h, omega2, damping = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l]
-        q, dq = s.q[r, l], s.dq[r, l]
-        before = fma(omega2, q, damping * dq) if first else s.force[r, l]
-        ddq = fma(-s.Gamma[r, l], base, -before)
-        s.ddq[last, r, l] = ddq
-        far, fast = 0.0, 0.0
-        for i in range(len(terms)):
-            j = terms[i]
-            term = ddq if j == last else s.ddq[j, r, l]
-            far = fma(two[j], term, far)
-            fast = fma(one[j], term, fast)
-        q, dq = fma(h, fma(h, far, at * dq), q), fma(h, fast, dq)
-        force = fma(omega2, q, damping * dq)
-        s.force[r, l] = force
-        if k == END:
-            s.new_q[r, l] = q
-        if k == END or lanes_of(s) == 1:
-            s.new_dq[r, l] = dq
-        return s.Gamma[r, l] * force  # type: ignore[no-any-return]
-
-    @compiled
-    def stage(s: Record) -> None:
-        n, lanes = s.n, lanes_of(s)
-        for axis in range(ways_of(s)):
-            for l in range(lanes):
-                s.new_V[axis, l] = 0.0
-            for r in range(axis * n, (axis + 1) * n):
-                for l in range(lanes):
-                    base = s.base[axis, l] if first else s.new_base[axis, l]
-                    s.new_V[axis, l] += mode(s, r, l, base)
-        for axis in range(ways_of(s)):
-            for l in range(lanes):
-                far, fast = 0.0, 0.0
-                for i in range(len(terms)):
-                    far = fma(two[terms[i]], s.bends[terms[i], axis, l], far)
-                    fast = fma(one[terms[i]], s.bends[terms[i], axis, l], fast)
-                h, rate = s.h[l], s.tilt_rate[axis, l]
-                s.new_tilt[axis, l] = fma(h, fma(h, far, at * rate), s.tilt[axis, l])
-                s.new_tilt_rate[axis, l] = fma(h, fast, rate)
-        if s.gives_way > 0:
-            set_patches(s)
-        if s.equipped > 0:
-            act_at_stage(s, weight)
-        accelerate(s, at)
-        for axis in range(ways_of(s)):
-            for l in range(lanes):
-                s.bends[k, axis, l] = s.new_bend[axis, l]
-        if lanes == 1 and s.audited > 0:
-            book_powers(s, at, weight)
-
-    return stage  # type: ignore[no-any-return]
-
-
-def _stages_from(k: int) -> Any:
-    stage = stage_of(k)
+@inlined
+def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
+    """Lead a mode of a lane to stage k; its part of the base shear there [N]."""
+    h, omega2, damping, q, dq = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l], s.q[r, l], s.dq[r, l]
+    base = s.base[axis, l] if k == 1 else s.new_base[axis, l]
+    before = fma(omega2, q, damping * dq) if k == 1 else s.force[r, l]
+    ddq = fma(-s.Gamma[r, l], base, -before)
+    s.ddq[k - 1, r, l] = ddq
+    far, fast = 0.0, 0.0
+    for j in range(k):
+        if USED[k, j]:
+            term = ddq if j == k - 1 else s.ddq[j, r, l]
+            far, fast = fma(A2[k, j], term, far), fma(A[k, j], term, fast)
+    q, dq = fma(h, fma(h, far, C[k] * dq), q), fma(h, fast, dq)
+    force = fma(omega2, q, damping * dq)
+    s.force[r, l] = force
     if k == END:
-        return stage
-    rest = _stages_from(k + 1)
-
-    @inlined
-    def stages(s: Record) -> None:
-        stage(s)
-        rest(s)
-
-    return stages
+        s.new_q[r, l] = q
+    if k == END or lanes_of(s) == 1:
+        s.new_dq[r, l] = dq
+    return s.Gamma[r, l] * force  # type: ignore[no-any-return]
 
 
-all_stages = _stages_from(1)
+@inlined
+def advance_tilt(s: Record, l: int, axis: int, k: int) -> None:
+    """Lead a component of a lane's tilt to stage k."""
+    far, fast, h, rate = 0.0, 0.0, s.h[l], s.tilt_rate[axis, l]
+    for j in range(k):
+        if USED[k, j]:
+            far = fma(A2[k, j], s.bends[j, axis, l], far)
+            fast = fma(A[k, j], s.bends[j, axis, l], fast)
+    s.new_tilt[axis, l] = fma(h, fma(h, far, C[k] * rate), s.tilt[axis, l])
+    s.new_tilt_rate[axis, l] = fma(h, fast, rate)
+
+
+@inlined
+def advance_to(s: Record, k: int) -> None:
+    """Lead all lanes to stage k, modes first, and find their accelerations there."""
+    n, lanes = s.n, lanes_of(s)
+    for axis in range(ways_of(s)):
+        for l in range(lanes):
+            s.new_V[axis, l] = 0.0
+        for r in range(axis * n, (axis + 1) * n):
+            for l in range(lanes):
+                s.new_V[axis, l] += advance_mode(s, r, l, axis, k)
+        for l in range(lanes):
+            advance_tilt(s, l, axis, k)
+    find_accelerations(s, k)
+
+
+@compiled
+def find_accelerations(s: Record, k: int) -> None:
+    """Accelerations of all lanes at stage k, and what flows there."""
+    weight = A[END, k] if k < END else 0.0
+    if s.gives_way > 0:
+        set_patches(s)
+    if s.equipped > 0:
+        act_at_stage(s, weight)
+    accelerate(s, C[k])
+    for axis in range(ways_of(s)):
+        for l in range(lanes_of(s)):
+            s.bends[k, axis, l] = s.new_bend[axis, l]
+    if lanes_of(s) == 1 and s.audited > 0:
+        book_powers(s, C[k], weight)
+
+
+def all_stages(s: Record) -> None:
+    """All stages of a lane alone."""
+    for k in range(1, END + 1):
+        advance_to(s, k)
+
+
+@together(all_stages)
+def all_stages_of_lanes(s: Record) -> None:
+    """The same of lanes side by side, written out: the sums become vector instructions."""
+    advance_to(s, 1)
+    advance_to(s, 2)
+    advance_to(s, 3)
+    advance_to(s, 4)
+    advance_to(s, 5)
+    advance_to(s, 6)
+    advance_to(s, 7)
+    advance_to(s, 8)
 
 
 @compiled

@@ -43,6 +43,9 @@ A = np.zeros((END + 1, END + 1))
 for _k, _row in enumerate(_ROWS):
     A[_k, : len(_row)] = _row
 A2 = A @ A
+USED = np.abs(A) + np.abs(A2) > 1e-11
+"""Where a stage asks for one before it."""
+
 C = A.sum(axis=1)
 ERROR = A[END] - np.array(_FIFTH)
 """Weights of the difference of both rules, over h."""

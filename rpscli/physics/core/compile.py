@@ -144,6 +144,24 @@ def inlined(function: Function) -> Function:
     return register_jitable(forceinline=True, **OPTIONS)(function)
 
 
+def together(alone: Function) -> Callable[[Function], Function]:
+    """Take this function in place of another that is not compiled, for more lanes than one."""
+
+    def register(function: Function) -> Function:
+        def choose(s: Any) -> Callable[..., Any]:
+            lanes: int = s.fields["x"].type.shape[0]
+            return function if lanes > LEAST_LANES else alone
+
+        overload(alone, jit_options=cast("Any", OPTIONS), strict=False)(choose)
+        return function
+
+    return register
+
+
+LEAST_LANES = 9
+"""Entries of a field of one lane, with those that no lane uses."""
+
+
 def specialised(function: Function) -> Function:
     """The same, anew for each constant that is handed to it.
 
