@@ -18,12 +18,11 @@ from hypothesis import settings
 # each other, a thousand times as long as a matrix exponential of four rows takes.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import kernel_locks
 from kernel_locks import locked
 from paper_structures import RecordLoader
 
-from rpscli.analyses.kernels.compilation import compiled, is_ready
-from rpscli.physics.planar.prepare import can_prepare
+from rpscli.analyses.kernels.compilation import KERNELS, compiled, is_ready
+from rpscli.physics.prepare import can_prepare, compile_whole, garbage_kept
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import load_record
 
@@ -51,47 +50,46 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 
 @contextlib.contextmanager
-def _compiled_once(variant: str) -> Iterator[None]:
+def _compiled_once(ways: int, lanes: int) -> Iterator[None]:
     with contextlib.ExitStack() as held:
-        if not is_ready(variant) and not held.enter_context(locked(variant, wait=False)):
+        name = f"{ways} {lanes}"
+        if not is_ready(ways, lanes) and not held.enter_context(locked(name, wait=False)):
             if threading.current_thread() is threading.main_thread():
-                _compile_another(variant)
-            held.enter_context(locked(variant))
-        held.enter_context(compiled(variant))
+                _compile_another(ways, lanes)
+            held.enter_context(locked(name))
+        held.enter_context(compiled(ways, lanes))
         yield
 
 
-def _compile_another(variant: str) -> None:
+def _compile_another(*but: int) -> None:
     """While another worker compiles this one; what a test listens to does not hear of it."""
-    for other in ("pairs", "plain", "devices", "compliant"):  # what the suite without `long` needs
-        if other == variant or is_ready(other):
+    for other in KERNELS:
+        if other == but or is_ready(*other):
             continue
-        with locked(other, wait=False) as mine, pytest.MonkeyPatch.context() as patch:
+        name = f"{other[0]} {other[1]}"
+        with locked(name, wait=False) as mine, pytest.MonkeyPatch.context() as patch:
             if mine:
                 patch.setattr("rpscli.analyses.kernels.compilation._listeners", [])
-                with compiled(other):
+                with compiled(*other):
                     return
 
 
-def _compile_in_one_process(module: str, variant: str) -> None:
+def _compile_in_one_process(ways: int, lanes: int) -> None:
     if can_prepare():
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-        command = [sys.executable, "-P", str(kernel_locks.__file__), module, variant]
-        subprocess.run(command, env=environment, check=False)  # what fails, the call tells
+        with garbage_kept():
+            compile_whole(ways, lanes)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _compile_once() -> Iterator[None]:
     """Of workers that need the same kernel one compiles it; one that waits compiles another kernel.
 
-    Each then in one process: what two have in common, an eighth, would be compiled twice.
+    Each then in one process: there are as many workers as cores.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rpscli.analyses.kernels.history.compiled", _compiled_once)
         if os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1") != "1":
-            for motion in ("planar", "spatial"):
-                place = f"rpscli.physics.{motion}.prepare.compile_in_parts"
-                patch.setattr(place, _compile_in_one_process)
+            patch.setattr("rpscli.physics.prepare.compile_kernel", _compile_in_one_process)
         yield
 
 

@@ -1,18 +1,12 @@
-"""Locks of the kernel cache, by which test workers share compilations out.
-
-Run as a program: compiles a kernel, beside other such programs.
-"""
+"""Locks of the kernel cache, by which test workers share compilations out."""
 
 from __future__ import annotations
 
 import contextlib
-import importlib
 import os
-import sys
 from collections.abc import Iterator
 
-from rpscli.physics.core.compile import cache_folder
-from rpscli.physics.planar.prepare import garbage_kept
+from rpscli.physics.compile import cache_folder
 
 
 @contextlib.contextmanager
@@ -31,8 +25,3 @@ def locked(name: str, *, wait: bool = True) -> Iterator[bool]:
         else:
             yield True
 
-
-if __name__ == "__main__":
-    module, variant = sys.argv[1:]
-    with garbage_kept():
-        importlib.import_module(module).compile_whole(variant)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.trace import Event, Trace
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.planar import state
+from rpscli.physics import state
 
 Array = NDArray[np.float64]
 

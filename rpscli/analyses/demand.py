@@ -14,7 +14,7 @@ from rpscli.analyses.kernels.systems import longest_free_vibration, paired_syste
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.core.records import LANES
+from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import frozen
 
@@ -98,7 +98,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
         given.append(HistoryRequest(system, motion, r.scale))
     pairs = requests[0].motion.y is not None
     stacked = (paired_systems if pairs else stacked_systems)([s for _, s in systems.values()])
-    rates = stacked["uplifted_rate"].tolist()[:: 2 if pairs else 1]
+    rates = stacked["step_rate"].tolist()[:: 2 if pairs else 1]
     shaken = [motion for _, motion in motions.values()]
     durations = [motion.duration for motion in shaken]
     for r, history in zip(requests, given, strict=True):

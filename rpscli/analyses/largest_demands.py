@@ -22,19 +22,15 @@ from rpscli.analyses.trace import DeviceDemand, device_demands
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.core.records import Record, record_type
-from rpscli.physics.planar import geometry, state
-from rpscli.physics.spatial.state import RESULT_3D
+from rpscli.physics import geometry, state
+from rpscli.physics.state import Record, record_type
 from rpscli.shown import Shown, frozen, with_unit
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
 
 
-def _plain(left: Record) -> np.dtype[Any]:
-    """The type of what histories left behind, of one component or of pairs."""
-    pairs = "azimuth" in (left.dtype.names or ())
-    return record_type(RESULT_3D if pairs else state.RESULT)
+_PLAIN = record_type(state.RESULT)
 
 
 class Histories:
@@ -47,14 +43,14 @@ class Histories:
         self, structures: Sequence[PodiumStructure], number: Sequence[int], left: Record
     ) -> None:
         # Fields by attribute, which records of the kernels have, take numpy ten times as long.
-        self.left = left.view(_plain(left), np.ndarray)
+        self.left = left.view(_PLAIN, np.ndarray)
         self.structures, self.number = structures, np.array(number)
         self.storeys = structures[0].storeys
 
     @classmethod
     def of_one(cls, structure: PodiumStructure, history: Record) -> Histories:
         """A batch of one history."""
-        return cls([structure], [0], np.array([history], dtype=_plain(history)))
+        return cls([structure], [0], np.array([history], dtype=_PLAIN))
 
     @property
     def outcomes(self) -> NDArray[np.str_]:
@@ -138,9 +134,9 @@ class Histories:
 
     def known(self, field: str) -> Array:
         """A field that histories under both components have; NaN of the others."""
-        if field not in (self.left.dtype.names or ()):
-            return np.full(len(self.left), np.nan)
-        return np.asarray(self.left[field], np.float64)
+        values = np.asarray(self.left[field], np.float64)
+        pairs = (self.left["ways"] == 2).reshape(-1, *(1,) * (values.ndim - 1))  # noqa: PLR2004
+        return np.where(pairs, values, np.nan)
 
     def of_roof(self, field: str, storey: Callable[[Array], Array]) -> Array:
         """One number of what stands by storeys; NaN where there is none."""
@@ -200,7 +196,7 @@ def _drifts(h: Histories) -> Array:
     """Resultants over the stiffness; where that differs in y, the lesser of two upper bounds."""
     shears, k = h.column("storey_shears"), h.of_building(lambda b: b.stiffnesses)
     in_y = [structure.superstructure_y for structure in h.structures]
-    if "storey_shear_y" not in (h.left.dtype.names or ()) or not any(in_y):
+    if h.left["ways"][0] == 1 or not any(in_y):
         return shears / k
     k_y = h.each(lambda s: getattr(s.superstructure_y or s.superstructure, "stiffnesses", np.nan))
     parts = h.of_storeys("storey_shear_x") / k, h.of_storeys("storey_shear_y") / k_y
@@ -439,7 +435,7 @@ class Demand(Shown):
     @property
     def both_components(self) -> bool:
         """Whether both horizontal components acted."""
-        return "azimuth" in (self.history.dtype.names or ())
+        return bool(self.history["ways"] == 2)
 
     @property
     def devices(self) -> tuple[DeviceDemand, ...]:

@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.core.records import Record
-from rpscli.physics.planar import state
+from rpscli.physics import state
+from rpscli.physics.state import Record
 
 Outcome = Literal[
     "at_rest", "survived", "stays_tilted", "overturned_rolling", "overturned_rocking", "failed"

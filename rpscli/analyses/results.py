@@ -22,7 +22,7 @@ from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
-from rpscli.physics.planar import state
+from rpscli.physics import state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import data_frame, frozen
 

@@ -1,6 +1,6 @@
 """Samples and events of a history, and what its devices saw: the kernel's records in words.
 
->>> from rpscli.physics.planar import state
+>>> from rpscli.physics import state
 >>> EVENT_NAMES[state.UPLIFT], EVENT_NAMES[state.OVERTURNING], EVENT_NAMES[state.TENDON_TAUT]
 ('uplift', 'overturning', 'tendon_taut')
 >>> len(EVENT_NAMES) == state.EVENT_KINDS
@@ -9,18 +9,17 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any, Literal, NamedTuple, Self, TypeAlias, get_args
+from typing import Any, Literal, Self, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.core.records import Record
-from rpscli.physics.planar import geometry, state
-from rpscli.records.ground_motion import MotionComponents
+from rpscli.physics import state
+from rpscli.physics.state import Record
 from rpscli.shown import Frozen, Shown
 
 Array = NDArray[np.float64]
@@ -46,7 +45,7 @@ EventKind = Literal[
 ]
 
 EVENT_NAMES: tuple[EventKind, ...] = get_args(EventKind)
-"""By the codes of the kernels."""
+"""By the codes of the kernel."""
 
 
 @dataclass(frozen=True)
@@ -143,10 +142,6 @@ class DeviceTrace(_Sampled, Frozen):
     as the cap beam moves back to the gap, not at once: sums over an excursion are exact."""
     stored: Array
     """Energy over what was stored at rest [J]; of a stop `k_s (|u_b| - d)^2/2`, let go or not."""
-
-
-BLOCK = 50_000
-"""Samples whose quantities are derived at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,186 +288,54 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[tuple[str, str, ND
 
 def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
     """Histories from what the kernel stored, at samples or between them as well."""
-    samples = run.samples
-    devices = DeviceTrace(*np.moveaxis(run.devices, 1, 0))
-    found = _by_blocks(lambda rows: _derived(structure, run, devices, rows), len(samples))
-    in_y = {name[2:]: found.pop(name) for name in [*found] if name.startswith("y.")}
+    samples, motion = run.samples, run.motion
+    pairs = motion.y is not None
     return Trace(
-        time=np.arange(len(samples), dtype=np.float64) * run.motion.dt,
+        time=np.arange(len(samples), dtype=np.float64) * motion.dt,
         rotation=samples.theta,
         rotation_rate=samples.theta_dot,
         phase=samples.phase.astype(np.int8),
+        lift=samples.lift,
+        normal_top=samples.normal_top,
+        normal_bottom=samples.normal_bottom,
         energy_input=samples.energy_input,
         energy_damped=samples.energy_damped,
         energy_impact=samples.energy_lost,
-        energy_bed=samples.bed_energy,
-        devices=devices,
-        azimuth=samples.azimuth if in_y else None,
-        azimuth_rate=samples.turning if in_y else None,
-        y=Direction(**in_y) if in_y else None,
-        **found,
+        energy_bed=samples.energy_bed,
+        energy_stored=samples.energy_stored,
+        devices=DeviceTrace(*np.moveaxis(run.devices, 1, 0)),
+        azimuth=samples.azimuth if pairs else None,
+        azimuth_rate=samples.turning if pairs else None,
+        y=Direction(**_in_direction(structure, run, 1)) if pairs else None,
+        **_in_direction(structure, run, 0),
     )
 
 
-def _by_blocks(derived: Callable[[slice], dict[str, Array]], samples: int) -> dict[str, Array]:
-    """Arrays over all samples, of which only a block at a time is in the making."""
-    whole: dict[str, Array] = {}
-    for first in range(0, samples, BLOCK):
-        rows = slice(first, min(first + BLOCK, samples))
-        for name, part in derived(rows).items():
-            if name not in whole:
-                whole[name] = np.empty((samples, *part.shape[1:]))
-            whole[name][rows] = part
-    return whole
-
-
-class _Beam(NamedTuple):
-    """Of the cap beam in one direction, relative to the ground, and what pushes it (samples,)."""
-
-    displacement: Array
-    velocity: Array
-    acceleration: Array
-    push: Array
-
-
-def _derived(
-    structure: PodiumStructure, run: SampledHistory, all_devices: DeviceTrace, rows: slice
-) -> dict[str, Array]:
-    """What follows from some samples, by the names of `Trace`; what is in y begins with `y.`."""
-    # Imported here: numba is slow, and the command line imports this module's classes.
-    from rpscli.physics.planar.equation_of_motion import cap_beam_acceleration
-
-    samples, devices, motion = run.samples[rows], all_devices.at(rows), run.motion
-    theta, rate = samples.theta, samples.theta_dot
-    b, diameter = structure.bearing, 2.0 * structure.bearing.semi_diagonal
-    B, C, path, lift = geometry.path_along(b.rolling, b.rocking, b.beta, np.abs(theta))
-    potential, B_v = lift, B
-    if (bed := structure.bed) is not None:
-        on_bed = bed.path(np.abs(theta))
-        B, C = np.where(samples.phase == state.BEDDED, 0.0, B), on_bed.height
-        path, lift, potential = on_bed.displacement, on_bed.lift, on_bed.potential
-        B_v = on_bed.lift_arm
-    push, pull = np.zeros_like(theta), np.zeros_like(theta)
-    for i, device in enumerate(structure.devices):
-        to_the_right, down = device.beam_forces(structure, theta, devices.force[:, i])
-        push, pull = push + to_the_right, pull + down
-    side = np.sign(theta) + (theta == 0.0) * np.sign(samples.theta_ddot)
-    c = np.where(samples.phase == state.ROLLING, b.rolling.c, b.rocking.c)
-    moves = samples.phase != state.FULL_CONTACT
-    across, upwards = (
-        np.where(moves, acceleration, 0.0)
-        for acceleration in cap_beam_acceleration(
-            side, diameter, c, B, C, rate, side * samples.theta_ddot
-        )
-    )
-    if bed is not None:
-        upwards = diameter * (B_v * side * samples.theta_ddot + on_bed.lift_bend * rate**2)
-    moving = devices.stored.sum(axis=1) + 0.5 * tilting_inertia(structure, B_v, C) * rate**2
-    base, base_rate = diameter * np.sign(theta) * path, diameter * C * rate
-    beams = {"": _Beam(base, base_rate, across, push)}
-    if motion.y is not None:
-        # Along the tilt as in one plane; going round adds what turns with it.
-        w = samples.turning
-        moving = moving + 0.5 * turning_inertia(structure, np.abs(theta), path) * w**2
-        away = across - np.where(moves, diameter * path * w**2, 0.0)
-        aside = diameter * (path * samples.turning_rate + 2.0 * C * rate * w)
-        aside = np.where(moves, aside, 0.0)
-        cosine, sine = np.cos(samples.azimuth), np.sin(samples.azimuth)
-        beams = {
-            way: _Beam(base * r, base_rate * r + base * w * t, away * r + aside * t, pushed)
-            for way, r, t, pushed in (
-                ("", cosine, -sine, samples.push_x),
-                ("y.", sine, cosine, samples.push_y),
-            )
-        }
-    found: dict[str, Array] = {}
-    strained, swinging = np.zeros_like(theta), np.zeros_like(theta)
-    for way, beam in beams.items():
-        in_way, energies = _in_direction(structure, run, rows, beam, diameter * C, across=bool(way))
-        strained, swinging = strained + energies[0], swinging + energies[1]
-        found |= {way + name: values for name, values in in_way.items()}
-    g_up = structure.gravity + _ground(motion, "vertical", rows, len(samples))
-    carried = structure.cap_beam_mass + structure.superstructure_mass
-    normal = carried * (g_up + upwards) + pull
-    return found | {
-        "lift": diameter * lift,
-        "normal_top": normal,
-        "normal_bottom": normal + structure.columns_mass * (g_up + 0.5 * upwards),
-        "energy_stored": structure.weight * diameter * potential + strained + moving + swinging,
-    }
-
-
-def _in_direction(
-    structure: PodiumStructure,
-    run: SampledHistory,
-    rows: slice,
-    beam: _Beam,
-    height: Array,
-    *,
-    across: bool,
-) -> tuple[dict[str, Array], tuple[Array, Array]]:
-    """By the names of `Direction`, in x or across it; energies of the building's strain and motion.
-
-    `height` is 2 R C, the height of the thrust lines [m].
-    """
-    n, building = structure.storeys, structure.superstructure
-    floors = run.floors[rows, :, :n]
-    if across:
-        floors, building = run.floors[rows, :, n:], structure.superstructure_y or building
-    a_g = _ground(run.motion, "y" if across else "horizontal", rows, len(beam.push))
-    u, du = floors[:, 0], floors[:, 1]
-    drifts = np.diff(u, axis=1, prepend=beam.displacement[:, None])
-    shears, forces = np.zeros_like(u), np.zeros_like(u)
-    swinging = np.zeros_like(beam.push)
-    if building is not None:
-        shears = building.stiffnesses * drifts
-        forces = (u - beam.displacement[:, None]) @ building.stiffness_matrix
-        forces = forces + (du - beam.velocity[:, None]) @ building.damping_matrix
-        swinging = 0.5 * du**2 @ building.masses
-    V = forces.sum(axis=1)
-    top = structure.cap_beam_mass * (beam.acceleration + a_g) - (V + beam.push)
+def _in_direction(structure: PodiumStructure, run: SampledHistory, axis: int) -> dict[str, Array]:
+    """By the names of `Direction`, in x or in y."""
+    n, samples, building = structure.storeys, run.samples, structure.superstructure
+    if axis == 1:
+        building = structure.superstructure_y or building
+    floors = run.floors[:, :, axis * n : (axis + 1) * n]
+    row = run.motion.row("y" if axis else "horizontal")
+    a_g, beam = prolonged(run.motion.samples[row], len(samples)), samples.beam[:, axis]
+    drifts = np.diff(floors[:, 0], axis=1, prepend=beam[:, None])
     base_mass = 0.5 * structure.columns_mass + structure.cap_beam_mass
     return {
         "ground_acceleration": a_g,
-        "cap_beam_displacement": beam.displacement,
-        "floor_displacements": u,
-        "floor_velocities": du,
-        "floor_accelerations": forces if building is None else -forces / building.masses,
+        "cap_beam_displacement": beam,
+        "floor_displacements": floors[:, 0],
+        "floor_velocities": floors[:, 1],
+        "floor_accelerations": floors[:, 2],
         "drifts": drifts,
-        "storey_shears": shears,
-        "driving_moment": height * (V - base_mass * a_g),
-        "shear_top": top,
-        "shear_bottom": top + structure.columns_mass * (0.5 * beam.acceleration + a_g),
-    }, (0.5 * np.sum(shears * drifts, axis=1), swinging)
-
-
-def _ground(motion: MotionComponents, component: str, rows: slice, count: int) -> Array:
-    """A component of the ground's acceleration at some samples [m/s2]; 0 where it is not known."""
-    row = motion.row(component)
-    return np.zeros(count) if row is None else prolonged(motion.samples[row, rows], count)
+        "storey_shears": drifts if building is None else building.stiffnesses * drifts,
+        "driving_moment": samples.height * (samples.base_shear[:, axis] - base_mass * a_g),
+        "shear_top": samples.shear_top[:, axis],
+        "shear_bottom": samples.shear_bottom[:, axis],
+    }
 
 
 def prolonged(acceleration: Array, samples: int) -> Array:
     """The acceleration at so many samples [m/s2]: zero after the record's end."""
     length = min(samples, len(acceleration))
     return np.pad(acceleration[:length], (0, samples - length))
-
-
-def tilting_inertia(structure: PodiumStructure, B: Array, C: Array) -> Array:
-    """N m_c R^2 A(x) along a path (samples,) [kg m2]."""
-    from rpscli.physics.planar.equation_of_motion import inertia
-
-    io_1, beam = structure.bearing.inertia_ratio - 1.0, 4.0 * structure.gamma
-    A = inertia(io_1, 1.0 + beam, beam * structure.eta, B**2 + C**2, B)
-    return np.asarray(structure.columns_mass * structure.bearing.semi_diagonal**2 * A)
-
-
-def turning_inertia(structure: PodiumStructure, x: Array, path: Array) -> Array:
-    """N m_c R^2 J(x) along a path u = |u_b|/2R (samples,) [kg m2] (Theory (13.3))."""
-    b = structure.bearing
-    y, (sin_alpha, _, k, _, _) = np.minimum(x, b.beta), b.rolling
-    spin = k * (y - np.sin(y)) / (sin_alpha + k * np.sin(y)) if b.beta > 0.0 else 0.0
-    G = 1.0 - np.cos(x) + spin
-    J = (b.inertia_ratio - 1.0) * np.sin(x) ** 2 + b.inertia_ratio_axial * G**2
-    J = J + (1.0 + 4.0 * structure.gamma) * path**2
-    return np.asarray(structure.columns_mass * b.semi_diagonal**2 * J)

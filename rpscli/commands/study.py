@@ -159,6 +159,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
     """Count, first and last points, and an estimate of the time."""
     from rpscli.analyses.kernels.compilation import is_ready
     from rpscli.machine import available_cores
+    from rpscli.physics.state import LANES
     from rpscli.sweep.points.layout import described
     from rpscli.sweep.run.schedule import estimated_seconds
 
@@ -173,8 +174,8 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         points[number] = {"point": number + 1, **described(layout, number)}
         if histories and layout.plan.measure is None:  # no measure decides about the factor
             points[number]["scale"] = point.scale * point.scale_change
-    kernels = {properties.kernel for properties in layout.properties}
-    if histories and not all(is_ready(each) for each in kernels):
+    ways = 2 if any("both" in record.source for record in layout.records) else 1
+    if histories and not is_ready(ways, LANES):
         seconds = GUESSED_POINT_SECONDS * count / jobs
         source = "a guess, since the kernel is not compiled yet"
     else:

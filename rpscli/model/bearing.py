@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.planar import geometry
+from rpscli.physics import geometry
 
 
 def first_order_critical_curvature_ratio(slenderness: float, wedge_slenderness: float) -> float:

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.planar import geometry, plane_bed
+from rpscli.physics import geometry, plane_bed
 
 Array: TypeAlias = NDArray[np.float64]
 ContactKind = Literal["rigid", "plane", "edges"]

@@ -20,7 +20,7 @@ from rpscli.model.contact import Bed, Contact, bed_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
 from rpscli.model.uplifted_state import UpliftedState
-from rpscli.physics.planar import geometry
+from rpscli.physics import geometry
 from rpscli.shown import Shown, with_unit
 
 Array: TypeAlias = NDArray[np.float64]
@@ -285,13 +285,6 @@ class PodiumStructure(Shown):
         carried = self.gamma_total
         ratio = (1.0 + 2.0 * carried) / (self.bearing.inertia_ratio + 4.0 * carried)
         return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)
-
-    @property
-    def kernel(self) -> str:
-        """Variant of the kernel that follows it, a key of `physics.planar.state.STATES`."""
-        if self.bed is not None:
-            return "compliant"
-        return "devices" if self.devices else "plain"
 
     @cached_property
     def bed(self) -> Bed | None:

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from rpscli.model.bearing import Bearing
-from rpscli.physics.planar import geometry
+from rpscli.physics import geometry
 
 
 class UpliftedState(NamedTuple):

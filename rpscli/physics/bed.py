@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.compile import compiled
 from rpscli.physics.laws import lanes_of, patch, polar, ways_of
 from rpscli.physics.state import BEDDED, ROCKING, ROLLING, Record
 

@@ -25,8 +25,8 @@ from __future__ import annotations
 import math
 from typing import TypeAlias
 
-from rpscli.physics.core.compile import compiled, inlined
-from rpscli.physics.core.quintic import (
+from rpscli.physics.compile import compiled, inlined
+from rpscli.physics.quintic import (
     SETTLED,
     first_descent,
     lower_hull,
@@ -37,7 +37,7 @@ from rpscli.physics.core.quintic import (
     upper_hull,
     value,
 )
-from rpscli.physics.core.series import middle_of, peak, turning_value
+from rpscli.physics.peaks import middle_of, peak, turning_value
 from rpscli.physics.devices import act, has_friction, push_at_rest, raise_devices, worked
 from rpscli.physics.events import path_of
 from rpscli.physics.ground import log_row
@@ -297,10 +297,10 @@ def observe_contacts(s: Record) -> None:
         if ways_of(s) == 2:
             tilt_y, rate_y = s.new_tilt[1, l], s.new_tilt_rate[1, l]
             ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
-            beam_y, V_y = s.new_base[1, l] - ground_y, s.new_V[1, l] + s.drive[1, l]
+            beam_y, V_y = s.new_shaking[1, l] - ground_y, s.new_V[1, l] + s.drive[1, l]
         tilt, rate = (s.new_tilt[0, l], tilt_y), (s.new_tilt_rate[0, l], rate_y)
         x, n, t, _, _ = polar(s, l, tilt, rate)
-        beam, g_up = s.new_base[0, l] - ground, s.g_up[l] + time * s.g_up_slope[l]
+        beam, g_up = s.new_shaking[0, l] - ground, s.g_up[l] + time * s.g_up_slope[l]
         V = s.new_V[0, l] + s.drive[0, l] + s.tied[l] * n
         found = measures_of(
             s, l, (beam, beam_y), s.new_lift[l], (V, V_y + s.tied[l] * t), (ground, ground_y), g_up
@@ -456,11 +456,11 @@ def observe_start(s: Record, l: int) -> None:
     V_x, V_y, a_y, beam_y = s.V[0, l], 0.0, 0.0, 0.0
     if ways_of(s) == 2:
         a_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
-        V_y, beam_y = s.V[1, l] + s.drive[1, l], s.base[1, l] - a_y
+        V_y, beam_y = s.V[1, l] + s.drive[1, l], s.shaking[1, l] - a_y
     elif stands(s, l):
         push_at_rest(s, l, V_x, a_x, g_up)
     V = V_x + s.drive[0, l] + s.tied[l] * n, V_y + s.tied[l] * t
-    found = measures_of(s, l, (s.base[0, l] - a_x, beam_y), s.lift[l], V, (a_x, a_y), g_up)
+    found = measures_of(s, l, (s.shaking[0, l] - a_x, beam_y), s.lift[l], V, (a_x, a_y), g_up)
     if not is_shock(s, l, x, rate):
         raise_by(s, l, found)
     if s.devices[l] > 0:

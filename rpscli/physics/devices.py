@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.compile import compiled
 from rpscli.physics.laws import lanes_of, path_at, place_of, polar, rate_of, stands, tilt_of, ways_of
 from rpscli.physics.ground import log_event
-from rpscli.physics.core.series import peak
+from rpscli.physics.peaks import peak
 from rpscli.physics.state import (
     BEYOND,
     DAMPER_COEFFICIENT,

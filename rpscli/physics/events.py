@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled, inlined
-from rpscli.physics.core.quintic import (
+from rpscli.physics.compile import compiled, inlined
+from rpscli.physics.quintic import (
     NO_PASSAGE,
     SETTLED,
     Quintic,
@@ -315,7 +315,7 @@ def go_on_by(s: Record, l: int, time: float) -> None:
         s.new_tilt[axis, l] += time * (s.new_tilt_rate[axis, l] + 0.5 * time * bend)
         s.new_tilt_rate[axis, l] += time * bend
         for r in range(axis * s.n, (axis + 1) * s.n):
-            ddq = -(s.Gamma[r, l] * s.new_base[axis, l]) - s.force[r, l]
+            ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
             s.new_q[r, l] += time * (s.new_dq[r, l] + 0.5 * time * ddq)
             s.new_dq[r, l] += time * ddq
     s.new_x[l] += time * (s.new_v[l] + 0.5 * time * s.new_a[l])

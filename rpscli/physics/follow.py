@@ -8,12 +8,13 @@ alone. A lane whose history is over takes the next one.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from threading import Event, Thread, current_thread, main_thread
 
 import numpy as np
 
 from rpscli.physics.bed import first_phase, load_bed
-from rpscli.physics.core.compile import compiled, exact_kernel, inlined, uncounted
+from rpscli.physics.compile import compiled, inlined, kernel
 from rpscli.physics.demands import observe, observe_start
 from rpscli.physics.devices import (
     change_law,
@@ -111,29 +112,38 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
     plain["equipped"] = int(systems["devices"].any())
     plain["gives_way"] = int(systems["compliant"].any())
     given = run.systems, run.requests, run.acceleration, run.results, run.output
-    if not interruptible or current_thread() is not main_thread():
-        follow(state, *given)
-        return
-    ended = Event()
 
     def work() -> None:
+        follow(state, *given)
+
+    if interruptible and current_thread() is main_thread():
+        hear(work, state)
+    else:
+        work()
+
+
+def hear(work: Callable[[], None], state: Record) -> None:
+    """Do some work on a state in another thread; a Ctrl-C stops it, and waits for its end."""
+    ended = Event()
+
+    def whole() -> None:
         try:
-            follow(state, *given)
+            work()
         finally:
             ended.set()
 
-    Thread(target=work, daemon=True).start()
+    Thread(target=whole, daemon=True).start()
     try:
         # Not Thread.join: interrupted, it takes a running thread for ended before Python 3.13.
         while not ended.wait(HEARS):
             pass
     except BaseException:
-        plain["stop"] = 1
+        state.view(np.ndarray)["stop"] = 1
         ended.wait()
         raise
 
 
-@exact_kernel
+@kernel
 def follow(
     state: Record,
     systems: Record,
@@ -163,7 +173,7 @@ def follow(
                 active -= 1 if s.history[l] == NO_HISTORY else 0
 
 
-@compiled
+@kernel
 def advance(s: Record, systems: Record, output: Output) -> None:
     """A step of all lanes together."""
     take_steps(s)
@@ -207,7 +217,7 @@ def accept_steps(s: Record) -> None:
             s.tilt[axis, l] = chosen(yes, s.new_tilt[axis, l], s.tilt[axis, l])
             s.tilt_rate[axis, l] = chosen(yes, s.new_tilt_rate[axis, l], s.tilt_rate[axis, l])
             s.bend[axis, l] = chosen(yes, s.new_bend[axis, l], s.bend[axis, l])
-            s.base[axis, l] = chosen(yes, s.new_base[axis, l], s.base[axis, l])
+            s.shaking[axis, l] = chosen(yes, s.new_shaking[axis, l], s.shaking[axis, l])
         for l in range(lanes):
             yes = s.accepted[l]
             s.V[axis, l] = chosen(yes, s.new_V[axis, l], s.V[axis, l])
@@ -285,7 +295,7 @@ def kink_limit(s: Record, l: int) -> float:
     speed = math.sqrt(at.along * at.along + at.across * at.across)
     change, least = 0.0, s.linear_speed[l]
     for axis in range(ways_of(s)):
-        faster = s.base[axis, l] - (s.a_g[axis, l] + s.time[l] * s.a_g_slope[axis, l])
+        faster = s.shaking[axis, l] - (s.a_g[axis, l] + s.time[l] * s.a_g_slope[axis, l])
         change += faster * faster
     most = 2.0 * least if speed <= least else KINK * speed
     return most / max(math.sqrt(change), 1e-300)
@@ -331,7 +341,7 @@ STALL = 100
 MOST_STEPS_AN_EVENT = 1e7
 
 
-@compiled
+@kernel
 def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
     """What a lane alone is to do: switch at an event, store, end; True if its history is over."""
     if s.outcome[l] != RUNNING:
@@ -472,7 +482,7 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 # Histories begin and end.
 
 
-@compiled
+@kernel
 def next_history(
     s: Record,
     l: int,
@@ -501,7 +511,7 @@ def idle(s: Record, l: int) -> None:
     s.x[l], s.v[l], s.a[l], s.interval[l], s.npts[l] = 0.0, 0.0, 0.0, 0, 2
     for axis in range(ways_of(s)):
         s.tilt[axis, l], s.tilt_rate[axis, l], s.bend[axis, l] = 0.0, 0.0, 0.0
-        s.a_g[axis, l], s.a_g_slope[axis, l], s.base[axis, l] = 0.0, 0.0, 0.0
+        s.a_g[axis, l], s.a_g_slope[axis, l], s.shaking[axis, l] = 0.0, 0.0, 0.0
     for r in range(ways_of(s) * s.n):
         s.q[r, l], s.dq[r, l] = 0.0, 0.0
 
@@ -650,6 +660,7 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
         released = system.initial_rotation != 0.0 or s.max_theta[l] > system.bed_uplift
         s.outcome[l] = SURVIVED if released or s.events[l, UPLIFT] > 0 else AT_REST
     result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
+    result.ways = ways
     if s.phase[l] == STUCK and s.bed_k[l] > 0.0:
         result.phase = BEDDED
     result.steps, result.creating_impacts = int(s.steps[l]), s.creating_impacts[l]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.compile import compiled
 from rpscli.physics.laws import ways_of
 from rpscli.physics.state import FULL_CONTACT, NO_RECORD, Floats, Record
 

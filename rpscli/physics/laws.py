@@ -19,12 +19,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics.core.compile import compiled, inlined
+from rpscli.physics import plane_bed
+from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Record
-
-SERIES = 0.3
-"""Below this tilt [rad] differences of sines are taken by their series."""
-
 
 @inlined
 def ways_of(s: Record) -> int:
@@ -62,14 +59,15 @@ def sines(x: float) -> tuple[float, float, float]:
     return x - excess, z * ((low + high * z4) + (C18 + z * C20) * z4 * z4), excess
 
 
+patch_at = inlined(plane_bed.patch)
+patch_integral = compiled(plane_bed.patch_integral)
+
+
 @inlined
 def patch(s: Record, l: int, x: float) -> tuple[float, float]:
-    """w = x^(-1/2) (1 - fade (x - phi_u))^4 and its slope, while a plane end lifts (12.6)."""
+    """w and its slope, while a plane end lifts (12.6); else 0."""
     lifts = (s.root[l] > 0.0) & (x > 0.0)
-    root, shape = 1.0 / math.sqrt(x if lifts else 1.0), 1.0 - s.fade[l] * (x - s.bed_u[l])
-    cube = shape * shape * shape
-    w = root * cube * shape
-    slope = -(0.5 * w * (root * root) + 4.0 * s.fade[l] * cube * root)
+    w, slope = patch_at(x if lifts else 1.0, s.bed_u[l], s.fade[l])
     return (w if lifts else 0.0), (slope if lifts else 0.0)
 
 
@@ -262,13 +260,22 @@ def lift_at(s: Record, l: int, x: float) -> float:
     return float(s.diameter[l] * (s.v0[l] + s.p[l] * sine - s.q0[l] * (1.0 - less)))
 
 
-@inlined
-def patch_integral(x: float, fade: float, uplift: float) -> float:
-    """The integral of w over x from 0, by the powers of x in w."""
-    a, root = 1.0 + fade * uplift, math.sqrt(x)
-    z, a2 = fade * x, a * a
-    series = a2 * a2 / 0.5 - 4.0 * a2 * a * z / 1.5 + 6.0 * a2 * z * z / 2.5
-    return root * (series - 4.0 * a * z * z * z / 3.5 + z * z * z * z / 4.5)
+@compiled
+def risen(s: Record, l: int, system: Record, x: float, share: float) -> float:
+    """The rise of a compliant end beyond phi_u [m]: of the weight (`sink`), or the beam (`root`)."""
+    u, first = system.bed_uplift, system.rolling if system.beta > 0.0 else system.rocking
+    start = s.diameter[l] * (first[4] + first[0] * math.sin(u) - first[1] * math.cos(u))
+    end = min(x, system.bed_full) if system.bed_full > 0.0 else x
+    area = patch_integral(end, u, s.fade[l]) - patch_integral(u, u, s.fade[l])
+    return float(lift_at(s, l, x) - start - s.diameter[l] * share * area)
+
+
+@compiled
+def beam_lift(s: Record, l: int, system: Record, x: float) -> float:
+    """v_b at a tilt [m]."""
+    if system.compliant == 0:
+        return lift_at(s, l, x)
+    return 0.0 if s.bed_k[l] > 0.0 else risen(s, l, system, x, system.root)
 
 
 @compiled
@@ -277,16 +284,10 @@ def potential(s: Record, l: int, system: Record, x: float) -> float:
     weight = lifted_mass(s, l) * s.gravity[l]
     if system.compliant == 0:
         return float(weight * lift_at(s, l, x))
-    unit = inertia_unit(s, l)
+    unit, u = 0.5 * inertia_unit(s, l) * system.bed_k, system.bed_uplift
     if s.bed_k[l] > 0.0:
-        return float(0.5 * unit * s.bed_k[l] * (x * x))
-    u, first = system.bed_uplift, system.rolling if system.beta > 0.0 else system.rocking
-    lift_there = s.diameter[l] * (first[4] + first[0] * math.sin(u) - first[1] * math.cos(u))
-    end = min(x, system.bed_full) if system.bed_full > 0.0 else x
-    sunk = patch_integral(end, s.fade[l], u) - patch_integral(u, s.fade[l], u)
-    stored = 0.5 * unit * system.bed_k * (u * u)
-    rises = lift_at(s, l, x) - lift_there - s.diameter[l] * system.sink * sunk
-    return float(stored + weight * rises)
+        return float(unit * (x * x))
+    return float(unit * (u * u) + weight * risen(s, l, system, x, system.sink))
 
 
 @compiled
@@ -308,21 +309,39 @@ def relative_momentum(s: Record, l: int, axis: int) -> float:
 
 
 @compiled
-def total_energy(s: Record, l: int, system: Record) -> float:
-    """Kinetic, strain and potential energy of a lane without its devices [J]."""
-    _, _, u_x, u_y = beam_now(s, l)
-    energy = strain_energy(s, l) + 0.5 * s.floors_mass[l] * (u_x * u_x + u_y * u_y)
+def look_at(s: Record, l: int) -> None:
+    """Write the modes at the start of the step to `looked_at`, a row of q and one of q' a way."""
     for axis in range(ways_of(s)):
-        u = u_x if axis == 0 else u_y
-        energy += u * relative_momentum(s, l, axis)
-    for r in range(ways_of(s) * s.n):
-        energy += 0.5 * (s.dq[r, l] * s.dq[r, l])
+        for i in range(s.n):
+            r = axis * s.n + i
+            s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i] = s.q[r, l], s.dq[r, l]
+
+
+@compiled
+def energy_at(
+    s: Record, l: int, system: Record, tilt: tuple[float, float], rate: tuple[float, float]
+) -> float:
+    """Kinetic, strain and potential energy without devices [J], of modes as `looked_at`."""
+    beam, energy = beam_at(s, l, tilt, rate), 0.0
+    for axis in range(ways_of(s)):
+        u = beam[2 + axis]
+        energy += 0.5 * s.floors_mass[l] * (u * u)
+        for i in range(s.n):
+            r, q, dq = axis * s.n + i, s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i]
+            energy += 0.5 * (dq * dq + s.omega2[r, l] * (q * q)) + u * (s.Gamma[r, l] * dq)
     if s.phase[l] == FULL_CONTACT:
         return float(energy)
-    x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    x, _, _, p, q = polar(s, l, tilt, rate)
     return float(
-        energy + tilting_energy(s, l, place_of(s, l, x), p, q) + potential(s, l, system, abs(x))
+        energy + tilting_energy(s, l, place_of(s, l, x), p, q) + potential(s, l, system, x)
     )
+
+
+@compiled
+def total_energy(s: Record, l: int, system: Record) -> float:
+    """The same at the start of the step."""
+    look_at(s, l)
+    return energy_at(s, l, system, tilt_of(s, l), rate_of(s, l))
 
 
 @inlined

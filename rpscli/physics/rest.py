@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.compile import compiled
 from rpscli.physics.laws import (
     inertia_unit,
     lift_at,

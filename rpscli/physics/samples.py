@@ -4,11 +4,24 @@ from __future__ import annotations
 
 import math
 
-from rpscli.physics.core.compile import compiled
-from rpscli.physics.core.quintic import quintic, slope, value
+from rpscli.physics.compile import compiled
 from rpscli.physics.demands import tilt_within
-from rpscli.physics.devices import act, push_at_rest, store_devices, worked
-from rpscli.physics.laws import beam_at, motion_at, patch, place_with, polar, rate_of, tilt_of, ways_of
+from rpscli.physics.devices import act, push_at_rest, store_devices, stored_in, worked
+from rpscli.physics.laws import (
+    beam_at,
+    beam_lift,
+    contact_forces,
+    energy_at,
+    look_at,
+    motion_at,
+    patch,
+    place_with,
+    polar,
+    rate_of,
+    tilt_of,
+    ways_of,
+)
+from rpscli.physics.quintic import quintic, slope, value
 from rpscli.physics.run import Output
 from rpscli.physics.state import FULL_CONTACT, Record
 
@@ -19,10 +32,7 @@ PASSED = 1e-9
 @compiled
 def store_sample(s: Record, l: int, systems: Record, output: Output) -> None:
     """Keep the state at the start of the present interval, if there is room."""
-    for axis in range(ways_of(s)):
-        for i in range(s.n):
-            r = axis * s.n + i
-            s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i] = s.q[r, l], s.dq[r, l]
+    look_at(s, l)
     row = s.interval[l] * output.finer
     write_row(s, l, systems, output, row, tilt_of(s, l), rate_of(s, l), s.time[l])
 
@@ -40,14 +50,26 @@ def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
         for axis in range(ways_of(s)):
             for i in range(s.n):
                 r = axis * s.n + i
-                ddq = -(s.Gamma[r, l] * s.new_base[axis, l]) - s.force[r, l]
+                ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
                 q = quintic(
                     h, s.q[r, l], s.dq[r, l], s.ddq[0, r, l], s.new_q[r, l], s.new_dq[r, l], ddq
                 )
-                s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i] = value(q, t), slope(q, t) / h
+                s.looked_at[2 * axis, i] = value(q, t)
+                s.looked_at[2 * axis + 1, i] = slope(q, t) / h
         tilt, rate = tilt_within(s, l, t)
         row = s.interval[l] * output.finer + j
         write_row(s, l, systems, output, row, tilt, rate, s.time[l] + t * h)
+
+
+@compiled
+def shear_of_row(s: Record, l: int, axis: int) -> float:
+    """Base shear of the modes that stand in `looked_at` [N]."""
+    V = 0.0
+    for i in range(s.n):
+        r = axis * s.n + i
+        q, dq = s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i]
+        V += s.Gamma[r, l] * (s.omega2[r, l] * q + s.two_xi_omega[r, l] * dq)
+    return V
 
 
 @compiled
@@ -64,53 +86,68 @@ def write_row(
     """Keep a motion of a lane, whose modes stand in `looked_at`."""
     if row >= output.samples.shape[0]:
         return
-    sample, n, ways = output.samples[row], s.n, ways_of(s)
-    V_x, V_y = 0.0, 0.0
-    for i in range(n):
-        V_x += s.Gamma[i, l] * (
-            s.omega2[i, l] * s.looked_at[0, i] + s.two_xi_omega[i, l] * s.looked_at[1, i]
-        )
-        if ways == 2:
-            r = n + i
-            V_y += s.Gamma[r, l] * (
-                s.omega2[r, l] * s.looked_at[2, i] + s.two_xi_omega[r, l] * s.looked_at[3, i]
-            )
+    sample, ways, moves = output.samples[row], ways_of(s), s.phase[l] != FULL_CONTACT
     x, cosine, sine, p, q = polar(s, l, tilt, rate)
     w, dw = patch(s, l, x)
+    g_up, share, stored = s.g_up[l] + time * s.g_up_slope[l], 0.0, 0.0
+    V_x, V_y = shear_of_row(s, l, 0), (shear_of_row(s, l, ways - 1) if ways == 2 else 0.0)
     a_x, a_y = s.a_g[0, l] + time * s.a_g_slope[0, l], 0.0
     if ways == 2:
         a_y = s.a_g[ways - 1, l] + time * s.a_g_slope[ways - 1, l]
-    g_up, share = s.g_up[l] + time * s.g_up_slope[l], 0.0
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)
         act(s, l, at)
         if s.moves[l] == 0.0 and ways == 1:
             share = push_at_rest(s, l, V_x, a_x, g_up)
         store_devices(s, l, at, share, output.devices[row])
-    drive_y = s.drive[ways - 1, l] if ways == 2 else 0.0
-    z_x = s.share[l] * (V_x + s.drive[0, l]) - s.load[l] * a_x
+        for i in range(s.devices[l]):
+            stored += stored_in(s, l, i, at)
+    drive_x, drive_y = s.drive[0, l], (s.drive[ways - 1, l] if ways == 2 else 0.0)
+    z_x = s.share[l] * (V_x + drive_x) - s.load[l] * a_x
     z_y = s.share[l] * (V_y + drive_y) - s.load[l] * a_y
     place = place_with(s, l, x, w, dw)
     motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_up)
-    sign = s.side[l] if ways == 1 else 1.0
-    moves = s.phase[l] != FULL_CONTACT
+    sign, beam = s.side[l] if ways == 1 else 1.0, beam_at(s, l, tilt, rate)
+    sample.phase = s.phase[l]
     sample.theta, sample.theta_dot = (sign * x, sign * p) if moves else (0.0, 0.0)
-    sample.theta_ddot, sample.phase = sign * motion.a, s.phase[l]
-    sample.azimuth, sample.turning, sample.turning_rate = 0.0, 0.0, 0.0
-    if ways == 2 and moves and x > 0.0:
-        across = motion.bend_y * cosine - motion.bend_x * sine
-        turning = q / x
-        sample.azimuth, sample.turning = math.atan2(sine, cosine), turning
-        sample.turning_rate = (across - 2.0 * p * turning) / x
-    sample.push_x = s.drive[0, l] + s.tied[l] * cosine
-    sample.push_y = drive_y + s.tied[l] * sine
+    sample.azimuth = math.atan2(sine, cosine) if ways == 2 and moves and x > 0.0 else 0.0
+    sample.turning = q / x if ways == 2 and moves and x > 0.0 else 0.0
+    sample.height = s.diameter[l] * place.C
+    sample.lift = beam_lift(s, l, systems[0], x) if moves else 0.0
     sample.energy_input, sample.energy_damped = s.energy_input[l], s.energy_damped[l]
-    sample.energy_lost, sample.bed_energy = s.energy_lost[l], s.bed_energy[l]
-    beam = beam_at(s, l, tilt, rate)
+    sample.energy_lost, sample.energy_bed = s.energy_lost[l], s.bed_energy[l]
+    sample.energy_stored = energy_at(s, l, systems[0], tilt, rate) + stored
     for axis in range(ways):
-        for i in range(n):
-            u, du = beam[axis], beam[2 + axis]
-            for r in range(n):
-                u += systems[axis].phi[r, i] * s.looked_at[2 * axis, r]
-                du += systems[axis].phi[r, i] * s.looked_at[2 * axis + 1, r]
-            output.floors[row, 0, n * axis + i], output.floors[row, 1, n * axis + i] = u, du
+        V, drive, a_g, n = (V_x, drive_x, a_x, cosine) if axis == 0 else (V_y, drive_y, a_y, sine)
+        faster = motion.beam_x if axis == 0 else motion.beam_y
+        pushed = V + drive + s.tied[l] * n
+        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, motion.lift, pushed, a_g, g_up)
+        sample.beam[axis], sample.base_shear[axis] = beam[axis], V
+        sample.shear_top[axis], sample.shear_bottom[axis] = F, F_bottom
+        sample.normal_top, sample.normal_bottom = N, N_bottom
+        write_floors(s, l, systems[axis], output, row, axis, beam[axis], beam[2 + axis])
+
+
+@compiled
+def write_floors(
+    s: Record,
+    l: int,
+    system: Record,
+    output: Output,
+    row: int,
+    axis: int,
+    beam: float,
+    velocity: float,
+) -> None:
+    """Keep displacements, velocities and absolute accelerations of the floors in a direction."""
+    n = s.n
+    for i in range(n):
+        u, du, ddu = beam, velocity, 0.0
+        for of in range(n):
+            r, shape = axis * n + of, system.phi[of, i]
+            q, dq = s.looked_at[2 * axis, of], s.looked_at[2 * axis + 1, of]
+            u, du = u + shape * q, du + shape * dq
+            ddu -= shape * (s.omega2[r, l] * q + s.two_xi_omega[r, l] * dq)
+        at = n * axis + i
+        output.floors[row, 0, at], output.floors[row, 1, at] = u, du
+        output.floors[row, 2, at] = ddu

@@ -320,7 +320,7 @@ STATE = (
     *_fields("ways lanes", "rad/s", tilt_rate="its rate", new_tilt_rate="at the end"),
     *_fields("ways lanes", "rad/s2", bend="its acceleration", new_bend="at the end"),
     Field("bends", "stages ways lanes", "rad/s2", "at all stages"),
-    *_fields("ways lanes", "m/s2", base="a_g + u_b''", new_base="at the end"),
+    *_fields("ways lanes", "m/s2", shaking="a_g + u_b''", new_shaking="at the end"),
     *_fields("ways lanes", "N", V="base shear, springs and dampers", new_V="at the end"),
     *_fields("ways lanes", "N/s", dV="its rate", new_dV="at the end"),
     *_fields("ways lanes", "N/s2", ddV="while it stands", new_ddV="at the end"),
@@ -415,6 +415,7 @@ STATE = (
 RESULT = (
     Field("outcome", "", WHOLE, "how the history ended"),
     Field("phase", "", WHOLE, "phase of motion at its end"),
+    Field("ways", "", WHOLE, "horizontal components: of one, what asks for two is not known"),
     Field("intervals", "", WHOLE, "sampling intervals that it lasted"),
     Field("steps", "", WHOLE, "steps taken"),
     Field("creating_impacts", "", WHOLE, "impacts that created energy"),
@@ -468,19 +469,25 @@ RESULT = (
 SAMPLE = (
     Field("theta", "", "rad", "tilt, positive to the right; of both components its size"),
     Field("theta_dot", "", "rad/s", "theta'"),
-    Field("theta_ddot", "", "rad/s2", "theta''; 0 in full contact"),
     Field("phase", "", WHOLE, "FULL_CONTACT to BEDDED"),
     Field("azimuth", "", "rad", "phi of the tilt, from x towards y; 0 in full contact"),
     Field("turning", "", "rad/s", "phi'"),
-    Field("turning_rate", "", "rad/s2", "phi''"),
-    Field("push_x", "", "N", "of devices on the cap beam, in x"),
-    Field("push_y", "", "N", "in y"),
+    Field("lift", "", "m", "v_b"),
+    Field("height", "", "m", "2 R C, of the thrust lines"),
+    Field("normal_top", "", "N", "N on the upper ends of all columns"),
+    Field("normal_bottom", "", "N", "on the lower ends"),
     Field("energy_input", "", "J", "by the ground so far"),
     Field("energy_damped", "", "J", "in the building so far"),
     Field("energy_lost", "", "J", "at impacts and re-contacts so far, net"),
-    Field("bed_energy", "", "J", "dissipated in the bed so far"),
+    Field("energy_bed", "", "J", "dissipated in the bed so far"),
+    Field("energy_stored", "", "J", "stored, in devices over that at the start"),
+    Field("beam", "2", "m", "u_b in x and y"),
+    Field("base_shear", "2", "N", "of springs and dampers of the first storey"),
+    Field("shear_top", "2", "N", "F on what stands on the columns"),
+    Field("shear_bottom", "2", "N", "F on the columns"),
 )
-"""The floors' displacements and velocities stand in an array of their own: in x, then in y."""
+"""Displacements and velocities of the floors over the ground, and their absolute accelerations,
+stand in an array of their own: those in x, then those in y."""
 
 EVENT = (
     Field("time", "", "s", "since the record's start"),

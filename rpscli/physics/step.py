@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from rpscli.physics.bed import set_patches
-from rpscli.physics.core.compile import compiled, fma, inlined, together
+from rpscli.physics.compile import compiled, fma, inlined, together
 from rpscli.physics.devices import act, act_at_stage, begin_work, worked
 from rpscli.physics.ground import g_up_now, ground_now
 from rpscli.physics.laws import (
@@ -31,7 +31,7 @@ from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
 def accelerate(s: Record, at: float) -> None:
     """Accelerations of all lanes a part of the step behind its start, from `new_tilt` and the like.
 
-    Reads `new_V`; writes `new_bend`, `new_base` and the polar values of the tilt.
+    Reads `new_V`; writes `new_bend`, `new_shaking` and the polar values of the tilt.
     """
     for l in range(lanes_of(s)):
         time = s.time[l] + at * s.h[l]
@@ -47,9 +47,9 @@ def accelerate(s: Record, at: float) -> None:
         place = place_with(s, l, x, s.w[l], s.dw[l])
         g_up = s.g_up[l] + time * s.g_up_slope[l]
         motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_up)
-        s.new_bend[0, l], s.new_base[0, l] = motion.bend_x, ground + motion.beam_x
+        s.new_bend[0, l], s.new_shaking[0, l] = motion.bend_x, ground + motion.beam_x
         if ways_of(s) == 2:
-            s.new_bend[1, l], s.new_base[1, l] = motion.bend_y, ground_y + motion.beam_y
+            s.new_bend[1, l], s.new_shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
         s.new_x[l], s.new_v[l], s.new_a[l], s.new_lift[l] = x, p, motion.a, motion.lift
 
 
@@ -57,7 +57,7 @@ def accelerate(s: Record, at: float) -> None:
 def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
     """Lead a mode of a lane to stage k; its part of the base shear there [N]."""
     h, omega2, damping, q, dq = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l], s.q[r, l], s.dq[r, l]
-    base = s.base[axis, l] if k == 1 else s.new_base[axis, l]
+    base = s.shaking[axis, l] if k == 1 else s.new_shaking[axis, l]
     before = fma(omega2, q, damping * dq) if k == 1 else s.force[r, l]
     ddq = fma(-s.Gamma[r, l], base, -before)
     s.ddq[k - 1, r, l] = ddq
@@ -181,7 +181,7 @@ def end_rates(s: Record) -> None:
         for r in range(axis * n, (axis + 1) * n):
             for l in range(lanes):
                 Gamma, omega2, damping = s.Gamma[r, l], s.omega2[r, l], s.two_xi_omega[r, l]
-                ddq = -(Gamma * s.new_base[axis, l]) - s.force[r, l]
+                ddq = -(Gamma * s.new_shaking[axis, l]) - s.force[r, l]
                 faster = omega2 * s.new_dq[r, l] + damping * ddq
                 s.new_dV[axis, l] += Gamma * faster
                 s.new_ddV[axis, l] += Gamma * (omega2 * ddq - damping * faster)
@@ -209,14 +209,14 @@ def renew(s: Record, l: int) -> None:
     place = place_with(s, l, x, s.w[l], s.dw[l])
     motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_up_now(s, l))
     s.x[l], s.v[l], s.a[l], s.lift[l] = x, p, motion.a, motion.lift
-    s.bend[0, l], s.base[0, l] = motion.bend_x, ground + motion.beam_x
+    s.bend[0, l], s.shaking[0, l] = motion.bend_x, ground + motion.beam_x
     if ways_of(s) == 2:
-        s.bend[1, l], s.base[1, l] = motion.bend_y, ground_y + motion.beam_y
+        s.bend[1, l], s.shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
     for axis in range(ways_of(s)):
         s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
             omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-            ddq = -(s.Gamma[r, l] * s.base[axis, l]) - fma(omega2, s.q[r, l], damping * s.dq[r, l])
+            ddq = -(s.Gamma[r, l] * s.shaking[axis, l]) - fma(omega2, s.q[r, l], damping * s.dq[r, l])
             faster = omega2 * s.dq[r, l] + damping * ddq
             s.dV[axis, l] += s.Gamma[r, l] * faster
             s.ddV[axis, l] += s.Gamma[r, l] * (omega2 * ddq - damping * faster)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.bed import enter_on_bed, first_phase, impact_number
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.compile import compiled
 from rpscli.physics.devices import (
     begin_excursion,
     force_at_rest,

@@ -20,7 +20,7 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.podium import Device
-from rpscli.physics.planar.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
+from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.documents import timehistory_document
 from rpscli.report.tables.analyses import history_columns
 from rpscli.report.tables.timehistory import timehistory_tables

@@ -26,7 +26,7 @@ from rpscli.errors import CaseError
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
-from rpscli.physics.core.records import LANES
+from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import MotionComponents
 
 ALONE = 10**9

@@ -22,7 +22,7 @@ from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.core.records import LANES
+from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 RECORDS = 60

@@ -20,7 +20,7 @@ from rpscli.model.devices import (
     Tendon,
     ViscousDamper,
 )
-from rpscli.physics.planar import state
+from rpscli.physics import state
 
 from .conftest import Faults
 

@@ -275,7 +275,7 @@ def test_an_animation(rps_json: InvokeJson) -> None:
 
 def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
-    monkeypatch.setattr("rpscli.physics.core.compile.is_compiled", lambda _: False)
+    monkeypatch.setattr("rpscli.physics.compile.is_compiled", lambda _: False)
     monkeypatch.setattr("rpscli.analyses.kernels.compilation._ready", set())
     monkeypatch.setattr("rpscli.analyses.kernels.compilation._begun", set())
     heard = rps("timehistory", "small.yaml").stderr

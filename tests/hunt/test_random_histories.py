@@ -18,7 +18,7 @@ from paper_structures import needs_compiled_kernels
 from two_components import followed, pair
 
 from hunt.trials import hunt, shares
-from rpscli.analyses.kernels.systems import contact_rate, most_seconds, uplifted_rate
+from rpscli.analyses.kernels.systems import most_seconds, uplifted_rate
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
@@ -164,7 +164,7 @@ def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> T
     if random.random() < 0.15:
         share = random.choice([-1.0, 1.0]) * logarithmic(random, 1e-6, 0.95)
         start = share * system.critical_rotation
-    rate = max(uplifted_rate(system), contact_rate(system))
+    rate = uplifted_rate(system)
     left = MOST_STEPS / rate - record.duration
     chosen = TimeHistorySettings(
         initial_rotation=start,

@@ -15,7 +15,7 @@ from rpscli.analyses.verification.known import Known, printed
 from rpscli.analyses.verification.statics import GEOMETRIES, Geometry
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.planar import geometry
+from rpscli.physics import geometry
 
 
 def close(known: Known) -> object:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.core.compile import compiled, kernel
+from rpscli.physics.compile import compiled, kernel
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,6 @@ import json
 import sys
 from dataclasses import replace
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
 from paper_structures import FLAT, podium, waves
@@ -22,9 +21,8 @@ from rpscli.model.devices import (
     ViscousDamper,
 )
 from rpscli.model.impact import ImpactLaw
-from rpscli.physics.planar import steps
-from rpscli.physics.planar.driver import integrate
-from rpscli.physics.planar.run import Run
+from rpscli.physics.follow import integrate
+from rpscli.physics.run import Run
 from rpscli.records.ground_motion import MotionComponents
 
 STOREYS = 2
@@ -103,5 +101,4 @@ def everything(lanes: int) -> dict[str, list[dict[str, Any]]]:
 
 if __name__ == "__main__":
     # Python takes its time for each lane: with few of them, they take several histories each.
-    with patch.object(steps, "LANES", FEW):
-        json.dump(everything(FEW), sys.stdout)
+    json.dump(everything(FEW), sys.stdout)

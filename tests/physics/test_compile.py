@@ -9,10 +9,9 @@ import numba
 import numpy as np
 from paper_structures import Array, needs_compiled_kernels
 
-from rpscli.physics.core.compile import OPTIONS, compiled, kernel, specialised
-from rpscli.physics.core.records import LANES, Record
-from rpscli.physics.planar.equation_of_motion import extend_rotation
-from rpscli.physics.planar.run import empty_state
+from rpscli.physics.compile import OPTIONS, compiled, fma, kernel
+from rpscli.physics.state import LANES, STATE, Record, records
+from rpscli.physics.step import accelerate
 
 
 @compiled
@@ -38,7 +37,7 @@ def four_times(x: Array, total: Array) -> None:
         add_powers(x, total)
 
 
-@specialised
+@compiled
 def raise_by_sums(b: Array, lanes: int) -> None:
     """Raises row 2 to the sum of rows 0 and 1 where row 0 is positive."""
     for lane in range(lanes):
@@ -52,9 +51,15 @@ def raise_all(b: Array) -> None:
     raise_by_sums(b, LANES)
 
 
-def extend_all(state: Record) -> None:
-    """The third terms of all lanes."""
-    extend_rotation(state[0], LANES, 3)
+def accelerate_all(state: Record) -> None:
+    """The laws of all lanes."""
+    accelerate(state[0], 0.5)
+
+
+@kernel
+def fused(a: float, b: float, c: float) -> float:
+    """In machine code."""
+    return fma(a, b, c)
 
 
 X = np.linspace(-2.0, 2.0, 9)
@@ -103,6 +108,13 @@ def test_a_loop_over_lanes_does_what_it_says() -> None:
 
 @needs_compiled_kernels
 def test_loops_over_lanes_become_vector_instructions() -> None:
-    code = code_of(extend_all, empty_state(3))
-    assert "x double>" in code
-    assert "= load double" not in code  # nothing is left that goes lane by lane
+    for ways in (1, 2):
+        code = code_of(accelerate_all, records(STATE, 1, ways, LANES))
+        assert "x double>" in code
+        assert "= load double" not in code  # nothing is left that goes lane by lane
+
+
+def test_a_product_and_a_sum_are_rounded_once() -> None:
+    for a, b, c in ((1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0), (0.1, 10.0, -1.0), (3.0, 4.0, 5.0)):
+        assert fma(a, b, c) == fused(a, b, c)
+    assert fused(1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0) == -(2.0**-60)

@@ -27,7 +27,7 @@ from rpscli.model.superstructure import (
     Superstructure,
     profile_stiffnesses,
 )
-from rpscli.physics.planar.state import BEDDED
+from rpscli.physics.state import BEDDED
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 UNDAMPED = ModalDamping(0.0)

@@ -11,8 +11,8 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.trace import trace_of
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.planar.geometry import path_along
-from rpscli.physics.planar.state import FULL_CONTACT, IMPACT
+from rpscli.physics.geometry import path_along
+from rpscli.physics.state import FULL_CONTACT, IMPACT
 from rpscli.records.ground_motion import MotionComponents
 
 pytestmark = pytest.mark.evidence("forces in columns, friction", "exact")

@@ -16,9 +16,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
-from rpscli.physics.planar.equation_of_motion import inertia, inertia_slope
-from rpscli.physics.planar.geometry import contact_arm, contact_height
-from rpscli.physics.planar.state import ROCKING, ROLLING
+from rpscli.physics.state import ROCKING, ROLLING
 
 from .one_lane import OneLane
 
@@ -167,16 +165,8 @@ def test_energy_changes_by_what_the_ground_gives_and_the_dampers_take(state: Sta
 def inertia_and_slope(state: State, shift: float = 0.0) -> tuple[float, float]:
     """A and D a little off the state's tilt, in its own phase."""
     lane = OneLane(state.structure, state.motion)
-    s, bearing = lane.s, state.structure.bearing
-    phase = bearing.rolling if state.motion == ROLLING else bearing.rocking
-    x = float(state.position[0]) + shift
-    B = contact_arm(phase, math.cos(x), math.sin(x))
-    C = contact_height(phase, math.cos(x), math.sin(x))
-    beam, building = s.one_4gamma[0], s.four_gamma_eta[0]
-    return (
-        inertia(s.io_1[0], beam, building, B * B + C * C, B),
-        inertia_slope(beam, building, phase, B, C),
-    )
+    at = lane.at(float(state.position[0]) + shift)
+    return at.A, at.D
 
 
 @given(states())

@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from paper_structures import COMPILED, Array
 
-from rpscli.physics.core.quintic import (
+from rpscli.physics.quintic import (
     NO_PASSAGE,
     SETTLED,
     Quintic,

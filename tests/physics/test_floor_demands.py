@@ -11,8 +11,8 @@ from paper_structures import FLAT, Array, building, needs_compiled_kernels, podi
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
-from rpscli.physics.planar.demands import raise_floors
-from rpscli.physics.planar.state import ROLLING
+from rpscli.physics.demands import raise_floors
+from rpscli.physics.state import ROLLING
 
 from .one_lane import OneLane
 
@@ -22,9 +22,9 @@ amplitudes = st.lists(st.integers(-1000, 1000).map(lambda k: 1e-3 * k), min_size
 def seen(lane: OneLane, q: list[float], dq: list[float]) -> bool:
     """Whether the lane, at a sample with this modal state, asks for its floors to be looked at."""
     s = lane.s
-    lane.modes("next_q")[:], lane.modes("next_dq")[:] = q, dq
+    lane.modes("new_q")[:], lane.modes("new_dq")[:] = q, dq
     springs, dampers = lane.modes("omega2") * q, lane.modes("two_xi_omega") * dq
-    lane.modes("modal_force")[:] = springs + dampers
+    lane.modes("force")[:] = springs + dampers
     s.accepted[0] = 1.0
     lane.observe()
     return bool(s.demands_rise[0] > 0.0)
@@ -32,14 +32,14 @@ def seen(lane: OneLane, q: list[float], dq: list[float]) -> bool:
 
 def raise_by_end(lane: OneLane) -> Array:
     """Demands of storeys and floors, raised by those at the end of the step."""
-    raise_floors(lane.s, 0, lane.system)
+    raise_floors(lane.s, 0, [lane.system])
     return demands_of(lane)
 
 
 def demands_of(lane: OneLane) -> Array:
     """Largest storey shears and floor accelerations so far."""
     s, n = lane.s, lane.storeys
-    return np.array([s.storey_shear[0, :n], s.floor_acceleration[0, :n]])
+    return np.array([s.largest[0, 0, :n], s.largest[1, 0, :n]])
 
 
 @given(amplitudes, amplitudes, st.lists(st.tuples(amplitudes, amplitudes), max_size=5))

@@ -20,7 +20,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping
-from rpscli.physics.planar.state import FULL_CONTACT
+from rpscli.physics.state import FULL_CONTACT
 from rpscli.records.ground_motion import GroundMotion
 
 LONG = TimeHistorySettings(free_vibration=60.0)

@@ -5,17 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from paper_structures import Array, building, ground, podium, waves
-from scipy.integrate import simpson
 from scipy.linalg import expm
 from scipy.signal import lsim
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
-from rpscli.physics.core.records import records
-from rpscli.physics.planar.full_contact.modal_block import fill_work
-from rpscli.physics.planar.run import empty_block
-from rpscli.physics.planar.state import SYSTEM, WHOLE_STEP
 
 BUILDINGS = [
     building(1),
@@ -123,37 +118,6 @@ def test_the_energy_of_full_contact_is_accounted_for(above: Superstructure, dt: 
     assert abs(energy.residual) < 1e-8 * energy.input
     if above.damping.ratio == 0.0:
         assert abs(energy.residual) < 1e-11 * energy.input
-
-
-@pytest.mark.parametrize("xi", [0.0, 0.05, 0.999999, 1.0, 1.000001, 1.7, 40.0])
-@pytest.mark.parametrize("angle", [1e-4, 0.3, 1.0])
-def test_the_work_of_a_damper_is_that_of_its_motion(xi: float, angle: float) -> None:
-    """The form of the start of a step, against a fine sum of the exact velocity's square."""
-    w, h, slope = 7.0, angle / 7.0, -3.0
-    system, block = records(SYSTEM)[0], empty_block(1)[0]
-    system.n, system.omega[0], system.xi[0] = 1, w, xi
-    system.omega2[0], system.two_xi_omega[0] = w * w, 2.0 * xi * w
-    fill_work(block, system, WHOLE_STEP, h)
-    work = block.work[WHOLE_STEP, 0]
-    v0, g0 = 0.8, -5.0
-    got = work[0] * v0**2 + work[1] * g0**2 + work[2] * slope**2
-    got += work[3] * v0 * g0 + work[4] * v0 * slope + work[5] * g0 * slope
-    flow = np.array([[0.0, 1.0, 0.0], [-w * w, -2.0 * xi * w, 1.0], [0.0, 0.0, 0.0]])
-    parts = 20_000
-    step, state = expm(flow * h / parts), np.array([v0, g0, slope])
-    speeds = np.empty(parts + 1)
-    for k in range(parts + 1):
-        speeds[k] = state[0]
-        state = step @ state
-    expected = simpson(speeds**2, dx=h / parts)
-    # the rule's own error; then that of the sum over parts of 1/250 of the shortest decay
-    largest = 1.5e-7 * angle**8 * h * float(np.max(speeds**2))
-    assert got == pytest.approx(expected, abs=largest, rel=2e-8)
-    expected = simpson(np.linspace(0.0, h, parts + 1) * speeds, dx=h / parts)
-    got = work[6] * v0 + work[7] * g0 + work[8] * slope
-    # the rule errs by (4!)^4/(9 (8!)^3) = 6e-10 of the eighth derivative of v t
-    eighth = (angle**8 + 8.0 * angle**7) * (abs(v0) + abs(g0) / w + abs(slope) / w**2)
-    assert got == pytest.approx(expected, abs=6e-10 * h * h * eighth, rel=1e-7)
 
 
 def test_undamped_modes_do_no_work() -> None:

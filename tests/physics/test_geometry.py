@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from rpscli.model.bearing import Bearing
-from rpscli.physics.planar import geometry
-from rpscli.physics.planar.geometry import Phase
+from rpscli.physics import geometry
+from rpscli.physics.geometry import Phase
 
 pytestmark = pytest.mark.evidence("geometry of columns", "exact")
 

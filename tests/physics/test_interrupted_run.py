@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import signal
 import time
-from types import SimpleNamespace
-from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from rpscli.physics.core.records import Field, records
-from rpscli.physics.planar.driver import run_interruptible
-from rpscli.physics.planar.run import Run
+from rpscli.physics.follow import hear
+from rpscli.physics.state import Field, records
 
 pytestmark = pytest.mark.posix  # it is interrupted by a signal
 
@@ -23,9 +20,9 @@ class Interrupted(BaseException):
 
 def test_an_interruption_waits_for_the_end_of_the_kernel() -> None:
     state = records((Field("stop", "", "-", "asked for"),))
-    ended, run = [], cast("Run", SimpleNamespace(requests=[]))
+    ended = []
 
-    def slow_to_hear(state: Any, _block: Any, _run: Any) -> None:
+    def slow_to_hear() -> None:
         while state.view(np.ndarray)["stop"][0] == 0:
             time.sleep(0.01)
         time.sleep(0.3)  # a machine with other work
@@ -38,7 +35,7 @@ def test_an_interruption_waits_for_the_end_of_the_kernel() -> None:
     signal.setitimer(signal.ITIMER_REAL, 0.15)
     try:
         with pytest.raises(Interrupted):
-            run_interruptible(slow_to_hear, state, state, run, interruptible=True)
+            hear(slow_to_hear, state)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)

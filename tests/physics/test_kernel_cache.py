@@ -19,8 +19,8 @@ from pathlib import Path
 import pytest
 from paper_structures import needs_compiled_kernels
 
-from rpscli.physics.core import compile as compilation
-from rpscli.physics.core.compile import (
+from rpscli.physics import compile as compilation
+from rpscli.physics.compile import (
     CONSTANTS,
     cache_folder,
     is_compiled,
@@ -28,8 +28,8 @@ from rpscli.physics.core.compile import (
     remember_compiled,
     sources_digest,
 )
-from rpscli.physics.planar import prepare
-from rpscli.physics.planar.prepare import compile_in_parts  # workers have one of their own
+from rpscli.physics import prepare
+from rpscli.physics.prepare import compile_kernel  # workers have one of their own
 from rpscli.user_cache import alone_in, user_cache
 
 
@@ -127,7 +127,7 @@ def test_a_temporary_folder_that_somebody_else_made_is_not_used(
         assert user_cache() is None
 
 
-@pytest.mark.parametrize("source", ["core/lanes.py", "planar/steps.py", "planar/devices/rest.py"])
+@pytest.mark.parametrize("source", ["laws.py", "devices.py"])
 def test_the_folder_is_named_after_the_sources(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path, source: str
 ) -> None:
@@ -139,7 +139,7 @@ def test_the_folder_is_named_after_the_sources(
     before, digest = cache_folder(), sources_digest(sources, CONSTANTS)
     assert before is not None
     assert before.name == f"kernels-{digest}"
-    here = Path(compilation.__file__).parents[1]
+    here = Path(compilation.__file__).parent
     assert digest == sources_digest(here, CONSTANTS)  # wherever they are
     with (sources / source).open("a") as file:
         file.write("\n")
@@ -195,7 +195,7 @@ def test_what_was_compiled_is_remembered(fresh_folder: pytest.MonkeyPatch, tmp_p
 
 
 PROGRAM = """
-from rpscli.physics.core import compile as compilation
+from rpscli.physics import compile as compilation
 @compilation.kernel
 def four(x: float) -> float:
     return 4.0 * x
@@ -232,7 +232,7 @@ def test_files_without_content_are_thrown_away_and_made_again(
 TWO_RECORDS = """
 import sys
 import numpy as np
-from rpscli.physics.core.compile import kernel
+from rpscli.physics.compile import kernel
 
 @kernel
 def inner(record) -> float:
@@ -287,13 +287,10 @@ def test_other_processes_compile_and_run_nothing_from_the_working_folder(
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
     fresh_folder.setenv("NUMBA_DISABLE_JIT", "1")  # the others: they have nothing to compile
 
-    def called_here(*_: object) -> None:
-        raise AssertionError("compiled by this process")
-
-    for part in ("follow_full_contact", "advance_lanes", "integrate_lanes"):
-        fresh_folder.setattr(prepare, part, called_here)
+    for part in ("look_after", "next_history", "follow"):
+        fresh_folder.setattr(prepare, part, lambda *_: None)
     fresh_folder.setattr(sys, "path", [place for place in sys.path if place])
-    compile_in_parts(prepare.__name__, "plain")
+    compile_kernel(1, 1)
     assert not (tmp_path / "was_run").exists()
 
 

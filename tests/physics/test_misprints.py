@@ -14,9 +14,8 @@ from rpscli.analyses.modal import linearised_matrices
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.uplifted_state import uplifted_state
-from rpscli.physics.planar import equation_of_motion
-from rpscli.physics.planar.geometry import contact_arm, contact_height
-from rpscli.physics.planar.state import ROCKING, ROLLING
+from rpscli.physics.geometry import contact_arm, contact_height
+from rpscli.physics.state import ROCKING, ROLLING
 
 from .one_lane import OneLane
 
@@ -26,9 +25,8 @@ def inertia(structure: PodiumStructure, x: float) -> tuple[float, float, float]:
     phase, gamma, eta = structure.bearing.rocking, structure.gamma, structure.eta
     B = contact_arm(phase, math.cos(x), math.sin(x))
     C = contact_height(phase, math.cos(x), math.sin(x))
-    beam, building = 1.0 + 4.0 * gamma, 4.0 * gamma * eta
-    A = equation_of_motion.inertia(1.0 / 3.0, beam, building, B * B + C * C, B)
-    return A, equation_of_motion.inertia_slope(beam, building, phase, B, C), -C * B
+    at = OneLane(structure, ROCKING).at(x)
+    return at.A, at.D, -C * B
 
 
 @given(st.floats(0.01, 0.4), st.sampled_from([FLAT, 0.5]))

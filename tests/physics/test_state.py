@@ -1,47 +1,33 @@
-"""Records of the kernels: every field is named, has a unit and room, and is nowhere hidden."""
+"""Records of the kernel: every field is named, has a unit and room, and is nowhere hidden."""
 
 from __future__ import annotations
-
-import ast
-from collections import defaultdict
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rpscli.constants import MOST_STOREYS
-from rpscli.physics.core.records import (
-    INSTANTS,
+from rpscli.physics import state
+from rpscli.physics.state import (
+    EVENT,
+    EVENT_KINDS,
     LANES,
-    ORDER,
     PAGE,
-    TERMS,
+    REQUEST,
+    RESULT,
+    SAMPLE,
+    STATE,
+    SYSTEM,
     WHOLE,
     Field,
     describe,
     record_type,
     records,
 )
-from rpscli.physics.planar import state
-from rpscli.physics.planar.run import empty_block, empty_state
-from rpscli.physics.planar.state import (
-    COMPLIANT_BLOCK,
-    COMPLIANT_STATE,
-    EVENT,
-    EVENT_KINDS,
-    REQUEST,
-    RESULT,
-    SAMPLE,
-    STATE,
-    SYSTEM,
-)
 
 TABLES = {
     "system": SYSTEM,
     "request": REQUEST,
     "state": STATE,
-    "compliant": COMPLIANT_STATE,
-    "block": COMPLIANT_BLOCK,
     "result": RESULT,
     "sample": SAMPLE,
     "event": EVENT,
@@ -70,16 +56,16 @@ def test_every_name_stands_for_one_field(fields: tuple[Field, ...]) -> None:
 
 @every_table
 def test_a_record_has_room(fields: tuple[Field, ...]) -> None:
-    kind = record_type(fields)
+    kind = record_type(fields, 2, LANES)
     assert set(kind.names or ()) == {field.name for field in fields}
-    sizes = {"terms": ORDER + 1, "instants": INSTANTS, "kinds": EVENT_KINDS}
+    sizes = {"ways": 2, "demands": 6, "stages": 9}
     for field in fields:
         inner = kind[field.name]
         assert inner.base == (np.int64 if field.unit == WHOLE else np.float64)
         named = field.sizes.split()
         assert len(inner.shape) == len(named)
         for name, size in zip(named, inner.shape, strict=True):
-            least = {"modes": MOST_STOREYS, "lanes": LANES}.get(name)
+            least = {"modes": MOST_STOREYS, "rows": 2 * MOST_STOREYS, "lanes": LANES}.get(name)
             assert size >= least if least is not None else size == sizes.get(name, size)
 
 
@@ -108,14 +94,6 @@ def test_what_is_written_to_one_field_stands_in_that_field_only(
             assert np.all(made[0][other.name] == (7 if other is field else 0)), (field, other)
 
 
-def test_empty_lanes_and_an_empty_block_know_their_sizes() -> None:
-    for lanes in (1, LANES):
-        lane_record = empty_state(5, lanes)[0]
-        assert (lane_record.n, lane_record.lanes) == (5, lanes)
-    assert empty_block(5)[0].n == 5
-    assert TERMS == ORDER + 1
-
-
 @every_table
 def test_a_description_lists_every_field_with_its_unit(fields: tuple[Field, ...]) -> None:
     lines = describe(fields).splitlines()
@@ -124,7 +102,6 @@ def test_a_description_lists_every_field_with_its_unit(fields: tuple[Field, ...]
         assert line.split()[0] == field.name
         assert f"[{field.unit}]" in line
         assert field.meaning in line
-        assert field.by in line
 
 
 def test_kinds_and_outcomes_are_distinct() -> None:
@@ -138,48 +115,12 @@ def test_kinds_and_outcomes_are_distinct() -> None:
             "FULL_CONTACT ROLLING ROCKING STUCK BEDDED",
             "VISCOUS FRICTION STOP TENDON ROLLING_RESISTANCE",
             "IDLE WORKING BEYOND",
-            f"{kinds} {changes} OVERTURNING NO_EVENT",
+            f"{kinds} {changes} OVERTURNING",
             f"{outcomes} {failures}",
-            "GOES_ON FOLLOW_CONTACT IS_OVER",
+            "NOTHING LOW HIGH NEAREST LET_GO CHANGE",
         )
     ]
     for names in groups:
         codes = [int(getattr(state, name)) for name in names]
         assert len(set(codes)) == len(codes)
     assert max(int(getattr(state, name)) for name in groups[3]) == EVENT_KINDS - 1
-
-
-def writers(variable: str) -> dict[str, set[str]]:
-    """Modules and folders of physics that assign a field of the record of this name.
-
-    The spatial kernel has a table of its own, in which all is written by it.
-    """
-    found: dict[str, set[str]] = defaultdict(set)
-    folder = Path(state.__file__).parents[1]
-    for source in folder.glob("*/**/*.py"):
-        kernel, place = source.relative_to(folder).with_suffix("").parts[:2]
-        if kernel == "spatial":
-            continue
-        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
-            assigned = node.targets if isinstance(node, ast.Assign) else []
-            assigned = [node.target] if isinstance(node, ast.AugAssign) else assigned
-            for target in assigned:
-                for entry in target.elts if isinstance(target, ast.Tuple) else [target]:
-                    part = entry
-                    while isinstance(part, ast.Subscript):
-                        part = part.value
-                    if isinstance(part, ast.Attribute) and ast.unparse(part.value) == variable:
-                        found[part.attr].add("bed" if place.startswith("bed") else place)
-    return found
-
-
-@pytest.mark.parametrize(
-    ("fields", "variable"), [(COMPLIANT_STATE, "s"), (COMPLIANT_BLOCK, "block")]
-)
-def test_fields_name_who_writes_them(fields: tuple[Field, ...], variable: str) -> None:
-    """What is written through an argument is not found here, and is named all the same."""
-    known = writers(variable)
-    for field in fields:
-        assert field.by
-        told, found = set(field.by.split(", ")), known.get(field.name, set()) - {"bed"}
-        assert "bed" in told or not found or told == found, field.name

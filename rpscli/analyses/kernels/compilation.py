@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from threading import Lock
 
+from rpscli.physics.state import LANES
+
 Listener = Callable[[str], AbstractContextManager[None]]
 """Called with the name of a kernel before it is compiled; open while it is."""
 
@@ -17,13 +19,12 @@ _ready: set[str] = set()
 """Kernels that are known to be compiled: a file tells, which is looked for once."""
 
 KERNELS = {
-    "plain": "kernel",
-    "devices": "kernel with devices",
-    "compliant": "kernel with compliant contact",
-    "pairs": "kernel for both components",
-    "pairs with devices": "kernel for both components, with devices",
+    (1, 1): "kernel",
+    (1, LANES): "kernel for many histories",
+    (2, 1): "kernel for both components",
+    (2, LANES): "kernel for both components of many histories",
 }
-"""By variant: planar ones of `physics.planar.state.STATES`, and those for motions in x and y."""
+"""By horizontal components and lanes."""
 
 
 def announce_to(listener: Listener) -> None:
@@ -31,24 +32,24 @@ def announce_to(listener: Listener) -> None:
     _listeners[:] = [listener]
 
 
-def is_ready(variant: str) -> bool:
+def is_ready(ways: int, lanes: int) -> bool:
     """Whether the kernel was compiled before, so that calling it starts at once."""
-    from rpscli.physics.core.compile import is_compiled
+    from rpscli.physics.compile import is_compiled
 
-    name = KERNELS[variant]
+    name = KERNELS[ways, lanes]
     if name not in _ready and is_compiled(name):
         _ready.add(name)
     return name in _ready
 
 
 @contextmanager
-def compiled(variant: str) -> Iterator[None]:
+def compiled(ways: int, lanes: int) -> Iterator[None]:
     """Around a call of the kernel: announce the compilation if there is one, and remember it."""
-    from rpscli.physics.core.compile import cache_folder, remember_compiled
-    from rpscli.physics.planar.prepare import can_prepare, compile_kernel
+    from rpscli.physics.compile import cache_folder, remember_compiled
+    from rpscli.physics.prepare import can_prepare, compile_kernel
 
-    name = KERNELS[variant]
-    if is_ready(variant):
+    name = KERNELS[ways, lanes]
+    if is_ready(ways, lanes):
         yield
         return
     with _lock:
@@ -58,12 +59,7 @@ def compiled(variant: str) -> Iterator[None]:
         if first:
             for listener in _listeners:
                 told.enter_context(listener(name))
-            if variant.startswith("pairs"):
-                from rpscli.physics.spatial.prepare import compile_pairs
-
-                compile_pairs(variant)
-            else:
-                compile_kernel(variant)
+            compile_kernel(ways, lanes)
             if cache_folder() is not None:  # else the first call compiles
                 told.close()
         yield

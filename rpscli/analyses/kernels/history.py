@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernels.bed_maps import NO_MAP, bed_maps, has_map
 from rpscli.analyses.kernels.compilation import compiled
 from rpscli.analyses.kernels.systems import (
     longest_free_vibration,
@@ -25,10 +24,17 @@ from rpscli.analyses.kernels.systems import (
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.core.records import NO_RECORD, Record, record_type, records
-from rpscli.physics.planar.run import Output, Run, variant_of
-from rpscli.physics.planar.state import EVENT, REQUEST, RESULT, SAMPLE
-from rpscli.physics.spatial.state import EVENT_3D, RESULT_3D, SAMPLE_3D, variant_of_pairs
+from rpscli.physics.run import Output, Run
+from rpscli.physics.state import (
+    EVENT,
+    NO_RECORD,
+    REQUEST,
+    RESULT,
+    SAMPLE,
+    Record,
+    record_type,
+    records,
+)
 from rpscli.records.ground_motion import MotionComponents
 
 MOST_NUMBERS = 1e9
@@ -82,40 +88,25 @@ def run_of(
         for name, value in zip(place, placed[number], strict=True):
             row[name] = value
     samples = [motion.samples.ravel() for motion in motions]
-    samples += _place_maps(first, given, sum(map(len, samples)), audited=rows > 0)
-    result = RESULT_3D if pairs else RESULT
     return Run(
         systems=systems,
         requests=given.view(np.recarray),
         acceleration=np.concatenate(samples),
-        results=np.zeros(len(requests), record_type(result)).view(np.recarray),
+        results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
         output=_output(n, devices, rows, events, finer, pairs=pairs)
         if rows
         else _no_output(n, devices, pairs),
+        ways=2 if pairs else 1,
     )
-
-
-def _place_maps(
-    systems: NDArray[Any], requests: NDArray[Any], end: int, *, audited: bool
-) -> list[NDArray[np.float64]]:
-    """Maps of full contact on beds, to stand behind the records; writes where."""
-    requests["bed_map"], places, maps = NO_MAP, {}, []
-    for request in requests if systems["compliant"].any() else ():
-        key = int(request["system"]), float(request["dt"])
-        if key not in places and has_map(system := systems[key[0]], key[1]):
-            maps.append(bed_maps(system, key[1], audited=audited))
-            places[key], end = end, end + len(maps[-1])
-        request["bed_map"] = places.get(key, NO_MAP)
-    return maps
 
 
 def _output(
     storeys: int, devices: int, rows: int, events: int, finer: int = 1, *, pairs: bool = False
 ) -> Output:
     return Output(
-        samples=records(SAMPLE_3D if pairs else SAMPLE, count=rows),
-        floors=np.empty((rows, 2, 2 * storeys if pairs else storeys)),
-        log=records(EVENT_3D if pairs else EVENT, count=events),
+        samples=records(SAMPLE, rows),
+        floors=np.empty((rows, 3, 2 * storeys if pairs else storeys)),
+        log=records(EVENT, events),
         devices=np.empty((rows, 4, devices)),
         finer=finer,
     )
@@ -128,24 +119,15 @@ def _no_output(storeys: int, devices: int, pairs: bool) -> Output:  # noqa: FBT0
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
     """Follow every history of a run, of one component or of pairs; writes `run.results`."""
-    pairs = "azimuth" in (run.results.dtype.names or ())
-    with compiled(variant_of_pairs(run) if pairs else variant_of(run)):
-        if pairs:
-            from rpscli.physics.spatial.driver import integrate_pairs
+    from rpscli.physics.follow import integrate
 
-            integrate_pairs(run, lanes, interruptible=interruptible)
-        else:
-            from rpscli.physics.planar.driver import integrate
-
-            integrate(run, lanes, interruptible=interruptible)
+    with compiled(run.ways, lanes):
+        integrate(run, lanes, interruptible=interruptible)
 
 
 @dataclass(frozen=True, eq=False)
 class SampledHistory:
-    """A history with its samples and events, records of `physics.planar.state`.
-
-    Under two horizontal components all are records of `physics.spatial.state`.
-    """
+    """A history with its samples and events, records of `physics.state`."""
 
     history: Record
     """A `state.RESULT`: what is left behind at the end."""
@@ -154,12 +136,12 @@ class SampledHistory:
     samples: Record
     """(intervals + 1,)."""
     floors: NDArray[np.float64]
-    """(intervals + 1, 2, n) displacements [m] and velocities [m/s] relative to the ground; of pairs
-    (intervals + 1, 2, 2 n), floors in x and behind them in y."""
+    """(intervals + 1, 3, n) displacements [m] and velocities [m/s] relative to the ground, absolute
+    accelerations [m/s2]; of pairs (intervals + 1, 3, 2 n), floors in x and behind them in y."""
     log: Record
     """(events,)."""
     devices: NDArray[np.float64]
-    """(intervals + 1, 4, devices), see `physics.planar.run.Output`."""
+    """(intervals + 1, 4, devices), see `physics.run.Output`."""
 
 
 def longest_history(

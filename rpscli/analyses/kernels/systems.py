@@ -14,8 +14,7 @@ from rpscli.model.contact import Bed
 from rpscli.model.devices import DEVICES
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.core.records import ORDER, Record, record_type, records
-from rpscli.physics.planar.state import SYSTEM
+from rpscli.physics.state import SYSTEM, Record, record_type, records
 
 DEVICE_KINDS = {kind: code for code, kind in enumerate(DEVICES.values())}
 """Codes of laws in the kernels."""
@@ -57,8 +56,8 @@ def paired_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]
         both += [(structure, settings), (_across(structure), settings)]
     pairs = _stacked(tuple(both))
     rows = pairs.view(_PLAIN, np.ndarray)
-    for name in ("uplifted_rate", "contact_rate"):  # one length of step for both
-        rows[name] = np.repeat(rows[name].reshape(-1, 2).max(axis=1), 2)
+    # one length of step for both
+    rows["step_rate"] = np.repeat(rows["step_rate"].reshape(-1, 2).max(axis=1), 2)
     return pairs
 
 
@@ -98,13 +97,6 @@ def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record
     return system
 
 
-def building_system(building: Superstructure) -> Record:
-    """A building alone, (1,): what full contact on a fixed base reads."""
-    system = records(SYSTEM)
-    fill_building(system.view(_PLAIN, np.ndarray)[0], building)
-    return system
-
-
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
     """The rocking storey."""
     b = structure.bearing
@@ -119,7 +111,7 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["gravity"] = structure.gravity
     record["restitution"] = structure.restitution
     record["inertia_axial"] = b.inertia_ratio_axial
-    record["contact_time"] = structure.impact_law.contact_time
+    record["contact_time"] = record["shock_time"] = structure.impact_law.contact_time
     record["floors_jump"] = structure.impact_law.floors_jump
     fill_devices(record, structure)
     if (bed := structure.bed) is not None:
@@ -169,15 +161,14 @@ def fill_settings(
             f" overturning limit {limit:.6g} rad"
         )
     record["theta_limit"] = limit
-    record["uplifted_rate"] = settings.accuracy * uplifted_rate(structure)
-    record["contact_rate"] = contact_rate(structure)
+    record["step_rate"] = settings.accuracy * uplifted_rate(structure)
     record["bedded_rate"] = settings.accuracy * bedded_rate(structure)
     if structure.bed is not None:
         structure.bed.refuse_start(settings.initial_rotation)
     record["most_steps"] = MOST_POWER_STEPS
-    record["last_term"] = LAST_TERM * settings.accuracy**-ORDER
+    record["step_error"] = STEP_ERROR * settings.accuracy**-6
     record["recontact_tolerance"] = settings.recontact_tolerance
-    record["bounces"] = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
+    record["bounces"] = bounces_left_out(structure)
     record["max_events"] = settings.max_events
     record["initial_rotation"] = settings.initial_rotation
     record["free_vibration"] = longest_free_vibration(structure, settings)
@@ -193,7 +184,7 @@ def bounces_left_out(structure: PodiumStructure) -> float:
 
 def fill_building(record: Record, building: Superstructure) -> None:
     """The modes of the fixed base, mass-normalised, with the storey shears of each."""
-    # Any weights would do for `physics.planar.demands`; these let the fewest steps pass the bound.
+    # Any weights would do for `physics.demands`; these let the fewest steps pass the bound.
     n = record["n"] = building.storeys
     omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T
     omega2, shaken = omega * omega, np.abs(building.participation)
@@ -209,8 +200,11 @@ def fill_building(record: Record, building: Superstructure) -> None:
     record["acceleration_bound_of"][:n] = np.sum(shapes.T**2 / of_accelerations, axis=1) ** -0.5
 
 
-UPLIFTED_ANGLE = 0.6
-"""Largest Taylor step times the highest uplifted frequency [rad], at accuracy 1."""
+UPLIFTED_ANGLE = 0.9
+"""Largest step times the highest uplifted frequency [rad], at accuracy 1."""
+
+LOSS = 1.06e-5
+"""A step of angle z takes this times z^8 from a vibration's energy: of the rule of order 6."""
 
 MOST_LOST = 5e-6
 """What steps may take from the energy of the fastest vibration, which has `USUAL_SHARE` of all at
@@ -222,18 +216,14 @@ USUAL_SHARE = 0.2
 this in nearly all buildings of several storeys."""
 
 UPLIFTED_DECAY = 1.0
-"""Largest step times the fastest decay rate, where that asks for more: Taylor steps of order 7
-are unstable beyond about 4. Only strongly overdamped modes come near."""
+"""Largest step times the fastest decay rate, where that asks for more: the rule is unstable beyond
+about 4. Only strongly overdamped modes come near."""
 
-LAST_TERM = 5e-7
-"""Largest last term of the series of a step, over its first three, at accuracy 1; what a series
-omits is smaller still. Steps made for the fastest of several modes hardly ever come near. Where the
-tilt itself changes faster, over one storey, in large rotations of short columns or past theta_cr
-under floors that weigh hundreds of them, they are halved."""
-
-CONTACT_ANGLE = 1.0
-"""The same for the exact steps in full contact, where it guards the search of uplift: the quintic
-between two instants errs by (w h)^6/46080 of a mode's push."""
+STEP_ERROR = 1e-6
+"""Largest error of a step in the tilt's rate, over what that is and changes by, at accuracy 1; as
+orders 6 and 5 differ. Steps made for the fastest of several modes hardly ever come near. Where the
+tilt itself changes faster, over one storey, in large rotations of short columns, past theta_cr
+under floors that weigh hundreds of them, or near upright, they are shorter."""
 
 STEP_SECONDS, MODE_SECONDS = 4e-7, 4e-8
 """About the time of a step of one history, and what each mode adds."""
@@ -289,15 +279,15 @@ def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
 
 def uplifted_angle(structure: PodiumStructure) -> float:
     """Largest Taylor step times the highest uplifted frequency [rad]."""
-    # A step of angle z loses z^8/8! of a vibration's energy, thus w t z^7/8! in the time t; what
-    # the dampers do not take in 1/(2 xi w) goes on for as long as histories are followed.
+    # A step of angle z loses LOSS z^8 of a vibration's energy, thus w t z^7 of that in the time t;
+    # what the dampers do not take in 1/(2 xi w) goes on for as long as histories are followed.
     if (building := structure.superstructure) is None:
         return UPLIFTED_ANGLE
     damped = float(2.0 * building.damping_ratios[-1] * building.frequencies[-1])
     lasting = 1.0 / max(damped, 1.0 / LONGEST_FREE_VIBRATION)
     share = float(building.participation[-1] ** 2 / np.sum(building.participation**2))
     lost = MOST_LOST * USUAL_SHARE / max(share, USUAL_SHARE)
-    drift = lost * math.factorial(8) / (highest_frequency(structure) * lasting)
+    drift = lost / (LOSS * highest_frequency(structure) * lasting)
     return float(min(UPLIFTED_ANGLE, drift ** (1.0 / 7.0)))
 
 
@@ -327,8 +317,8 @@ def most_seconds(
     return each * most_steps(structure, settings, duration)
 
 
-def bedded_rate(structure: PodiumStructure, angle: float | None = None) -> float:
-    """Steps a second in compliant full contact, of an angle [1/s]; 0 on rigid ends."""
+def bedded_rate(structure: PodiumStructure) -> float:
+    """Steps a second in compliant full contact [1/s]; 0 on rigid ends."""
     bed = structure.bed
     if bed is None:
         return 0.0
@@ -339,13 +329,7 @@ def bedded_rate(structure: PodiumStructure, angle: float | None = None) -> float
         highest = float(building.frequencies[-1])
     frequency = math.hypot(highest, math.sqrt(stiffness / bed.mass))
     decay += sum(device.bounds(structure)[1] for device in structure.devices) / bed.mass
-    return max(frequency / (angle or uplifted_angle(structure)), decay / UPLIFTED_DECAY)
-
-
-def contact_rate(structure: PodiumStructure) -> float:
-    """Exact steps a second in full contact [1/s]."""
-    here = highest_frequency(structure) / CONTACT_ANGLE
-    return max(here, bedded_rate(structure, CONTACT_ANGLE))
+    return max(frequency / uplifted_angle(structure), decay / UPLIFTED_DECAY)
 
 
 def highest_frequency(structure: PodiumStructure) -> float:

@@ -25,7 +25,7 @@ from rpscli.analyses.verification.known import (
 from rpscli.analyses.verification.motions import ACCURACY, shipped_record
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.planar.run import Run
+from rpscli.physics.run import Run
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.source import load_record
 

@@ -119,7 +119,7 @@ def announce_compilation(terminal: Terminal) -> None:
 
     @contextmanager
     def told(kernel: str) -> Iterator[None]:
-        from rpscli.physics.core.compile import cache_folder
+        from rpscli.physics.compile import cache_folder
 
         nowhere = f"each time: no folder that is yours alone can be written; name one in {VARIABLE}"
         often = "once for this version" if cache_folder() else nowhere

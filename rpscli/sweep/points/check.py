@@ -45,7 +45,7 @@ class SystemProperties(NamedTuple):
 
     `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
     that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
-    `kernel` the variant that follows it; `limits` are those of the study or, where it has none, of
+    `limits` are those of the study or, where it has none, of
     the case; `lacking` names results that the system cannot have; `doubts` are what is unusual.
     """
 
@@ -58,7 +58,6 @@ class SystemProperties(NamedTuple):
     frequency_parameter: float
     static_base_shear: float
     building: bytes
-    kernel: str
     record: RecordRequest | None
     scale: float
     limits: tuple[Condition, ...]
@@ -132,7 +131,6 @@ def _properties(
         frequency_parameter=structure.rigid_frequency_parameter,
         static_base_shear=structure.static_base_shear,
         building=b"".join(map(_digest, filter(None, (building, structure.superstructure_y)))),
-        kernel=structure.kernel,
         record=request,
         scale=1.0 if case.record is None else case.record.scale,
         limits=_limits(study, case),

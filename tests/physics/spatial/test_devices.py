@@ -23,7 +23,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.devices import Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.physics.planar.state import STOP_LEFT, STOP_MET, TENDON_YIELDING
+from rpscli.physics.state import STOP_LEFT, STOP_MET, TENDON_YIELDING
 from rpscli.records.ground_motion import MotionComponents
 
 with_kernel = pytest.mark.long, needs_compiled_kernels

@@ -11,20 +11,19 @@ import hashlib
 import math
 import re
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from fractions import Fraction
-from functools import cache, wraps
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import cgutils, types
+from numba.core import types
 from numba.extending import intrinsic, overload, register_jitable
 
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-Array = TypeVar("Array")
 
 OPTIONS: dict[str, Any] = {
     "nogil": True,
@@ -34,7 +33,7 @@ OPTIONS: dict[str, Any] = {
     "no_cfunc_wrapper": True,
 }
 
-SOURCES = Path(__file__).parents[1]
+SOURCES = Path(__file__).parent
 CONSTANTS = SOURCES.parent / "constants.py"
 """The one module outside of the sources that decides about a kernel: how large its records are."""
 
@@ -86,22 +85,13 @@ def cache_folder() -> Path | None:
 def kernel(function: Function) -> Function:
     """Compile at the first call from Python, without the GIL; keep the machine code on disk.
 
-    The only liberty that the compiler has: a product and a sum may be rounded once. Which, it may
-    choose anew for each loop. What a kernel calls is compiled with the liberty that it has.
+    It rounds as Python does, in every loop and process: products and sums that are to be rounded
+    once are written as `fma`.
     """
-    return _kernel(function, fastmath={"contract"})
-
-
-def exact_kernel(function: Function) -> Function:
-    """The same without that liberty: it rounds as Python does, in every loop and process."""
-    return _kernel(function)
-
-
-def _kernel(function: Function, **liberty: Any) -> Function:
     folder, config = cache_folder(), cast("Any", numba.config)
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder or "")
     try:
-        made = numba.njit(function, cache=folder is not None, **OPTIONS, **liberty)
+        made = numba.njit(function, cache=folder is not None, **OPTIONS)
     finally:
         config.CACHE_DIR = before
     if folder is not None and not config.DISABLE_JIT:
@@ -162,65 +152,6 @@ LEAST_LANES = 9
 """Entries of a field of one lane, with those that no lane uses."""
 
 
-def specialised(function: Function) -> Function:
-    """The same, anew for each constant that is handed to it.
-
-    For loops over lanes: of a known number of lanes the compiler makes vector instructions.
-    """
-    return cast("Function", numba.njit(function, **OPTIONS))
-
-
-def by_record(function: Function, *, anew: bool = False) -> Function:
-    """Compile for records (the first argument); `variant` tells of another for some of them.
-
-    So kernels of different records share what calls it; `anew` as `specialised`.
-    """
-    others: dict[str, Callable[..., Any]] = {}
-
-    def fitting(fields: Iterable[str]) -> Callable[..., Any]:
-        return next((other for field, other in others.items() if field in fields), function)
-
-    @wraps(function)
-    def chosen(record: Any, *rest: Any) -> Any:
-        return fitting(record.dtype.names)(record, *rest)
-
-    @overload(chosen, jit_options=cast("Any", OPTIONS), strict=False, prefer_literal=anew)
-    def choose(record: Any, *_: Any) -> Callable[..., Any]:
-        return fitting(record.fields)
-
-    cast("Any", chosen).variants = others
-    return cast("Function", chosen)
-
-
-def variant(of: Any, field: str) -> Callable[[Function], Function]:
-    """Take this function in place of one `by_record`, for records with a field."""
-
-    def register(function: Function) -> Function:
-        of.variants[field] = compiled(function)
-        return function
-
-    return register
-
-
-def compiled_with(
-    field: str, *, otherwise: object = None, anew: bool = False
-) -> Callable[[Function], Function]:
-    """Compile for records (the first argument) with a field; others get a constant or a function.
-
-    So a kernel is compiled without what its records have no fields for; `anew` as `specialised`.
-    """
-
-    def constant(*_: object) -> object:
-        return otherwise
-
-    def decorate(function: Function) -> Function:
-        made: Any = by_record(otherwise if callable(otherwise) else constant, anew=anew)
-        variant(made, field)(function)
-        return cast("Function", wraps(function)(made))
-
-    return decorate
-
-
 def fma(a: float, b: float, c: float) -> float:
     """The sum a b + c, rounded once: in machine code one instruction, in Python the same number."""
     if (there := getattr(math, "fma", None)) is not None:  # Python 3.13
@@ -239,54 +170,10 @@ def _fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
     return types.float64(a, b, c), code
 
 
-def uncounted(array: Array) -> Array:
-    """The same array, whose references machine code does not count: its caller holds one.
-
-    Counting takes a locked instruction for each array of each call.
-    """
-    return array
-
-
-@intrinsic
-def _without_owner(_typing: Any, array: Any) -> Any:
-    def code(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
-        view = context.make_array(array)(context, builder, given[0])
-        view.meminfo = cast("Any", view.meminfo).type(None)
-        return view._getvalue()  # noqa: SLF001 -- as numba's own code does
-
-    return array(array), code
-
-
-def prefetch(array: Any, index: int) -> None:
-    """Have the processor bring an entry, which will be asked for later, into its cache."""
-
-
-@intrinsic
-def _prefetch(_typing: Any, array: Any, index: Any) -> Any:
-    def code(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
-        entry = builder.gep(context.make_array(array)(context, builder, given[0]).data, given[1:])
-        tools = cast("Any", cgutils)
-        ir = tools.ir
-        byte, whole = ir.IntType(8).as_pointer(), ir.IntType(32)
-        kind = ir.FunctionType(ir.VoidType(), [byte, whole, whole, whole])
-        fetch = tools.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
-        builder.call(fetch, [builder.bitcast(entry, byte), *(whole(k) for k in (0, 3, 1))])
-        return context.get_dummy_value()
-
-    return types.none(array, index), code
-
-
-_own: Any = _without_owner
-_fetch: Any = _prefetch
 _sum: Any = _fused
-for _function, _code in (
-    (uncounted, lambda array: _own(array)),  # noqa: PLW0108 -- functions are asked for
-    (prefetch, lambda array, index: _fetch(array, index)),  # noqa: PLW0108
-    (fma, lambda a, b, c: _sum(a, b, c)),  # noqa: PLW0108
-):
-    overload(_function, jit_options=cast("Any", OPTIONS), strict=False)(
-        lambda *_, code=_code: cast("Any", code)
-    )
+overload(fma, jit_options=cast("Any", OPTIONS), strict=False)(
+    lambda a, b, c: lambda a, b, c: _sum(a, b, c)  # noqa: ARG005 -- types are asked for
+)
 
 
 _compiled_here: set[str] = set()

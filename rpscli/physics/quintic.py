@@ -21,7 +21,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.core.compile import compiled
+from rpscli.physics.compile import compiled
 
 Quintic: TypeAlias = tuple[float, float, float, float, float, float]
 

@@ -1,1 +1,0 @@
-"""What kernels of any equation of motion share: records, lanes, series, compilation."""

@@ -1,1 +1,0 @@
-"""The podium in a vertical plane: its equation of motion, steps, events, and results."""

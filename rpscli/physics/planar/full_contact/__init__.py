@@ -1,1 +1,0 @@
-"""Full contact: the building on a fixed base, solved exactly, until the storey uplifts."""

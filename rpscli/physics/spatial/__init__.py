@@ -1,1 +1,0 @@
-"""The podium on a ground that moves in x, in y and up: columns tilt to any side."""
