@@ -24,4 +24,3 @@ def locked(name: str, *, wait: bool = True) -> Iterator[bool]:
             yield False
         else:
             yield True
-

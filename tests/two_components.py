@@ -14,8 +14,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
-from rpscli.physics.state import Record
-from rpscli.physics.state import PASS, RECONTACT
+from rpscli.physics.state import PASS, RECONTACT, Record
 from rpscli.records.ground_motion import MotionComponents
 
 COLUMNS_MASS = 1e4

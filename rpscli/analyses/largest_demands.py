@@ -135,7 +135,7 @@ class Histories:
     def known(self, field: str) -> Array:
         """A field that histories under both components have; NaN of the others."""
         values = np.asarray(self.left[field], np.float64)
-        pairs = (self.left["ways"] == 2).reshape(-1, *(1,) * (values.ndim - 1))  # noqa: PLR2004
+        pairs = (self.left["ways"] == 2).reshape(-1, *(1,) * (values.ndim - 1))
         return np.where(pairs, values, np.nan)
 
     def of_roof(self, field: str, storey: Callable[[Array], Array]) -> Array:

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import state
 from rpscli.physics.state import Record
 from rpscli.shown import Frozen, Shown
 

@@ -62,7 +62,7 @@ def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
 
 
 @compiled
-def impact_number(s: Record, l: int, system: Record, rate: float) -> float:
+def impact_number(system: Record, rate: float) -> float:
     """chi of a re-entry at a rate of the tilt [rad/s]."""
     half_width = system.R * math.sin(system.alpha)
     return abs(rate) * math.sqrt(2.0 * half_width / (system.gravity * system.bed_uplift))

@@ -172,7 +172,7 @@ def _fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
 
 _sum: Any = _fused
 overload(fma, jit_options=cast("Any", OPTIONS), strict=False)(
-    lambda a, b, c: lambda a, b, c: _sum(a, b, c)  # noqa: ARG005 -- types are asked for
+    lambda *_: lambda a, b, c: _sum(a, b, c)  # noqa: PLW0108 -- a function is asked for
 )
 
 

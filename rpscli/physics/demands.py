@@ -26,24 +26,11 @@ import math
 from typing import TypeAlias
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.quintic import (
-    SETTLED,
-    first_descent,
-    lower_hull,
-    offset,
-    peak_in_step,
-    quintic,
-    slope,
-    upper_hull,
-    value,
-)
-from rpscli.physics.peaks import middle_of, peak, turning_value
 from rpscli.physics.devices import act, has_friction, push_at_rest, raise_devices, worked
 from rpscli.physics.events import path_of
 from rpscli.physics.ground import log_row
 from rpscli.physics.laws import (
     contact_forces,
-    inertia_unit,
     lanes_of,
     motion_at,
     patch,
@@ -55,12 +42,21 @@ from rpscli.physics.laws import (
     tilt_of,
     ways_of,
 )
+from rpscli.physics.peaks import middle_of, peak, turning_value
+from rpscli.physics.quintic import (
+    SETTLED,
+    first_descent,
+    lower_hull,
+    offset,
+    peak_in_step,
+    quintic,
+    slope,
+    upper_hull,
+    value,
+)
 from rpscli.physics.state import (
-    BEDDED,
     CRITICAL_PASSAGE,
-    FULL_CONTACT,
     NO_HISTORY,
-    NOTHING,
     Floats,
     Record,
 )
@@ -321,7 +317,10 @@ def observe_contacts(s: Record) -> None:
 @inlined
 def torsion(s: Record, l: int) -> float:
     """Torsion that prevents roll-out at the end of the step, over the weight: a length [m]."""
-    tilt, rate = (s.new_tilt[0, l], s.new_tilt[1, l]), (s.new_tilt_rate[0, l], s.new_tilt_rate[1, l])
+    tilt, rate = (
+        (s.new_tilt[0, l], s.new_tilt[1, l]),
+        (s.new_tilt_rate[0, l], s.new_tilt_rate[1, l]),
+    )
     x, n, t, p, q = polar(s, l, tilt, rate)
     at = place_with(s, l, x, s.w[l], s.dw[l])
     per_x = 1.0 / (x if x > 0.0 else 1.0)
@@ -333,7 +332,7 @@ def torsion(s: Record, l: int) -> float:
     sine, cosine = (q0 * at.B + p0 * (at.C - c)) / size, (p0 * at.B - q0 * (at.C - c)) / size
     turns = w * p
     l_1 = -i_1 * (faster * sine + 2.0 * turns * cosine) - turns * (i_3 * at.G)
-    l_3 = -i_3 * (faster * at.G + turns * at.dG)
+    l_3 = -i_3 * (faster * at.G + turns * at.G_slope)
     tall, wide = c * cosine - q0, p0 + c * sine
     weight = s.cap_beam_mass[l] + s.floors_mass[l] + s.columns_mass[l]
     arm = 0.25 * s.diameter[l] * s.diameter[l] * s.columns_mass[l]
@@ -381,9 +380,7 @@ def measures_within(s: Record, l: int, t: float) -> tuple[bool, Measures]:
 
 
 @compiled
-def tilt_within(
-    s: Record, l: int, t: float
-) -> tuple[tuple[float, float], tuple[float, float]]:
+def tilt_within(s: Record, l: int, t: float) -> tuple[tuple[float, float], tuple[float, float]]:
     """The tilt and its rate a fraction t into the step, by quintics through both ends."""
     x = axis_path(s, l, 0)
     per_h = 1.0 / s.h[l] if s.h[l] > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""Devices of the rocking storey: what they do at a motion, and where their laws change (section 11).
+"""Devices of the rocking storey: what they do, and where their laws change (section 11).
 
 Dampers and stops push the cap beam, a tendon pulls both ends of its column together, rolling
 resistance turns the columns back. Which branch of its law a device follows is part of the state, so
@@ -12,8 +12,17 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.laws import lanes_of, path_at, place_of, polar, rate_of, stands, tilt_of, ways_of
 from rpscli.physics.ground import log_event
+from rpscli.physics.laws import (
+    lanes_of,
+    path_at,
+    place_of,
+    polar,
+    rate_of,
+    stands,
+    tilt_of,
+    ways_of,
+)
 from rpscli.physics.peaks import peak
 from rpscli.physics.state import (
     BEYOND,
@@ -100,8 +109,10 @@ def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float,
         across = reach - (along * cosine + above * sine)
         upwards = along * sine - above * cosine
     distance = math.sqrt(across * across + upwards * upwards)
+    if x < 0.0:  # on from upright as it came there, where a step may try
+        distance = -distance
     sin_psi, cos_psi = 0.0, 1.0
-    if distance > 0.0:
+    if distance != 0.0:
         sin_psi, cos_psi = across / distance, upwards / distance
     return 2.0 * distance, 2.0 * cos_psi * reach, sin_psi, cos_psi
 
@@ -142,7 +153,7 @@ def resistance(s: Record, l: int, i: int, path: float, along: float) -> float:
 
 
 @compiled
-def power_of(s: Record, l: int, i: int, at: Worked) -> float:
+def power_of(s: Record, l: int, i: int, at: Worked) -> float:  # noqa: PLR0911 -- a law each
     """What a device dissipates [W]."""
     kind = s.device_kind[i, l]
     if kind == VISCOUS:
@@ -375,7 +386,9 @@ def sticks(s: Record, l: int, log: Record) -> bool:
 
 
 @compiled
-def watched(s: Record, l: int, which: int, end: int) -> tuple[bool, float, float]:
+def watched(  # noqa: PLR0911 -- a law each
+    s: Record, l: int, which: int, end: int
+) -> tuple[bool, float, float]:
     """A watched value and its slope, at the start (0) or the end (1) of the step.
 
     Number 0 is the rate of the tilt in the direction of friction, 1 + i and 1 + SLOTS + i belong to

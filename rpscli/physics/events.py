@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled, inlined
+from rpscli.physics.devices import watched
+from rpscli.physics.laws import lanes_of, ways_of
 from rpscli.physics.quintic import (
     NO_PASSAGE,
     SETTLED,
@@ -21,8 +23,6 @@ from rpscli.physics.quintic import (
     quintic,
     upper_hull,
 )
-from rpscli.physics.devices import watched
-from rpscli.physics.laws import lanes_of, ways_of
 from rpscli.physics.state import (
     CHANGE,
     FAILED_NOT_FINITE,
@@ -84,9 +84,10 @@ def surely_held(s: Record, l: int) -> bool:
         y, most = push_path(s, l, 1), 0.0
         for i in range(6):
             most = max(most, x[i] * x[i] + y[i] * y[i])
-        return (right >= 0.0) & (most <= right * right)
+        return (right >= 0.0) & (most <= right * right)  # type: ignore[no-any-return]
     left = min(s.limit_left[l] * start, s.limit_left[l] * end) + s.held_left[l]
-    return (max(upper_hull(x), x[0]) <= right) & (-min(lower_hull(x), x[0]) <= left)
+    held = (max(upper_hull(x), x[0]) <= right) & (-min(lower_hull(x), x[0]) <= left)
+    return held  # type: ignore[no-any-return]  # noqa: RET504 -- bool() would be a branch
 
 
 @compiled

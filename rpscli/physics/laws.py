@@ -23,6 +23,7 @@ from rpscli.physics import plane_bed
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Record
 
+
 @inlined
 def ways_of(s: Record) -> int:
     """Horizontal directions in which the ground moves; known to the compiler."""
@@ -77,16 +78,16 @@ class Place(NamedTuple):
     B: float  # arm of the contact, B' = c - C
     C: float  # height of the cap beam's path
     Bv: float  # arm of the lift, and its slope
-    dBv: float
+    Bv_slope: float
     A: float  # inertia against p, and D = A'/2
     D: float
     h: float  # u/x, and its slope
     dh: float
     K: float  # inertia against q, and its slope
-    dK: float
+    K_slope: float
     cone: float  # (K - A)/x
     G: float  # columns spin by G phi' against it, and the slope
-    dG: float
+    G_slope: float
 
 
 @inlined
@@ -95,12 +96,12 @@ def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
     sine, less, excess = sines(x)
     p, q0, c = s.p[l], s.q0[l], s.c[l]
     B, C = p * (1.0 - less) + q0 * sine, c + p * sine - q0 * (1.0 - less)
-    dB, one, both = c - C, s.one[l], s.one[l] + s.four[l]
-    Bv, dBv = B - s.root[l] * w, dB - s.root[l] * dw
+    B_slope, one, both = c - C, s.one[l], s.one[l] + s.four[l]
+    Bv, Bv_slope = B - s.root[l] * w, B_slope - s.root[l] * dw
     A = s.io_1[l] + one * (C * C) + both * (Bv * Bv)
-    D = one * (C * B) + both * (Bv * dBv)
+    D = one * (C * B) + both * (Bv * Bv_slope)
     if ways_of(s) == 1:
-        return Place(B, C, Bv, dBv, A, D, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+        return Place(B, C, Bv, Bv_slope, A, D, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
     io_1, i_3, per_x = s.io_1[l], s.i_3[l], 1.0 / (x if x > 0.0 else 1.0)
     sine_x, less_x, excess_x = sine * per_x, less * per_x, excess * per_x
     gap = p * (sine - less_x) + q0 * (less - excess_x) - (s.u0[l] - p) * per_x
@@ -108,13 +109,13 @@ def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
     base = s.sin_a[l] + s.spin[l] * (sine if rolls else s.sin_beta[l])
     more = s.spin[l] * (excess if rolls else s.excess_beta[l]) / base
     slope = s.spin[l] * (less - more * (1.0 - less)) / base if rolls else 0.0
-    G, dG = less + more, sine + slope
+    G, G_slope = less + more, sine + slope
     G_x, flat = G * per_x, less - excess_x
     K = io_1 * (sine_x * sine_x) + i_3 * (G_x * G_x) + one * (h * h)
-    dK = 2.0 * per_x * (-io_1 * sine_x * flat + i_3 * G_x * (dG - G_x) + one * h * gap)
+    K_slope = 2.0 * per_x * (-io_1 * sine_x * flat + i_3 * G_x * (G_slope - G_x) + one * h * gap)
     cone = i_3 * (G_x * G_x) - io_1 * excess_x * (1.0 + sine_x)
     cone = (cone - one * gap * (h + C) - both * (Bv * Bv)) * per_x
-    return Place(B, C, Bv, dBv, A, D, h, gap * per_x, K, dK, cone, G, dG)
+    return Place(B, C, Bv, Bv_slope, A, D, h, gap * per_x, K, K_slope, cone, G, G_slope)
 
 
 @compiled
@@ -155,20 +156,20 @@ def motion_at(
         held = arms + at.D * (p * p) + s.bed_k[l] * x + s.bed_c[l] * p - s.turning[l]
         a = (at.C * (side * z[0]) - held) / at.A
         beam = side * diameter * (at.C * a + at.B * (p * p))
-        lift = diameter * (at.Bv * a + at.dBv * (p * p))
+        lift = diameter * (at.Bv * a + at.Bv_slope * (p * p))
         a, beam, lift = (a if moves else 0.0), (beam if moves else 0.0), (lift if moves else 0.0)
         return Motion(side * a, 0.0, beam, 0.0, lift, a)
     x = math.sqrt(tilt[0] * tilt[0] + tilt[1] * tilt[1])
     per_x = 1.0 / (x if x > 0.0 else 1.0)
     n, t = (tilt[0] * per_x if x > 0.0 else 1.0), tilt[1] * per_x
     p, q = rate[0] * n + rate[1] * t, rate[1] * n - rate[0] * t
-    held = arms + at.D * (p * p) - (at.cone + 0.5 * at.dK) * (q * q) - s.turning[l]
+    held = arms + at.D * (p * p) - (at.cone + 0.5 * at.K_slope) * (q * q) - s.turning[l]
     out = (at.C * (z[0] * n + z[1] * t) - held) / at.A
-    across = (at.h * (z[1] * n - z[0] * t) - at.dK * (p * q)) / at.K
+    across = (at.h * (z[1] * n - z[0] * t) - at.K_slope * (p * q)) / at.K
     along = diameter * (at.C * out + at.B * (p * p) + at.dh * (q * q))
     aside = diameter * (at.h * across + 2.0 * at.dh * (p * q))
     a = out + q * q * per_x
-    lift = diameter * (at.Bv * a + at.dBv * (p * p))
+    lift = diameter * (at.Bv * a + at.Bv_slope * (p * p))
     return Motion(
         out * n - across * t if moves else 0.0,
         out * t + across * n if moves else 0.0,
@@ -183,7 +184,9 @@ def motion_at(
 
 
 @inlined
-def polar(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> tuple[float, ...]:
+def polar(
+    s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
+) -> tuple[float, ...]:
     """x, cosine and sine of the azimuth, p and q; upright the azimuth is 0."""
     if ways_of(s) == 1:
         side = s.side[l]
@@ -262,7 +265,7 @@ def lift_at(s: Record, l: int, x: float) -> float:
 
 @compiled
 def risen(s: Record, l: int, system: Record, x: float, share: float) -> float:
-    """The rise of a compliant end beyond phi_u [m]: of the weight (`sink`), or the beam (`root`)."""
+    """Rise of a compliant end beyond phi_u [m]: of the weight (`sink`), the beam (`root`)."""
     u, first = system.bed_uplift, system.rolling if system.beta > 0.0 else system.rocking
     start = s.diameter[l] * (first[4] + first[0] * math.sin(u) - first[1] * math.cos(u))
     end = min(x, system.bed_full) if system.bed_full > 0.0 else x

@@ -1,8 +1,8 @@
 """The first compilation of the kernel, by two processes side by side.
 
-numba takes one core for a minute. What the kernel calls is compiled into numba's cache by calls that
-have nothing to do: a step of all lanes in another process, what is done for one lane alone and then
-the kernel in this one, which finds both there.
+numba takes one core for more than a minute. What the kernel calls is compiled into numba's cache by
+calls that have nothing to do: a step of all lanes in another process, what is done for one lane
+alone and then the kernel in this one, which finds both there.
 """
 
 from __future__ import annotations

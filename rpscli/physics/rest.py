@@ -7,7 +7,6 @@ import math
 from rpscli.physics.compile import compiled
 from rpscli.physics.laws import (
     inertia_unit,
-    lift_at,
     lifted_mass,
     total_energy,
     ways_of,
@@ -33,7 +32,7 @@ def is_over(s: Record, l: int, systems: Record) -> bool:
     if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
         return False
     if s.phase[l] in (FULL_CONTACT, STUCK):
-        return stays_down(s, l, systems) and demands_stand(s, l, systems)
+        return stays_down(s, l) and demands_stand(s, l, systems)
     if s.phase[l] == BEDDED:
         return rests_on_bed(s, l, system)
     return ways_of(s) == 2 and free * s.dt[l] >= WOBBLES and tilts_no_more(s, l, system)
@@ -46,7 +45,7 @@ def modal_speed(s: Record, l: int, r: int) -> float:
 
 
 @compiled
-def stays_down(s: Record, l: int, systems: Record) -> bool:
+def stays_down(s: Record, l: int) -> bool:
     """Whether the freely vibrating building can never again push hard enough to let go."""
     square = 0.0
     for axis in range(ways_of(s)):

@@ -108,7 +108,7 @@ def write_row(
     place = place_with(s, l, x, w, dw)
     motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_up)
     sign, beam = s.side[l] if ways == 1 else 1.0, beam_at(s, l, tilt, rate)
-    sample.phase = s.phase[l]
+    sample.phase, sample.theta_ddot = s.phase[l], sign * motion.a
     sample.theta, sample.theta_dot = (sign * x, sign * p) if moves else (0.0, 0.0)
     sample.azimuth = math.atan2(sine, cosine) if ways == 2 and moves and x > 0.0 else 0.0
     sample.turning = q / x if ways == 2 and moves and x > 0.0 else 0.0

@@ -387,8 +387,9 @@ STATE = (
     *_fields("lanes", "mixed", bend_ratio="see `system`"),
     Field("max_beam", "ways lanes", "m", "largest |u_b| in either direction"),
     *_fields("lanes", "m", torsion_lever="largest so far"),
-    *_fields("lanes", "-", passes_as_impacts="passes with l > .5", closest_pass="least x/alpha"),
-    *_fields("lanes", "s", shortest_pass="least x/|q| of a pass"),
+    Field("passes_as_impacts", "lanes", "-", "passes with l > .5"),
+    Field("closest_pass", "lanes", "-", "least x/alpha"),
+    Field("shortest_pass", "lanes", "s", "least x/|q| of a pass"),
     # Energy.
     *_fields(
         "lanes",
@@ -469,6 +470,7 @@ RESULT = (
 SAMPLE = (
     Field("theta", "", "rad", "tilt, positive to the right; of both components its size"),
     Field("theta_dot", "", "rad/s", "theta'"),
+    Field("theta_ddot", "", "rad/s2", "theta''; 0 in full contact"),
     Field("phase", "", WHOLE, "FULL_CONTACT to BEDDED"),
     Field("azimuth", "", "rad", "phi of the tilt, from x towards y; 0 in full contact"),
     Field("turning", "", "rad/s", "phi'"),

@@ -8,6 +8,7 @@ modes do next. Sums are written as they are to be rounded: a history does not kn
 from __future__ import annotations
 
 import math
+
 from rpscli.physics.bed import set_patches
 from rpscli.physics.compile import compiled, fma, inlined, together
 from rpscli.physics.devices import act, act_at_stage, begin_work, worked
@@ -189,7 +190,7 @@ def end_rates(s: Record) -> None:
 
 @compiled
 def renew(s: Record, l: int) -> None:
-    """Accelerations of one lane at its present state and time, and what the next step begins with."""
+    """Accelerations of one lane at its present state and time: what the next step begins with."""
     tilt, rate = tilt_of(s, l), rate_of(s, l)
     x, _, _, p, _ = polar(s, l, tilt, rate)
     s.w[l], s.dw[l] = patch(s, l, x)
@@ -216,7 +217,9 @@ def renew(s: Record, l: int) -> None:
         s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
             omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-            ddq = -(s.Gamma[r, l] * s.shaking[axis, l]) - fma(omega2, s.q[r, l], damping * s.dq[r, l])
+            ddq = -(s.Gamma[r, l] * s.shaking[axis, l]) - fma(
+                omega2, s.q[r, l], damping * s.dq[r, l]
+            )
             faster = omega2 * s.dq[r, l] + damping * ddq
             s.dV[axis, l] += s.Gamma[r, l] * faster
             s.ddV[axis, l] += s.Gamma[r, l] * (omega2 * ddq - damping * faster)

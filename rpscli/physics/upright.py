@@ -16,11 +16,10 @@ from rpscli.physics.compile import compiled
 from rpscli.physics.devices import (
     begin_excursion,
     force_at_rest,
-    push_at_rest,
     set_limits,
     take_up_stops,
 )
-from rpscli.physics.ground import azimuth_of, g_up_now, ground_now, log_event
+from rpscli.physics.ground import g_up_now, ground_now, log_event
 from rpscli.physics.laws import (
     beam_now,
     inertia_unit,
@@ -42,7 +41,6 @@ from rpscli.physics.state import (
     IMPACT,
     PASS,
     RECONTACT,
-    ROCKING,
     ROLLING,
     STUCK,
     UPLIFT,
@@ -129,7 +127,7 @@ def loss_share(nearness: float) -> float:
 
 @compiled
 def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> None:  # noqa: FBT001
-    """An impact of one plane, or a pass of columns free to tilt; `near`: by the map from theta_c."""
+    """An impact of one plane, or a pass of free columns; `near`: by the map from theta_c."""
     if ways_of(s) == 1:
         impact(s, l, system, log)
         return
@@ -230,7 +228,7 @@ def settles(s: Record, l: int, system: Record, log: Record, near: bool) -> bool:
     one reaches v^2/(2 |x''|). Reads the accelerations behind the impact or the pass.
     """
     low = system.recontact_tolerance * system.alpha
-    x, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
     at = place_of(s, l, x)
     if ways_of(s) == 1:
         if not (s.a[l] < 0.0 and p * p < 2.0 * abs(s.a[l]) * low):
@@ -259,7 +257,7 @@ def bounces_left_out(s: Record, l: int, system: Record) -> float:
     """
     bounces = system.bounces
     friction = s.friction_force[l] + s.friction_moment[l]
-    if system.floors_jump > 0 and friction > 0.0:
+    if bounces > 0.0 and system.floors_jump > 0 and friction > 0.0:
         at = place_of(s, l, 0.0)
         moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
         slowed = s.share[l] * moment / at.A
@@ -278,7 +276,7 @@ def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
     """
     x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
     before, strain, kept = beam_now(s, l), strain_energy(s, l), bounces_left_out(s, l, system)
-    # What stops and tendons hold at so small a tilt is theirs, and given back (ABOVE rounding).
+    # What stops and tendons hold at so small a tilt is theirs, and given back.
     held = force_at_rest(s, l)[0] * s.diameter[l] * math.cos(system.alpha) * x
     lost = tilting_energy(s, l, place_of(s, l, x), p, q) + held
     lost += lifted_mass(s, l) * s.gravity[l] * lift_at(s, l, x)
@@ -352,7 +350,7 @@ def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) ->
     beam = side * s.diameter[l] * system.bed_height * before
     if enters:
         change = system.restitution / change
-        chi = impact_number(s, l, system, before)
+        chi = impact_number(system, before)
         s.impact_number[l] = max(s.impact_number[l], chi)
     set_polar(s, l, system.bed_uplift, side, 0.0, change * before, 0.0)
     enter_phase(s, l, system, BEDDED if enters else first_phase(system))

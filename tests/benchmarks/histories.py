@@ -28,8 +28,7 @@ from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.result_quantities import HISTORY
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.state import LANES
-from rpscli.physics.state import IMPACT
+from rpscli.physics.state import IMPACT, LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 RECORDS = 64

@@ -98,7 +98,9 @@ class OneLane:
         s = self.s
         s.a_g[0, 0], s.g_up[0] = horizontal, s.gravity[0] + vertical
         renew(s, 0)
-        forces = self.modes("omega2") * self.modes("q") + self.modes("two_xi_omega") * self.modes("dq")
+        forces = self.modes("omega2") * self.modes("q") + self.modes("two_xi_omega") * self.modes(
+            "dq"
+        )
         modes = -self.modes("Gamma") * s.shaking[0, 0] - forces
         return np.array([s.a[0], *(s.shaking[0, 0] - horizontal + self.shapes @ modes)])
 
@@ -130,4 +132,3 @@ class OneLane:
     def observe(self) -> None:
         """Look at the end of the step."""
         observe_floors(self.s)
-

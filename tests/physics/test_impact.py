@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from paper_structures import FLAT, Array, building, podium
+from paper_structures import FLAT, Array, podium
 
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
@@ -21,7 +20,8 @@ from .one_lane import OneLane
 
 pytestmark = pytest.mark.evidence("impact laws", "exact")
 
-LIMIT = TimeHistorySettings()
+LIMIT = TimeHistorySettings(recontact_rule="limit")
+RELATIVE = TimeHistorySettings(recontact_rule="relative")
 
 velocities = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3)
 rates = st.floats(-1.0, -0.01)
@@ -86,6 +86,19 @@ def test_rigid_loses_energy_when_all_moves_together_and_creates_it_against_the_b
     assert after_impact(flexible, rate, [-base] * 3)[1] > 0.0
 
 
+@given(velocities, rates, st.sampled_from([FLAT, 0.5]))
+def test_locking_keeps_the_relative_velocities(
+    floors: list[float], rate: float, rho: float
+) -> None:
+    structure = podium(3, 0.15, rho)
+    lane = arriving(structure, rate, floors, RELATIVE)
+    base_rate = 2.0 * structure.bearing.half_height * rate
+    before, gone = lane.energy(), lane.recontact()
+    assert gone == pytest.approx(before - lane.energy(), abs=1e-13 * before)
+    assert lane.velocity[0] == 0.0
+    assert lane.velocity[1:] == pytest.approx(np.array(floors) - base_rate, abs=1e-13)
+
+
 @given(
     velocities, rates, st.sampled_from(["rigid", "flexible", "value"]), st.sampled_from([FLAT, 0.5])
 )
@@ -111,8 +124,9 @@ def test_what_the_limit_adds(law: ImpactKind, share: float | None) -> None:
     """2/(1 + e) u_b' where the floors jump with the cap beam, 1 u_b' where they do not."""
     structure = podium(2, 0.15, 0.5, law=ImpactLaw(law))
     expected = 2.0 / (1.0 + structure.restitution) if share is None else share
-    system = stacked_systems([(structure, LIMIT)])[0]
-    assert system.bounces == pytest.approx(expected, rel=1e-15)
+    systems = stacked_systems([(structure, RELATIVE), (structure, LIMIT)])
+    assert systems[0].bounces == 0.0
+    assert systems[1].bounces == pytest.approx(expected, rel=1e-15)
 
 
 def test_energies_of_equal_states_are_equal_up_to_lift() -> None:

@@ -20,6 +20,7 @@ import pytest
 from paper_structures import needs_compiled_kernels
 
 from rpscli.physics import compile as compilation
+from rpscli.physics import prepare
 from rpscli.physics.compile import (
     CONSTANTS,
     cache_folder,
@@ -28,7 +29,6 @@ from rpscli.physics.compile import (
     remember_compiled,
     sources_digest,
 )
-from rpscli.physics import prepare
 from rpscli.physics.prepare import compile_kernel  # workers have one of their own
 from rpscli.user_cache import alone_in, user_cache
 

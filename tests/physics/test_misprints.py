@@ -22,7 +22,7 @@ from .one_lane import OneLane
 
 def inertia(structure: PodiumStructure, x: float) -> tuple[float, float, float]:
     """A, our D and the printed D = -C B, rocking."""
-    phase, gamma, eta = structure.bearing.rocking, structure.gamma, structure.eta
+    phase = structure.bearing.rocking
     B = contact_arm(phase, math.cos(x), math.sin(x))
     C = contact_height(phase, math.cos(x), math.sin(x))
     at = OneLane(structure, ROCKING).at(x)

@@ -166,9 +166,9 @@ def fill_settings(
     if structure.bed is not None:
         structure.bed.refuse_start(settings.initial_rotation)
     record["most_steps"] = MOST_POWER_STEPS
-    record["step_error"] = STEP_ERROR * settings.accuracy**-6
+    record["step_error"] = max(STEP_ERROR * settings.accuracy**-6, LEAST_ERROR)
     record["recontact_tolerance"] = settings.recontact_tolerance
-    record["bounces"] = bounces_left_out(structure)
+    record["bounces"] = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
     record["max_events"] = settings.max_events
     record["initial_rotation"] = settings.initial_rotation
     record["free_vibration"] = longest_free_vibration(structure, settings)
@@ -219,11 +219,14 @@ UPLIFTED_DECAY = 1.0
 """Largest step times the fastest decay rate, where that asks for more: the rule is unstable beyond
 about 4. Only strongly overdamped modes come near."""
 
-STEP_ERROR = 1e-6
+STEP_ERROR = 1e-8
 """Largest error of a step in the tilt's rate, over what that is and changes by, at accuracy 1; as
 orders 6 and 5 differ. Steps made for the fastest of several modes hardly ever come near. Where the
 tilt itself changes faster, over one storey, in large rotations of short columns, past theta_cr
 under floors that weigh hundreds of them, or near upright, they are shorter."""
+
+LEAST_ERROR = 1e-12
+"""Below it the difference of both rules is rounding: their weights are up to 176."""
 
 STEP_SECONDS, MODE_SECONDS = 4e-7, 4e-8
 """About the time of a step of one history, and what each mode adds."""

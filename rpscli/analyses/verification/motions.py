@@ -187,10 +187,16 @@ def energy_of_impact(structure: PodiumStructure, rotation: float) -> float:
     """Kinetic energy of the first impact after a release [J]."""
     result = released(structure, rotation, 3.0, 0.01)
     rate = next(event.rotation_rate_before for event in result.events if event.kind == "impact")
-    return 0.5 * structure.columns_mass * structure.bearing.semi_diagonal**2 * (
-        structure.turning_inertia
-        + (1.0 + 4.0 * structure.gamma_total) * math.sin(structure.bearing.alpha) ** 2
-    ) * rate**2
+    return (
+        0.5
+        * structure.columns_mass
+        * structure.bearing.semi_diagonal**2
+        * (
+            structure.turning_inertia
+            + (1.0 + 4.0 * structure.gamma_total) * math.sin(structure.bearing.alpha) ** 2
+        )
+        * rate**2
+    )
 
 
 EARTHQUAKES = "Earthquakes against a second integrator (DOP853 in tilt and drifts)"
