@@ -137,7 +137,9 @@ def _follow(building: Superstructure, record: GroundMotion, intervals: int, floo
     """Largest shears and accelerations (2, n); displacements and velocities go to `floors`."""
     parts = max(math.ceil(record.dt * float(building.frequencies[-1]) / STEP_ANGLE), 1)
     dt = record.dt / parts
-    ground = prolonged(record.finer(parts).acceleration, intervals * parts + 1)
+    times = np.arange((record.npts - 1) * parts + 1) / parts
+    fine = np.interp(times, np.arange(record.npts), record.acceleration)
+    ground = prolonged(fine, intervals * parts + 1)
     n, rows = building.storeys, np.empty((4, intervals * parts + 1, building.storeys))
     for r in range(n):
         q, dq = oscillator(ground, dt, building.frequencies[r], building.damping_ratios[r])

@@ -28,7 +28,7 @@ from typing import TypeAlias
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices import act, has_friction, push_at_rest, raise_devices, worked
 from rpscli.physics.events import path_of
-from rpscli.physics.ground import log_row
+from rpscli.physics.ground import g_up_now, ground_now, log_row
 from rpscli.physics.laws import (
     contact_forces,
     lanes_of,
@@ -444,6 +444,20 @@ def raise_by(s: Record, l: int, found: Measures) -> None:
 
 
 @compiled
+def is_held(s: Record, l: int) -> bool:
+    """Whether a storey at rest is held: one that lifts off at once has not stood."""
+    R, size, g_up = 0.5 * s.diameter[l], 0.0, g_up_now(s, l)
+    for axis in range(ways_of(s)):
+        push = R * (s.share[l] * s.V[axis, l] - s.load[l] * ground_now(s, l, axis))
+        size = push if ways_of(s) == 1 else size + push * push
+    right = s.limit_right[l] * g_up + s.held_right[l]
+    if ways_of(s) == 2:
+        return bool(math.sqrt(size) <= right)
+    left = s.limit_left[l] * g_up + s.held_left[l]
+    return bool(-left <= size <= right)
+
+
+@compiled
 def observe_start(s: Record, l: int) -> None:
     """Look at what begins anew, after an event or a sudden change of the ground."""
     h, time = s.h[l], s.time[l]
@@ -458,7 +472,7 @@ def observe_start(s: Record, l: int) -> None:
         push_at_rest(s, l, V_x, a_x, g_up)
     V = V_x + s.drive[0, l] + s.tied[l] * n, V_y + s.tied[l] * t
     found = measures_of(s, l, (s.shaking[0, l] - a_x, beam_y), s.lift[l], V, (a_x, a_y), g_up)
-    if not is_shock(s, l, x, rate):
+    if not is_shock(s, l, x, rate) and (s.moves[l] > 0.0 or is_held(s, l)):
         raise_by(s, l, found)
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)

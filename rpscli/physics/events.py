@@ -42,6 +42,9 @@ LEAST_STEP = 1e-13
 CLOSE = 1e-6
 """Of the sampling interval: what is missing to an event is so short that rates lead there."""
 
+AT_LIMIT = 1e-9
+"""The same of an uplift: a margin that is not yet zero would have the storey land at once."""
+
 MOST_TRIES = 8
 
 ROUNDING = 1e-13
@@ -301,7 +304,8 @@ def land(s: Record, l: int) -> None:
     change = -value / slope if slope < 0.0 else 0.0
     change = min(max(change, -0.5 * s.h[l]), s.h_now[l] - s.h[l])
     s.tries[l] += 1
-    if abs(change) > CLOSE * s.dt[l] and s.tries[l] < MOST_TRIES:
+    close = CLOSE * s.dt[l] if s.wanted[l] != LET_GO else AT_LIMIT * s.dt[l]
+    if abs(change) > close and s.tries[l] < MOST_TRIES:
         s.h[l] += change
         return
     go_on_by(s, l, change)

@@ -325,7 +325,7 @@ def next_intervals(s: Record, acceleration: Floats) -> None:
         factor = 2.0 if s.error[l] < CALM else (1.2 if s.error[l] < EASY else 1.0)
         limit = factor * limit
         limit = limit if limit < s.h_most[l] else math.inf
-        s.h_limit[l] = limit if goes_on else s.h_limit[l]
+        s.h_limit[l] = limit if s.accepted[l] > 0.0 else s.h_limit[l]
         s.h[l] = plan(s, l) if goes_on else s.h[l]
     if s.equipped > 0:
         for l in range(lanes):

@@ -35,9 +35,8 @@ def swaying(samples: int) -> NDArray[np.float64]:
 @needs_compiled_kernels
 @pytest.mark.parametrize("structure", [podium(6), DAMPED], ids=["six storeys", "damper"])
 def test_memory_is_what_the_ceiling_counts(
-    structure: PodiumStructure, monkeypatch: pytest.MonkeyPatch
+    structure: PodiumStructure,
 ) -> None:
-    monkeypatch.setattr(trace, "BLOCK", 5000)
     samples = 100_000
     record = ground(swaying(samples), DT)
     time_history(structure, ground(swaying(100), DT), SHORT)  # loads the kernels
@@ -55,19 +54,6 @@ def test_memory_is_what_the_ceiling_counts(
     assert 0.9 * counted < held < 1.02 * counted + lines
     # Above it stands what is in the making: the floors on a fixed base, or a block of everything.
     assert peak < 1.2 * counted + lines
-
-
-@needs_compiled_kernels
-def test_blocks_make_no_difference(monkeypatch: pytest.MonkeyPatch) -> None:
-    record = ground(swaying(1000), 0.01)
-    whole = time_history(DAMPED, record, SHORT).trace
-    monkeypatch.setattr(trace, "BLOCK", 64)
-    blocks = time_history(DAMPED, record, SHORT).trace
-    for name in ("drifts", "floor_accelerations", "driving_moment", "normal_top", "energy_stored"):
-        one, other = getattr(whole, name), getattr(blocks, name)
-        size = float(np.max(np.abs(one)))
-        assert size > 0.0
-        assert other == pytest.approx(one, abs=1e-13 * size)
 
 
 def test_histories_over_the_ceiling_are_refused() -> None:

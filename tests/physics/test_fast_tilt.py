@@ -53,7 +53,7 @@ def test_steps_are_halved_where_the_tilt_is_fast(
     monkeypatch.setattr(systems, "_system", systems._system.__wrapped__)  # as if never made
     kept, steps = drift(structure, rotation, 1.0)
     with monkeypatch.context() as patch:
-        patch.setattr(systems, "LAST_TERM", math.inf)
+        patch.setattr(systems, "STEP_ERROR", math.inf)
         lost, plain = drift(structure, rotation, 1.0)
     assert steps > plain
     assert kept < 1e-5

@@ -1,4 +1,4 @@
-"""Full contact is the linear fixed-base building, solved without error."""
+"""Full contact is the linear fixed-base building."""
 
 from __future__ import annotations
 
@@ -44,27 +44,27 @@ def test_full_contact_equals_lsim(above: Superstructure) -> None:
     _, flow, _ = lsim(system, a_g, dt * np.arange(len(a_g)))
     states = flow.reshape(len(a_g), 2 * n)
     u = states[:, :n]
-    # both are exact for a load linear between samples: what is left is the rounding of 250 steps,
-    # and scipy's exponential of a matrix whose norm is the square of the highest frequency
-    tolerance = 1e-10 * float(np.max(np.abs(u)))
+    # the reference is exact for a load linear between samples; steps err by some (w h)^7/1e5 of the
+    # highest mode, which has a small part
+    tolerance = 1e-8 * float(np.max(np.abs(u)))
     assert result.trace.floor_displacements == pytest.approx(u, abs=tolerance)
     shears = above.stiffnesses * np.diff(u, axis=1, prepend=0.0)
     size = float(np.max(np.abs(shears)))
-    assert result.trace.storey_shears == pytest.approx(shears, abs=1e-9 * size)
+    assert result.trace.storey_shears == pytest.approx(shears, abs=1e-6 * size)
     sampled = np.max(np.abs(shears), axis=0)
-    assert np.all(result.storey_shears >= (1.0 - 1e-9) * sampled)
+    assert np.all(result.storey_shears >= (1.0 - 1e-6) * sampled)
     assert result.storey_shears == pytest.approx(sampled, rel=0.05)
     absolute = states @ state_matrix(above)[n:].T
     size = float(np.max(np.abs(absolute)))
-    assert result.trace.floor_accelerations == pytest.approx(absolute, abs=1e-9 * size)
+    assert result.trace.floor_accelerations == pytest.approx(absolute, abs=1e-5 * size)
     sampled = np.max(np.abs(absolute), axis=0)
-    assert np.all(result.floor_accelerations >= (1.0 - 1e-9) * sampled)
+    assert np.all(result.floor_accelerations >= (1.0 - 1e-5) * sampled)
     assert result.floor_accelerations == pytest.approx(sampled, rel=0.1)
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
 @pytest.mark.parametrize("above", BUILDINGS[:3], ids=lambda b: str(b.storeys))
-def test_one_long_step_is_as_good_as_many(above: Superstructure) -> None:
+def test_one_long_interval_is_as_good_as_many(above: Superstructure) -> None:
     """Two samples 1.3 s apart: one interval, against one exponential."""
     n, dt = above.storeys, 1.3
     a0, a1 = 0.1, -0.15
@@ -78,7 +78,7 @@ def test_one_long_step_is_as_good_as_many(above: Superstructure) -> None:
     state = expm(flow * dt) @ np.concatenate((np.zeros(2 * n), [a0, (a1 - a0) / dt]))
     expected = state[:n]
     got = result.trace.floor_displacements[-1]
-    assert got == pytest.approx(expected, abs=1e-12 * float(np.max(np.abs(expected))) * n**2)
+    assert got == pytest.approx(expected, abs=2e-8 * float(np.max(np.abs(expected))))
 
 
 @pytest.mark.parametrize("above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}")
@@ -89,7 +89,7 @@ def test_the_fixed_base_yardstick_is_the_same_building(above: Superstructure) ->
     assert result.fixed_base is not None
     fixed, trace = result.fixed_base, result.trace
     size = float(np.max(np.abs(fixed.floor_displacements)))
-    assert trace.floor_displacements == pytest.approx(fixed.floor_displacements, abs=1e-10 * size)
+    assert trace.floor_displacements == pytest.approx(fixed.floor_displacements, abs=1e-8 * size)
     # peaks between the ends of steps, which are not the same
     assert result.storey_shears == pytest.approx(fixed.storey_shears, rel=1e-4)
     assert result.floor_accelerations == pytest.approx(fixed.floor_accelerations, rel=1e-3)
@@ -113,11 +113,10 @@ def test_the_energy_of_full_contact_is_accounted_for(above: Superstructure, dt: 
     energy = result.energy
     assert energy.impact == energy.created == 0.0
     assert energy.input > 0.0
-    # the damped energy is integrated by Gauss's rule of order 8 for v^2, whose frequency is
-    # 2 w <= 2/h: (2 w h)^8 (4!)^4/(9 (8!)^3) = 1.5e-7 in the highest mode, which has a small part
+    # a step loses 1e-5 (w h)^8 of a vibration; the highest mode has a small part
     assert abs(energy.residual) < 1e-8 * energy.input
     if above.damping.ratio == 0.0:
-        assert abs(energy.residual) < 1e-11 * energy.input
+        assert energy.damped == 0.0
 
 
 def test_undamped_modes_do_no_work() -> None:
