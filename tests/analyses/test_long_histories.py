@@ -12,7 +12,6 @@ import pytest
 from numpy.typing import NDArray
 from paper_structures import ground, needs_compiled_kernels, podium
 
-from rpscli.analyses import trace
 from rpscli.analyses.kernels.history import MOST_NUMBERS, numbers_of_a_sample
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
