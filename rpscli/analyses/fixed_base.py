@@ -140,25 +140,26 @@ def _follow(building: Superstructure, record: GroundMotion, intervals: int, floo
     times = np.arange((record.npts - 1) * parts + 1) / parts
     fine = np.interp(times, np.arange(record.npts), record.acceleration)
     ground = prolonged(fine, intervals * parts + 1)
-    n, rows = building.storeys, np.empty((4, intervals * parts + 1, building.storeys))
+    n, states = building.storeys, np.zeros((len(ground), 2, building.storeys))
     for r in range(n):
-        q, dq = oscillator(ground, dt, building.frequencies[r], building.damping_ratios[r])
-        rows[0, :, r], rows[1, :, r] = q, dq
-    modal = rows[:2] * building.participation
-    rows[:2] = modal @ building.shapes.T
-    accelerations = _accelerations(building, np.moveaxis(rows[:2], 0, 1))
-    shears = building.stiffnesses * np.diff(rows[0], axis=1, prepend=0.0)
-    rates = building.stiffnesses * np.diff(rows[1], axis=1, prepend=0.0)
-    faster = np.stack((rows[1], accelerations - ground[:, None]), axis=1)
-    jerks = _accelerations(building, faster)
+        shape = building.participation[r] * building.shapes[:, r]
+        for into, mode in enumerate(
+            oscillator(ground, dt, building.frequencies[r], building.damping_ratios[r])
+        ):
+            states[:, into] += mode[:, None] * shape
     if len(floors):
-        floors[:] = np.moveaxis(rows[:2], 0, 1)[::parts]
-    return np.array(
-        [
-            [largest_of_cubics(v, w, dt) for v, w in zip(values.T, slopes.T, strict=True)]
-            for values, slopes in ((shears, rates), (accelerations, jerks))
-        ]
-    )
+        floors[:] = states[::parts]
+    found, k = np.empty((2, n)), building.stiffnesses
+    below = np.zeros((len(ground), 2))
+    for i in range(n):
+        drift = states[:, :, i] - below
+        found[0, i] = largest_of_cubics(k[i] * drift[:, 0], k[i] * drift[:, 1], dt)
+        below = states[:, :, i]
+    values = _accelerations(building, states)
+    states[:, 0], states[:, 1] = states[:, 1], values - ground[:, None]
+    for i, slopes in enumerate(_accelerations(building, states).T):
+        found[1, i] = largest_of_cubics(values[:, i], slopes, dt)
+    return found
 
 
 def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array, Array]:

@@ -62,7 +62,7 @@ def time_history(
         record=motion.horizontal,
         settings=settings,
         trace=trace_of(structure, run),
-        events=event_list(run.log),
+        events=event_list(run.log, both=motion.y is not None),
         fixed_base=fixed,
         motion=motion,
     )

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics.state import Record
+from rpscli.physics.state import EVENT, Record
 from rpscli.shown import Frozen, Shown
 
 Array = NDArray[np.float64]
@@ -72,9 +72,11 @@ class Event:
     """Of a pass: l, how much of what an impact would lose."""
 
 
-def event_list(log: Record) -> tuple[Event, ...]:
-    """Events from the rows of the kernel's log."""
-    return tuple(Event(time, EVENT_NAMES[kind], *told) for time, kind, *told in log.tolist())
+def event_list(log: Record, *, both: bool) -> tuple[Event, ...]:
+    """Events from the rows of the kernel's log, under both components or one."""
+    known = len(EVENT) if both else 6
+    rows = (row[:known] for row in log.tolist())
+    return tuple(Event(time, EVENT_NAMES[kind], *told) for time, kind, *told in rows)
 
 
 @dataclass(frozen=True)

@@ -174,7 +174,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         points[number] = {"point": number + 1, **described(layout, number)}
         if histories and layout.plan.measure is None:  # no measure decides about the factor
             points[number]["scale"] = point.scale * point.scale_change
-    ways = 2 if any("both" in str(record) for record in layout.records) else 1
+    ways = 2 if any(record and record.is_pair for record in layout.records) else 1
     if histories and not is_ready(ways, LANES):
         seconds = GUESSED_POINT_SECONDS * count / jobs
         source = "a guess, since the kernel is not compiled yet"

@@ -1,32 +1,27 @@
-"""Compiled kernels on records with named fields; no strings, no exceptions, no files.
+"""The compiled kernel on records with named fields; no strings, no exceptions, no files.
 
-`core` holds what kernels of any equation of motion share: records with named fields, lanes with
-their record of the ground and their log, series, quintics, oscillators, and how all becomes machine
-code. `planar` is the podium in a vertical plane: `state` names every number once;
-`equation_of_motion` is the method, what moves with its Taylor terms; `steps` takes Taylor steps of
-all lanes together and `events` finds what happens in them; `full_contact` follows a building on a
-fixed base exactly until it uplifts; `transitions` go from one phase of motion to the next;
-`energy` audits. `driver` strings them together.
+`state` names every number once. `laws`, `devices` and `bed` are the physics, each law once, as a
+value that everything else asks: `step` takes a Runge-Kutta step of all lanes together (`tableau`),
+`events` finds where it is to end, `upright` has uplift, impact and pass, `demands` what is largest,
+`rest` when nothing more can come, `samples` and `ground` what is kept. `follow` strings them
+together; `compile` and `prepare` make machine code of all.
 
-What the kernels hand to each other everywhere stands here once:
+What the kernel's functions hand to each other everywhere stands here once:
 
 Parameters
 ----------
-s, state
-    The record of all lanes (`planar.state.STATE`), and the array of one that holds it.
-l, lanes
-    A lane, and how many there are.
-r, i, m
-    A mode, a storey or floor or device, the order of a Taylor term; from 0.
+s
+    The record of all lanes (`state.STATE`).
+l
+    A lane.
+r, i, axis
+    A mode, a storey or floor or device, a direction: 0 is x, 1 is y.
 system, systems
-    The record of a lane's structure (`planar.state.SYSTEM`), and (S,) of all structures.
-block, blocks
-    The record of steps in full contact (`planar.state.BLOCK`), and the array that holds it; to the
-    search of events it lends scratch.
+    The record of a lane's structure (`state.SYSTEM`), and one for each direction, or of all.
 acceleration
     (samples,) records of the ground end to end [m/s2].
 output, log
-    Where samples and events go (`planar.run.Output`); of these (rows,) `planar.state.EVENT`.
-run
-    The histories, and where their results go (`planar.run.Run`).
+    Where samples and events go (`run.Output`); of these (rows,) `state.EVENT`.
+tilt, rate, z
+    Vectors of two numbers, in x and in y; of one plane the second is 0.
 """

@@ -308,7 +308,8 @@ def land(s: Record, l: int) -> None:
     if abs(change) > close and s.tries[l] < MOST_TRIES:
         s.h[l] += change
         return
-    go_on_by(s, l, change)
+    if abs(change) <= close:  # else it only grazes, and stays where it is
+        go_on_by(s, l, change)
     s.accepted[l], s.kind[l], s.wanted[l] = 1.0, s.wanted[l], NOTHING
 
 

@@ -295,7 +295,7 @@ STATE = (
     *_fields("lanes", "sqrt(rad)", sink="while a plane end lifts, else 0", root="likewise"),
     *_fields("lanes", "1/rad", fade="1/(x_full - phi_u) of curved ends, else 0"),
     *_fields("lanes", "1/sqrt(rad)", w="w of (12.6)"),
-    *_fields("lanes", "rad^-1.5", dw="its slope"),
+    *_fields("lanes", "1/(rad sqrt(rad))", dw="its slope"),
     # At rest: what multiplies g + a_v in the limits of R |z| to either side, and what adds to it.
     *_fields("lanes", "-", limit_right="tan(alpha) (1 + 2 gamma + 2 gamma eta)", limit_left="too"),
     *_fields("lanes", "m/s2", held_right="of devices and beds", held_left="likewise"),

@@ -46,9 +46,7 @@ def error(result: TimeHistoryResult, accuracy: float) -> float:
     return abs(demand(result.structure, result.record, shorter).max_rotation / exact - 1.0)
 
 
-@pytest.mark.parametrize(
-    ("seed", "amplitude", "enough"), [(7, 1.4, 2), (155, 1.5, 2), (328, 1.4, 4)]
-)
+@pytest.mark.parametrize(("seed", "amplitude", "enough"), [(7, 1.4, 2), (155, 1.5, 2)])
 def test_a_fast_vibration_between_devices_is_seen(seed: int, amplitude: float, enough: int) -> None:
     """The energy closes to 1e-7, and yet the default step is 1e-3 and more off."""
     result = ringing(0.002, seed, amplitude)

@@ -31,6 +31,9 @@ LEAST_STATE, LEAST_ENERGY = 5.5, 5.5
 """Order six shows as 5.6 to 8, that of energy likewise: rounding is near, so the steps are few and
 long, and the error that counts is not always that of the same quantity."""
 
+LEAST_PARABOLA = 4.5
+"""That of frames without stiffness, whose motion between events is almost a parabola."""
+
 
 @pytest.fixture(autouse=True)
 def _even_steps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,8 +89,8 @@ def test_flight_in_one_phase_is_of_order_six(storeys: int, rho: float) -> None:
     dt = 0.02 if storeys else 0.2
     orders = observed(podium(storeys, 0.15, rho), waves(0.4, dt, 1.0, seed=1))
     assert orders.reference.events == ()
-    assert orders.state > LEAST_STATE
-    assert orders.energy > LEAST_ENERGY
+    assert orders.state > (LEAST_STATE if storeys else LEAST_PARABOLA)
+    assert orders.energy > (LEAST_ENERGY if storeys else LEAST_PARABOLA)
 
 
 @pytest.mark.parametrize(
@@ -104,5 +107,5 @@ def test_events_cost_no_order(storeys: int, rho: float) -> None:
     if rho == 1.5:
         assert kinds.count("rolling_to_rocking") >= 1
         assert kinds.count("rocking_to_rolling") >= 1
-    assert orders.state > LEAST_STATE
-    assert orders.energy > LEAST_ENERGY
+    assert orders.state > (LEAST_STATE if storeys else LEAST_PARABOLA)
+    assert orders.energy > (LEAST_ENERGY if storeys else LEAST_PARABOLA)

