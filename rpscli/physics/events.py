@@ -93,6 +93,20 @@ def surely_held(s: Record, l: int) -> bool:
     return held  # type: ignore[no-any-return]  # noqa: RET504 -- bool() would be a branch
 
 
+CIRCLING = 1e-9
+"""Of the tilt's speed: what approaches upright by less goes round it, but for rounding."""
+
+
+@inlined
+def falls(s: Record, l: int) -> bool:
+    """Whether a tilt to any side approaches upright at the start of the step."""
+    square = 0.0
+    for axis in range(ways_of(s)):
+        square += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
+    least, v = CIRCLING * CIRCLING * square, s.v[l]
+    return (v < 0.0) & (v * v > least)  # type: ignore[no-any-return]
+
+
 @compiled
 def check_steps(s: Record) -> None:
     """Accept the steps that are short enough and surely hold no event."""
@@ -101,7 +115,7 @@ def check_steps(s: Record) -> None:
         lowest, highest = min(lower_hull(path), path[0]), max(upper_hull(path), path[0])
         inside = (lowest >= s.x_low[l]) & (highest <= s.x_high[l])
         if ways_of(s) == 2:
-            inside &= (s.v[l] >= 0.0) | (s.new_v[l] < 0.0)
+            inside &= (not falls(s, l)) | (s.new_v[l] < 0.0)
         clear = inside if moves else surely_held(s, l)
         short = (s.error[l] <= 1.0) | (s.h[l] <= LEAST_STEP * s.dt[l])
         s.accepted[l] = 1.0 if clear & short & (s.wanted[l] == NOTHING) else 0.0
@@ -149,7 +163,7 @@ def first_event(s: Record, l: int) -> tuple[float, int, int]:
     t = first_descent(offset(path, -1.0, s.x_high[l]), SETTLED, piece)
     if t < first:
         first, kind = t, HIGH
-    if ways_of(s) == 2 and s.v[l] < 0.0 and s.new_v[l] >= 0.0:
+    if ways_of(s) == 2 and falls(s, l) and s.new_v[l] >= 0.0:
         t = nearest(s, l)
         if t < first:
             first, kind = t, NEAREST

@@ -430,12 +430,6 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
 def stay_inside(s: Record, l: int) -> None:
     """Have the next step begin within its range: of a tilt to any side x is a root, and rounded."""
     s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
-    if ways_of(s) == 2 and abs(s.v[l]) < AT_REST_BELOW * s.x[l]:
-        s.v[l] = max(s.v[l], 0.0)
-
-
-AT_REST_BELOW = 1e-12
-"""Rate of a tilt over it that is none [1/s]."""
 
 
 @compiled

@@ -179,7 +179,7 @@ def error_of(s: Record, l: int) -> float:
 
 @inlined
 def end_rates(s: Record) -> None:
-    """Rates of the base shear at the ends of steps (10.5); the second of buildings at rest."""
+    """Rates of the base shear at the ends of steps (10.6); the second of buildings at rest."""
     n, lanes = s.n, lanes_of(s)
     for axis in range(ways_of(s)):
         for l in range(lanes):

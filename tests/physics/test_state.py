@@ -34,7 +34,7 @@ TABLES = {
 }
 every_table = pytest.mark.parametrize("fields", TABLES.values(), ids=TABLES)
 
-UNITS = {"-", "mixed", "1", "m", "rad", "s", "kg", "N", "J", "sqrt", WHOLE}
+UNITS = {"-", "mixed", "1", "m", "rad", "s", "kg", "N", "J", "W", "sqrt", WHOLE}
 """What units are made of, with squares and rates of it."""
 
 

@@ -26,8 +26,8 @@ from rpscli.model.superstructure import ModalDamping, RayleighDamping
 pytestmark = pytest.mark.evidence("steps, events, energy", "exact")
 
 BEYOND_A_PLAIN_STEP = 3.5
-"""Steps that an event adds on average: those taken again to its root, the one that leads on from it,
-and halves of steps in which the tilt changes fast."""
+"""Steps that an event adds on average: those taken again to its root, the one that leads on from
+it, and halves of steps in which the tilt changes fast."""
 
 
 def steps_an_event(result: TimeHistoryResult) -> float:

@@ -338,7 +338,7 @@ def bedded_rate(structure: PodiumStructure) -> float:
 def highest_frequency(structure: PodiumStructure) -> float:
     """A bound on the frequencies of the uplifted structure [rad/s]."""
     # A free beam of at least N m_c Io/4 + m_b adds at most the first storey's spring over that
-    # (Theory (10.6); Weyl's inequality).
+    # (Theory (10.5); Weyl's inequality).
     square = (structure.gravity / structure.bearing.semi_diagonal) * (
         1.0 + abs(2.0 * structure.bearing.curvature_ratio - 1.0)
     )
