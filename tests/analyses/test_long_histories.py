@@ -52,7 +52,7 @@ def test_memory_is_what_the_ceiling_counts(
     lines = 1e7  # numbers and text of some thousand
     assert 0.9 * counted < held < 1.02 * counted + lines
     # Above it stands what is in the making: the floors on a fixed base, or a block of everything.
-    assert peak < 1.2 * counted + lines
+    assert peak < 1.3 * counted + lines
 
 
 def test_histories_over_the_ceiling_are_refused() -> None:

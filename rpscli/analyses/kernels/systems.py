@@ -219,7 +219,7 @@ UPLIFTED_DECAY = 1.0
 """Largest step times the fastest decay rate, where that asks for more: the rule is unstable beyond
 about 4. Only strongly overdamped modes come near."""
 
-STEP_ERROR = 1e-8
+STEP_ERROR = 1e-7
 """Largest error of a step in the tilt's rate, over what that is and changes by, at accuracy 1; as
 orders 6 and 5 differ. Steps made for the fastest of several modes hardly ever come near. Where the
 tilt itself changes faster, over one storey, in large rotations of short columns, past theta_cr
