@@ -519,17 +519,6 @@ def stored_in(s: Record, l: int, i: int, at: Worked) -> float:
 
 
 @compiled
-def stored_in_devices(s: Record, l: int) -> float:
-    """The same of all devices of a lane."""
-    energy = 0.0
-    if s.devices[l] > 0:
-        at = worked(s, l, tilt_of(s, l), rate_of(s, l))
-        for i in range(s.devices[l]):
-            energy += stored_in(s, l, i, at)
-    return energy
-
-
-@compiled
 def store_devices(s: Record, l: int, at: Worked, share: float, sample: Floats) -> None:
     """Keep force, displacement, dissipated and stored energy of each device of a lane.
 

@@ -575,15 +575,12 @@ def load_system(s: Record, l: int, system: Record) -> None:
 @compiled
 def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
     """The building's modes at rest, in a direction."""
-    damping = 0.0
     for of in range(system.n):
         r = axis * system.n + of
         s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[of], system.two_xi_omega[of]
         s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[of], system.shear_weight[of]
         s.acceleration_weight[r, l] = system.acceleration_weight[of]
         s.q[r, l], s.dq[r, l], s.seen_q[r, l], s.seen_force[r, l] = 0.0, 0.0, 0.0, 0.0
-        damping += system.Gamma[of] * system.Gamma[of] * system.two_xi_omega[of]
-    s.damping_sum[axis, l] = damping
     s.bend_ratio[l] = max(s.bend_ratio[l], system.bend_ratio)
 
 
