@@ -34,6 +34,7 @@ from rpscli.sweep.run.resume import all_keys, remember, resume
 from rpscli.sweep.run.runner import Finish, Progress, run
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, judged, rate_notes
+from rpscli.sweep.steps import step_notes
 from rpscli.sweep.store import Store
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Table, tabulate
@@ -200,6 +201,7 @@ class StudyRun:
             notes = [*self.summary.notes, *scale_notes(self.table), *unjudged]
             notes += rate_notes(self.layout)
             found.notes += [f"statistics: {note}" for note in notes]
+            found.notes += step_notes(self.table, self.context)
         for request in self.layout.study.reports:
             try:
                 self._report(request, look, found)

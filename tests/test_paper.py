@@ -45,7 +45,7 @@ NUMBERS = {
     "a published pulse": ("a block of 1 m by 3 m is 0.46873 g",),
     "second integrator": ("motion of 223 impacts", "less than 1e-9 of"),
     "Table 3": (
-        "36 probabilities of overturning from 3600 histories", "mean difference of 0.016",
+        "36 probabilities of overturning from 3600 histories", "mean difference of 0.017",
         "44 % of all impacts",
     ),
     "documented": ("in 90 % of the half", "44 motions for 576 buildings"),
@@ -131,9 +131,7 @@ def test_a_published_pulse() -> None:
 def test_second_integrator(fema_record: RecordLoader) -> None:
     row = ROWS[4]
     other = simulate(oracle_podium(row.storeys, row.tan_alpha, row.rho), *recorded(row))
-    settings = rpscli.TimeHistorySettings(
-        free_vibration=10.0, recontact_rule="relative", accuracy=16.0
-    )
+    settings = rpscli.TimeHistorySettings(free_vibration=10.0, accuracy=16.0)
     ours = rpscli.demand(
         podium(row.storeys, row.tan_alpha, row.rho), fema_record("farfield/17/a"), settings
     )

@@ -1,4 +1,4 @@
-"""What one column carries: weight, overturning moment, shock of impacts (Theory (8.7), (8.8))."""
+"""What one column carries: weight, overturning moment, shocks (Theory (8.7), (8.8), (13.19))."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.trace import Event, Trace
+from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
 
@@ -33,12 +34,26 @@ class AxialForces:
     """When an outer row would first lift off [s]; None if never."""
 
 
+def no_bound(name: str, structure: PodiumStructure) -> str:
+    """Why a result of both components is no bound of what a column carries; empty if it is one."""
+    if name not in ("max_column_shear", "max_column_force", "min_column_force"):
+        return ""
+    axial = name != "max_column_shear"
+    left_out = structure.left_out_of_columns(both=True, axial=axial)
+    if not left_out:
+        return ""
+    return (
+        f"{name} under both components is known without {listed(left_out, 'and')} only, and may be"
+        " several times as large with it: no limit can be set on it"
+    )
+
+
 def axial_forces(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> AxialForces:
     """Axial forces of single columns from a trace that is dense beside the vertical period."""
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
-    shocked = shock(structure, trace.time, events)
+    shocked = shock(structure, trace, events)
     uneven, ratio, lift_off = np.zeros_like(shocked), None, None
-    if structure.rows:
+    if structure.rows and trace.y is None:
         rows = np.array(structure.rows) - np.mean(structure.rows)
         lever = float(np.mean(rows**2) / np.max(np.abs(rows)))
         moment = overturning_moment(structure, trace)
@@ -81,29 +96,48 @@ def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
     return t.normal_top * beside + weighs
 
 
-def shock(structure: PodiumStructure, time: Array, events: Sequence[Event]) -> Array:
-    """What impacts add to the force under the building (samples,) [N]."""
+def in_shocks(structure: PodiumStructure, trace: Trace) -> NDArray[np.bool_]:
+    """Samples of passes that floors cannot follow (13.19), none of one component (samples,)."""
+    if trace.azimuth_rate is None:
+        return np.zeros(len(trace.time), dtype=bool)
+    rate = np.hypot(trace.rotation_rate, trace.rotation * trace.azimuth_rate)
+    return np.asarray(structure.shock_time * rate > trace.rotation)
+
+
+def jumps(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> tuple[Array, Array]:
+    """When |theta'-| + |theta'+| of impacts acts [s], what theta' gains in shocks, and how much."""
+    found = [
+        (event.time, abs(event.rotation_rate_before) + abs(event.rotation_rate_after))
+        for event in events
+        if event.kind == "impact"
+    ]
+    shocked = in_shocks(structure, trace)
+    (rows,) = np.nonzero(shocked[1:] & shocked[:-1])
+    at = np.concatenate([[time for time, _ in found], trace.time[rows + 1]])
+    gained = np.diff(trace.rotation_rate)[rows]
+    return at, np.concatenate([[size for _, size in found], gained])
+
+
+def shock(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> Array:
+    """What impacts and shocks add to the force under the building (samples,) [N]."""
     # 2 B (|w-| + |w+|) on the beam rings in the floors, a chain of equal vertical springs.
+    time = trace.time
     building = structure.superstructure
-    found = np.zeros_like(time)
-    impacts = [event for event in events if event.kind == "impact"]
-    if building is None or building.vertical_period is None or not impacts:
-        return found
+    if building is None or building.vertical_period is None:
+        return np.zeros_like(time)
+    at, jump = jumps(structure, trace, events)
     width = 2.0 * structure.bearing.semi_diagonal * math.sin(structure.bearing.alpha)
-    at = np.array([event.time for event in impacts])
-    jumps = [abs(e.rotation_rate_before) + abs(e.rotation_rate_after) for e in impacts]
-    last = np.searchsorted(at, time, side="right") - 1
-    rings = last >= 0
-    for w, mass in zip(*building.vertical_modes, strict=True):
-        xi = VERTICAL_DAMPING
-        free = w * math.sqrt(1.0 - xi * xi)
-        root = complex(-xi * w, free)
-        # Of a jump by 1 the acceleration is the real part of this times exp(root t).
-        unit = complex(2.0 * xi * w, -w * w * (1.0 - 2.0 * xi * xi) / free)
-        amplitudes, amplitude = np.empty(len(at), complex), 0j
-        for i, jump in enumerate(jumps):
-            amplitude = amplitude * np.exp(root * (at[i] - at[max(i - 1, 0)])) + width * jump * unit
-            amplitudes[i] = amplitude
-        since = time[rings] - at[last[rings]]
-        found[rings] += mass * (amplitudes[last[rings]] * np.exp(root * since)).real
-    return found
+    w, mass = building.vertical_modes
+    xi = VERTICAL_DAMPING
+    free = w * math.sqrt(1.0 - xi * xi)
+    root = -xi * w + 1j * free
+    # Of a jump by 1 the acceleration is the real part of this times exp(root t).
+    unit = 2.0 * xi * w - 1j * w * w * (1.0 - 2.0 * xi * xi) / free
+    amplitudes, amplitude = np.zeros((len(at) + 1, len(w)), complex), np.zeros(len(w), complex)
+    between = np.exp(np.outer(np.diff(at, prepend=at[:1]), root))
+    for i, each in enumerate(jump):
+        amplitude = amplitude * between[i] + width * each * unit
+        amplitudes[i] = amplitude
+    last = np.searchsorted(at, time, side="right") - 1  # -1 is the row of zeros behind
+    since = np.where(last >= 0, time - np.append(at, 0.0)[last], 0.0)
+    return np.asarray((amplitudes[last] * np.exp(np.outer(since, root))).real @ mass)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar, overload
 
 import numpy as np
 
@@ -13,12 +13,14 @@ from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
 from rpscli.analyses.kernels.systems import longest_free_vibration, paired_systems, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
+from rpscli.errors import UsageError
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import frozen
 
 Item = TypeVar("Item")
+Motion: TypeAlias = GroundMotion | MotionComponents
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,28 +61,59 @@ def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> l
     return [found[i] for i in range(len(requests))]
 
 
+@overload
 def demand(
     structure: PodiumStructure,
-    record: GroundMotion | MotionComponents,
+    record: Motion,
     settings: TimeHistorySettings | None = None,
     *,
     vertical: GroundMotion | None = None,
-) -> Demand:
-    """Largest demands of one history: those of `time_history`, without its samples.
+) -> Demand: ...
+@overload
+def demand(
+    structure: PodiumStructure,
+    record: Sequence[Motion],
+    settings: TimeHistorySettings | None = None,
+) -> list[Demand]: ...
+def demand(
+    structure: PodiumStructure,
+    record: Motion | Sequence[Motion],
+    settings: TimeHistorySettings | None = None,
+    *,
+    vertical: GroundMotion | None = None,
+) -> Demand | list[Demand]:
+    """Largest demands of a history: those of `time_history`, without its samples.
 
     Parameters
     ----------
     structure
         Podium, bearings and building.
     record
-        Horizontal ground acceleration, or all components of it.
+        Horizontal ground acceleration, or all components of it; or a sequence of such motions,
+        whose histories are followed side by side.
     settings
         Accuracy, tolerance, limits.
     vertical
-        Vertical ground acceleration with the same time step, positive upwards.
+        Vertical ground acceleration with the same time step, positive upwards, of a single record.
+
+    Returns
+    -------
+    The demands, or a list of them in the order of the motions. No history depends on the others.
+
+    Raises
+    ------
+    UsageError
+        If `vertical` comes with several motions: `MotionComponents(x, vertical=...)` holds both.
     """
-    chosen, motion = require_inputs(structure, record, settings, vertical)
-    return demands([Request(structure, motion, chosen)])[0]
+    if isinstance(record, GroundMotion | MotionComponents) or not isinstance(record, Sequence):
+        chosen, motion = require_inputs(structure, record, settings, vertical)
+        return demands([Request(structure, motion, chosen)])[0]
+    if vertical is not None:
+        raise UsageError(
+            "vertical goes with a single record; give MotionComponents(x, vertical=...) for each"
+        )
+    inputs = [require_inputs(structure, each, settings, None) for each in record]
+    return demands([Request(structure, motion, chosen) for chosen, motion in inputs])
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:

@@ -14,6 +14,7 @@ from rpscli.analyses.settings import require_structure
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.model.uplifted_state import UpliftedState, uplifted_state
+from rpscli.physics import geometry
 from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
@@ -246,9 +247,9 @@ def linearised_matrices(
 
 def _base_mass(structure: PodiumStructure, state: UpliftedState) -> float:
     """Inertia of columns and cap beam against 2 R theta [kg]."""
-    S = state.squared_distance
-    columns = 0.25 * structure.columns_mass * (structure.bearing.inertia_ratio - 1.0 + S)
-    return columns + structure.cap_beam_mass * S
+    columns, beam = structure.bearing.inertia_ratio - 1.0, 1.0 + 4.0 * structure.gamma
+    A = geometry.inertia(columns, beam, beam, state.squared_distance, 0.0)
+    return 0.25 * structure.columns_mass * A
 
 
 def _of_devices(structure: PodiumStructure, state: UpliftedState) -> tuple[float, float]:

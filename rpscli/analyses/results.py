@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.column_forces import AxialForces
+from rpscli.analyses.column_forces import AxialForces, in_shocks
 from rpscli.analyses.fixed_base import (
     FixedBaseResponse,
     floor_speeds,
@@ -243,12 +243,7 @@ class TimeHistoryResult(Demand):
     @property
     def left_out_of_columns(self) -> tuple[str, ...]:
         """What they do not hold, and the key that would give it."""
-        if self.both_components and self.structure.storeys:
-            return (
-                "the overturning moment of the building (known under one component)",
-                "the shock of impacts (known under one component)",
-            )
-        return self.structure.left_out_of_columns
+        return self.structure.left_out_of_columns(both=self.both_components)
 
     @property
     def overturning_ratio(self) -> float | None:
@@ -291,16 +286,8 @@ class TimeHistoryResult(Demand):
             return None
         bottom = trace.size("shear_bottom") > coefficient * trace.normal_bottom
         top = trace.size("shear_top") > coefficient * trace.normal_top
-        slides = np.flatnonzero((top | bottom) & ~self._passes_by)
+        slides = np.flatnonzero((top | bottom) & ~in_shocks(self.structure, trace))
         return float(trace.time[slides[0]]) if len(slides) else None
-
-    @property
-    def _passes_by(self) -> NDArray[np.bool_]:
-        """Samples in passes that take less than an impact, whose forces are an impulse's."""
-        t, own = self.trace, self.structure.impact_law.contact_time
-        if t.azimuth_rate is None:
-            return np.zeros(len(t.time), dtype=bool)
-        return np.asarray(own * np.hypot(t.rotation_rate, t.rotation * t.azimuth_rate) > t.rotation)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -320,8 +307,9 @@ class TimeHistoryResult(Demand):
             )
         elif self.axial and self.min_column_force < 0.0:
             notes.append(
-                "the shock of impacts (and the overturning moment) exceeds the weight on a column,"
-                " whose axial force would be negative; the model assumes that all columns stand"
+                "the shock of impacts or passes (and the overturning moment) exceeds the weight on"
+                " a column, whose axial force would be negative; the model assumes that all columns"
+                " stand"
             )
         notes += self._on_bed()
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])

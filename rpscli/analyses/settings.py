@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
 
 from rpscli.errors import require_kind
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
-
-RULES = ("limit", "relative")
-"""What floors keep at re-contact."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +21,6 @@ class TimeHistorySettings:
         section 3), for at most `LONGEST_FREE_VIBRATION`.
     recontact_tolerance
         After an impact the storey locks when the next excursion stays below this times alpha.
-    recontact_rule
-        What the floors keep at re-contact: ``limit``, what the bounces left out would have made of
-        their velocity, so that maxima approach their limit in proportion to the tolerance;
-        ``relative``, their velocity relative to the cap beam, so that they approach it as the
-        square root.
     overturning_limit
         The structure counts as overturned at this times theta_cr, at most where the columns lie
         down and the model ends (`Bearing.largest_rotation`).
@@ -48,7 +39,6 @@ class TimeHistorySettings:
 
     free_vibration: float | None = None
     recontact_tolerance: float = 1e-6
-    recontact_rule: Literal["relative", "limit"] = "limit"
     overturning_limit: float = 2.0
     accuracy: float = 1.0
     max_events: int = 100_000
@@ -60,7 +50,6 @@ class TimeHistorySettings:
         rules = {
             "free_vibration": (free is None or 0.0 <= free < math.inf, "None or finite and >= 0"),
             "recontact_tolerance": (0.0 <= self.recontact_tolerance < 1.0, "from 0 to below 1"),
-            "recontact_rule": (self.recontact_rule in RULES, f"one of {', '.join(RULES)}"),
             "overturning_limit": (0.0 < self.overturning_limit < math.inf, "finite and > 0"),
             "accuracy": (0.0 < self.accuracy < math.inf, "finite and > 0"),
             "max_events": (1 <= self.max_events <= 10**9, "from 1 to 1e9"),

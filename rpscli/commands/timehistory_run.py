@@ -108,7 +108,7 @@ def compute(
     request: HistoryRequest, conditions: Sequence[Condition], look: Look, terminal: Terminal
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
-    from rpscli.analyses.neighbours import steps_warning
+    from rpscli.analyses.column_forces import no_bound
     from rpscli.analyses.timehistory import time_history
     from rpscli.report.bundles import floor_spectra_files, timehistory_files
     from rpscli.report.study.statistics import verdict_document
@@ -118,14 +118,12 @@ def compute(
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):
         result = time_history(case.structure, ground, case.analysis)
-        sensitive = steps_warning(result)
     request.folder.add_all(timehistory_files(result, case.title, look))
     if request.floor_spectra:
         request.folder.add_all(floor_spectra_files(result, case.title, look))
     found = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
     demands = {name: math.nan if each is None else float(each) for name, each in found.items()}
     document = _document(request, result)
-    document["warnings"] += [sensitive] if sensitive else []
     verdicts: list[Verdict] = []
     error: RpsError | None = AnalysisError(result.failure) if result.failure else None
     if error is None:
@@ -133,6 +131,8 @@ def compute(
         limits = [*with_friction(limits, case.structure), *conditions]
         for limit in limits:
             needs = LIMITS[limit.name].needs if limit.name in found else ""
+            if result.both_components and (why := no_bound(limit.name, result.structure)):
+                raise UsageError(f"{limit.source}: {why}")
             partial = needs == "columns" and result.left_out_of_columns
             if needs and (found[limit.name] is None or partial):
                 raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")

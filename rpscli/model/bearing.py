@@ -268,9 +268,10 @@ class Bearing:
     def _end_displacement(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
         """How far the middle of an end moves across and upwards, and the contact from there [m]."""
         x = np.abs(np.asarray(rotation, dtype=float))
-        rolled = np.minimum(x, self.beta)
-        r = 0.0 if self.is_flat else self.radius
-        along, above = self.half_width + r * np.sin(rolled), r * (1.0 - np.cos(rolled))
-        reach = self.half_width + r * rolled
-        across = reach - (along * np.cos(x) + above * np.sin(x))
-        return across, along * np.sin(x) - above * np.cos(x), reach
+        y = np.minimum(x, self.beta)
+        return geometry.end_displacement(
+            self.half_width,
+            0.0 if self.is_flat else self.radius,
+            (y, np.sin(y), 1.0 - np.cos(y)),
+            (np.sin(x), 1.0 - np.cos(x)),
+        )

@@ -228,8 +228,8 @@ def _make_bed(structure: Standing, u: float) -> Bed:
     phase, gradual = b.rocking if b.is_flat else b.rolling, contact.kind == "plane"
     sine, cosine, columns = math.sin(u), math.cos(u), structure.columns_mass
     B, C = (f(phase, cosine, sine) for f in (geometry.contact_arm, geometry.contact_height))
-    inertia = b.inertia_ratio - 1.0 + (1.0 + 4.0 * gamma) * C * C
-    lifted = inertia + (1.0 + 4.0 * gamma * (1.0 + structure.eta)) * B * B
+    masses = b.inertia_ratio - 1.0, 1.0 + 4.0 * gamma, 1.0 + 4.0 * gamma * (1.0 + structure.eta)
+    inertia, lifted = geometry.inertia(*masses, C * C, 0.0), geometry.inertia(*masses, C * C, B * B)
     sink = 2.0 / 3.0 * math.sin(b.alpha) * math.sqrt(u) if gradual else 0.0
     arm = (B - sink / math.sqrt(u)) / u
     spring = 2.0 * structure.weight * arm / (columns * b.semi_diagonal)

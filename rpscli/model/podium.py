@@ -26,6 +26,9 @@ from rpscli.shown import Shown, with_unit
 Array: TypeAlias = NDArray[np.float64]
 
 MOST_COLUMNS = 10**9
+USUAL_SHOCK = 0.025
+"""`PodiumStructure.shock_time` where no vertical period is known [s]: of one of .1 s."""
+
 MOST_DEVICES = 8
 """A structure has no more; equal devices are one with the sum of their forces and stiffnesses."""
 
@@ -165,17 +168,35 @@ class PodiumStructure(Shown):
             return f"devices of the kind {kind} are followed in one plane only; leave them out"
         return ""
 
+    def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:
+        """What forces of single columns do not hold, and what would give it.
+
+        Parameters
+        ----------
+        both
+            Whether both horizontal components act.
+        axial
+            Of axial forces; else of shears.
+        """
+        building, found = self.superstructure, []
+        if not (axial or both):
+            return ()
+        if axial and building is not None and (both or not self.rows):
+            key = "known under one component" if both else "podium.plan"
+            found.append(f"the overturning moment of the building ({key})")
+        if both and building is None:
+            found.append(f"the shock of passes shorter than {1e3 * self.shock_time:g} ms")
+        elif building is not None and building.vertical_period is None:
+            what = f"passes shorter than {1e3 * self.shock_time:g} ms" if both else "impacts"
+            found.append(f"the shock of {what} (superstructure.vertical_period)")
+        return tuple(found)
+
     @property
-    def left_out_of_columns(self) -> tuple[str, ...]:
-        """What axial forces of single columns do not hold, and the key that would give it."""
-        building = self.superstructure
-        keys = {
-            "the overturning moment of the building (podium.plan)": self.rows,
-            "the shock of impacts (superstructure.vertical_period)": (
-                building and building.vertical_period
-            ),
-        }
-        return () if building is None else tuple(what for what, given in keys.items() if not given)
+    def shock_time(self) -> float:
+        """Passes near upright that take less are shocks to what stands above [s] (13.19)."""
+        above = self.superstructure
+        period = None if above is None else above.vertical_period
+        return USUAL_SHOCK if period is None else period / 4.0
 
     @property
     def storeys(self) -> int:

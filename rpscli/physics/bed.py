@@ -3,6 +3,9 @@
 In full contact, BEDDED, the tilt is a signed number within -phi_u and phi_u with B = 0 and C = C_u:
 constants of a phase like others, with `bed_k` and `bed_c`. Beyond it a plane end lifts gradually,
 by `sink` and `root` of what `laws` takes from both arms.
+
+phi_u is that of the weight. Where the ground accelerates upwards, lifted ends may turn back what
+the bed pushes out: then the storey is held there, STUCK with `bed_back`, until either lets it go.
 """
 
 from __future__ import annotations
@@ -28,6 +31,7 @@ def load_bed(s: Record, l: int, system: Record) -> None:
     """Begin a history on its bed, or on rigid ends."""
     s.bed_u[l], s.fade[l] = system.bed_uplift, 0.0
     s.bed_energy[l], s.bedded_time[l], s.impact_number[l] = 0.0, 0.0, 0.0
+    s.bed_back[l] = 0.0
     if system.bed_full > 0.0:
         s.fade[l] = 1.0 / (system.bed_full - system.bed_uplift)
 

@@ -41,6 +41,7 @@ from rpscli.physics.laws import (
     stands,
     tilt_of,
     ways_of,
+    without_shock,
 )
 from rpscli.physics.peaks import middle_of, peak, turning_value
 from rpscli.physics.quintic import (
@@ -67,9 +68,10 @@ WITHIN = 1.5
 SURELY = 1.0 - 1e-9
 """Room for the rounding of either side."""
 
-NEARLY, AS_MUCH = 0.95, 0.999
-"""Steps that end above this part of the largest force so far, or of the largest friction demand,
-are looked at within. As long as columns rock |F|/N hardly leaves tan(alpha)."""
+NEARLY = 0.999
+"""Steps that may pass this part of the largest force so far, with what the base shear may be within
+them above their ends, are looked at within. As long as columns rock |F|/N hardly leaves
+tan(alpha)."""
 
 
 @inlined
@@ -247,26 +249,35 @@ Measures: TypeAlias = tuple[float, float, float, float, float, float]
 def measures_of(
     s: Record,
     l: int,
+    stays: float,
     beam: tuple[float, float],
     lift: float,
     V: tuple[float, float],
     ground: tuple[float, float],
     g_up: float,
 ) -> Measures:
-    """Measures of contacts; where nothing stands on the columns their upper ends demand nothing."""
-    top, bottom, N_top, N_bottom = contact_forces(s, l, beam[0], lift, V[0], ground[0], g_up)
+    """Measures of contacts; where nothing stands on the columns their upper ends demand nothing.
+
+    In a shock `stays` is 0, else 1: forces are those without it (13.19), and what friction they ask
+    for says nothing.
+    """
+    lift *= stays
+    top, bottom, N_top, N_bottom = contact_forces(
+        s, l, stays * beam[0], lift, V[0], ground[0], g_up
+    )
     top, bottom = abs(top), abs(bottom)
     if ways_of(s) == 2:
-        y, low, _, _ = contact_forces(s, l, beam[1], lift, V[1], ground[1], g_up)
+        y, low, _, _ = contact_forces(s, l, stays * beam[1], lift, V[1], ground[1], g_up)
         top, bottom = math.sqrt(top * top + y * y), math.sqrt(bottom * bottom + low * low)
     upper = s.cap_beam_mass[l] + s.floors_mass[l]
     lower, loaded = upper + s.columns_mass[l], upper > 0.0
     demand = top / (N_top if N_top > 0.0 else 1.0)
     demand = demand if N_top > 0.0 else math.inf
     demand_bottom = bottom / (N_bottom if N_bottom > 0.0 else 1.0)
+    demand_bottom = demand_bottom if N_bottom > 0.0 else math.inf
     return (
-        demand if loaded else 0.0,
-        demand_bottom if N_bottom > 0.0 else math.inf,
+        demand if loaded and stays > 0.0 else 0.0,
+        demand_bottom if stays > 0.0 else 0.0,
         N_top / (upper * s.gravity[l] if loaded else 1.0) if loaded else math.inf,
         N_bottom / (lower * s.gravity[l]),
         top,
@@ -275,12 +286,13 @@ def measures_of(
 
 
 @inlined
-def is_shock(s: Record, l: int, x: float, rate: tuple[float, float]) -> bool:
-    """Whether a motion is part of a pass that takes less than `shock_time`: an impact's impulse."""
-    if ways_of(s) == 1:
-        return False
-    own = s.shock_time[l]
-    return bool(own * own * (rate[0] * rate[0] + rate[1] * rate[1]) > x * x)
+def bulge(s: Record, l: int) -> float:
+    """What the base shear may be within the step above both ends [N]."""
+    square = 0.0
+    for axis in range(ways_of(s)):
+        change = s.new_dV[axis, l] - s.dV[axis, l]
+        square += change * change
+    return WITHIN / 8.0 * s.h[l] * math.sqrt(square)  # type: ignore[no-any-return]
 
 
 @compiled
@@ -298,16 +310,22 @@ def observe_contacts(s: Record) -> None:
         x, n, t, _, _ = polar(s, l, tilt, rate)
         beam, g_up = s.new_shaking[0, l] - ground, s.g_up[l] + time * s.g_up_slope[l]
         V = s.new_V[0, l] + s.drive[0, l] + s.tied[l] * n
+        stays = without_shock(s, l, x, rate)
+        V_y += s.tied[l] * t
         found = measures_of(
-            s, l, (beam, beam_y), s.new_lift[l], (V, V_y + s.tied[l] * t), (ground, ground_y), g_up
+            s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), g_up
         )
-        rises = (found[0] > AS_MUCH * s.friction_top[l]) | (found[4] > NEARLY * s.shear_top[l])
-        rises |= found[1] > AS_MUCH * s.friction_bottom[l]
-        rises |= found[5] > NEARLY * s.shear_bottom[l]
-        rises |= found[3] < 1.0 - NEARLY * (1.0 - s.normal_bottom[l])
-        rises |= found[3] > 1.0 + NEARLY * (s.heavy_bottom[l] - 1.0)
-        rises |= found[2] < 1.0 - NEARLY * (1.0 - s.normal_top[l])
-        s.contacts_rise[l] = 1.0 if rises & (not is_shock(s, l, x, rate)) else 0.0
+        more, heavier = bulge(s, l), s.diameter[l] * s.share[l] / s.one[l] * s.tan_a[l]
+        heavier *= more / s.gravity[l]
+        rises = found[4] + more > NEARLY * s.shear_top[l]
+        rises |= found[5] + more > NEARLY * s.shear_bottom[l]
+        more /= s.weigh[l] * s.diameter[l] * s.gravity[l] * s.columns_mass[l] * 0.5
+        rises |= found[0] + more > NEARLY * s.friction_top[l]
+        rises |= found[1] + more > NEARLY * s.friction_bottom[l]
+        rises |= found[3] - heavier < 1.0 - NEARLY * (1.0 - s.normal_bottom[l])
+        rises |= found[3] + heavier > 1.0 + NEARLY * (s.heavy_bottom[l] - 1.0)
+        rises |= found[2] - heavier < 1.0 - NEARLY * (1.0 - s.normal_top[l])
+        s.contacts_rise[l] = 1.0 if rises else 0.0
     if ways_of(s) == 2:
         for l in range(lanes_of(s)):
             lever = torsion(s, l)
@@ -344,8 +362,8 @@ def torsion(s: Record, l: int) -> float:
 
 
 @compiled
-def measures_within(s: Record, l: int, t: float) -> tuple[bool, Measures]:
-    """Measures of contacts a fraction t into the step; first whether they are no shock.
+def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
+    """Measures of contacts a fraction t into the step; first 0 if they are those of a shock.
 
     The tilt is on the quintic through both ends, the base shear on the cubic; what accelerates
     follows by the laws.
@@ -375,8 +393,8 @@ def measures_within(s: Record, l: int, t: float) -> tuple[bool, Measures]:
     place = place_with(s, l, x, w, dw)
     motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_up)
     V = V_x + drive_x + s.tied[l] * n, V_y + drive_y + s.tied[l] * azimuth
-    found = measures_of(s, l, (motion.beam_x, motion.beam_y), motion.lift, V, (a_x, a_y), g_up)
-    return not is_shock(s, l, x, rate), found
+    stays, beam = without_shock(s, l, x, rate), (motion.beam_x, motion.beam_y)
+    return stays, measures_of(s, l, stays, beam, motion.lift, V, (a_x, a_y), g_up)
 
 
 @compiled
@@ -412,13 +430,10 @@ def raise_contacts(s: Record, l: int) -> None:
     first, start = measures_within(s, l, 0.0)
     second, middle = measures_within(s, l, 0.5)
     third, end = measures_within(s, l, 1.0)
-    if first:
-        raise_by(s, l, start)
-    if second:
-        raise_by(s, l, middle)
-    if third:
-        raise_by(s, l, end)
-    if first and second and third:
+    raise_by(s, l, start)
+    raise_by(s, l, middle)
+    raise_by(s, l, end)
+    if first * second * third > 0.0:
         turned = (
             turning_value(start[0], middle[0], end[0]),
             turning_value(start[1], middle[1], end[1]),
@@ -471,9 +486,9 @@ def observe_start(s: Record, l: int) -> None:
     elif stands(s, l):
         push_at_rest(s, l, V_x, a_x, g_up)
     V = V_x + s.drive[0, l] + s.tied[l] * n, V_y + s.tied[l] * t
-    found = measures_of(s, l, (s.shaking[0, l] - a_x, beam_y), s.lift[l], V, (a_x, a_y), g_up)
-    if not is_shock(s, l, x, rate) and (s.moves[l] > 0.0 or is_held(s, l)):
-        raise_by(s, l, found)
+    if s.moves[l] > 0.0 or is_held(s, l):
+        stays, beam = without_shock(s, l, x, rate), (s.shaking[0, l] - a_x, beam_y)
+        raise_by(s, l, measures_of(s, l, stays, beam, s.lift[l], V, (a_x, a_y), g_up))
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)
         raise_devices(s, l, at, at, at)

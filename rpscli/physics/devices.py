@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from rpscli.physics import geometry
 from rpscli.physics.compile import compiled
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import (
@@ -56,6 +57,8 @@ from rpscli.physics.state import (
     Record,
 )
 
+end_displacement = compiled(geometry.end_displacement)
+
 
 class Worked(NamedTuple):
     """How the devices of a lane are worked at a motion."""
@@ -97,17 +100,13 @@ def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float,
     a tendon is longer by e = 2 E. Seen from the contact, which lies B + r x from that place along
     the ground while rolling and B + r beta while rocking, de/dx = 2 cos(psi) times that distance.
     """
-    sine, cosine = math.sin(x), math.cos(x)
-    less = 2.0 * math.sin(0.5 * x) ** 2
-    B, r = s.half_width[l], s.arc_radius[l]
-    reach = B + r * x
-    across, upwards = B * less + r * (x - sine), B * sine + r * less
-    if s.rolls[l] == 0.0 and s.beta[l] > 0.0:
-        sine_end, cosine_end = math.sin(s.beta[l]), math.cos(s.beta[l])
-        reach = B + r * s.beta[l]
-        along, above = B + r * sine_end, r * (1.0 - cosine_end)
-        across = reach - (along * cosine + above * sine)
-        upwards = along * sine - above * cosine
+    y = x if s.rolls[l] > 0.0 else s.beta[l]
+    across, upwards, reach = end_displacement(
+        s.half_width[l],
+        s.arc_radius[l],
+        (y, math.sin(y), 2.0 * math.sin(0.5 * y) ** 2),
+        (math.sin(x), 2.0 * math.sin(0.5 * x) ** 2),
+    )
     distance = math.sqrt(across * across + upwards * upwards)
     if x < 0.0:  # on from upright as it came there, where a step may try
         distance = -distance
@@ -319,7 +318,16 @@ def set_limits(s: Record, l: int) -> None:
     right = s.tan_a[l] * weigh
     s.limit_right[l], s.limit_left[l] = right, right
     s.held_right[l], s.held_left[l] = elastic + friction, elastic + friction
-    if s.phase[l] == STUCK:
+    if s.bed_back[l] > 0.0:  # outwards as the lifted ends, inwards as the bed
+        at, back = place_of(s, l, s.x[l]), R * s.bed_back[l]
+        missing = R * (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
+        out, held_out = at.Bv / at.C * weigh, elastic + friction + missing / at.C
+        s.limit_right[l], s.held_right[l] = out, held_out
+        s.limit_left[l], s.held_left[l] = 0.0, friction - elastic - back
+        if s.side[l] < 0.0:
+            s.limit_right[l], s.held_right[l] = 0.0, friction - elastic - back
+            s.limit_left[l], s.held_left[l] = out, held_out
+    elif s.phase[l] == STUCK:
         at, side = place_of(s, l, s.x[l]), s.side[l]
         missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
         elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
@@ -338,7 +346,8 @@ def push_at_rest(s: Record, l: int, V: float, a_g: float, g_up: float) -> float:
     growing tilts: -1 to 1.
     """
     R, side = 0.5 * s.diameter[l], s.side[l]
-    if s.friction_force[l] + s.friction_moment[l] == 0.0:
+    # Between bed and lifted ends the columns hold what they can too, up to where they let go.
+    if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
         return 0.0
     action = side * R * (s.load[l] * a_g - s.share[l] * V)
     per_N = R * s.share[l]
@@ -431,8 +440,11 @@ def watched(  # noqa: PLR0911 -- a law each
 @compiled
 def change_law(s: Record, l: int, log: Record, which: int) -> bool:
     """What a watched value that fell below zero stands for; True if friction now holds the tilt."""
-    if which == 0:
-        s.tilt_rate[0, l], s.v[l] = 0.0, 0.0
+    if which == 0:  # what goes round goes on
+        _, n, t, _, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+        s.v[l], s.tilt_rate[0, l] = 0.0, 0.0
+        if ways_of(s) == 2:
+            s.tilt_rate[0, l], s.tilt_rate[1, l] = -t * q, n * q
         reset_yielded_tendons(s, l)
         return True
     second = which > SLOTS

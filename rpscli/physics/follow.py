@@ -389,7 +389,7 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
     system, log, phase = systems[0], output.log, s.phase[l]
     if kind == LET_GO:
         if phase == STUCK:
-            slide(s, l, log, s.which[l])
+            slide(s, l, system, log, s.which[l])
         else:
             uplift(s, l, system, log, s.which[l])
         return
@@ -458,15 +458,19 @@ def hold(s: Record, l: int, system: Record) -> None:
 
 
 @compiled
-def slide(s: Record, l: int, log: Record, side: int) -> None:
-    """Leave a tilt that friction held, to the right or to the left."""
+def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
+    """Leave a tilt that friction held, or the end of the bed, to the right or to the left."""
     phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
-    s.direction[l] = side * s.side[l]
+    out = side * s.side[l]
+    s.direction[l] = out if has_friction(s, l) else 1.0
     log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
     s.phase[l], s.moves[l] = (BEDDED if s.bed_k[l] > 0.0 else phase), 1.0
+    if s.bed_back[l] > 0.0:
+        s.bed_back[l] = 0.0
+        enter_phase(s, l, system, first_phase(system) if out > 0.0 else BEDDED)
     renew(s, l)
     # At the threshold it is zero but for rounding, and about to grow.
-    s.a[l] = s.direction[l] * max(s.direction[l] * s.a[l], 0.0)
+    s.a[l] = out * max(out * s.a[l], 0.0)
     s.bend[0, l] = s.side[l] * s.a[l]
 
 

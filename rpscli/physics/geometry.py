@@ -23,8 +23,8 @@ with  C' = B  and  B' = c - C, so one sine and one cosine give the rest, Theory 
     u_b / 2R = u0 + c x - q sin x - p cos x        (odd in theta)
     v_b / 2R = v0 + p sin x - q cos x              (even in theta)
 
-Every function takes floats or arrays, and is compiled by `equation_of_motion` for the
-kernels; this module itself needs numpy only.
+Every function takes floats or arrays; `laws` compiles them for the kernel. This module itself needs
+numpy only.
 """
 
 from __future__ import annotations
@@ -77,9 +77,28 @@ def contact_height(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
     return phase.c + phase.p * sin_x - phase.q * cos_x
 
 
-def squared_distance(phase: Phase, C: float) -> float:
-    """S(x) = B^2 + C^2, from C alone."""
-    return phase.p * phase.p + phase.q * phase.q + phase.c * (2.0 * C - phase.c)
+def end_displacement(
+    half_width: float,
+    radius: float,
+    rolled: tuple[Value, Value, Value],
+    turned: tuple[Value, Value],
+) -> tuple[Value, Value, Value]:
+    """How far the middle of an end moves across and upwards, and the contact from there.
+
+    Parameters
+    ----------
+    half_width, radius
+        B of the flat part and r of the arc, in any unit.
+    rolled
+        y = min(x, beta), sin(y) and 1 - cos(y).
+    turned
+        sin(x) and 1 - cos(x).
+    """
+    y, sin_y, less_y = rolled
+    sin_x, less_x = turned
+    across = half_width * less_x + radius * ((y - sin_y) + (sin_y * less_x - less_y * sin_x))
+    upwards = half_width * sin_x + radius * (sin_y * sin_x - less_y * (1.0 - less_x))
+    return across, upwards, half_width + radius * y
 
 
 def cap_beam_displacement(phase: Phase, x: Value, cos_x: Value, sin_x: Value) -> Value:
@@ -90,6 +109,19 @@ def cap_beam_displacement(phase: Phase, x: Value, cos_x: Value, sin_x: Value) ->
 def cap_beam_lift(phase: Phase, cos_x: Value, sin_x: Value) -> Value:
     """v_b / 2R (Theory (1.5))."""
     return phase.v0 + phase.p * sin_x - phase.q * cos_x
+
+
+def inertia(columns: float, beam: float, lifted: float, C2: Value, B2: Value) -> Value:
+    """A(x): inertia against the tilt, over N m_c R^2 (2.2).
+
+    Parameters
+    ----------
+    columns, beam, lifted
+        I_o - 1, 1 + 4 gamma and 1 + 4 gamma (1 + eta): floors are lifted, and not pushed.
+    C2, B2
+        Squares of the arms of the cap beam's path and of its lift, over R.
+    """
+    return columns + beam * C2 + lifted * B2
 
 
 def arm_root(phase: Phase) -> float:

@@ -82,10 +82,6 @@ def log_event(
         theta = 0.0 if s.phase[l] == FULL_CONTACT else sign * s.x[l]
         entry.time, entry.kind, entry.theta, entry.energy_lost = time_of(s, l), kind, theta, lost
         entry.theta_dot_before, entry.theta_dot_after = sign * before, sign * after
-        entry.azimuth, entry.least_tilt, entry.nearness, entry.loss_share = (
-            azimuth_of(s, l),
-            0.0,
-            0.0,
-            0.0,
-        )
+        entry.azimuth, entry.least_tilt, entry.nearness = azimuth_of(s, l), 0.0, 0.0
+        entry.loss_share = 0.0
     return row

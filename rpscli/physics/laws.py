@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics import plane_bed
+from rpscli.physics import geometry, plane_bed
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Record
 
@@ -60,6 +60,8 @@ def sines(x: float) -> tuple[float, float, float]:
     return x - excess, z * ((low + high * z4) + (C18 + z * C20) * z4 * z4), excess
 
 
+contact_arm, contact_height = inlined(geometry.contact_arm), inlined(geometry.contact_height)
+cap_beam_lift, inertia = compiled(geometry.cap_beam_lift), inlined(geometry.inertia)
 patch_at = inlined(plane_bed.patch)
 patch_integral = compiled(plane_bed.patch_integral)
 
@@ -70,6 +72,12 @@ def patch(s: Record, l: int, x: float) -> tuple[float, float]:
     lifts = (s.root[l] > 0.0) & (x > 0.0)
     w, slope = patch_at(x if lifts else 1.0, s.bed_u[l], s.fade[l])
     return (w if lifts else 0.0), (slope if lifts else 0.0)
+
+
+@inlined
+def phase_of(s: Record, l: int) -> geometry.Phase:
+    """Constants of a lane's phase of motion."""
+    return geometry.Phase(s.p[l], s.q0[l], s.c[l], s.u0[l], s.v0[l])
 
 
 class Place(NamedTuple):
@@ -94,11 +102,12 @@ class Place(NamedTuple):
 def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
     """Geometry and inertia of a lane at a tilt, where the patch is known."""
     sine, less, excess = sines(x)
-    p, q0, c = s.p[l], s.q0[l], s.c[l]
-    B, C = p * (1.0 - less) + q0 * sine, c + p * sine - q0 * (1.0 - less)
-    B_slope, one, both = c - C, s.one[l], s.one[l] + s.four[l]
+    phase = phase_of(s, l)
+    p, q0 = phase.p, phase.q
+    B, C = contact_arm(phase, 1.0 - less, sine), contact_height(phase, 1.0 - less, sine)
+    B_slope, one, both = phase.c - C, s.one[l], s.one[l] + s.four[l]
     Bv, Bv_slope = B - s.root[l] * w, B_slope - s.root[l] * dw
-    A = s.io_1[l] + one * (C * C) + both * (Bv * Bv)
+    A = inertia(s.io_1[l], one, both, C * C, Bv * Bv)
     D = one * (C * B) + both * (Bv * Bv_slope)
     if ways_of(s) == 1:
         return Place(B, C, Bv, Bv_slope, A, D, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
@@ -260,7 +269,7 @@ def tilting_energy(s: Record, l: int, at: Place, p: float, q: float) -> float:
 def lift_at(s: Record, l: int, x: float) -> float:
     """v_b of rigid ends [m] (1.5)."""
     sine, less, _ = sines(x)
-    return float(s.diameter[l] * (s.v0[l] + s.p[l] * sine - s.q0[l] * (1.0 - less)))
+    return float(s.diameter[l] * cap_beam_lift(phase_of(s, l), 1.0 - less, sine))
 
 
 @compiled
@@ -360,6 +369,19 @@ def contact_forces(
     shear_bottom = shear + s.columns_mass[l] * (0.5 * beam + a_g)
     normal = (s.cap_beam_mass[l] + s.floors_mass[l]) * (g_up + lift) + s.pull[l]
     return shear, shear_bottom, normal, normal + s.columns_mass[l] * (g_up + 0.5 * lift)
+
+
+@inlined
+def without_shock(s: Record, l: int, x: float, rate: tuple[float, float]) -> float:
+    """0 where a motion is part of a pass that takes less than `shock_time`: an impact's impulse.
+
+    Beam and columns are turned over within it; forces of contacts are then those of a beam that
+    keeps its velocity, and what turns it is added afterwards, if it is known (13.19).
+    """
+    if ways_of(s) == 1:
+        return 1.0
+    own = s.shock_time[l]
+    return 0.0 if own * own * (rate[0] * rate[0] + rate[1] * rate[1]) > x * x else 1.0
 
 
 @compiled

@@ -20,6 +20,7 @@ from rpscli.physics.laws import (
     rate_of,
     tilt_of,
     ways_of,
+    without_shock,
 )
 from rpscli.physics.quintic import quintic, slope, value
 from rpscli.physics.run import Output
@@ -108,6 +109,7 @@ def write_row(
     place = place_with(s, l, x, w, dw)
     motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_up)
     sign, beam = s.side[l] if ways == 1 else 1.0, beam_at(s, l, tilt, rate)
+    stays = without_shock(s, l, x, rate)
     sample.phase, sample.theta_ddot = s.phase[l], sign * motion.a
     sample.theta, sample.theta_dot = (sign * x, sign * p) if moves else (0.0, 0.0)
     sample.azimuth = math.atan2(sine, cosine) if ways == 2 and moves and x > 0.0 else 0.0
@@ -119,9 +121,9 @@ def write_row(
     sample.energy_stored = energy_at(s, l, systems[0], tilt, rate) + stored
     for axis in range(ways):
         V, drive, a_g, n = (V_x, drive_x, a_x, cosine) if axis == 0 else (V_y, drive_y, a_y, sine)
-        faster = motion.beam_x if axis == 0 else motion.beam_y
-        pushed = V + drive + s.tied[l] * n
-        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, motion.lift, pushed, a_g, g_up)
+        faster = stays * (motion.beam_x if axis == 0 else motion.beam_y)
+        pushed, lift = V + drive + s.tied[l] * n, stays * motion.lift
+        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, lift, pushed, a_g, g_up)
         sample.beam[axis], sample.base_shear[axis] = beam[axis], V
         sample.shear_top[axis], sample.shear_bottom[axis] = F, F_bottom
         sample.normal_top, sample.normal_bottom = N, N_bottom

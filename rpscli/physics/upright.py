@@ -33,6 +33,7 @@ from rpscli.physics.laws import (
     strain_energy,
     tilt_of,
     tilting_energy,
+    total_energy,
     ways_of,
 )
 from rpscli.physics.state import (
@@ -42,6 +43,7 @@ from rpscli.physics.state import (
     PASS,
     RECONTACT,
     ROLLING,
+    STICKING,
     STUCK,
     UPLIFT,
     Record,
@@ -250,20 +252,22 @@ def settles(s: Record, l: int, system: Record, log: Record, near: bool) -> bool:
 
 @compiled
 def bounces_left_out(s: Record, l: int, system: Record) -> float:
-    """What the bounces left out add to the floors' velocity, over u_b', as the rule asks for.
+    """What the bounces left out add to the floors' velocity, over u_b' (3.5).
 
-    Friction lets the beam come back with k of the rate with which it left: k = 1 without it, 0 if
-    it holds the beam where it turns (11.17), (11.18).
+    Floors that do not jump keep theirs: the beam stops. Friction lets the beam come back with k of
+    the rate with which it left: k = 1 without it, 0 if it holds the beam where it turns (11.17),
+    (11.18).
     """
-    bounces = system.bounces
     friction = s.friction_force[l] + s.friction_moment[l]
-    if bounces > 0.0 and system.floors_jump > 0 and friction > 0.0:
+    if system.floors_jump == 0:
+        return 1.0
+    k = 1.0
+    if friction > 0.0:
         at = place_of(s, l, 0.0)
         moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
         slowed = s.share[l] * moment / at.A
         k = math.sqrt(max(0.0, 1.0 + 2.0 * slowed / s.a[l]))
-        bounces = (1.0 + k) / (1.0 + system.restitution * k)
-    return float(bounces)
+    return float((1.0 + k) / (1.0 + system.restitution * k))
 
 
 @compiled
@@ -364,3 +368,35 @@ def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) ->
         lost = 0.5 * inertia_unit(s, l) * A * (outside * outside - s.v[l] * s.v[l])
     s.energy_lost[l] += lost
     log_event(s, l, log, IMPACT if enters else UPLIFT, before, s.v[l], lost)
+    renew(s, l)
+    hold_between(s, l, system, log)
+
+
+HELD = 1e-6
+"""Of phi_u: what would come back from less far is held there."""
+
+
+@compiled
+def hold_between(s: Record, l: int, system: Record, log: Record) -> None:
+    """Hold a slow storey at phi_u where the bed pushes out and lifted ends turn back."""
+    phase, side, v, a = s.phase[l], s.side[l], s.v[l], s.a[l]
+    outwards = 1.0 if phase != BEDDED else -1.0
+    if not (outwards * a < 0.0 and v * v < 2.0 * abs(a) * HELD * system.bed_uplift):
+        return
+    moving, before = total_energy(s, l, system), beam_now(s, l)
+    enter_phase(s, l, system, first_phase(system) if phase == BEDDED else BEDDED)
+    renew(s, l)
+    if outwards * s.a[l] < 0.0:  # it goes on there
+        enter_phase(s, l, system, phase)
+        renew(s, l)
+        return
+    enter_phase(s, l, system, first_phase(system))
+    set_polar(s, l, system.bed_uplift, side, 0.0, 0.0, 0.0)
+    move_floors(s, l, before)
+    lost = moving - total_energy(s, l, system)
+    s.energy_lost[l] += lost
+    log_event(s, l, log, STICKING, v, 0.0, lost)
+    s.bed_back[l] = system.bed_k * system.bed_uplift / system.bed_height
+    enter_phase(s, l, system, STUCK)
+    set_limits(s, l)
+    renew(s, l)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from paper_structures import Array, needs_compiled_kernels, podium
@@ -14,7 +12,6 @@ from rpscli.records.source import load_record
 
 pytestmark = [needs_compiled_kernels, pytest.mark.evidence("steps, events, energy", "exact")]
 
-SETTINGS = TimeHistorySettings(recontact_rule="relative")
 ACCURATE = 1e-4
 """Relative error of the largest rotation below which a history counts as accurate."""
 
@@ -28,7 +25,7 @@ def errors(seeds: range, seconds: int) -> Array:
             for rho in (0.25, 0.5, 1.5):
                 structure = podium(storeys, 0.15, rho)
                 coarse, fine = (
-                    demand(structure, record, replace(SETTINGS, accuracy=accuracy))
+                    demand(structure, record, TimeHistorySettings(accuracy=accuracy))
                     for accuracy in (1.0, 16.0)
                 )
                 if fine.outcome == "survived":

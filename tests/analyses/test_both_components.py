@@ -65,9 +65,9 @@ def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> 
         # Samples every 10 ms miss little of what vibrates with 0.05 s and more.
         assert np.all(seen <= largest * (1.0 + 1e-9))
         assert np.all(seen > 0.97 * largest)
-    # In a pass shorter than an impact the forces are an impulse's, which demands leave out.
+    # In a pass that floors cannot follow friction demands are those of other instants.
     assert t.azimuth_rate is not None
-    slow = 2e-3 * np.hypot(t.rotation_rate, t.rotation * t.azimuth_rate) <= t.rotation
+    slow = 2.5e-2 * np.hypot(t.rotation_rate, t.rotation * t.azimuth_rate) <= t.rotation
     friction = np.max((t.size("shear_bottom") / t.normal_bottom)[slow])
     assert 0.9 * result.friction_demand < friction <= result.friction_demand * (1.0 + 1e-9)
     assert result.max_cap_beam_displacement_x == pytest.approx(

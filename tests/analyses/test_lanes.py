@@ -17,12 +17,12 @@ from paper_structures import (
     waves,
 )
 
-from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.demand import Request, demand, demands
 from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.errors import CaseError
+from rpscli.errors import CaseError, UsageError
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
@@ -47,7 +47,7 @@ LAWS = [ImpactLaw("rigid"), ImpactLaw("flexible"), ImpactLaw("value", 0.85)]
 
 SETTINGS = [
     TimeHistorySettings(free_vibration=0.5),
-    TimeHistorySettings(free_vibration=0.3, accuracy=2.0, recontact_rule="relative"),
+    TimeHistorySettings(free_vibration=0.3, accuracy=2.0),
     TimeHistorySettings(free_vibration=1.0, recontact_tolerance=1e-4),
     TimeHistorySettings(),
     TimeHistorySettings(free_vibration=0.5, initial_rotation=-0.03),
@@ -206,3 +206,15 @@ def test_histories_without_end_are_refused_before_they_begin() -> None:
         CaseError, match="which must not be more than 1e\\+10: the record is too long"
     ):
         demands([Request(podium(0), MotionComponents(record), TimeHistorySettings())])
+
+
+def test_a_sequence_of_motions_gives_a_sequence_of_demands() -> None:
+    structure = podium(2, 0.15, 0.5)
+    found = demand(structure, RECORDS)
+    alone = [demand(structure, record) for record in RECORDS]
+    assert [bits(each) for each in found] == [bits(each) for each in alone]
+    assert demand(structure, []) == []
+    with pytest.raises(UsageError, match="goes with a single record"):
+        demand(structure, RECORDS, vertical=UPWARDS[0])  # type: ignore[call-overload]
+    with pytest.raises(UsageError, match="given as str"):
+        demand(structure, ["a.at2"])  # type: ignore[list-item]

@@ -310,7 +310,7 @@ def test_the_shock_of_impacts_is_that_of_a_chain_of_springs() -> None:
 
 
 def test_what_forces_leave_out_is_said() -> None:
-    assert len(with_plan(1, (), None).left_out_of_columns) == 2
-    assert len(with_plan(1, (0.0, 8.0), None).left_out_of_columns) == 1
-    assert with_plan(1, (0.0, 8.0), 0.1).left_out_of_columns == ()
-    assert podium(0).left_out_of_columns == ()  # a beam has neither
+    assert len(with_plan(1, (), None).left_out_of_columns(both=False)) == 2
+    assert len(with_plan(1, (0.0, 8.0), None).left_out_of_columns(both=False)) == 1
+    assert with_plan(1, (0.0, 8.0), 0.1).left_out_of_columns(both=False) == ()
+    assert podium(0).left_out_of_columns(both=False) == ()  # a beam has neither

@@ -105,7 +105,6 @@ def test_a_frame_has_no_yardstick() -> None:
         ("free_vibration", math.inf),
         ("recontact_tolerance", -1e-9),
         ("recontact_tolerance", math.nan),
-        ("recontact_rule", "both"),
         ("overturning_limit", math.nan),
         ("accuracy", 0.0),
         ("accuracy", math.nan),

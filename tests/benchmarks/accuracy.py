@@ -52,7 +52,7 @@ class Answer(NamedTuple):
 
 def settings(accuracy: float) -> TimeHistorySettings:
     """Without free vibration, so that every history is as long as its record."""
-    return TimeHistorySettings(recontact_rule="relative", free_vibration=0.0, accuracy=accuracy)
+    return TimeHistorySettings(free_vibration=0.0, accuracy=accuracy)
 
 
 def rps(

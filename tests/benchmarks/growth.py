@@ -30,7 +30,7 @@ POINTS = (10, 100, 1000)
 CORE_POINTS = 512
 ALONE = 1_000_000_000
 """Histories from which on lanes would be worth while: never."""
-SETTINGS = TimeHistorySettings(recontact_rule="relative", free_vibration=0.0)
+SETTINGS = TimeHistorySettings(free_vibration=0.0)
 
 
 def exponents(sizes: Sequence[float], costs: Sequence[float]) -> list[str]:

@@ -38,8 +38,8 @@ FEW = 8
 """Records for scipy, which takes seconds each."""
 ALONE = 1_000_000_000
 """Histories from which on lanes would be worth while: never."""
-SETTINGS = TimeHistorySettings(recontact_rule="relative", free_vibration=0.0)
-TIGHT = TimeHistorySettings(recontact_rule="relative", free_vibration=0.0, accuracy=8.0)
+SETTINGS = TimeHistorySettings(free_vibration=0.0)
+TIGHT = TimeHistorySettings(free_vibration=0.0, accuracy=8.0)
 COLUMNS = (
     "storeys",
     "program",

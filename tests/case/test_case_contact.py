@@ -45,7 +45,6 @@ REFUSED = [
     ((PLANE, "podium.impact.law=rigid"), "floors would jump"),
     ((EDGES, "podium.impact={law: value, restitution: 0.9}"), "floors would jump"),
     ((PLANE, "analysis.recontact_tolerance=1e-8"), "recontact_tolerance has no effect"),
-    ((EDGES, "analysis.recontact_rule=relative"), "recontact_rule has no effect"),
     (
         (
             "podium.contact={kind: plane, settlement: 0.05 mm}",

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from rpscli.case.case import case_from_mapping, parse_case
+from rpscli.case.schema.keys import REMOVED
 from rpscli.errors import CaseError
 
 Faults = Callable[..., str]
@@ -146,6 +147,15 @@ def test_an_unknown_key_is_the_only_fault(
     assert "is not a key of the format" in message
     assert hint in message
     assert "\n" not in message
+
+
+def test_a_removed_key_says_what_holds_without_it(building: str, faults: Faults) -> None:
+    for key, now in REMOVED.items():
+        with pytest.raises(CaseError) as refused:
+            parse_case(building, name="c.yaml", overrides=[f"{key}=1"])
+        assert str(refused.value) == f"--set {key}=1: {key} is gone: {now}; remove the key"
+    message = faults(building, "analysis: {", "analysis: {recontact_rule: limit, ")
+    assert message.startswith("c.yaml:19:12: analysis.recontact_rule is gone: floors always get")
 
 
 def test_a_section_under_the_wrong_parent(frame: str, faults: Faults) -> None:

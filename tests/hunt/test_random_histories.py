@@ -169,7 +169,6 @@ def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> T
     chosen = TimeHistorySettings(
         initial_rotation=start,
         recontact_tolerance=logarithmic(random, 1e-8, 1e-4),
-        recontact_rule=random.choice(["limit", "relative"]),
         overturning_limit=min(random.uniform(1.0, 2.0), largest),
     )
     return (

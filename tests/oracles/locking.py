@@ -1,8 +1,6 @@
-"""A vibration that goes on after the rocking: what the two ways of locking leave of it."""
+"""A vibration that goes on after the rocking: what locking leaves of it."""
 
 from __future__ import annotations
-
-from typing import Literal
 
 import numpy as np
 
@@ -11,12 +9,8 @@ from .devices import OracleDevice
 from .second_integrator import simulate
 from .storey_lagrangian import OracleSystem
 
-Locking = Literal["relative", "limit"]
 
-
-def drifts_at_the_end(
-    system: OracleSystem, tolerance: float, locking: Locking, *devices: OracleDevice
-) -> Array:
+def drifts_at_the_end(system: OracleSystem, tolerance: float, *devices: OracleDevice) -> Array:
     """Drifts at the last samples, upright, after a release from 0.02 rad."""
     result = simulate(
         system,
@@ -25,7 +19,6 @@ def drifts_at_the_end(
         free_vibration=2.0,
         recontact_tolerance=tolerance,
         initial_rotation=0.02,
-        locking=locking,
         devices=devices,
     )
     assert result.theta[-1] == 0.0

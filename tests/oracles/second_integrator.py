@@ -77,7 +77,6 @@ class _Simulation:
         *,
         recontact: float,
         overturning: float,
-        locking: Literal["relative", "limit"],
         rtol: float,
         devices: tuple[OracleDevice, ...] = (),
     ) -> None:
@@ -85,7 +84,7 @@ class _Simulation:
         self.full_contact = FullContact(self.lagrangian)
         self.negligible = recontact * np.arctan(system.tan_alpha)
         self.limit = overturning * self.lagrangian.critical_rotation
-        self.locking, self.rtol = locking, rtol
+        self.rtol = rtol
         self.equipment = Equipment(self.lagrangian, devices, self.limit)
         self.y: Array = np.zeros(2 * self.lagrangian.storeys + 2 + len(devices))
         self.contact: Contact | None = None
@@ -362,26 +361,31 @@ class _Simulation:
         self.energy_lost += before - sum(motion.energies(beyond, self.y))
 
     def lock(self, beyond: Contact, back: float) -> None:
-        """Full contact instead of the endless rest of shrinking excursions.
+        """Full contact instead of the endless rest of shrinking excursions."""
+        motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
+        if motion.storeys > 0:
+            beam_rate = 2.0 * motion.half_height * self.y[n1]
+            self.y[n1 + 1] += self.left_out(beyond, back) * beam_rate
+        self.y[n1] = 0.0
+        self.contact, self.step = None, np.inf
 
-        "relative" keeps the drift rates. "limit" adds what the excursions left out would have done
-        to them: between impacts absolute floor velocities stay, so each excursion of speed w turns
+    def left_out(self, beyond: Contact, back: float) -> float:
+        """What excursions that are not followed add to the first drift rate, over u_b'.
+
+        Between impacts absolute floor velocities stay, so each excursion of speed w turns
         u_b' = c w into -k c w, where k^2 is the ratio of the accelerations to zero and from it: 1
         without friction, and 0 if that holds the storey where it stops. The first drift rate gains
         (1 + k) c w; over the alternating series with ratio -e k that is (1 + k) c w/(1 + e k) if
         impacts keep the drift rates, and c w if they do not.
         """
-        motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
-        if self.locking == "limit" and motion.storeys > 0:
-            _, held = self.equipment.at_rest(beyond, 0.0)
-            slope = motion.cap_beam(0.0, rolling=beyond.rolling)[1]
-            friction = np.linalg.solve(motion.mass_matrix(slope), held * np.eye(n1)[0])[0]
-            k = math.sqrt(max(0.0, 1.0 - 2.0 * float(friction) / back))
-            e = motion.restitution
-            share = (1.0 + k) / (1.0 + e * k) if motion.system.law == "rigid" else 1.0
-            self.y[n1 + 1] += share * 2.0 * motion.half_height * self.y[n1]
-        self.y[n1] = 0.0
-        self.contact, self.step = None, np.inf
+        motion = self.lagrangian
+        if motion.system.law != "rigid":
+            return 1.0
+        _, held = self.equipment.at_rest(beyond, 0.0)
+        mass = motion.mass_matrix(motion.cap_beam(0.0, rolling=beyond.rolling)[1])
+        friction = float(held * np.linalg.inv(mass)[0, 0])
+        k = math.sqrt(max(0.0, 1.0 - 2.0 * friction / back))
+        return (1.0 + k) / (1.0 + motion.restitution * k)
 
 
 def simulate(
@@ -395,21 +399,18 @@ def simulate(
     overturning_limit: float = 2.0,
     rtol: float = 1e-10,
     initial_rotation: float = 0.0,
-    locking: Literal["relative", "limit"] = "relative",
     devices: tuple[OracleDevice, ...] = (),
 ) -> OracleResult:
     """Response to ground acceleration samples [m/s2], then to none for `free_vibration` seconds.
 
     The acceleration is linear between samples and drops to zero at the last one. It starts from
     rest: in full contact, or tilted by `initial_rotation` [rad] with the springs at ease.
-    `recontact_tolerance` is the least excursion after an impact that is still followed, over alpha;
-    `locking` says what becomes of the drift rates then (`_Simulation.lock`).
+    `recontact_tolerance` is the least excursion after an impact that is still followed, over alpha.
     """
     run = _Simulation(
         system,
         recontact=recontact_tolerance,
         overturning=overturning_limit,
-        locking=locking,
         rtol=rtol,
         devices=devices,
     )

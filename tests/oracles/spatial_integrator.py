@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853
@@ -49,7 +49,6 @@ class SpatialSimulation:
         axial: float | None = None,
         contact_time: float = 0.0,
         recontact: float = 1e-6,
-        locking: Literal["absolute", "relative"] = "absolute",
         rtol: float = 1e-11,
         limit: float = 2.0,
         tip: float = TIP,
@@ -67,7 +66,7 @@ class SpatialSimulation:
         self.fixed = [FullContact(type(plane)(way)) for way in (along_x, along_y)]
         self.alpha = math.atan(along_x.tan_alpha)
         self.contact_time, self.rtol, self.tip = contact_time, rtol, tip
-        self.negligible, self.locking = recontact * self.alpha, locking
+        self.negligible = recontact * self.alpha
         self.limit = limit * plane.critical_rotation
         self.restitution = type(plane)(replace(along_x, law="flexible")).restitution
         slope = plane.cap_beam(0.0, rolling=plane.beta > 0.0)[1]
@@ -375,21 +374,13 @@ class SpatialSimulation:
         self, ground: Array, slope: Array, tilt: float, twice_energy: float, time: float
     ) -> None:
         """Full contact if neither this pass nor the next swing would be seen."""
-        n, half = self.motion.storeys, self.half
-        beam, beam_rate = self.beam()
-        kept = self.y.copy()
-        if self.locking == "relative":
-            self.y[2:half] -= np.repeat(beam, n)
-            self.y[half + 2 :] -= np.repeat(beam_rate, n)
         push_x, push_y, hold = self.margin(ground, slope, 1.0)
         spare = hold[0] - math.hypot(push_x[0], push_y[0])
         height = math.inf if spare <= 0.0 else twice_energy / (2.0 * self.lever * spare)
         if max(tilt, height) < self.negligible:
-            self.y[:2] = self.y[half : half + 2] = 0.0
+            self.y[:2] = self.y[self.half : self.half + 2] = 0.0
             self.standing = True
             self.rests.append(time)
-        else:
-            self.y = kept
 
     def advance(self, ground: Array, slope: Array, duration: float) -> None:
         """Through one interval in which the ground is linear."""

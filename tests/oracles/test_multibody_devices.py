@@ -59,7 +59,6 @@ def gap(
         dt,
         free_vibration=duration - dt * (len(ag) - 1),
         initial_rotation=released,
-        locking="limit",
         devices=devices,
         rtol=1e-8,
     )

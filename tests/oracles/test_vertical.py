@@ -47,7 +47,7 @@ def test_the_force_under_the_floors(building: str, period: float) -> None:
     trace = denser_trace(result, 5e-4)
     weight, mass = structure.superstructure_mass * structure.gravity, structure.superstructure_mass
     carried = trace.normal_top * mass / (mass + structure.cap_beam_mass)
-    force = (carried + shock(ours, trace.time, result.events)) / weight
+    force = (carried + shock(ours, trace, result.events)) / weight
     assert resolved.carried is not None
     assert force.max() == pytest.approx(np.max(resolved.carried), rel=0.15)
     # the least is on the safe side: contacts of the engine take some milliseconds to close

@@ -25,15 +25,9 @@ class OneLane:
     first, then the floors.
     """
 
-    def __init__(
-        self,
-        structure: PodiumStructure,
-        phase: int,
-        side: float = 1.0,
-        settings: TimeHistorySettings | None = None,
-    ) -> None:
+    def __init__(self, structure: PodiumStructure, phase: int, side: float = 1.0) -> None:
         self.storeys, self.structure = structure.storeys, structure
-        self.system = stacked_systems([(structure, settings or TimeHistorySettings())])[0]
+        self.system = stacked_systems([(structure, TimeHistorySettings())])[0]
         self.state, self.log = records(STATE), records(EVENT, 0)
         s = self.s = self.state[0]
         s.n, s.side[0], s.dt[0] = structure.storeys, side, 0.01

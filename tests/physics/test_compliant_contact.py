@@ -401,3 +401,24 @@ def test_moments_and_stiffness_of_a_static_bed(kind: str, settlement: float) -> 
     ends = [strips(structure, settlement, x * (1.0 + h))[1] for h in (-0.01, 0.01)]
     arms = (ends[1] - ends[0]) / (0.02 * x) / (2.0 * b.semi_diagonal)
     np.testing.assert_allclose(path.lift_arm, arms, atol=2e-3 * sine)
+
+
+@pytest.mark.parametrize("upwards", [3.0, 6.0])
+@pytest.mark.parametrize("storeys", [0, 2])
+def test_under_sustained_upward_acceleration_edges_are_held_where_they_lift(
+    storeys: int, upwards: float
+) -> None:
+    """The bed's phi_u is that of the weight: in between the columns stand, and energy closes."""
+    structure = podium(storeys, Contact("edges", settlement=1e-4))
+    push = 1.3 * structure.uplift_acceleration * np.sin(0.4 * np.pi * np.arange(801) * 0.01)
+    record, above = ground(push, 0.01), ground(np.full(801, upwards), 0.01)
+    settings = TimeHistorySettings(free_vibration=2.0)
+    result = time_history(structure, record, settings, vertical=above)
+    held = [event for event in result.events if event.kind == "sticking"]
+    assert held
+    assert structure.bed is not None
+    u = structure.bed.uplift_rotation
+    assert [abs(event.rotation) for event in held] == pytest.approx([u] * len(held), rel=1e-12)
+    energy = result.energy
+    supplied = max(abs(energy.input), energy.impact, energy.damped, energy.bed)
+    assert abs(energy.residual) < 1e-6 * supplied  # over up to three hundred re-entries

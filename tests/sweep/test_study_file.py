@@ -45,6 +45,7 @@ def test_a_study_reads_its_case_axes_and_records(study_of: Make) -> None:
         ("[critical, 0.5, 0]", "0.5", ("study.yaml:7:37", "list of values")),
         ("[critical, 0.5, 0]", "{low: 0, hgh: 1, count: 2}", ("curvature_ratio.high?",)),
         ("curvature_ratio:", "curvature_ration:", ("study.yaml:7:5", "curvature_ratio?")),
+        ("podium.bearing.curvature_ratio:", "analysis.recontact_rule:", ("study.yaml:7:5", "gone")),
         ("[critical, 0.5, 0]", "[0.5, -0.2]", ("study.yaml:7:43", "-0.2", ">= 0", "flat ends")),
         ("0.20, 0.30]", "0.20, 0.12]", ("study.yaml:6:", "0.12")),
         ("- podium.bearing.curv", "- podium.bearing.slen", ("not a key", "curvature_ratio")),

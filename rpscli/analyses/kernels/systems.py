@@ -58,6 +58,7 @@ def paired_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]
     rows = pairs.view(_PLAIN, np.ndarray)
     # one length of step for both
     rows["step_rate"] = np.repeat(rows["step_rate"].reshape(-1, 2).max(axis=1), 2)
+    rows["step_error"] = [step_error(settings, PASSES_ERROR) for _, settings in both]
     return pairs
 
 
@@ -111,7 +112,8 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["gravity"] = structure.gravity
     record["restitution"] = structure.restitution
     record["inertia_axial"] = b.inertia_ratio_axial
-    record["contact_time"] = record["shock_time"] = structure.impact_law.contact_time
+    record["contact_time"] = structure.impact_law.contact_time
+    record["shock_time"] = structure.shock_time
     record["floors_jump"] = structure.impact_law.floors_jump
     fill_devices(record, structure)
     if (bed := structure.bed) is not None:
@@ -131,7 +133,6 @@ def fill_bed(record: Record, bed: Bed) -> None:
 def fill_devices(record: Record, structure: PodiumStructure) -> None:
     """The devices, each with the constants of its law."""
     record["columns"], record["devices"] = structure.columns, len(structure.devices)
-    record["linear_speed"] = linear_speed(structure)
     for i, device in enumerate(structure.devices):
         record["device_kind"][i] = DEVICE_KINDS[type(device)]
         constants = device.constants(structure)
@@ -166,20 +167,13 @@ def fill_settings(
     if structure.bed is not None:
         structure.bed.refuse_start(settings.initial_rotation)
     record["most_steps"] = MOST_POWER_STEPS
-    record["step_error"] = max(STEP_ERROR * settings.accuracy**-6, LEAST_ERROR)
+    record["linear_speed"] = linear_speed(structure, settings.accuracy)
+    record["step_error"] = step_error(settings)
     record["recontact_tolerance"] = settings.recontact_tolerance
-    record["bounces"] = bounces_left_out(structure) if settings.recontact_rule == "limit" else 0.0
     record["max_events"] = settings.max_events
     record["initial_rotation"] = settings.initial_rotation
     record["free_vibration"] = longest_free_vibration(structure, settings)
     record["until_rest"] = settings.free_vibration is None
-
-
-def bounces_left_out(structure: PodiumStructure) -> float:
-    """What impacts after re-contact would add to each floor's relative velocity, over u_b'."""
-    # The beam stops, floors keep their velocity but for its jumps: 2/(1 + e) with it, else 1
-    # (Theory (3.5)).
-    return 2.0 / (1.0 + structure.restitution) if structure.impact_law.floors_jump else 1.0
 
 
 def fill_building(record: Record, building: Superstructure) -> None:
@@ -225,6 +219,16 @@ orders 6 and 5 differ. Steps made for the fastest of several modes hardly ever c
 tilt itself changes faster, over one storey, in large rotations of short columns, past theta_cr
 under floors that weigh hundreds of them, or near upright, they are shorter."""
 
+PASSES_ERROR = 1 / 16
+"""Of that under both components: the wobble of tall buildings at small tilts, hundreds of passes
+each of which depends on the one before, ends too early with more. Rotations ask for a quarter."""
+
+
+def step_error(settings: TimeHistorySettings, share: float = 1.0) -> float:
+    """Largest error of a step, over the velocities of the tilt; a share of the usual one."""
+    return max(share * STEP_ERROR * settings.accuracy**-6, LEAST_ERROR)
+
+
 LEAST_ERROR = 1e-12
 """Below it the difference of both rules is rounding: their weights are up to 176."""
 
@@ -242,13 +246,14 @@ def uplifted_rate(structure: PodiumStructure) -> float:
     return max(frequency / uplifted_angle(structure), decay / UPLIFTED_DECAY)
 
 
-LINEAR_SPEEDS = 1e-8, 1e-6
+LINEAR_SPEEDS = 1e-9, 1e-7
 """Of sqrt(g R): up to the first of these velocities a power of it is taken as linear, too little to
-be felt; up to the second where the power would else decay faster than `FASTEST_POWER`."""
+be felt; up to the second where the power would else decay faster than `FASTEST_POWER`. Both at
+accuracy 1, which divides them."""
 
-FASTEST_POWER = 1e5
-"""Of a power of the velocity: its decay rate where it is taken as linear, if that can be had
-[1/s]."""
+FASTEST_POWER = 2e5
+"""Of a power of the velocity: its decay rate where it is taken as linear, over sqrt(g/R), if that
+can be had."""
 
 MOST_POWER_STEPS = 5e8
 """Of one history whose dampers shorten its steps: some minutes."""
@@ -262,18 +267,18 @@ def powers(structure: PodiumStructure) -> list[tuple[float, float]]:
     return [(coefficient, exponent) for coefficient, exponent in laws if exponent < 1.0]
 
 
-def linear_speed(structure: PodiumStructure) -> float:
+def linear_speed(structure: PodiumStructure, accuracy: float) -> float:
     """Up to this velocity of the cap beam a power of it is taken as linear [m/s]."""
-    unit = math.sqrt(structure.gravity * structure.bearing.semi_diagonal)
-    least, most = (share * unit for share in LINEAR_SPEEDS)
-    limit = FASTEST_POWER * least_base_mass(structure)
+    R, g = structure.bearing.semi_diagonal, structure.gravity
+    least, most = (share * math.sqrt(g * R) for share in LINEAR_SPEEDS)
+    limit = FASTEST_POWER * math.sqrt(g / R) * least_base_mass(structure)
     speeds = [(c / limit) ** (1.0 / (1.0 - exponent)) for c, exponent in powers(structure)]
-    return float(min(max([least, *speeds]), most))
+    return float(min(max([least, *speeds]), most)) / accuracy
 
 
 def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
     """A bound on steps a second, with those that a power of the velocity asks for about rest."""
-    speed = linear_speed(structure)
+    speed = linear_speed(structure, accuracy)
     damping = sum(c * speed ** (exponent - 1.0) for c, exponent in powers(structure))
     about_rest = damping / least_base_mass(structure) / UPLIFTED_DECAY
     rate = max(uplifted_rate(structure), bedded_rate(structure))

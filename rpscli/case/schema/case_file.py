@@ -370,12 +370,6 @@ class AnalysisSection(Section):
     """time after the record; auto = until rest or no new maximum is possible"""
     recontact_tolerance: Annotated[float, Quantity(above=0, below=1)] = 1e-6
     """an excursion below this part of alpha after an impact is contact"""
-    recontact_rule: Literal["limit", "relative"] = Field(
-        "limit",
-        description="limit: at re-contact floors get the velocity that the infinite series of"
-        " bounces would give them; relative: they keep their velocity relative to"
-        " the cap beam (converges slower)",
-    )
     initial_rotation: Annotated[float, Quantity(symbol="rad")] = 0.0
     """rotation from which the structure is released at rest; 0 = full contact"""
     overturning_limit: Annotated[

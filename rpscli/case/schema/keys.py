@@ -113,8 +113,17 @@ def suggestion_for(model: type[BaseModel], path: Path) -> Path | None:
     return None
 
 
+REMOVED = {
+    "analysis.recontact_rule": "floors always get what the bounces left out would give them"
+    " (was: limit)",
+}
+"""Keys of earlier versions, and what holds without them."""
+
+
 def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]:
     """The fault of an unknown key, and the known key it was taken for."""
+    if now := REMOVED.get(dotted(path)):
+        return Fault(path, f"{dotted(path)} is gone: {now}; remove the key", at_key=True), None
     suggestion = suggestion_for(model, path)
     siblings = fields_of(section_at(model, path[:-1]) or model)
     inside = [name for name in siblings if f"_{path[-1]}_" in f"_{name}_"]
@@ -176,7 +185,6 @@ SECTIONS = {
     "record.rotation": "13",
     "analysis": "10",
     "analysis.recontact_tolerance": "3, 10",
-    "analysis.recontact_rule": "3, 4",
     "analysis.initial_rotation": "3",
     "analysis.overturning_limit": "3",
     "analysis.gravity": "2",

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path as Folder
 from typing import NamedTuple, TypeAlias
 
+from rpscli.analyses.column_forces import no_bound
 from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of, with_friction
@@ -133,7 +134,7 @@ def _properties(
         building=b"".join(map(_digest, filter(None, (building, structure.superstructure_y)))),
         record=request,
         scale=1.0 if case.record is None else case.record.scale,
-        limits=_limits(study, case),
+        limits=_limits(study, case, both=both),
         lacking=lacking(study, case),
         doubts=(*case.doubts, *doubts_of_directions(structure, both=both)),
     )
@@ -148,13 +149,16 @@ def _request(study: Study, case: Case) -> RecordRequest | None:
         raise CaseError(str(error)) from None
 
 
-def _limits(study: Study, case: Case) -> tuple[Condition, ...]:
+def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
     """Limits of the study or, where it has none of its own, of the case; friction where given."""
     of_study = study.file.limits
     if of_study is not None:
         limits = conditions_of(of_study, "limits of the study")
     else:
         limits = conditions_of(case.limits, "limits of the case")
+    for limit in limits:
+        if both and (why := no_bound(limit.name, case.structure)):
+            raise CaseError(f"{limit.source}: {why}")
     return with_friction(limits, case.structure)
 
 
@@ -189,7 +193,7 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     "superstructure, flat part": lambda structure: structure.static_base_shear > 0.0,
     "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
     "podium.friction": lambda structure: structure.friction is not None,
-    "columns": lambda structure: not structure.left_out_of_columns,
+    "columns": lambda structure: not structure.left_out_of_columns(both=False),
     "contact": lambda structure: structure.bed is not None,
     "plane contact": lambda structure: (
         structure.contact.kind == "plane" and structure.bearing.is_flat

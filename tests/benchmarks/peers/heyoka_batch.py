@@ -66,6 +66,7 @@ class Rules(NamedTuple):
     ground: float
     building: Floats
     beam: float
+    left_out: float
     rolling: Phase
     rocking: Phase
     level: float
@@ -83,7 +84,8 @@ def rules_of(podium: Rocking) -> Rules:
         landing.turning,
         landing.ground,
         landing.building,
-        2.0 * podium.R * math.cos(podium.alpha),
+        landing.beam,
+        landing.left_out,
         podium.rolling,
         podium.rocking,
         podium.level,
@@ -124,7 +126,11 @@ def _land(y: Floats, lane: int, across: float, rules: Rules) -> bool:
     for i in range(2 * n + 2):
         back -= rules.building[i] * y[i, lane]
     y[0, lane] = ASIDE
-    return bool(back > 0.0 and rate * rate < rules.negligible * back)
+    stays = back > 0.0 and rate * rate < rules.negligible * back
+    if stays:
+        for i in range(n + 2, 2 * n + 2):
+            y[i, lane] += rules.left_out * rate
+    return bool(stays)
 
 
 @compiled

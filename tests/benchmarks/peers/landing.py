@@ -16,7 +16,9 @@ class Landing:
         n, gamma, eta = len(podium.masses), podium.gamma, podium.eta
         sine, cosine = math.sin(podium.alpha), math.cos(podium.alpha)
         self.storeys, self.restitution = n, podium.restitution
-        self.jump = 2.0 * podium.R * cosine * (1.0 - podium.restitution)
+        self.beam = 2.0 * podium.R * cosine
+        self.jump = self.beam * (1.0 - podium.restitution)
+        self.left_out = 2.0 / (1.0 + podium.restitution) * self.beam  # (3.5)
         self.negligible = 2.0 * NEGLIGIBLE * podium.alpha
         curve = podium.rolling.c
         A = podium.Io - 1.0 + 1.0 + 4.0 * gamma + 4.0 * gamma * eta * sine**2
@@ -45,4 +47,7 @@ class Landing:
         back = self.restoring + self.turning * rate * rate - self.ground * across
         back -= self.building @ y
         self.back = float(back)
-        return bool(back > 0.0 and rate * rate < self.negligible * back)
+        stays = back > 0.0 and rate * rate < self.negligible * back
+        if stays:
+            y[n + 2 :] += self.left_out * rate
+        return bool(stays)
