@@ -36,7 +36,7 @@ if TYPE_CHECKING:
         profile_stiffnesses,
     )
     from rpscli.records.ground_motion import GroundMotion, MotionComponents
-    from rpscli.records.source import load_components, load_record
+    from rpscli.records.loading import load_components, load_record
     from rpscli.records.spectrum import response_spectrum
     from rpscli.studies import Study, StudyResult, load_study
 
@@ -64,7 +64,7 @@ _HOMES = {
     ),
     "rpscli.records.ground_motion": ("GroundMotion", "MotionComponents"),
     "rpscli.records.spectrum": ("response_spectrum",),
-    "rpscli.records.source": ("load_components", "load_record"),
+    "rpscli.records.loading": ("load_components", "load_record"),
     "rpscli.studies": ("Study", "StudyResult", "load_study"),
 }
 

@@ -22,7 +22,7 @@ from paper_structures import RecordLoader
 from rpscli.analyses.kernels.compilation import KERNELS, compiled, is_ready
 from rpscli.physics.prepare import can_prepare, compile_whole, garbage_kept
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 # A loaded machine is no reason to fail: no test is timed.
 settings.register_profile("untimed", deadline=None)

@@ -27,7 +27,7 @@ from rpscli import user_cache
 from rpscli.cli import program
 from rpscli.errors import RecordError
 from rpscli.machine import available_cores
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.report.figures.look import quiet_matplotlib
 from rpscli.report.files import locked, write_whole
 from rpscli.sweep.run.runner import first_interrupt

@@ -74,7 +74,7 @@ def command(
     from rpscli.report.budget import budget_document, budget_files, budget_tables
 
     given = read_case(request, terminal)
-    motions = list(single_motions(records, motion))
+    motions = list(single_motions(records, motion, terminal.warn))
     grounds = all_made(partial(load_motion, given.case), motions, RpsError)
     inputs = {"record": motion_inputs(grounds[0]), "records": records, "period_ratio": period_ratio}
     source = motion_source(given.case, motions[0])
@@ -190,25 +190,24 @@ def _scaled(motion: MotionRequest, scale: float) -> MotionRequest:
 
 def _direction(case: Case, motion: MotionRequest, ground: MotionComponents) -> Wish:
     """Of one component both, in which it keeps its direction; of a source of both its first."""
-    from rpscli.records.pair import direction_of
-    from rpscli.records.source import parts_of, split_factor
+    from rpscli.records.source import Source
 
     own = case.record if motion.record is None else None
     source, alike = own.source if own else motion.record or "", _scaled(motion, ground.scale)
-    (plain, factor), parts = split_factor(source), parts_of(source)
+    of = Source.parse(source, case.folder if own else None)
     unturned = ("record.rotation=null",) if ground.y is not None else ()
     if own and own.y is not None:
         alone = (f"record.source={source}", "record.x=null", "record.y=null", *unturned)
         return "first component alone", alone, alike
-    if parts.pair is None:
+    if of.components is None:
         return "other component", (), "not known: the source names no second component"
-    cause, other = "first component alone", parts.pair[0]
+    cause, other = "first component alone", str(of.components[0])
     if ground.y is None:
-        pair, angle = direction_of(plain) or (re.sub(r"/[ab](?=$|\?)", "", plain), 0.0)
-        angle = 90.0 if parts.place.endswith("/b") else angle
-        options = ("both", f"rotation={-angle:g}" if angle else "", factor)
-        mark = "&" if "?" in pair else "?"
-        cause, other = "both components", f"{pair}{mark}{'&'.join(filter(None, options))}"
+        angle = 90.0 if of.place.endswith("/b") else of.angle or 0.0
+        both = of.without("angle").plus(both=None)
+        if of.scheme:
+            both = both.at(re.sub("/[ab]$", "", of.place))
+        cause, other = "both components", str(both.turned(-angle))
     if motion.record is not None:
         return cause, (), replace(alike, record=other, pair=None)
     return cause, (f"record.source={other}", *unturned), alike
@@ -218,7 +217,7 @@ def _records(
     case: Case, motions: Sequence[MotionRequest], grounds: Sequence[MotionComponents]
 ) -> Iterator[Wish]:
     """Those that are given; of a single one the far-field set, each alone at the PGA of that."""
-    from rpscli.records.source import expand_sources
+    from rpscli.records.loading import expand_sources
 
     found = list(zip(motions, grounds, strict=True))
     try:

@@ -68,7 +68,7 @@ def command(
     from rpscli.report.tables.analyses import history_columns
 
     given = read_case(request, terminal)
-    motions = list(single_motions(records, MotionRequest()))
+    motions = list(single_motions(records, MotionRequest(), terminal.warn))
     if len(motions) > 1:
         raise UsageError(f"--record: a model has one motion, not {len(motions)}; name one of them")
     ground = load_motion(given.case, motions[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -176,15 +176,20 @@ motion_options = gathered(
 """--record as `records`; --vertical, --scale and --scale-to as `motion`."""
 
 
-def single_motions(records: tuple[str, ...], request: MotionRequest) -> Iterator[MotionRequest]:
+def single_motions(
+    records: tuple[str, ...],
+    request: MotionRequest,
+    tell: Callable[[Iterable[str]], None] = lambda _: None,
+) -> Iterator[MotionRequest]:
     """One request for each motion that the sources stand for, sets and folders taken apart."""
     if not records:
         yield request
         return
     from rpscli.records.clusters import pairs
-    from rpscli.records.source import expand_sources
+    from rpscli.records.loading import expanded
 
-    single = expand_sources(records)
+    single, notes = expanded(records)
+    tell(f"--record {text}" for text in notes)
     if len(single) > 1 and request.vertical is not None:
         raise UsageError(f"--vertical {request.vertical}: belongs to one record, not {len(single)}")
     of = None if request.scale_to is None else _parsed_target(request.scale_to).of
@@ -203,17 +208,17 @@ def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
 
 def motion_source(case: Case, request: MotionRequest) -> Path | str:
     """Which record a motion is, whatever its scale: a file, or a source that is none."""
-    from rpscli.records.source import file_and_options
+    from rpscli.records.source import Source
 
     folder = case.folder if request.record is None else Path()
     given = case.record.source if request.record is None and case.record else request.record or ""
-    file = folder / file_and_options(given, folder)[0]
+    file = folder / Source.parse(given, folder).place
     return file if file.is_file() else given
 
 
 def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     """Read the motion; a `--record` stands in place of the whole `record` section of the case."""
-    from rpscli.records.source import load_components, load_record
+    from rpscli.records.loading import load_components, load_record
 
     given = case.record if request.record is None else None
     how: dict[str, Any] = {}
@@ -259,6 +264,7 @@ def _scaled_to(
     how: dict[str, Any],
 ) -> MotionComponents:
     """A motion by the factor that brings a measure of it, or of its pair, to a value."""
+    from rpscli.records.loading import load_record
     from rpscli.records.measures import (
         MEASURES,
         USUAL,
@@ -268,7 +274,6 @@ def _scaled_to(
         needs_period,
         pair_measure,
     )
-    from rpscli.records.source import load_record
 
     measure, period = target.measure, target.period
     if needs_period(measure) and period is None:

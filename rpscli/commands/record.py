@@ -60,8 +60,15 @@ def source_options(function: Command) -> Command:
         terminal: Terminal,
         **rest: Any,
     ) -> None:
-        from rpscli.records.source import load_components
+        from rpscli.records.loading import expanded, load_components
+        from rpscli.records.source import PAIRING, Source
 
+        if any(name in PAIRING for name, _ in Source.parse(source).options):
+            single, notes = expanded([source])
+            terminal.warn(notes)
+            if len(single) > 1:
+                raise UsageError(f"{source}: is {len(single)} pairs; name one: {single[0]}, ...")
+            source = single[0]
         found = load_components(source, dt=dt, units=units)
         if scale != 1.0:
             found = found.scaled(scale)
@@ -84,10 +91,10 @@ def record_folder(
     motions: Sequence[GroundMotion], output: OutputRequest, command: str, **inputs: Any
 ) -> OutputFolder:
     """The folder of a command's results; a record that is no file is known by its samples."""
-    from rpscli.records.source import file_and_options
+    from rpscli.records.source import Source
 
     motion, *others = motions
-    place = Path(file_and_options(motion.source)[0])
+    place = Path(Source.parse(motion.source).place)
     name = f"{motion.name.removesuffix('_x')}{BOTH}" if others else motion.name
     inputs |= {"source": motion.source} | ({"y": others[0].digest} if others else {})
     file = place if place.is_file() else None

@@ -175,11 +175,11 @@ def command(
     """
     from rpscli.records.codes import load_target
     from rpscli.records.filters import parse_filter
+    from rpscli.records.loading import expanded, load_components
     from rpscli.records.measures import USUAL
-    from rpscli.records.pair import together
     from rpscli.records.requirements import RULES as KNOWN
     from rpscli.records.selection import SelectionRequest, select
-    from rpscli.records.source import expand_sources, load_components
+    from rpscli.records.source import Source
     from rpscli.report.bundles import selection_files
     from rpscli.report.tables.motions import selection_document
 
@@ -192,8 +192,9 @@ def command(
     span, why = _range(structure, told, spectrum, isolated=asked is not None and asked.isolated)
     if periods is not None:
         span, why = periods, "as asked for"
-    single = expand_sources(sources)
-    usual: Component = USUAL if any(map(together, single)) else "component"
+    single, notes = expanded(sources)
+    terminal.warn(notes)
+    usual: Component = USUAL if any(Source.parse(text).both for text in single) else "component"
     of = component or (asked.of if asked and rules else None) or spectrum.of or usual
     request = SelectionRequest(
         count, span, factors, per_event, wanted_pgv, of, rules or spectrum.rules, structure
@@ -225,7 +226,7 @@ def command(
         force=output.force,
     )
     folder.add_all(selection_files(selection, place, look))
-    terminal.warn(_doubts(selection))
+    terminal.warn(_doubts(selection, structure))
     write(folder, terminal)
     missed = [
         f"not met: {rule.rule}, {rule.found}; required {rule.required}"
@@ -298,11 +299,18 @@ def _kept(
     return kept, left_out
 
 
-def _doubts(selection: Selection) -> Iterator[str]:
+def _doubts(selection: Selection, structure: Periods | None) -> Iterator[str]:
     """What a human should look at."""
     from rpscli.records.requirements import NOT_VERIFIED
 
     asked = selection.requirements
+    first, last = selection.periods[[0, -1]]
+    fixed = structure.fixed if structure else None
+    if fixed is not None and not first <= fixed <= last:
+        yield (
+            f"T1 = {fixed:.3g} s lies outside of the periods that are compared, {first:.3g} to"
+            f" {last:.3g} s: there nothing is known of the target"
+        )
     yield from (text for one in selection.chosen for m in one.motions for text in m.warnings)
     end = selection.periods[-1]
     usable = {one.name: one.motions[0].recording.usable_period for one in selection.chosen}
@@ -362,7 +370,8 @@ def _tables(
         "mean PGD, target's": f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m",
         "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
         "chosen among": f"{selection.candidates}"
-        + f"; {selection.refused} beyond the factors" * bool(selection.refused),
+        + f"; {selection.refused} beyond the factors" * bool(selection.refused)
+        + "; by exchange from many first choices, not of all sets",
     }
     if errors is not None:
         text = "largest errors of mean and deviation of ln Sa"

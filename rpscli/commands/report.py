@@ -115,7 +115,10 @@ def command(
             given, motions = earlier_case(earlier)
             typed: list[Asked] = [([each.record] if each.record else [], each) for each in motions]
         else:
-            given, motions = read_case(request, terminal), [*single_motions(records, asked)]
+            given, motions = (
+                read_case(request, terminal),
+                [*single_motions(records, asked, terminal.warn)],
+            )
             typed = [(records, asked)]
         name = given.case.name
         told = (given, motions, typed, conditions, look, earlier, terminal)

@@ -65,10 +65,7 @@ def command(
     Overturning is a result, not an error: see --fail-on. The limits of the case count as well.
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
-    from rpscli.records.source import repeated
-
-    motions = list(single_motions(records, motion))
-    terminal.warn(f"--record {text}" for text in repeated(records))
+    motions = list(single_motions(records, motion, terminal.warn))
     cases = all_made(lambda request: read_case(request, terminal), requests, CaseError)
     histories = [
         replace(history, floor_spectra=floor_spectra)

@@ -13,8 +13,9 @@ numbers sources so that those that hang together have one number, by their *reco
   `motion_x.at2` and `motion_y.at2`;
 * synthetic motions of one seed.
 
-Any other source is a recording of its own. Of one event are recordings whose files name an
-earthquake of the same name and year; other recordings are events of their own.
+Any other source is a recording of its own. Of one event are recordings whose files state the same
+origin time (K-NET, ESM) or name an earthquake of the same name and year; other recordings are
+events of their own.
 
 `pairs` tells which sources are measured as a pair, by `pair_measure`, and both components of these.
 """
@@ -27,10 +28,11 @@ from pathlib import Path
 from typing import Literal
 
 from rpscli.errors import RecordError
-from rpscli.records.families import OTHER_SCHEME, VERTICAL, family, right_angles
+from rpscli.records.families import VERTICAL, family, right_angles
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.loading import load_components
 from rpscli.records.measures import Of
-from rpscli.records.source import SourceParts, load_components, parts_of
+from rpscli.records.source import FILE, Source
 
 By = Literal["recordings", "events"]
 """What statistics take to be independent."""
@@ -41,11 +43,10 @@ Pair = tuple[str, str]
 
 def _families(sources: Sequence[str]) -> list[set[str]]:
     """Of each source the names of its recording: one, or those of both files of a pair."""
-    plain = [parts_of(source) for source in sources]
+    plain = [Source.parse(source) for source in sources]
     apart = right_angles(name for p in plain for name in (p.place, p.second) if name)
     return [
-        {family(name, source, apart) for name in (p.place, p.second) if name}
-        for source, p in zip(sources, plain, strict=True)
+        {family(p, name, apart) for name in (p.place, p.second) if name is not None} for p in plain
     ]
 
 
@@ -89,6 +90,8 @@ def _event(source: str, folder: Path | None) -> str | None:
 
 def event_of(motion: GroundMotion) -> str | None:
     """The earthquake of a motion, by name and year, where its file says so."""
+    if motion.recording.origin:
+        return f"at {motion.recording.origin}"
     # Without numbers of shocks: sets call `Northridge` what flatfiles call `Northridge-01`, and
     # shocks of one sequence are not independent.
     return earthquake(motion.recording.event or _told(motion)) or None
@@ -125,15 +128,15 @@ def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ..
     # Without `of` it is the pair where its recording stands in several directions among the
     # sources, at an angle or as both components: one factor then suits all of them. A measure `of`
     # a pair is that of every source.
-    plain = [parts_of(source) for source in sources]
+    plain = [Source.parse(source) for source in sources]
     if of == "component":
-        for source in (s for s, p in zip(sources, plain, strict=True) if p.turned or p.both):
-            raise RecordError(f"{source}: {ONE_FACTOR}")
+        for text in (p.text for p in plain if p.of_pair):
+            raise RecordError(f"{text}: {ONE_FACTOR}")
         return (None,) * len(sources)
-    members: dict[int, dict[tuple[str, bool], SourceParts]] = {}
+    members: dict[int, dict[tuple[str, bool], Source]] = {}
     numbers = _numbered(_families(sources))
     for number, p in zip(numbers, plain, strict=True):
-        members.setdefault(number, {})[p.place, p.turned] = p
+        members.setdefault(number, {})[p.place, p.of_pair and not p.both] = p
     found = []
     for source, number, p in zip(sources, numbers, plain, strict=True):
         known = _components(p, [*members[number].values()])
@@ -142,22 +145,24 @@ def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ..
                 f"{source}: has no second component, of: {of} is for pairs; name it by"
                 " second=FILE&angle=0, or take single components"
             )
-        several = of is not None or p.turned or p.both or len(members[number]) > 1
+        several = of is not None or p.of_pair or len(members[number]) > 1
         found.append(known if several else None)
     return tuple(found)
 
 
-def _components(plain: SourceParts, members: Sequence[SourceParts]) -> Pair | None:
+def _components(plain: Source, members: Sequence[Source]) -> Pair | None:
     """Sources of both components of a recording, under the factor of one of its sources."""
-    if (own := plain.pair) is not None:
-        return own
+    if (own := plain.components) is not None:
+        return str(own[0]), str(own[1])
     both = next((m for m in members if m.second and plain.place in (m.place, m.second)), None)
     if both is not None and both.second is not None:
-        return plain.component(both.place), plain.component(both.second)
+        return str(plain.alone.at(both.place)), str(plain.alone.at(both.second))
     files = {m.place: m for m in members if not VERTICAL.fullmatch(m.place)}
-    if len(files) != 2 or plain.place not in files or OTHER_SCHEME.match(plain.place):
+    if len(files) != 2 or plain.place not in files or plain.scheme != FILE:
         return None
+    factor = dict(plain.options).get("factor")
+    own_factor = {} if factor is None else {"factor": factor}
     first, second = (
-        file._replace(factor=plain.factor).component(place) for place, file in sorted(files.items())
+        str(file.alone.without("factor").plus(**own_factor)) for _, file in sorted(files.items())
     )
     return first, second

@@ -25,7 +25,8 @@ class Recording(NamedTuple):
     `event` is the earthquake with its year, `number` that of the record in the NGA-West databases
     of PEER, `distance` the closest one to the rupture [m], `vs30` [m/s] that of the ground,
     `usable_period` the longest that the filters of the record leave [s], `pulse` whether it was
-    found to have a velocity pulse.
+    found to have a velocity pulse, `origin` the time of the earthquake and `direction` that of the
+    component, as the source states them.
     """
 
     event: str = ""
@@ -36,6 +37,8 @@ class Recording(NamedTuple):
     vs30: float | None = None
     usable_period: float | None = None
     pulse: bool | None = None
+    origin: str = ""
+    direction: str = ""
 
 
 UNKNOWN = Recording()

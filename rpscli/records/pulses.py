@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.quantities import Query, hint, parse_query
+from rpscli.records.quantities import Query, hint
+from rpscli.records.source import Source
 
 LEAD = 2.5
 """Periods before the peak of a Ricker wavelet: at its start it is below 1e-12 of the peak."""
@@ -58,7 +59,6 @@ def mavroeidis_papageorgiou(
     return np.where(inside, -np.pi / cycles * (bell + wave), 0.0)
 
 
-SCHEME = "pulse"
 DOUBTFUL = 0.2
 """Peaks of numbers without unit below this [g] are asked about."""
 
@@ -88,7 +88,7 @@ PULSES = (*_PULSES, _MAVROEIDIS)
 """The names of the pulses."""
 
 
-def load_pulse(rest: str, source: str) -> GroundMotion:
+def load_pulse(of: Source) -> GroundMotion:
     """Make a pulse.
 
     `amplitude` is the peak acceleration (for the Mavroeidis-Papageorgiou pulse that of the whole
@@ -96,11 +96,11 @@ def load_pulse(rest: str, source: str) -> GroundMotion:
     divide pulses of one period. The Mavroeidis-Papageorgiou pulse takes `cycles` (default 2) and
     `phase` (default 0), and `velocity_amplitude` in place of `amplitude`.
     """
-    name, _, options = rest.partition("?")
+    name, source = of.place, of.text
     if name not in PULSES:
         raise RecordError(f"{source}: pulse {name!r} is not known; {hint(name, PULSES)}")
     own = ("velocity_amplitude", "cycles", "phase") if name == _MAVROEIDIS else ()
-    query = parse_query(options, source, ("amplitude", "period", "dt", *own))
+    query = of.query("amplitude", "period", "dt", *own)
     period = query.quantity("period", "time")
     if period <= 0.0:
         raise RecordError(f"{source}: period = {period} s must be positive")

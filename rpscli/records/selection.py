@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, event_of, pairs
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.loading import load_record
 from rpscli.records.measures import (
     intensity_measures,
     of_directions,
     over_directions,
     spectra_over_directions,
 )
-from rpscli.records.pair import together
 from rpscli.records.requirements import RULES, Component, Periods, Requirements, Rule
 from rpscli.records.search import Goal, Pool, best_choice
-from rpscli.records.source import load_record
+from rpscli.records.source import Source
 from rpscli.records.spectrum import response_spectrum
 from rpscli.records.target import TargetSpectrum
 
@@ -66,7 +66,7 @@ class Candidate:
     def sources(self) -> tuple[str, ...]:
         """Of the motion, or of both components: one, if they were given together."""
         first, *_ = found = tuple(motion.source for motion in self.motions)
-        return (first,) if together(first) else found
+        return (first,) if Source.parse(first).both else found
 
     @property
     def source(self) -> str:
@@ -275,7 +275,7 @@ def _sources(motions: list[GroundMotion], of: Component) -> list[tuple[GroundMot
         return [(motion,) for motion in motions]
     both = {pair: source for pair, source in zip(found, sources, strict=True) if pair is not None}
     return [
-        (replace(load_record(x), source=given if together(given) else x), load_record(y))
+        (replace(load_record(x), source=given if Source.parse(given).both else x), load_record(y))
         for (x, y), given in both.items()
     ]
 

@@ -9,21 +9,18 @@ PGV normalisation factor.
 from __future__ import annotations
 
 import importlib.util
-from dataclasses import replace
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion, Recording
-from rpscli.records.pair import angle_of, rotated, together
-from rpscli.records.quantities import hint, parse_query
-
-SCHEME = "fema_p695"
+from rpscli.records.quantities import hint
+from rpscli.records.source import SET, Source
 
 _SETS = {
     "farfield": range(1, 23),
@@ -48,90 +45,55 @@ PAIRS = tuple(component[:-2] for component in COMPONENTS[::2])
 """The 50 pairs, `farfield/1` to `nearfield_no_pulse/28`, which an angle turns."""
 
 
-class _Wanted(NamedTuple):
-    """A component or a pattern of them; of pairs, if there is an angle [deg], or both act."""
-
-    place: str
-    options: str
-    normalised: bool
-    angle: float | None
-    both: bool
-
-    @property
-    def of_pairs(self) -> bool:
-        return self.both or self.angle is not None
-
-    @property
-    def known(self) -> tuple[str, ...]:
-        return PAIRS if self.of_pairs else COMPONENTS
-
-    @property
-    def is_pattern(self) -> bool:
-        return bool({"*", "["} & set(self.place))
-
-    @property
-    def word(self) -> str:
-        return "pair" if self.of_pairs else "component"
-
-
-def expand_set(rest: str, source: str) -> list[str]:
+def expand_set(of: Source) -> list[Source]:
     """The single sources that a pattern such as `farfield/*` stands for."""
-    wanted = _split(rest, source)
-    found = [place for place in wanted.known if fnmatchcase(place, wanted.place)]
+    of.query("normalised")
+    known, word = (PAIRS, "pair") if of.of_pair else (COMPONENTS, "component")
+    found = [place for place in known if fnmatchcase(place, of.place)]
     if not found:
-        others = f"sets: {', '.join(_SETS)}"
-        remedy = others if wanted.is_pattern else hint(wanted.place, wanted.known)
-        if any(fnmatchcase(component, f"{wanted.place}/*") for component in wanted.known):
-            remedy = f"write {SCHEME}:{wanted.place}/*{wanted.options}"
-        elif any(fnmatchcase(f"{pair}/a", wanted.place) for pair in wanted.known):
-            pairs = wanted.place.rpartition("/")[0]
-            remedy = f"a pair has no components; write {SCHEME}:{pairs}{wanted.options}"
-        raise RecordError(
-            f"{source}: no {wanted.word} of FEMA P695 fits {wanted.place[:60]!r}; {remedy}"
-        )
-    return [f"{SCHEME}:{place}{wanted.options}" for place in found]
+        behind = str(of).partition("?")[2]
+        options = f"?{behind}" if behind else ""
+        remedy = f"sets: {', '.join(_SETS)}" if _is_pattern(of) else hint(of.place, known)
+        if any(fnmatchcase(component, f"{of.place}/*") for component in known):
+            remedy = f"write {SET}:{of.place}/*{options}"
+        elif any(fnmatchcase(f"{pair}/a", of.place) for pair in known):
+            pairs = of.place.rpartition("/")[0]
+            remedy = f"a pair has no components; write {SET}:{pairs}{options}"
+        raise RecordError(f"{of.text}: no {word} of FEMA P695 fits {of.place[:60]!r}; {remedy}")
+    return [of.at(place) for place in found]
 
 
-def load_component(rest: str, source: str) -> GroundMotion:
-    """Read one component, or a pair turned to a direction."""
-    place, _, normalised, angle, _ = wanted = _split(rest, source)
-    if place not in wanted.known:
-        one = f"load one {wanted.word} at a time"
-        remedy = one if wanted.is_pattern else hint(place, wanted.known)
+def _is_pattern(of: Source) -> bool:
+    return bool({"*", "["} & set(of.place))
+
+
+def require_pair(of: Source) -> None:
+    """Refuse what is no pair of the sets."""
+    if of.place in PAIRS:
+        return
+    remedy = "load one pair at a time" if _is_pattern(of) else hint(of.place, PAIRS)
+    if of.place in COMPONENTS:
+        pair = of.place[:-2]
+        remedy = f"both components: {pair}?both"
+        if of.angle is not None:
+            remedy = f"an angle turns a pair: {pair}?angle={of.angle:g}"
+    raise RecordError(f"{of.text}: FEMA P695 has no pair {of.place[:60]!r}; {remedy}")
+
+
+def load_component(of: Source) -> GroundMotion:
+    """Read one component."""
+    of.query("normalised")
+    place = of.place
+    if place not in COMPONENTS:
+        remedy = "load one component at a time" if _is_pattern(of) else hint(place, COMPONENTS)
         if place in PAIRS:
             remedy = (
                 f"name {place}/a or {place}/b, or the pair: {place}?both for both components"
                 f" together, {place}?angle=30 for one direction"
             )
-        elif place in COMPONENTS:
-            remedy = f"an angle turns a pair: {place[:-2]}?angle={angle:g}"
-        raise RecordError(f"{source}: FEMA P695 has no {wanted.word} {place[:60]!r}; {remedy}")
-    folder = _package_folder(source)
-    if angle is None:
-        return _component(folder, place, source, normalised=normalised)
-    first, second = (
-        _component(folder, f"{place}/{side}", source, normalised=normalised) for side in "ab"
-    )
-    motion = rotated(first, second, angle)
-    return replace(motion, name=motion.name.replace("_a", f"_{angle:g}deg", 1))
-
-
-def _split(rest: str, source: str) -> _Wanted:
-    place, _, written = rest.partition("?")
-    both = together(source) is not None
-    options = [option.strip() for option in written.split("&") if option.strip()]
-    flags = [option for option in options if option in {"normalised", "normalized"}]
-    others = [option for option in options if option not in (*flags, "both")]
-    if unknown := [o for o in others if not o.startswith(("angle=", "rotation="))]:
-        raise RecordError(
-            f"{source}: option {unknown[0]!r} is not known; did you mean normalised, angle=30 or"
-            " both?"
-        )
-    query = parse_query("&".join(others), source, ("angle", "rotation"))
-    kept = ["normalised"] * bool(flags) + ["both"] * both + others
-    suffix = f"?{'&'.join(kept)}" if kept else ""
-    angle = angle_of(query) if "angle" in query.values else None
-    return _Wanted(place, suffix, bool(flags), angle, both)
+        raise RecordError(f"{of.text}: FEMA P695 has no component {place[:60]!r}; {remedy}")
+    normalised = ("normalised", None) in of.options
+    return _component(_package_folder(of.text), place, of.text, normalised=normalised)
 
 
 def _package_folder(source: str) -> Path:

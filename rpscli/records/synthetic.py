@@ -25,9 +25,7 @@ from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import displacement, velocity
 from rpscli.records.pulses import mavroeidis_papageorgiou
-from rpscli.records.quantities import parse_query
-
-SCHEME = "synthetic"
+from rpscli.records.source import Source
 
 _FIRM_GROUND = 15.0 / (2.0 * math.pi)  # Hz
 _FIRM_CUT = 1.5 / (2.0 * math.pi)  # Hz
@@ -48,14 +46,14 @@ _OPTIONS = (
 )
 
 
-def load_synthetic(rest: str, source: str) -> GroundMotion:
+def load_synthetic(of: Source) -> GroundMotion:
     """Make a synthetic motion.
 
     Options: `pga` (needed), `seed` (needed), `duration` (30 s), `dt` (0.01 s), `ground_frequency`
     (2.39 Hz) and `ground_damping` (0.6) of the soil, `cut_frequency` (0.239 Hz) and `cut_damping`
     (0.6) of the low cut; with `pulse_velocity`, also `pulse_period` (3 s) and `pulse_cycles` (2).
     """
-    query = parse_query(rest.lstrip("?"), source, _OPTIONS)
+    query, source = of.query(*_OPTIONS), of.text
     seed = query.integer("seed")
     pga = query.acceleration("pga")
     duration = query.quantity("duration", "time", 30.0)

@@ -8,7 +8,7 @@ from paper_structures import Array, needs_compiled_kernels, podium
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 pytestmark = [needs_compiled_kernels, pytest.mark.evidence("steps, events, energy", "exact")]
 

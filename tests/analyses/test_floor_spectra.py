@@ -19,7 +19,7 @@ from rpscli.analyses.floor_spectra import (
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.cli import program
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 CASE = Path(__file__).parents[2] / "cases" / "six_storey.yaml"
 PERIODS = np.array([0.3, 0.8, 2.0])

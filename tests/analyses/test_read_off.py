@@ -24,7 +24,7 @@ from rpscli.model.devices import FrictionDamper, Stop, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 pytestmark = needs_compiled_kernels
 

@@ -11,7 +11,7 @@ import pytest
 from rpscli.case.case import load_case, parse_case
 from rpscli.case.text import files
 from rpscli.errors import CaseError, RecordError
-from rpscli.records.source import expand_sources, load_record
+from rpscli.records.loading import expand_sources, load_record
 
 
 def refusal(source: Path | str) -> str:

@@ -10,7 +10,7 @@ from rpscli.analyses.demand import demand
 from rpscli.case.case import load_case
 from rpscli.errors import CaseError
 from rpscli.model.bearing import Bearing
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 FRAME = "cases/rigid_frame.yaml"
 

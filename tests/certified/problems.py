@@ -33,7 +33,7 @@ from rpscli.analyses.verification.certified import FOLDER
 from rpscli.case.case import Case, load_case
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
-from rpscli.records.source import load_components
+from rpscli.records.loading import load_components
 
 from .closed_forms import RigidFrame, least_tilt, statics, uplift_time, uplifted_roots
 from .podiums import Floors, Podium

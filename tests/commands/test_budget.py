@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from paper_structures import needs_compiled_kernels
 
-from rpscli.records.source import load_components
+from rpscli.records.loading import load_components
 
 from .conftest import SMALL_CASE, Invoke
 

@@ -16,7 +16,7 @@ import pytest
 from paper_structures import needs_compiled_kernels
 from scipy.integrate import solve_ivp
 
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 from .conftest import SMALL_CASE, Invoke
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rpscli.records.formats.at2 import at2_text
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.report.html.page import page
 
 from .conftest import SMALL_CASE, Invoke

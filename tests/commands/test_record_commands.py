@@ -11,8 +11,8 @@ import pytest
 from click.testing import Result
 
 import rpscli
+from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.measures import intensity_measures
-from rpscli.records.source import expand_sources, load_components, load_record
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]

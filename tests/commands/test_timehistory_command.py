@@ -16,7 +16,7 @@ from PIL import Image
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]

@@ -17,7 +17,7 @@ from click.testing import Result
 from scipy.integrate import cumulative_trapezoid
 
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]

@@ -22,7 +22,7 @@ from rpscli.analyses.verification.motions import (
 )
 from rpscli.analyses.verification.overturning import least_amplitude
 from rpscli.cli import program
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import known_paths
 from rpscli.case.study.schema import StudyFile
 from rpscli.records.formats.at2 import at2_text
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 pytestmark = pytest.mark.posix  # trials are timed by its signals
 

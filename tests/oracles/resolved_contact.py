@@ -27,7 +27,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactKind, ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 from .multibody import MultibodyResult, simulate
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 from .crossings import Array
 from .reference_systems import podium, pulse, uniform_podium

@@ -12,7 +12,7 @@ from two_components import History, followed, frame, pair
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 from .crossings import Array
 from .spatial_integrator import SpatialSimulation, simulate_pair

@@ -12,7 +12,7 @@ from rpscli.analyses.column_forces import shock
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.impact import ImpactLaw
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 from .multibody import simulate
 from .resolved_contact import structure_of

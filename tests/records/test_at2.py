@@ -8,7 +8,7 @@ import pytest
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 TITLE = "PEER NGA STRONG MOTION DATABASE RECORD"
 EVENT = "Northridge-01, 1/17/1994, Somewhere, 9"

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 

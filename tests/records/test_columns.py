@@ -10,7 +10,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.formats.record_text import uniform_step
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 VALUES = [0.1, -0.2, 0.3, 0.05]
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.source import expand_sources, load_record
+from rpscli.records.loading import expand_sources, load_record
 
 SINE = "pulse:sine?amplitude=0.3g&period=1"
 

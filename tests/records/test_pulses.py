@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
+from rpscli.records.loading import load_record
 from rpscli.records.measures import displacement, velocity
-from rpscli.records.source import load_record
 
 T = 1.2
 W = 2.0 * math.pi / T

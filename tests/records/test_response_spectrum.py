@@ -12,8 +12,8 @@ from scipy.signal import lsim
 
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.loading import load_record
 from rpscli.records.measures import intensity_measures
-from rpscli.records.source import load_record
 from rpscli.records.spectrum import response_spectrum, spectral_acceleration
 
 

@@ -13,11 +13,11 @@ import pytest
 from rpscli.errors import RecordError
 from rpscli.records.codes import load_target
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.measures import intensity_measures
 from rpscli.records.requirements import Periods
 from rpscli.records.search import Goal, Pool, best_choice
 from rpscli.records.selection import PERIODS, SelectionRequest, misfit, select
-from rpscli.records.source import expand_sources, load_record
 from rpscli.records.spectrum import response_spectrum
 
 TARGET = "en1998:?ag=0.3g&soil=C"

@@ -13,7 +13,7 @@ import pytest
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.source import expand_sources, load_record
+from rpscli.records.loading import expand_sources, load_record
 
 FOLDER = Path(os.environ.get("RPS_RECORDS", "/nonexistent"))
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="RPS_RECORDS names no folder")

@@ -8,8 +8,8 @@ import pytest
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.loading import load_record
 from rpscli.records.measures import displacement, intensity_measures, velocity
-from rpscli.records.source import load_record
 from rpscli.records.spectrum import spectral_acceleration
 
 SHIPPED = Path(__file__).parents[2] / "cases" / "records"

@@ -16,7 +16,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, Superstructure, profile_stiffnesses
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 Array = NDArray[np.float64]
 

@@ -38,7 +38,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device
 from rpscli.records import measures
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.records.spectrum import response_spectrum
 from rpscli.report.figures.animation import Scene, frame_plan, history_film, modes_film
 from rpscli.report.figures.devices import devices_figure

@@ -13,7 +13,7 @@ from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.analyses.timehistory import time_history
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext, resolved
 from rpscli.sweep.evaluation.results import SCALARS, PointResults, at_path

@@ -22,7 +22,7 @@ from paper_structures import needs_compiled_kernels
 
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from sweep.small_studies import STUDY
 
 VARY = STUDY[STUDY.index("vary:") : STUDY.index("records:")]

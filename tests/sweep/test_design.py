@@ -11,8 +11,8 @@ import pytest
 
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.model.impact import ImpactLaw
+from rpscli.records.loading import load_record
 from rpscli.records.measures import intensity_measures
-from rpscli.records.source import load_record
 from rpscli.records.spectrum import spectral_acceleration
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.combinations import balance_note, changes, sample

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 from rpscli.cli import program
 from rpscli.records.formats.at2 import at2_text
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import reproduction

@@ -18,7 +18,7 @@ from rpscli.analyses.floor_spectra import (
 )
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.report.study.heights import FloorSpectraOptions, without_floors
 from rpscli.sweep.points.layout import lay_out
 from sweep.small_studies import STUDY, Make

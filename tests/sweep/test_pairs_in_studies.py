@@ -19,8 +19,8 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, Superstructure
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import MotionComponents
+from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import pair_measure
-from rpscli.records.source import load_components, load_record
 from rpscli.sweep.evaluation.batch import reference_shears
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import StudyPoints, lay_out, reproduction

@@ -168,7 +168,7 @@ def test_units_and_comments_of_a_hazard_file(tmp_path: Path) -> None:
         ("PGV [m/s],mean [1/a],0.84 [1/a]\n1,1,1\n2,1,2\n", (":3:", "'2'", "not more frequent")),
         (HEADER + "10,0.1\n5,0.01\n", (":3:", "'5'", "above the row before")),
         (HEADER + "10,0.1\n20,0.2\n", (":3:", "'0.2'", "not more frequent")),
-        (HEADER + "10,0.1\n20,0\n", (":3:", "'20,0'", "two numbers > 0")),
+        (HEADER + "10,0\n20,0.1\n", (":2:", "'10,0'", "two numbers > 0")),
         (HEADER + "10,0.1\n20,nan\n", (":3:", "two numbers > 0")),
         (HEADER + "10,0.1,3\n20,1\n", (":2:", "two numbers > 0")),
     ],
@@ -308,3 +308,11 @@ def test_a_risk_without_a_hazard_is_refused(
     assert result.exit_code == 3
     for part in parts:
         assert part in result.stderr
+
+
+def test_rates_of_zero_at_the_end_are_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "hazard.csv"
+    path.write_text(HEADER + "10,0.1\n20,0.01\n40,0\n80,0.0\n", encoding="utf-8")
+    found = read_hazard(path, "PGV")
+    assert found.left_out == 2
+    assert found.intensity.tolist() == [0.1, 0.2]

@@ -14,7 +14,7 @@ from scipy.integrate import cumulative_trapezoid
 import rpscli
 from rpscli.case.case import parse_case
 from rpscli.errors import CaseError
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import StudyPoints, lay_out
 from rpscli.sweep.points_csv import units_of_columns

@@ -246,12 +246,12 @@ def uplifted_rate(structure: PodiumStructure) -> float:
     return max(frequency / uplifted_angle(structure), decay / UPLIFTED_DECAY)
 
 
-LINEAR_SPEEDS = 1e-9, 1e-7
+LINEAR_SPEEDS = 1e-8, 1e-6
 """Of sqrt(g R): up to the first of these velocities a power of it is taken as linear, too little to
 be felt; up to the second where the power would else decay faster than `FASTEST_POWER`. Both at
 accuracy 1, which divides them."""
 
-FASTEST_POWER = 2e5
+FASTEST_POWER = 6e4
 """Of a power of the velocity: its decay rate where it is taken as linear, over sqrt(g/R), if that
 can be had."""
 

@@ -38,7 +38,7 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import ModalDamping, Superstructure, profile_stiffnesses
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 from rpscli.shipped import shipped_cases
 
 CONTACT = "Full contact (exact solution for a load that is linear between samples)"

@@ -27,7 +27,7 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.run import Run
 from rpscli.records.ground_motion import MotionComponents
-from rpscli.records.source import load_record
+from rpscli.records.loading import load_record
 
 FREE = "Free motion of a frame in both directions (energy and angular momentum)"
 TURN = "Azimuth turned by a pass near upright (straight line on a cone)"

@@ -8,7 +8,7 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.rules.partial_case import LIMITS, PLAN, PODIUM, SUPERSTRUCTURE, PartialCase
 from rpscli.case.text.document import MISSING, Fault, Path, dotted, shown
 from rpscli.errors import RecordError, listed
-from rpscli.records.source import parts_of
+from rpscli.records.source import Source
 
 STOREYS: Path = (*SUPERSTRUCTURE, "storeys")
 ACROSS: Path = (*SUPERSTRUCTURE, "y")
@@ -245,14 +245,14 @@ def _pair_rules(case: PartialCase) -> Iterator[Fault]:
     pair = case.document.has(Y)
     for path in (first, Y):
         try:
-            parts = parts_of(str(case.document.at(path)))
+            of = Source.parse(str(case.document.at(path)))
         except RecordError as error:
             yield Fault(path, f"{dotted(path)}: {error}")
             continue
-        if case.document.has(Y) and (parts.both or parts.turned):
+        if case.document.has(Y) and of.of_pair:
             text = "names a pair or a direction between two components; name single components here"
             yield Fault(path, f"{dotted(path)} {text}, or leave y out and write `?both`")
-        pair = pair or parts.both
+        pair = pair or of.both
     if case.document.has(ROTATION) and not pair:
         text = "record.rotation turns a pair: give y as well, or write `?both` behind the source"
         yield Fault(ROTATION, f"{text}; angle= is one direction between two", at_key=True)

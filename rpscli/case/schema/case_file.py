@@ -27,7 +27,7 @@ from rpscli.model.devices import DEVICES
 from rpscli.model.impact import CONTACT_TIME, LONGEST_CONTACT
 from rpscli.records.clusters import ONE_FACTOR, Pair, pairs
 from rpscli.records.measures import Of
-from rpscli.records.source import parts_of
+from rpscli.records.source import Source
 
 DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     kind: (
@@ -351,7 +351,7 @@ class RecordSection(Section):
     @property
     def is_pair(self) -> bool:
         """Whether both horizontal components act."""
-        return self.y is not None or parts_of(self.source).both
+        return self.y is not None or Source.parse(self.source).both
 
     def pair(self, of: Of | None) -> Pair | None:
         """Both components that a measure is of; None if it is that of a single one."""

@@ -129,7 +129,9 @@ def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
     if kind == "literal_error":
         words = re.findall(r"'([^']*)'", error["ctx"]["expected"])
         suggestion = nearest(str(error["input"]), words)
-        return f"must be {listed(words)}" + (f"; did you mean {suggestion}?" if suggestion else "")
+        some = [*words[:KEYS_SHOWN], f"one of {len(words) - KEYS_SHOWN} more"]
+        known = listed(some if len(words) > KEYS_SHOWN + 1 else words)
+        return f"must be {known}" + (f"; did you mean {suggestion}?" if suggestion else "")
     if kind in {"model_type", "model_attributes_type"}:
         section = section_at(model, path)
         keys = [*fields_of(section)] if section else []

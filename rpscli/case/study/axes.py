@@ -14,7 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 from rpscli.case.study.schema import Axes, RecordPattern, Source
 from rpscli.case.text.document import Document, Fault, Path, Place, dotted
 from rpscli.errors import RecordError
-from rpscli.records.source import expand_sources, repeated
+from rpscli.records.loading import expanded, repeated
 
 Values = tuple[Any, ...]
 
@@ -86,18 +86,21 @@ def sources_of(
     written = document.content.get("records")
     sources: list[str] = []
     faults: list[Fault] = []
+    notes: list[str] = []
     for index, item in enumerate(written if isinstance(written, list) else ()):
         path: Path = ("records", index)
         try:
             read = _SOURCE.validate_python(item)
             patterns = [read] if isinstance(read, str) else _product(read, path)
-            sources += expand_sources(patterns, folder=folder)
+            single, told = expanded(patterns, folder=folder)
+            sources += single
+            notes += [f"records: {text}" for text in told]
         except ValidationError:
             continue  # told key by key
         except (RecordError, ValueError) as error:
             faults.append(Fault(path, str(error)))
-    notes = [f"records: {text}" for text in repeated(sources)]
-    return tuple(dict.fromkeys(sources)), faults, notes
+    notes += [f"records: {text}" for text in repeated(sources)]
+    return tuple(dict.fromkeys(sources)), faults, [*dict.fromkeys(notes)]
 
 
 def _product(pattern: RecordPattern, path: Path) -> list[str]:

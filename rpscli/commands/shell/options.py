@@ -68,8 +68,9 @@ def _condition_names() -> dict[str, str | None]:
 def _sources() -> Iterator[str]:
     """Records of sets, after `--record`."""
     from rpscli.records import sets
+    from rpscli.records.source import SET
 
-    return (f"{sets.SCHEME}:{name}" for name in (*sets.COMPONENTS, *sets.WHOLE))
+    return (f"{SET}:{name}" for name in (*sets.COMPONENTS, *sets.WHOLE))
 
 
 def measures() -> list[str]:

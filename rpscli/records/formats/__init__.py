@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import PluginError, RecordError
@@ -60,6 +62,7 @@ _OTHER_QUANTITIES = {".vt2": "velocity", ".dt2": "displacement"}
 _STRONGEST, _WEAKEST = 4.0, 1e-3  # g
 _NONSENSE = 1e9  # g; raw counts taken for g have a hundredth, and squares stay finite
 _FINEST, _COARSEST = 1e-4, 0.1  # s
+_OFFSET, _MANY = 0.1, 100  # of the peak, samples
 
 
 def read_record(
@@ -68,7 +71,7 @@ def read_record(
     *,
     dt: float | None = None,
     units: str | None = None,
-    channel: int | None = None,
+    channel: str | None = None,
 ) -> GroundMotion:
     """Read one record file of any known format."""
     if quantity := _OTHER_QUANTITIES.get(path.suffix.lower()):
@@ -91,14 +94,34 @@ def read_record(
     return replace(motion, warnings=(*motion.warnings, *_implausible(motion)))
 
 
+_VERTICAL = re.compile(
+    r"^(?:Dir\.\s+(?:U-?D|[36])|STREAM:\s*\w*Z|(?:[^,]*,){3}\s*(?:UP|DOWN|DWN|VERT?\w*|UD|V|Z))\s*$"
+    r"|\bChan\s*\d+:\s*(?:Up|Down|Vert)",
+    re.IGNORECASE | re.MULTILINE,
+)
+"""How headers of K-NET and KiK-net, ESM, AT2, COSMOS and CSMIP state a vertical component."""
+
+_HEADER = 60  # lines
+
+
 def is_record(path: Path) -> bool:
     """Whether a file's content is recognised as a record; what else lies in a folder is not."""
+    return kind_of(path) != ""
+
+
+def kind_of(path: Path) -> Literal["", "record", "vertical"]:
+    """What a file is by its content: nothing known, a record, or one that states to be vertical."""
     if path.suffix.lower() in _OTHER_QUANTITIES:
-        return False
+        return ""
     try:
-        return _by_content(read_text(path, str(path))) is not None
+        text = read_text(path, str(path))
+        form = _by_content(text)
     except RecordError:
-        return False
+        return ""
+    if form is None:
+        return ""
+    stated = form is not _PLAIN and _VERTICAL.search("\n".join(text.heads[:_HEADER]))
+    return "vertical" if stated else "record"
 
 
 def _in_order() -> Iterator[RecordFormat]:
@@ -122,8 +145,10 @@ def _by_extension(text: RecordText) -> RecordFormat:
 
 
 def _implausible(motion: GroundMotion) -> tuple[str, ...]:
-    peak = motion.pga / STANDARD_GRAVITY
+    peak, mean = motion.pga / STANDARD_GRAVITY, abs(float(motion.acceleration.mean()))
     doubts = {
+        f"the mean is {mean / max(motion.pga, 1e-300):.2g} of the peak: an offset of the"
+        " instrument? Correct the record": motion.npts >= _MANY and mean > _OFFSET * motion.pga,
         f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
         f" {_COARSEST:g} s): check the time step": not _FINEST <= motion.dt <= _COARSEST,
         f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units": peak > _STRONGEST,

@@ -17,12 +17,16 @@ from rpscli.errors import RecordError
 from rpscli.records.formats.record_text import RecordText
 from rpscli.records.formats.statements import (
     STATED_PATTERN,
+    STEP_PATTERN,
     Statement,
     agreed,
+    found_steps,
+    remark,
     stated_count,
     stated_positive,
+    stated_step,
 )
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.quantities import (
     KNOWN_UNITS,
     NUMBER_PATTERN,
@@ -37,11 +41,13 @@ from rpscli.version import VERSION
 FORMAT = "PEER AT2"
 
 _HEADER_LINES = 40
+_COMMAS = 3
+"""Of a title that says earthquake, date, station and direction."""
 _COUNT = re.compile(r"\bNPTS\s*(?:=\s*)?([0-9]+)\b", re.IGNORECASE)
-_STEP = re.compile(rf"\bDT\s*(?:=\s*)?({STATED_PATTERN})", re.IGNORECASE)
+_STEP = re.compile(rf"\bDT{STEP_PATTERN}", re.IGNORECASE)
 # Those that can be nothing else: a title may hold a word such as DT2, or a source with ?dt=.
 _COUNT_GIVEN = re.compile(r"\bNPTS\s*=\s*([0-9]+)\b", re.IGNORECASE)
-_STEP_GIVEN = re.compile(rf"(?<![?&])\bDT\s*=\s*({STATED_PATTERN})", re.IGNORECASE)
+_STEP_GIVEN = re.compile(rf"(?<![?&])\bDT(?=\s*=){STEP_PATTERN}", re.IGNORECASE)
 _NUMBERS_FIRST = re.compile(
     rf"^\s*([0-9]+)[\s,]+({STATED_PATTERN})[\s,]+NPTS\b[\s,]*(?:AND\s+)?DT\b", re.IGNORECASE
 )
@@ -97,6 +103,7 @@ def read_at2(text: RecordText) -> GroundMotion:
         for line in text.heads[: header.count.line]
         if line.strip() and not _UNITS.search(line)
     ]
+    told = next((line.split(",") for line in title[1:] if line.count(",") == _COMMAS), [""] * 4)
     return GroundMotion(
         np.array(values) * factor,
         dt,
@@ -105,6 +112,7 @@ def read_at2(text: RecordText) -> GroundMotion:
         FORMAT,
         f"{'; '.join(title) or 'no title'}; values in {unit}",
         (*doubts, *warnings),
+        recording=Recording(station=told[2].strip(), direction=told[3].strip()),
     )
 
 
@@ -134,9 +142,9 @@ def _find_header(text: RecordText) -> _Header | None:
         elsewhere = (*range(index + 1, min(start, _HEADER_LINES)), *range(index))
         step = next(
             (
-                Statement("DT", m[1], i)
+                step
                 for i in (index, *elsewhere)
-                if (m := _STEP.search(text.heads[i]))
+                for step in found_steps("DT", _STEP, text.heads[i], i)
             ),
             None,
         )
@@ -155,9 +163,9 @@ def _refuse_contradictions(text: RecordText, header: _Header) -> None:
         if _both(line):  # their numbers stand after both names
             continue
         counts += [Statement("NPTS", numeral, index) for numeral in _COUNT_GIVEN.findall(line)]
-        steps += [Statement("DT", numeral, index) for numeral in _STEP_GIVEN.findall(line)]
+        steps += found_steps("DT", _STEP_GIVEN, line, index)
     agreed(text, counts, stated_count)
-    agreed(text, steps, stated_positive)
+    agreed(text, steps, stated_step)
 
 
 def _first_numeric(text: RecordText, start: int) -> int:
@@ -239,8 +247,10 @@ def _count_fault(text: RecordText, count: int, line: int, found: int, stop: int)
 
 def _step(text: RecordText, statement: Statement) -> tuple[float, tuple[str, ...]]:
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not the same.
-    printed = stated_positive(text, statement)
-    resolution = last_digit(statement.value)
+    printed, number = stated_step(text, statement), statement.value.partition(" ")[0]
+    resolution = (
+        last_digit(number) * printed / stated_positive(text, statement._replace(value=number))
+    )
     dt = text.agreed_dt(printed, 0.51 * resolution / printed)
     rate = max(1, round(1.0 / dt))
     if abs(rate * dt - 1.0) < 1e-9 or abs(1.0 / rate - dt) > 0.5 * resolution:
@@ -282,9 +292,8 @@ def at2_text(motion: GroundMotion) -> str:
 
 def _one_line(title: str) -> str:
     # A title must not be taken for one of the header lines that carry numbers.
-    line = "".join(letter for letter in " ".join(title.split()) if letter.isprintable())
+    line = re.sub(
+        r"\b(velocity|displacement)\s+time\b", r"\1-time", remark(title), flags=re.IGNORECASE
+    )
     line = re.sub(r"\b(n)(pts)\b", r"\1-\2", line, flags=re.IGNORECASE)
-    line = re.sub(r"(?<![?&])\b(d)(t\s*=)", r"\1-\2", line, flags=re.IGNORECASE)
-    line = re.sub(r"\b(u)(nits?\s*(?:of|in|[=:]))", r"\1-\2", line, flags=re.IGNORECASE)
-    line = re.sub(r"\b(velocity|displacement)\s+time\b", r"\1-time", line, flags=re.IGNORECASE)
     return line[:_TITLE_WIDTH]

@@ -95,8 +95,8 @@ _CSMIP_CHANNEL = re.compile(
     r"^CORRECTED ACCELEROGRAM\b.*\bCHAN\s+(\d{1,9}):\s*(\S.*?)\s*(?:FROM)?\s*$", re.IGNORECASE
 )
 _CSMIP_POINTS = re.compile(
-    rf"^\s*(\d+)\s+POINTS OF ACCEL DATA EQUALLY SPACED AT\s+({NUMBER_PATTERN})\s*SEC.*"
-    rf"UNITS:\s*({UNIT_PATTERN})",
+    rf"^\s*(\d+)\s+POINTS OF ACCEL DATA EQUALLY SPACED AT\s+({NUMBER_PATTERN})\s*SEC.*?"
+    rf"(?:UNITS:|,\s*IN)\s*({UNIT_PATTERN})",
     re.IGNORECASE,
 )
 _CSMIP_NEXT = re.compile(r"\s*\d+ POINTS OF |/&|CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
@@ -106,11 +106,23 @@ _CSMIP_PEAK = re.compile(rf"PEAK ACCELERATION\s*=\s*({NUMBER_PATTERN})", re.IGNO
 
 def recognises_csmip(text: RecordText) -> bool:
     """Whether the first line is that of a volume 2 channel."""
-    return _CSMIP_CHANNEL.match(text.heads[0]) is not None
+    return (
+        _CSMIP_CHANNEL.match(text.heads[0]) is not None
+        or _UNCORRECTED.match(text.heads[0]) is not None
+    )
+
+
+_UNCORRECTED = re.compile(r"^UNCORRECTED ACCELEROGRAM\b", re.IGNORECASE)
 
 
 def read_csmip(text: RecordText) -> GroundMotion:
     """Read the acceleration of one channel of a CSMIP volume 2 file."""
+    if _UNCORRECTED.match(text.heads[0]):
+        raise text.fault(
+            "the file holds an uncorrected accelerogram (volume 1); give the corrected one of"
+            " volume 2, usually the file ending in .V2",
+            0,
+        )
     channel = chosen_channel(
         text,
         [

@@ -13,7 +13,7 @@ from rpscli.records.formats.statements import (
     stated_count,
     stated_number,
 )
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit
 
 _KEY = re.compile(r"^([A-Z][A-Z0-9_/^]*):\s*(.*)$")
@@ -77,4 +77,21 @@ def read_esm(text: RecordText) -> GroundMotion:
         "ESM ASCII",
         f"{where}; {station}; values in {unit}",
         () if peak is None else peak_warnings(values * factor * 100.0, peak, 1e-6),
+        recording=Recording(
+            station=header.get("STATION_CODE", ""),
+            magnitude=next(
+                (
+                    stated_number(text, stated(key))
+                    for key in ("MAGNITUDE_W", "MAGNITUDE_L")
+                    if header.get(key)
+                ),
+                None,
+            ),
+            origin=" ".join(
+                filter(
+                    None, (header.get(f"EVENT_{of}", "") for of in ("DATE_YYYYMMDD", "TIME_HHMMSS"))
+                )
+            ),
+            direction=header.get("STREAM", ""),
+        ),
     )

@@ -14,7 +14,7 @@ from rpscli.records.formats.statements import (
     stated_number,
     stated_positive,
 )
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import GroundMotion, Recording
 
 _KEYS, _KEY_WIDTH, _ROW = 17, 18, 8
 _SCALE = re.compile(r"(.*)\(gal\)\s*/(.*)")
@@ -45,7 +45,7 @@ def read_knet(text: RecordText) -> GroundMotion:
     counts = series(text, _KEYS, round(count), width=_ROW)
     values = counts * (stated_positive(text, scale[0]) / stated_positive(text, scale[1]))
     mean = float(values.mean())
-    peaks = _said(text, "Max. Acc. (gal)")
+    peaks, magnitudes = _said(text, "Max. Acc. (gal)"), _said(text, "Mag.")
     code, direction, origin = (
         said[0].value if (said := _said(text, key)) else ""
         for key in ("Station Code", "Dir.", "Origin Time")
@@ -58,6 +58,12 @@ def read_knet(text: RecordText) -> GroundMotion:
         "K-NET ASCII",
         f"{code} {direction}, {origin}; values in gal; mean of {mean:.4g} gal removed",
         peak_warnings(values - mean, stated_number(text, peaks[0]), 1e-3) if peaks else (),
+        recording=Recording(
+            station=code,
+            magnitude=stated_number(text, magnitudes[0]) if magnitudes else None,
+            origin=origin,
+            direction=direction,
+        ),
     )
 
 

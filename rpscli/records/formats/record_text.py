@@ -23,6 +23,7 @@ _BINARY_KINDS = {
     b"\x89PNG": "a picture",
     b"\xd0\xcf\x11\xe0": "an old Excel or Word file; save the sheet as CSV",
 }
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _SPREADSHEET = re.compile(rb"\APK\x03\x04.*?(?:xl/|opendocument\.spreadsheet)", re.DOTALL)
 _SHEET = "a spreadsheet under another name; save the sheet as CSV"
 _HEADER_WIDTH = 1000  # letters
@@ -45,8 +46,8 @@ class RecordText:
     """Sampling interval that the user gave [s]."""
     units: str | None = None
     """Canonical unit of acceleration that the user gave."""
-    channel: int | None = None
-    """The channel wanted from a file that holds several, from 1."""
+    channel: str | None = None
+    """The channel wanted from a file that holds several: its number, from 1, or its name."""
 
     @cached_property
     def heads(self) -> tuple[str, ...]:
@@ -56,7 +57,9 @@ class RecordText:
     @property
     def name(self) -> str:
         """File name without its extension, and the channel if one was asked for."""
-        return stem_of(self.path) + ("" if self.channel is None else f"_ch{self.channel}")
+        if self.channel is None:
+            return stem_of(self.path)
+        return f"{stem_of(self.path)}_ch{re.sub(r'[^A-Za-z0-9]+', '_', self.channel[:40])}"
 
     def fault(self, message: str, line: int | None = None) -> RecordError:
         """An error that names this file and, if given, the line (counted from zero)."""
@@ -107,7 +110,9 @@ class RecordText:
     def single_channel(self) -> None:
         """Refuse a channel number: the format holds one channel."""
         if self.channel is not None:
-            raise self.fault(f"channel = {self.channel}: this file holds one channel; leave it out")
+            raise self.fault(
+                f"channel = {self.channel[:60]}: this file holds one channel; leave it out"
+            )
 
 
 def read_text(
@@ -116,7 +121,7 @@ def read_text(
     *,
     dt: float | None = None,
     units: str | None = None,
-    channel: int | None = None,
+    channel: str | None = None,
 ) -> RecordText:
     """Read a record file as text."""
     unit = None if units is None else canonical_unit(units)
@@ -131,6 +136,8 @@ def read_text(
         data = path.read_bytes()
     except OSError as error:
         raise RecordError(f"{path}: cannot be read: {error.strerror}") from error
+    if not data.startswith(_UTF_16):
+        data = data.rstrip(b"\0")  # padding of old systems
     _refuse_foreign(path, data)
     text = re.sub(r"\r+\n?", "\n", _decoded(data)).rstrip("\x1a\n")
     if not text.strip():
@@ -150,12 +157,12 @@ def _refuse_foreign(path: Path, data: bytes) -> None:
             f"{path}: not a record but a web page, perhaps the log-in page of the database; "
             f"download the record itself"
         )
-    if b"\x00" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if b"\x00" in data and not data.startswith(_UTF_16):
         raise RecordError(f"{path}: not a text file; export the record as text")
 
 
 def _decoded(data: bytes) -> str:
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if data.startswith(_UTF_16):
         return data.decode("utf-16", errors="replace")
     try:
         return data.decode("utf-8-sig")

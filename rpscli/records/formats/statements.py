@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +17,26 @@ from rpscli.records.quantities import NUMBER_PATTERN, numbers_in, to_float, why_
 STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
 """A number as a header states it; one with a decimal comma is then refused by name."""
 
+STEP_PATTERN = (
+    r"\s*(?:[\[(]\s*([A-Za-z]+)\.?\s*[\])])?\s*[=:]?\s*"
+    rf"({STATED_PATTERN}[.0-9]*)\s*((?!(?:dt|npts)\b)[A-Za-z]+)?"
+)
+"""What follows the name of a time step: a unit in brackets, the number, a unit behind it."""
+
+_TIME_UNITS = {
+    "": 1.0,
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1.0),
+    **dict.fromkeys(("ms", "msec", "msecs", "millisecond", "milliseconds"), 1e-3),
+}
+_OTHER_TIMES = re.compile(r"(?:us|usec|ns|min|minutes?|hz|h|hours?|days?|years?)", re.IGNORECASE)
+
 MOST_VALUES = 10_000_000
 """Of one series: more than a day at a hundred samples a second."""
 
 _SHOWN = 40  # letters of a value in a message
 
 
-@dataclass(frozen=True)
-class Statement:
+class Statement(NamedTuple):
     """What a header says: the name of the quantity, its value as printed, the line (from zero)."""
 
     name: str
@@ -59,6 +72,45 @@ def stated_positive(text: RecordText, statement: Statement) -> float:
             statement.line,
         )
     return value
+
+
+def found_steps(name: str, pattern: re.Pattern[str], line: str, place: int) -> list[Statement]:
+    """Time steps that a line states, with their units; the pattern ends as `STEP_PATTERN`."""
+    return [
+        Statement(name, f"{match[2]} {match[1] or match[3] or ''}".strip(), place)
+        for match in pattern.finditer(line)
+    ]
+
+
+def stated_step(text: RecordText, statement: Statement) -> float:
+    """The time step that a header states [s]."""
+    number, _, unit = statement.value.partition(" ")
+    value = stated_positive(text, statement._replace(value=number))
+    factor = time_factor(text, unit, statement.line)
+    return value if factor == 1.0 else float(f"{factor * value:.15g}")
+
+
+def time_factor(text: RecordText, unit: str, line: int) -> float:
+    """The size of a unit of time [s]; words that are none say nothing."""
+    if (factor := _TIME_UNITS.get(unit.strip(" .").lower())) is not None:
+        return factor
+    if _OTHER_TIMES.fullmatch(unit.strip(" .")):
+        raise text.fault(f"a time in {unit!r} is not known; write seconds, or ms", line)
+    return 1.0
+
+
+_STATES = re.compile(
+    r"(?<![?&])\b(u|d|n|t|s|e)"
+    r"(nits?|t|pts|data|ime\s*step|ampling\s*\w+|umber of \w+|qually spaced)"
+    r"(?=[\s\[(]*(?:[a-z]+[\s\])]*)?[=:]|\s*(?:of|in|are|is|at|intervals)\b)",
+    re.IGNORECASE,
+)
+
+
+def remark(text: str) -> str:
+    """A text in one line that states nothing to those who read the file again."""
+    line = "".join(letter for letter in " ".join(text.split()) if letter.isprintable())
+    return _STATES.sub(r"\1-\2", line)
 
 
 def stated_count(text: RecordText, statement: Statement) -> int:
@@ -132,11 +184,12 @@ def chosen_channel(text: RecordText, channels: Sequence[Channel]) -> Channel:
             f"the file holds {len(channels)} channels; say which one by "
             f"?channel={channels[0].number} after the file name ({listing})"
         )
-    wanted = [channel for channel in channels if channel.number == text.channel]
+    asked = text.channel.strip().lower()
+    wanted = [of for of in channels if asked in (str(of.number), of.label.strip().lower())]
     if not wanted:
-        raise text.fault(f"there is no channel {text.channel}; the file has {listing}")
+        raise text.fault(f"there is no channel {text.channel[:60]}; the file has {listing}")
     if len(wanted) > 1:
-        raise text.fault(f"channel {text.channel} comes {len(wanted)} times: {listing}")
+        raise text.fault(f"channel {text.channel[:60]} comes {len(wanted)} times: {listing}")
     return wanted[0]
 
 

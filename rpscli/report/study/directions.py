@@ -11,7 +11,8 @@ from pydantic import Field
 
 from rpscli.analyses.result_quantities import DEMANDS, ResultQuantity
 from rpscli.case.study.reports import ReportOptions
-from rpscli.records.pair import HALF_TURN, Direction, direction_of, together
+from rpscli.records.pair import HALF_TURN
+from rpscli.records.source import Source
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import by_values, left_out, panel_figure, remarks
@@ -108,7 +109,7 @@ def directions(study: StudyResults, options: DirectionsOptions) -> Found:
     ) | {"worst": "SI", "worst_angle": "deg", "rotd50": "SI", "both": "SI"}
     drawable = any(panel.curves for panel in panels)
     layout = table.layout
-    acts_together = any(request and together(request.source) for request in layout.records)
+    acts_together = any(request and Source.parse(request.source).both for request in layout.records)
     aim = f"scaled to {layout.scaled_to}" if layout.scaled_to and len(layout.scales) == 1 else ""
     return Found(
         {
@@ -125,10 +126,12 @@ def _panel(group: Histories, known: dict[ResultQuantity, Array], drawn: ResultQu
     both: dict[str, list[int]] = {}
     for part in group.parts(["record"]):
         source, place = str(part.values[0]), int(part.every[0])
-        if (direction := direction_of(source)) is not None:
-            members.setdefault(direction.pair, []).append((direction.angle, place))
-        elif (pair := together(source)) is not None:
-            both.setdefault(pair.pair, []).append(place)
+        of = Source.parse(source)
+        pair = str(of.without("both", "angle", "rotation"))
+        if of.angle is not None:
+            members.setdefault(pair, []).append((of.angle, place))
+        elif of.both:
+            both.setdefault(pair, []).append(place)
     curves = [
         _curve(group, pair, sorted(at), both.get(pair, []), known, drawn)
         for pair, at in members.items()
@@ -136,9 +139,9 @@ def _panel(group: Histories, known: dict[ResultQuantity, Array], drawn: ResultQu
     spreads = {}
     for quantity in dict.fromkeys(q for curve in curves for q in curve.results):
         results = [curve.results[quantity] for curve in curves if quantity in curve.results]
-        of = np.array([(each.worst, each.rotd50, each.both) for each in results]).T
+        three = np.array([(each.worst, each.rotd50, each.both) for each in results]).T
         spreads[quantity] = tuple(
-            fractiles(np.where(np.isnan(each).any(), np.nan, each), THREE) for each in of
+            fractiles(np.where(np.isnan(each).any(), np.nan, each), THREE) for each in three
         )
     return Panel(group.values, curves, spreads)
 
@@ -235,20 +238,20 @@ BESIDE = 184.0
 """Angle beside which their bands stand [deg]."""
 
 
-def _turned(layout: StudyPoints) -> dict[str, list[Direction]]:
-    """Directions of each pair of the study."""
-    found: dict[str, list[Direction]] = {}
+def _turned(layout: StudyPoints) -> dict[str, list[float]]:
+    """Directions of each pair of the study [deg]."""
+    found: dict[str, list[float]] = {}
     for request in layout.records:
-        direction = direction_of(request.source) if request else None
-        if direction is not None:
-            found.setdefault(direction.pair, []).append(direction)
+        of = Source.parse(request.source) if request else None
+        if of is not None and of.angle is not None:
+            found.setdefault(str(of.without("angle")), []).append(of.angle)
     return found
 
 
 def _uneven(layout: StudyPoints) -> Iterator[str]:
     """A median over directions needs evenly spread ones, each once."""
     for pair, directions in _turned(layout).items():
-        angles = np.sort([direction.angle % HALF_TURN for direction in directions])
+        angles = np.sort([angle % HALF_TURN for angle in directions])
         gaps = np.diff(angles, append=angles[0] + HALF_TURN)
         if gaps.min() < 0.5 * gaps.max():
             yield (

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.records.formats.statements import remark
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
-from rpscli.records.quantities import parse_query
 from rpscli.records.selection import Selection
-from rpscli.records.source import file_and_options, split_factor
+from rpscli.records.source import Source, is_file
 from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.table import Column, Table, picked, records, shown
 
@@ -71,7 +71,7 @@ def spectrum_columns(spectrum: ResponseSpectrum) -> list[Column]:
 
 def two_column_text(motion: GroundMotion) -> str:
     """Time [s] and acceleration [m/s2], under a header that every reader of ours understands."""
-    header = " ".join(f"{motion.name}: {motion.description}; from {motion.source}".split())
+    header = remark(f"{motion.name}: {motion.description}; from {motion.source}")
     lines = [f"# {header}", f"# dt: {motion.dt!r}", "# Time (s)  Acceleration (m/s2)"]
     lines += [f"{t:.10g} {a:.9g}" for t, a in zip(motion.time, motion.acceleration, strict=True)]
     return "\n".join(lines) + "\n"
@@ -153,10 +153,7 @@ def selection_list(selection: Selection, folder: Path) -> str:
 
 
 def _line(source: str, factor: float, folder: Path) -> str:
-    plain, own = split_factor(source)
-    if own:
-        factor *= parse_query(own, source, ("factor",)).quantity("factor", "ratio")
-    place, options = file_and_options(plain)
-    if Path(place).expanduser().is_file() and not Path(place).expanduser().is_absolute():
-        place = Path(os.path.relpath(place, folder)).as_posix()
-    return f"{place}?{options}{'&' * bool(options)}factor={factor:g}"
+    of = Source.parse(source)
+    if is_file(of.place, None) and not Path(of.place).expanduser().is_absolute():
+        of = of.at(Path(os.path.relpath(of.place, folder)).as_posix())
+    return str(of.plus(factor=f"{of.factor * factor:g}"))

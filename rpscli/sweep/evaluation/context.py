@@ -20,8 +20,8 @@ from rpscli.case.case import Case, case_from_mapping
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
+from rpscli.records.loading import load_components
 from rpscli.records.measures import Measure, Of, factor_to, measured, pair_measure
-from rpscli.records.source import load_components
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest
 from rpscli.sweep.evaluation.results import Array
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from rpscli.case.study.schema import Analysis, MeasureScale
 from rpscli.records.clusters import Pair
 from rpscli.records.measures import USUAL, Of
-from rpscli.records.source import parts_of
+from rpscli.records.source import Source
 from rpscli.version import VERSION
 
 
@@ -39,7 +39,7 @@ class RecordRequest(NamedTuple):
     @property
     def is_pair(self) -> bool:
         """Whether both horizontal components act."""
-        return self.y is not None or parts_of(self.source).both
+        return self.y is not None or Source.parse(self.source).both
 
 
 class Point(NamedTuple):

@@ -42,12 +42,14 @@ USUAL: dict[Measure, str] = {"PGA": "g", "Sa": "g", "PGV": "cm/s"}
 class Hazard:
     """Ascending intensities (points,) in SI, and how often a year they are exceeded [1/year].
 
-    `fractiles` are further curves (points,), by the share of the site's models that they are above.
+    `fractiles` are further curves (points,), by the share of the site's models that they are above;
+    `left_out` rows at the end of the table had rates of zero.
     """
 
     intensity: Array
     rate: Array
     fractiles: Mapping[float, Array] = field(default_factory=dict)
+    left_out: int = 0
 
     def fractile(self, share: float) -> Hazard:
         """One of the further curves."""
@@ -62,6 +64,9 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
         for line, row in enumerate(csv.reader(io.StringIO(text)), 1)
         if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
     ]
+    whole = len(rows)
+    while len(rows) > 1 and _is_zero(rows[-1][1]):
+        rows.pop()
     if len(rows) < 3:
         raise CaseError(
             f"{path}: a hazard curve has a header, {_header(measure)}, and at least two rows"
@@ -77,7 +82,16 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
                 f"{path}:{line}: the rate {shown(rate)} is above that of the row before; stronger"
                 " motions are not more frequent"
             )
-    return Hazard(points[:, 0] * factor, points[:, 1], dict(zip(shares, points.T[2:], strict=True)))
+    fractiles = dict(zip(shares, points.T[2:], strict=True))
+    return Hazard(points[:, 0] * factor, points[:, 1], fractiles, whole - len(rows))
+
+
+def _is_zero(row: Sequence[str]) -> bool:
+    """Whether a row ends a curve: tables go on with rates that print as zero."""
+    try:
+        return len(row) > 1 and not any(map(float, row[1:]))
+    except ValueError:
+        return False
 
 
 def _header(measure: Measure) -> str:

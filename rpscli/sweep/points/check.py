@@ -22,7 +22,7 @@ from rpscli.errors import CaseError, RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.measures import needs_period
-from rpscli.records.source import parts_of
+from rpscli.records.source import Source
 from rpscli.sweep.evaluation.context import (
     SYSTEMS_KEPT,
     System,
@@ -84,7 +84,7 @@ def check_systems(
     examined: dict[int, System] = {}
     known: dict[RecordRequest, RecordRequest] = {}
     complaints: dict[str, None] = {}
-    faulty, pairs = 0, any(parts_of(source).both for source in study.sources)
+    faulty, pairs = 0, any(Source.parse(source).both for source in study.sources)
     for system in watched(range(len(combinations))):
         values = combinations.values(system)
         try:

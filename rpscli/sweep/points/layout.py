@@ -20,7 +20,7 @@ from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RecordError, RpsError
 from rpscli.records.clusters import By, clusters, pairs
 from rpscli.records.measures import MEASURES, Of, measure_label, needs_period
-from rpscli.records.pair import turned_source
+from rpscli.records.source import Source
 from rpscli.shown import frozen
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
 from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
@@ -287,15 +287,12 @@ def known_factor(context: StudyContext, point: Point) -> float:
 
 def _source(request: RecordRequest) -> str:
     """The source as seen from the working folder."""
-    source = turned_source(request.source, request.rotation)
-    place, mark, options = source.partition("?")
-    file = Path(request.folder) / place
-    if not file.exists():
-        return source
-    stated = [options] if mark else []
-    stated += [f"dt={request.dt!r}"] if request.dt is not None else []
-    stated += [f"units={request.units}"] if request.units is not None else []
-    return f"{file}?{'&'.join(stated)}" if stated else str(file)
+    source = Source.parse(request.source, Path(request.folder)).turned(request.rotation)
+    file = Path(request.folder) / source.place
+    if source.scheme or not file.exists():
+        return str(source)
+    stated = {"dt": request.dt and repr(request.dt), "units": request.units}
+    return str(source.at(str(file)).plus(**{name: text for name, text in stated.items() if text}))
 
 
 def yaml_scalar(value: Any) -> str:

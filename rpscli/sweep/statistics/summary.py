@@ -12,7 +12,6 @@ from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.records.clusters import By, clusters
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.measures import measure_label
-from rpscli.records.pulses import SCHEME
 from rpscli.sweep.evaluation.results import FAILED
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
 from rpscli.sweep.statistics.fractiles import Outcomes, Share, Spread, demand, share_of, spread
@@ -149,7 +148,7 @@ def scale_notes(table: Table) -> Iterator[str]:
             f" {alone[0]} for one, and are scaled to it by themselves"
         )
     of, sources = layout.identifying["record"]
-    pulses = np.array([source.startswith(SCHEME) for source in sources])[layout.places[of]]
+    pulses = np.array([source.startswith("pulse:") for source in sources])[layout.places[of]]
     scale = np.abs(layout.factors if layout.plan.measure is None else table.scale)
     unusual = ((scale < LEAST) | (scale > MOST)) & ~pulses
     if unusual.any():

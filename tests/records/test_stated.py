@@ -1,0 +1,228 @@
+"""What headers and titles state is used: units, steps, counts, quantities, events, directions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.errors import RecordError
+from rpscli.records.clusters import clusters
+from rpscli.records.formats.at2 import at2_text
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.loading import expand_sources, expanded, load_record
+from rpscli.report.tables.motions import two_column_text
+
+COUNT, DT = 200, 0.005
+TIMES = np.arange(COUNT) * DT
+VALUES = 0.2 * np.sin(4.0 * np.pi * TIMES) * np.sin(np.pi * TIMES / TIMES[-1]) ** 0.5
+PEAK = float(np.max(np.abs(VALUES)))
+
+
+def rows(*columns: np.ndarray, form: str = "{:.6f}", between: str = ",") -> str:
+    lines = (
+        between.join(form.format(value) for value in row) for row in zip(*columns, strict=True)
+    )
+    return "\n".join(lines) + "\n"
+
+
+def load(folder: Path, text: str, options: str = "", name: str = "x.txt") -> GroundMotion:
+    (folder / name).write_text(text, encoding="utf-8")
+    return load_record(f"{name}{options}", folder=folder)
+
+
+ALONE, TIMED = rows(VALUES), rows(TIMES, VALUES)
+THREE = rows(VALUES, 0.5 * VALUES, 0.25 * VALUES, between="  ")
+GAL = rows(100.0 * STANDARD_GRAVITY * VALUES)
+HEAD = "NUMBER OF DATA : 200\nSAMPLING INTERVAL (sec) : 0.005\nunits: g\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "options"),
+    [
+        (f"units: g\ndt: 5 ms\n{ALONE}", ""),
+        (f"units: g\nsampling interval (msec) = 5\n{ALONE}", ""),
+        (f"units: g\nEqually spaced intervals of .005 sec.\n{ALONE}", ""),
+        (f"Time [ms],Acceleration [g]\n{rows(1e3 * TIMES, VALUES)}", ""),
+        (f"Time (msec),acc_x (g)\n{rows(1e3 * TIMES, VALUES)}", ""),
+        (f"values as recorded in gal\ndt: 0.005\nPeak acc (g): 0.2000\n{GAL}", ""),
+        (f"an invented motion\n200 0.0050\n{ALONE}", "?units=g"),
+        ('"Time [s]","Acceleration [g]"\n' + TIMED.replace(",", '","').replace("\n", '"\n"'), ""),
+        (
+            "Time [s],Acceleration [g],Velocity [m/s],Displacement [m]\n"
+            + rows(TIMES, VALUES, 2.0 * VALUES, 3.0 * VALUES),
+            "",
+        ),
+        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "?channel=N-S"),
+        (f"{HEAD}   N-S   E-W   U-D\n{rows(2.0 * VALUES, VALUES, VALUES, between=' ')}",
+         "?channel=e-w"),
+        (f"Time [s],Acceleration N [g],Acceleration E [g]\n{rows(TIMES, VALUES, VALUES / 2)}",
+         "?channel=Acceleration N"),
+        (f"Time [s],Acceleration [g]\n{TIMED}" + "\0" * 300, ""),
+    ],
+)  # fmt: skip
+def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str) -> None:
+    made = load(tmp_path, text.removesuffix('"'), options)
+    assert (made.npts, made.dt) == (COUNT, DT)
+    np.testing.assert_allclose(made.acceleration, VALUES * STANDARD_GRAVITY, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "message"),
+    [
+        (f"Time (s),Acceleration (g x 10)\n{TIMED}", "", "'g x 10', which is not a unit"),
+        (f"Time (min),Acceleration (g)\n{TIMED}", "", "a time in 'min' is not known"),
+        (f"units: g\ndt: 0.005.3\n{ALONE}", "", "'0.005.3' is not a finite number"),
+        (f"units: g\ndt: 5 min\n{ALONE}", "", "a time in 'min' is not known"),
+        (f"Period [s],Spectral Acceleration [g]\n{rows(TIMES + 0.02, VALUES)}", "", "a spectrum"),
+        (f"time,displacement\n{TIMED}", "?units=g", "this is a displacement record"),
+        (f"time;velocity\n{rows(TIMES, VALUES, between=' ')}", "?units=g", "a velocity record"),
+        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "", r"3 channels; .*\?channel=0.*0: N-S; 1: E-W"),
+        (f"{HEAD}{THREE}", "", "as many as there are rows of 3 numbers"),
+        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "?channel=north", "there is no channel north"),
+        (f"199 0.0050\n{ALONE}", "?units=g", "look like the number of values and their step"),
+        (f"units: g\ndt: 5 ms\ndt: 0.01\n{ALONE}", "", "contradicts dt = 5 ms of line 2"),
+        (f"Acceleration [g]\ndt: 0.005\n{ALONE}", "?units=gal", "contradicts the file"),
+    ],
+)
+def test_refuses(tmp_path: Path, text: str, options: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        load(tmp_path, text, options)
+
+
+def test_an_offset_is_a_warning(tmp_path: Path) -> None:
+    (warning,) = load(tmp_path, f"units: g\ndt: 0.005\n{rows(VALUES + 1.0)}").warnings
+    assert "of the peak: an offset of the instrument?" in warning
+    assert load(tmp_path, f"units: g\ndt: 0.005\n{ALONE}").warnings == ()
+
+
+def at2(component: str, step: str = ".0050 SEC") -> str:
+    values = rows(VALUES, form="{:.7E}")
+    return (
+        "PEER NGA STRONG MOTION DATABASE RECORD\n"
+        f"Invented, 1/2/2001, Station A, {component}\n"
+        "ACCELERATION TIME SERIES IN UNITS OF G\n"
+        f"NPTS=   200, DT=   {step}\n{values}"
+    )
+
+
+def test_a_step_of_an_at2_file_in_milliseconds(tmp_path: Path) -> None:
+    made = load(tmp_path, at2("0", "5.0 MSEC"), name="x.at2")
+    assert (made.dt, made.npts, made.warnings) == (DT, COUNT, ())
+    assert (made.recording.station, made.recording.direction) == ("Station A", "0")
+
+
+def knet(station: str, direction: str, origin: str = "2001/01/02 03:03:00") -> str:
+    counts = np.round(VALUES * (5e4 if direction == "N-S" else 1e5)).astype(int)
+    body = "\n".join(
+        "".join(f"{value:9d}" for value in counts[i : i + 8]) for i in range(0, COUNT, 8)
+    )
+    head = {
+        "Origin Time": origin, "Lat.": "35.000", "Long.": "140.000", "Depth. (km)": "10",
+        "Mag.": "6.0", "Station Code": station, "Station Lat.": "35.1", "Station Long.": "140.1",
+        "Station Height(m)": "10", "Record Time": "2001/01/02 03:04:05",
+        "Sampling Freq(Hz)": "200Hz", "Duration Time(s)": "1", "Dir.": direction,
+        "Scale Factor": "2000(gal)/1000000", "Max. Acc. (gal)": "", "Last Correction": origin,
+        "Memo.": "",
+    }  # fmt: skip
+    return "\n".join(f"{key:18}{value}" for key, value in head.items()) + f"\n{body}\n"
+
+
+def test_stations_of_one_earthquake_are_one_event(tmp_path: Path) -> None:
+    names = []
+    for station in ("AAA001", "AAA002"):
+        for end, direction in (("EW", "E-W"), ("NS", "N-S"), ("UD", "U-D")):
+            (tmp_path / f"{station}.{end}").write_text(knet(station, direction), "utf-8")
+        names.append(f"{station}.EW?second={station}.NS&both")
+    late = tmp_path / "AAA003.EW"
+    late.write_text(knet("AAA003", "E-W", "2002/01/02 03:03:00"), encoding="utf-8")
+    found = expanded(["AAA00[12]*?both"], folder=tmp_path)
+    assert found.sources == names
+    assert "AAA001.UD, AAA002.UD" in found.notes[0]
+    every = [*names, late.name]
+    assert clusters(every, tmp_path, "events") == (0, 0, 1)
+    assert clusters(every, tmp_path) == (0, 1, 2)
+    told = load_record("AAA001.EW", folder=tmp_path).recording
+    assert (told.station, told.magnitude, told.direction) == ("AAA001", 6.0, "E-W")
+
+
+@pytest.mark.parametrize("component", ["UP", "DWN", "vertical", "UD"])
+def test_a_vertical_that_only_its_header_states(tmp_path: Path, component: str) -> None:
+    for name, of in (("one", "0"), ("two", "90"), ("three", component)):
+        (tmp_path / f"{name}.at2").write_text(at2(of), encoding="utf-8")
+    found = expanded(["."], folder=tmp_path)
+    assert sorted(found.sources) == ["one.at2", "two.at2"]
+    assert found.notes == [".: vertical components left out: three.at2"]
+    assert expand_sources(["three.at2"], folder=tmp_path) == ["three.at2"]
+
+
+def csmip(line: str) -> str:
+    body = rows(*VALUES.reshape(-1, 8).T * 100.0 * STANDARD_GRAVITY, form="{:9.3f}", between=" ")
+    return (
+        "Corrected accelerogram   00000-A0000-00000.00       Chan  1: 360 Deg     from\n"
+        "Uncorrected Accelerogram Data\nRcrd of an invented earthquake\n"
+        f"Peak acceleration =  {100.0 * STANDARD_GRAVITY * PEAK:.3f} cm/sec/sec at .5 sec.\n"
+        f"   200 {line}\n{body}"
+    )
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "POINTS OF ACCEL DATA EQUALLY SPACED AT  .005 SEC.  (UNITS: CM/SEC/SEC)",
+        "points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.4)",
+    ],
+)
+def test_volume_2_as_written_before_and_since_2000(tmp_path: Path, line: str) -> None:
+    made = load(tmp_path, csmip(line), name="x.v2")
+    assert (made.npts, made.dt, made.warnings) == (COUNT, DT, ())
+    assert made.pga == pytest.approx(PEAK * STANDARD_GRAVITY, abs=1e-5)
+
+
+def test_volume_1_is_said_to_be_uncorrected(tmp_path: Path) -> None:
+    text = "Uncorrected Accelerogram Data             Processed: 01/02/01\nChan  1: 360 Deg\n"
+    with pytest.raises(RecordError, match=r"uncorrected accelerogram \(volume 1\)"):
+        load(tmp_path, f"{text}   200 Accelerogram points at 200 pts/sec, in g/10\n", name="x.V1")
+
+
+WRITTEN = {
+    "columns": (f"units: gal, dt: 5 ms, npts: 200\n{GAL}", "x.txt"),
+    "titles": (f"Time [ms],Acceleration [g]\n{rows(1e3 * TIMES, VALUES)}", "x.csv"),
+    "at2": (at2("90"), "x.at2"),
+    "knet": (knet("AAA001", "E-W"), "x.EW"),
+    "csmip": (csmip("points of accel data equally spaced at  .005 sec, in cm/sec2."), "x.v2"),
+    "pulse": ("", "pulse:sine?amplitude=0.2 g&period=1&dt=0.005"),
+    "synthetic": ("", "synthetic:?pga=0.2g&seed=1&duration=1&dt=0.005"),
+}
+
+
+@pytest.mark.parametrize("kind", WRITTEN)
+@pytest.mark.parametrize("form", ["at2", "text"])
+def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> None:
+    text, name = WRITTEN[kind]
+    made = load(tmp_path, text, name=name) if text else load_record(name)
+    out = tmp_path / ("y.at2" if form == "at2" else "y.txt")
+    out.write_text(at2_text(made) if form == "at2" else two_column_text(made), encoding="utf-8")
+    again = load_record(str(out))
+    assert (again.npts, again.dt) == (made.npts, made.dt)
+    digits = 1e-7 if form == "at2" else 1e-8
+    np.testing.assert_allclose(again.acceleration, made.acceleration, atol=digits * made.pga)
+    out.write_text(two_column_text(again), encoding="utf-8")
+    assert load_record(f"{out}").npts == made.npts
+
+
+@pytest.mark.parametrize(
+    "title",
+    ["units: furlongs", "Units of gal", "dt: 3", "DT= 3 SEC", "NPTS= 7", "number of data: 9",
+     "sampling interval (ms) = 2", "equally spaced intervals of 3 sec", "velocity time series"],
+)  # fmt: skip
+@pytest.mark.parametrize("form", ["at2", "text"])
+def test_a_title_states_nothing(tmp_path: Path, title: str, form: str) -> None:
+    motion = GroundMotion(VALUES * STANDARD_GRAVITY, DT, "x", "s", "SMC", title)
+    out = tmp_path / ("y.at2" if form == "at2" else "y.txt")
+    out.write_text(at2_text(motion) if form == "at2" else two_column_text(motion), encoding="utf-8")
+    again = load_record(str(out))
+    assert (again.npts, again.dt) == (COUNT, DT)
+    assert again.pga == pytest.approx(motion.pga, rel=1e-7)
