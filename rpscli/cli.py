@@ -29,9 +29,6 @@ COMMANDS = {
         "rpscli.commands.report", "one page for a checking engineer, from all of these"
     ),
     "budget": Member("rpscli.commands.budget", "sensitivity of limited results and verdicts"),
-    "compare": Member(
-        "rpscli.commands.compare", "what differs between two cases or folders of results"
-    ),
     "export": Member("rpscli.commands.export", "write a case as a model for mujoco or OpenSees"),
     "identify": Member("rpscli.commands.identify", "properties of a case from measured motion"),
     "record": Member("rpscli.commands.record", "read, draw, select, convert, make ground motions"),
@@ -78,6 +75,10 @@ def _show_version(ctx: click.Context, option: click.Parameter, value: object) ->
 @click.command(
     cls=Program,
     members=COMMANDS,
+    gone={
+        "compare": "rps report CASE says what differs from the results that are stored; of two runs"
+        " compare summary.json, or points.csv of two studies"
+    },
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3 case or"
     " record invalid, 4 analysis failed, 5 study with failed points, 6 verification mismatch,"

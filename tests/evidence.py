@@ -46,11 +46,10 @@ CAPABILITIES = (
     "statistics and fragilities",
     "efficiency of intensity measures",
     "risk",
-    "demands for loss assessment",
     "design",
     "identification",
     "export",
-    "error budget and comparison",
+    "error budget",
 )
 Evidence = tuple[str, str]
 

@@ -30,7 +30,6 @@ EXTRAS = {
     "records": "the ground motions of FEMA P695",
     "cluster": "studies on a Dask cluster",
     "contact": "bodies in contact, rps export CASE mujoco",
-    "losses": "losses from the report demand_sample",
 }
 """What packages add that users may do without."""
 KEPT = {"compiled kernels": "kernels-*", "times of compilation": TIMES_FILE, "fonts": "matplotlib"}

@@ -17,11 +17,11 @@ from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.commands.timehistory_run import HistoryRequest, compute, history_requests, look_beside
 from rpscli.errors import UsageError
-from rpscli.report.differences import as_text, results_of
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import RUN_FILE
 from rpscli.report.html.page import Block, Notice, Section, page_look
+from rpscli.report.leaves import as_text, results_of
 from rpscli.report.table import Table
 
 if TYPE_CHECKING:

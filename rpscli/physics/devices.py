@@ -273,13 +273,20 @@ def release_devices(s: Record, l: int) -> None:
     reset_yielded_tendons(s, l)
 
 
+UNLOADED = 1e-12
+"""Share of its limit by which a tendon that yielded is below it once the tilt turns: a margin of
+zero could be negative by rounding at the end of a short step, and the tendon yield on the way back.
+"""
+
+
 @compiled
 def reset_yielded_tendons(s: Record, l: int) -> None:
     """Tendons that yielded are elastic again, longer by what they yielded."""
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == TENDON and s.branch[i, l] == BEYOND:
             e = worked(s, l, tilt_of(s, l), (0.0, 0.0)).e
-            until_yield = s.law[i, TENDON_YIELD, l] - s.law[i, TENDON_PRESTRESS, l]
+            limit = s.law[i, TENDON_YIELD, l] * (1.0 - UNLOADED)
+            until_yield = limit - s.law[i, TENDON_PRESTRESS, l]
             s.permanent[i, l] = e - until_yield / s.law[i, TENDON_STIFFNESS, l]
             s.branch[i, l] = WORKING
 

@@ -39,11 +39,13 @@ from rpscli.physics.state import (
 LEAST_STEP = 1e-13
 """Of the sampling interval: a step is not made shorter."""
 
-CLOSE = 1e-6
-"""Of the sampling interval: what is missing to an event is so short that rates lead there."""
+CLOSE = 1e-7
+"""Of the step: what is missing to an event is so short that rates lead there. What flows in it is
+taken for the mean of the step, a part of what flows at its end where a tilt has only begun."""
 
 AT_LIMIT = 1e-9
-"""The same of an uplift: a margin that is not yet zero would have the storey land at once."""
+"""The same of an uplift, over the sampling interval: a margin that is not yet zero would have the
+storey land at once."""
 
 MOST_TRIES = 8
 
@@ -318,7 +320,9 @@ def land(s: Record, l: int) -> None:
     change = -value / slope if slope < 0.0 else 0.0
     change = min(max(change, -0.5 * s.h[l]), s.h_now[l] - s.h[l])
     s.tries[l] += 1
-    close = CLOSE * s.dt[l] if s.wanted[l] != LET_GO else AT_LIMIT * s.dt[l]
+    close = max(CLOSE * s.h[l], LEAST_STEP * s.dt[l])
+    if s.wanted[l] == LET_GO:
+        close = AT_LIMIT * s.dt[l]
     if abs(change) > close and s.tries[l] < MOST_TRIES:
         s.h[l] += change
         return

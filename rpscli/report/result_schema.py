@@ -177,15 +177,6 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
             "sentences": str, "records_fractiles": list[float], "records_beyond": str,
         }],
     },
-    "compare": {
-        "tolerance": float, "compared": int, "only_a": [str], "only_b": [str], **_ENDED,
-        **{key: {"source": str, "versions": dict[str, str | None], **_TOLD} for key in "ab"},
-        "inputs": [{"name": str}], "versions": [{"name": str}],
-        "results": [{
-            "name": str, "unit": str, "at": str, "differing": int, "of": int, "largest": float,
-            "relative": float, "noise": float,
-        }],
-    },
     "export": {"case": _SUBJECT, "program": str, "limits": str, **_TOLD, **_FILES},
     "identify": {
         "case": _SUBJECT, "test": str, "level": float, "misfit": float, "ensembles": bool,

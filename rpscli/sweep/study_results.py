@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,7 +9,6 @@ import numpy as np
 
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.intensities import Asked, Intensity, intensity
-from rpscli.sweep.run.schedule import LARGEST_BATCH
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences, fixed_base_references
 from rpscli.sweep.store import Store, Stored
 from rpscli.sweep.table import Array, Table
@@ -52,19 +49,3 @@ class StudyResults:
         assert fixed is not None, "every system has a building"
         both = spectra.isolated_floor_spectra(result, damping=damping), fixed
         return np.array([(each.pseudo_acceleration, each.displacement) for each in both])
-
-    def floor_demands(self, numbers: Sequence[int]) -> tuple[Array, Array]:
-        """(m, n) of points, run once more: largest accelerations of floors [m/s2], drift ratios."""
-        from rpscli.analyses.demand import demands
-
-        requests = [self.context.history(self.table.layout[number]) for number in numbers]
-        parts = [requests[f : f + LARGEST_BATCH] for f in range(0, len(requests), LARGEST_BATCH)]
-        with ThreadPoolExecutor(self.jobs) as pool:
-            found = [demand for part in pool.map(demands, parts) for demand in part]
-        ratios = []
-        for demand in found:
-            building = demand.structure.superstructure
-            assert building is not None, "every system has a drift ratio"
-            ratios.append(building.drift_ratios(demand.max_drifts))
-        accelerations = [demand.floor_accelerations for demand in found]
-        return np.array(accelerations), np.array(ratios, dtype=float)

@@ -29,7 +29,7 @@ def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
     return document
 
 
-@pytest.mark.evidence("error budget and comparison", "exact")
+@pytest.mark.evidence("error budget", "exact")
 def test_each_row_is_that_of_the_command_by_hand(
     workplace: Path, rps: Invoke, rps_json: Json
 ) -> None:

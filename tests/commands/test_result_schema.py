@@ -61,8 +61,6 @@ RUNS: dict[str, tuple[tuple[str, ...], int]] = {
     "sweep of modes": (("sweep", "modes.yaml", *NONE), 0),
     "design": (("design", "design.yaml", *NONE), 0),
     "budget": (("budget", "small.yaml", "--record", PULSE, "--record", f"{PULSE}1", *NONE), 0),
-    "compare": (("compare", "small.yaml", "small.yaml"), 0),
-    "compare of two": (("compare", "small.yaml", "frame.yaml", "--record", PULSE), 0),
     "export": (("export", "small.yaml", "opensees"), 0),
     "identify": (("identify", "small.yaml", "floor.csv", "release"), 0),
     "report": (("report", "small.yaml", "-o", "page.html"), 0),

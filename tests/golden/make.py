@@ -48,7 +48,6 @@ reports:
       rows: [podium.bearing.slenderness]
       columns: [scale]
   - demand
-  - demand_sample
   - storey_shear: {unit: kN}
   - fragility: {limits: {rotation_ratio: [0.25, 0.5]}}
   - risk:

@@ -22,7 +22,8 @@ from rpscli.analyses.kernels.systems import most_seconds, uplifted_rate
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.timehistory import denser_trace, time_history
+from rpscli.analyses.trace import Trace
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper
@@ -181,10 +182,17 @@ def residual(result: TimeHistoryResult) -> float:
 
     At the end the ground may have taken back most of what it gave.
     """
-    trace = result.trace
-    entries = (trace.energy_input, trace.energy_damped, trace.energy_impact, trace.energy_stored)
-    largest = max(float(np.max(np.abs(entry))) for entry in entries)
-    return abs(result.energy.residual) / largest if largest > 0.0 else 0.0
+
+    def error(trace: Trace) -> float:
+        entries = trace.energy_input, trace.energy_damped, trace.energy_impact, trace.energy_stored
+        largest = max(float(np.max(np.abs(entry))) for entry in entries)
+        return abs(result.energy.residual) / largest if largest > 0.0 else 0.0
+
+    found = error(result.trace)
+    if found <= RESIDUAL:
+        return found
+    # an excursion may lie between two samples, and be lifted and down again
+    return error(denser_trace(result, result.record.dt / 100.0))
 
 
 def nothing_pushed(record: GroundMotion, result: TimeHistoryResult) -> bool:
@@ -310,6 +318,8 @@ PAIR_ERRORS: list[float] = []
         "20281-histories 0-735",
         "20411-histories 0-489",
         "20412-histories 0-908",
+        "41261-histories 0-405",
+        "41271-histories 0-231",
     ],
 )
 def test_histories_that_lost_too_much(seed: str) -> None:

@@ -127,8 +127,8 @@ def test_end_values_and_derivatives_are_met(ends: list[float], h: float) -> None
     powers = to_powers(b)
     slope, bend = np.polyder(powers), np.polyder(powers, 2)
     got = [np.polyval(p, t) / h**i for t in (0, 1) for i, p in enumerate((powers, slope, bend))]
-    # second derivatives are differences of values over h^2
-    assert got == pytest.approx(ends, abs=1e-13 * (1.0 + 1.0 / h**2))
+    # second derivatives are differences of coefficients over h^2: these round some hundred times
+    assert got == pytest.approx(ends, abs=2e-13 * (1.0 + 1.0 / h**2))
 
 
 @given(

@@ -39,7 +39,6 @@ from rpscli.report.study.comparison_numbers import (
     Outcomes,
 )
 from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
-from rpscli.report.study.heights import DemandSample, demand_sample_figure
 from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design.answer import Answer, Judged, Requirement
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
@@ -196,32 +195,6 @@ def test_what_a_rate_comes_from() -> None:
     assert numbers == ["P = 0.393 (no band)", "P = 0.632 (0.39 to 0.86)"]
     for words in ("P in 50 years, 90 % bands", "dashed: half of the rate", "over 3 records"):
         assert words in figure.get_suptitle()
-
-
-def test_accelerations_over_the_height() -> None:
-    values = np.array([[1.0, 2.0, 3.0], [2.0, 3.0, 5.0], [3.0, 1.0, 4.0], [4.0, 8.0, 9.0]])
-
-    def sample(rho: object, factor: float, fallen: int) -> DemandSample:
-        one, overturned = np.zeros(4), np.array([0, 0, 0, fallen], dtype=bool)
-        points = np.arange(4)
-        return DemandSample((rho,), points, factor * values, values[:, 1:], one, one, overturned)
-
-    samples = sample(0.5, 1.0, 0), sample(0, 10.0, 1)
-    figure = kept_figure(
-        partial(demand_sample_figure((RHO,), samples, "2 failed points left out"), "title")
-    )
-    assert isinstance(figure, Figure)
-    labelled(figure, "largest acceleration [m/s²]", "level (0 = ground)")
-    first, second = (panels(figure)[name] for name in ("ρ = 0.5", "flat ends"))
-    # The second of four, and the last.
-    same(curve(first, "median"), ((2.0, 2.0, 4.0), range(3)))
-    same(curve(first, "84 % fractile"), ((4.0, 8.0, 9.0), range(3)))
-    same(curve(second, "median"), ((20.0, 20.0, 40.0), range(3)))
-    same(curve(second, "84 % fractile"), ((NAN, NAN, NAN), range(3)))
-    assert first.get_xlim()[0] == 0.0
-    assert all(height.is_integer() for height in first.get_yticks())
-    assert legend(figure) == ["median", "84 % fractile"]
-    assert "2 failed points left out" in figure.get_suptitle()
 
 
 @pytest.fixture

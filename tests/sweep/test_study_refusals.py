@@ -98,6 +98,7 @@ def sampled(distribution: str) -> tuple[str, str]:
             f"reports: [xyzzy]\n{SCALE}",
             ("'xyzzy' is not a report", "known are", "fragility"),
         ),
+        (SCALE, f"reports: [demand_sample]\n{SCALE}", ("demand_sample' is gone: points.csv has",)),
         (SCALE, f"reports: [{'x' * 5000}]\n{SCALE}", ("= 'xxx", "... is not a report; known are")),
         (
             SCALE,

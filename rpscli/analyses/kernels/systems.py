@@ -232,7 +232,7 @@ def step_error(settings: TimeHistorySettings, share: float = 1.0) -> float:
 LEAST_ERROR = 1e-12
 """Below it the difference of both rules is rounding: their weights are up to 176."""
 
-STEP_SECONDS, MODE_SECONDS = 4e-7, 4e-8
+STEP_SECONDS, MODE_SECONDS = 7e-7, 7e-8
 """About the time of a step of one history, and what each mode adds."""
 
 

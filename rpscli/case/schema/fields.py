@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Integral, Real
 from typing import Annotated, Any, Literal, NoReturn, Self, TypeGuard
 
@@ -344,12 +344,15 @@ class OneOf:
 
     what: str
     sections: Mapping[str, type[Section]]
+    gone: Mapping[str, str] = field(default_factory=dict)
 
     def name_of(self, value: object) -> str:
         """The kind of a value; refuses what has none."""
         if not isinstance(value, str) and not (isinstance(value, dict) and len(value) == 1):
             refuse("must be a name, or one `name: {option: value}`")
         name = value if isinstance(value, str) else str(next(iter(value)))
+        if name not in self.sections and (now := self.gone.get(name)):
+            refuse(f"is gone: {now}")
         if name not in self.sections:
             known = f"known are {listed(self.sections, 'and')}"
             refuse(f"is not a {self.what}; {hint(name, self.sections, known)}")

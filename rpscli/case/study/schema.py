@@ -306,11 +306,17 @@ class StudyFile(StudyParts):
     """names of reports, or `name: {option: value}`"""
 
 
+GONE = {
+    "demand_sample": "points.csv has the demands of every history; remove the report",
+}
+"""Reports of earlier versions, and what to use in their place."""
+
+
 @cache
 def study_file(kinds: tuple[tuple[str, type[Section]], ...]) -> type[StudyFile]:
     """The format of studies that may ask for reports of these kinds, by their names."""
     if not kinds:
         return StudyFile
-    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", dict(kinds))], ...], _A_LIST]
+    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", dict(kinds), GONE)], ...], _A_LIST]
     field = each, Field((), description=StudyFile.model_fields["reports"].description)
     return create_model("StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field)

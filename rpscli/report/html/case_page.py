@@ -23,7 +23,6 @@ from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import DAMPING, drawn_spectrum
 from rpscli.report.bundles import bearing_files
-from rpscli.report.differences import leaves
 from rpscli.report.documents import direction_note, versions
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, Look, figure_files
@@ -31,6 +30,7 @@ from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.planes import record_name
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
+from rpscli.report.leaves import leaves
 from rpscli.report.study.statistics import verdicts_in_short
 from rpscli.report.table import Column, Table, shown
 from rpscli.report.tables.derivation import derivations, first_shape

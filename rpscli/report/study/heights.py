@@ -1,35 +1,27 @@
-"""Storeys and floors of a study: shears over the height, floor spectra, demands for losses.
-
-Storey shears are those of Figure 9 of the paper. Demands are written as pelicun reads them: columns
-are called event-type-location-direction, and a row of units follows the header.
-"""
+"""Storeys and floors of a study: shears over the height (paper, Figure 9), floor spectra."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from rpscli.analyses.floor_spectra import DAMPING, PERIODS
 from rpscli.analyses.result_quantities import STOREY_SHEARS
 from rpscli.case.schema.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions, VariedKeys
-from rpscli.report.documents import json_text
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import break_if_narrow, in_panels, noted
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.study.statistics import reached
-from rpscli.report.table import Column
 from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import HIGH, THREE, fractiles
+from rpscli.sweep.statistics.fractiles import THREE
 from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
 from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array, Indices, groups
+from rpscli.sweep.table import Array, groups
 
 
 class StoreyShearOptions(ReportOptions):
@@ -44,10 +36,6 @@ class FloorSpectraOptions(ReportOptions):
     """Spectra of equipment on the floors: fractiles, isolated beside fixed base."""
 
     damping: DampingRatio = Field(DAMPING, description="of the equipment")
-
-
-class DemandSampleOptions(ReportOptions):
-    """Demands of storeys and floors for loss assessment, as pelicun reads them."""
 
 
 SHEARS = (
@@ -269,172 +257,5 @@ def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str
 
 NOT_DRAWN = "fractiles that overturned are not drawn"
 
-FITTED = ("PFA", "PID", "BRD")
-"""Types of demands to which pelicun can calibrate distributions, where they vary."""
-
-
-class DemandSample(NamedTuple):
-    """One system at one intensity: a row for each history that did not fail.
-
-    `accelerations` (m, n + 1) are the largest absolute ones of ground and floors [m/s2], `drifts`
-    (m, n) drift ratios; columns (m,) are displacements of the cap beam [m] and residual rotations
-    of the columns [rad]: the building is linear, and keeps no drift. Overturned histories have
-    their demands until then.
-    """
-
-    values: tuple[object, ...]
-    points: Indices
-    accelerations: Array
-    drifts: Array
-    displacements: Array
-    residual_rotations: Array
-    overturned: NDArray[np.bool_]
-
-
-def demand_sample(study: StudyResults, options: DemandSampleOptions) -> Found:
-    """Run the histories once more for the demands of single floors, which are not stored."""
-    found = grouping(study.table)
-    samples = [_sample(study, group) for group in found.computed]
-    heads = dict.fromkeys(("counted", "overturned", "failed"), "-")
-    rows = [
-        (group.values, len(group), group.overturned.number, group.failed)
-        for group in found.computed
-    ]
-    stem, numbers = options.name or "demand_sample", Column("file", "-", range(1, len(samples) + 1))
-    failed = sum(group.failed for group in found.computed)
-    note = noted(found, NOT_DRAWN if found.overturned else "", failed=failed)
-    return Found(
-        {"": [numbers, *keyed(found.keys, heads, rows)]},
-        demand_sample_figure(found.keys, samples, note) if samples else None,
-        list(_calibration_notes(samples)),
-        findings=_how(stem) if samples else (),
-        texts={
-            f"_{n}{suffix}": text
-            for n, one in enumerate(samples, start=1)
-            for suffix, text in {
-                ".csv": sample_text(one),
-                ".json": json_text(pelicun_configuration(one, f"{stem}_{n}.csv")),
-            }.items()
-        },
-    )
-
-
-def pelicun_configuration(sample: DemandSample, file: str) -> dict[str, Any]:
-    """What pelicun's DL_calculation takes: demands of a history together, collapse by OVT."""
-    collapse = {"DemandType": "OVT", "CapacityDistribution": "N/A", "CapacityMedian": 0.5}
-    overturning = {"Acronym": "OVT", "UnitType": "unitless"}
-    own = {"ComponentAssignmentFile": "components.csv", "ComponentDatabase": "FEMA P-58"}
-    count = len(sample.points)
-    return {
-        "GeneralInformation": {"units": {"length": "m", "force": "N", "time": "sec"}},
-        "DL": {
-            "Demands": {"DemandFilePath": file, "SampleSize": count, "CoupledDemands": True},
-            "Asset": {"NumberOfStories": sample.drifts.shape[1], **own},
-            "Damage": {
-                "DamageProcess": "FEMA P-58",
-                "CollapseFragility": {**collapse, "Theta_1": 0.0},
-            },
-            "Losses": {"Repair": {"ConsequenceDatabase": "FEMA P-58", "MapApproach": "Automatic"}},
-            "Options": {"Seed": 1, "CustomDemandTypes": {"Overturning": overturning}},
-        },
-    }
-
-
-def _how(stem: str) -> list[tuple[str, str]]:
-    """How pelicun goes on from here."""
-    command = f"python -m pelicun.tools.DL_calculation -c {stem}_1.json --dirnameOutput losses"
-    meaning = "OVT is 1 where a history overturned, which is collapse; its other demands are those"
-    return [
-        ("losses with pelicun", f"write components.csv, then run: {command}"),
-        ("its demands", f"{meaning} until then. BRD: cap beam displacement, RID-0: residual tilt"),
-    ]
-
-
-def _calibration_notes(samples: Sequence[DemandSample]) -> Iterator[str]:
-    """Columns to which no distribution can be fitted."""
-    constant = {
-        name[2:-2]
-        for sample in samples
-        for name, _, values in _columns(sample)
-        if np.ptp(values) == 0.0
-    }
-    if constant:
-        varying = [kind for kind in FITTED if not any(name.startswith(kind) for name in constant)]
-        wanted = {"ALL": "empirical"} | dict.fromkeys(varying, "lognormal")
-        families = {kind: {"DistributionFamily": family} for kind, family in wanted.items()}
-        yield (
-            f"{', '.join(sorted(constant))} are constant, and no distribution can be calibrated to"
-            f" them: leave CoupledDemands, or remove it for Calibration: {json.dumps(families)}"
-        )
-
-
-def _sample(study: StudyResults, group: Histories) -> DemandSample:
-    columns = {name: study.table.columns[name][group.points] for name in COLUMNS}
-    floors, drifts = study.floor_demands(group.points.tolist())
-    return DemandSample(
-        values=group.values,
-        points=group.points,
-        accelerations=np.column_stack([columns["pga"], floors]),
-        drifts=drifts,
-        displacements=columns["max_cap_beam_displacement"],
-        residual_rotations=np.abs(columns["residual_rotation"]),
-        overturned=group.fallen,
-    )
-
-
-COLUMNS = ("pga", "max_cap_beam_displacement", "residual_rotation")
-
-
-def sample_text(sample: DemandSample) -> str:
-    """The file of one system at one intensity; level 0 is the ground."""
-    columns = list(_columns(sample))
-    lines = [["", *(name for name, _, _ in columns)], ["Units", *(unit for _, unit, _ in columns)]]
-    for row, point in enumerate(sample.points.tolist()):
-        lines.append([str(point + 1), *(f"{values[row]:.10g}" for *_, values in columns)])
-    return "".join(",".join(line) + "\n" for line in lines)
-
-
-def _columns(sample: DemandSample) -> Iterator[tuple[str, str, Array]]:
-    """Name, unit in pelicun's spelling, and values of each column."""
-    for level, values in enumerate(sample.accelerations.T):
-        yield f"1-PFA-{level}-1", "mps2", values
-    for storey, values in enumerate(sample.drifts.T, start=1):
-        yield f"1-PID-{storey}-1", "unitless", values
-    yield "1-RID-0-1", "unitless", sample.residual_rotations
-    for storey, values in enumerate(sample.drifts.T, start=1):
-        yield f"1-RID-{storey}-1", "unitless", 0.0 * values  # the building is linear
-    yield "1-BRD-0-1", "m", sample.displacements
-    yield "1-OVT-0-1", "unitless", sample.overturned.astype(float)
-
-
-def demand_sample_figure(
-    keys: Sequence[str], samples: Sequence[DemandSample], note: str
-) -> Callable[[str], bytes]:
-    """Median and 84 % fractile of the accelerations from the ground to the roof."""
-
-    def draw(axes: style.Axes, sample: DemandSample) -> None:
-        axes.locator_params(axis="y", integer=True)
-        reached = np.where(sample.overturned[:, None], np.inf, sample.accelerations)
-        for share, dashes, name in ((0.5, "-", "median"), (HIGH, "--", "84 % fractile")):
-            values = np.array([fractiles(level, [share])[0] for level in reached.T])
-            axes.plot(
-                np.where(np.isfinite(values), values, np.nan), range(len(values)), "o",
-                ls=dashes, ms=3.0, color=style.BLUE, label=name,
-            )  # fmt: skip
-
-    return in_panels(
-        keys,
-        samples,
-        draw,
-        x_label="largest acceleration [m/s²]",
-        y_label="level (0 = ground)",
-        limits=lambda axes: axes.set_xlim(left=0.0),
-        note=note,
-    )
-
-
 STOREY_SHEAR = Report(StoreyShearOptions, storey_shear, requires=unlike_buildings)
 FLOOR_SPECTRA = Report(FloorSpectraOptions, floor_spectra, requires=without_floors)
-DEMAND_SAMPLE = Report(
-    DemandSampleOptions, demand_sample, results=lambda _: ["drift_ratio"], requires=without_floors
-)

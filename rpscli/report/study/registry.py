@@ -32,7 +32,6 @@ REPORTS: Registry[Report[Any]] = Registry(
         "rotation": against.ROTATION,
         "contrast": against.CONTRAST,
         "demand": scatter.DEMAND,
-        "demand_sample": heights.DEMAND_SAMPLE,
         "directions": directions.REPORT,
         "storey_shear": heights.STOREY_SHEAR,
         "floor_spectra": heights.FLOOR_SPECTRA,
