@@ -328,7 +328,9 @@ def land(s: Record, l: int) -> None:
         return
     if abs(change) <= close:  # else it only grazes, and stays where it is
         go_on_by(s, l, change)
-    s.accepted[l], s.kind[l], s.wanted[l] = 1.0, s.wanted[l], NOTHING
+    # a cubic from zero without slope may dip where the value grows with the third power of time
+    kind = NOTHING if s.wanted[l] == CHANGE and value > 0.0 and slope >= 0.0 else s.wanted[l]
+    s.accepted[l], s.kind[l], s.wanted[l] = 1.0, kind, NOTHING
 
 
 @compiled
