@@ -42,8 +42,8 @@ def step_notes(table: Table, context: StudyContext) -> Iterator[str]:
     ]
     names = [
         f"{number + 1} ({changed})"
-        for number, before, after in zip(some, demands(given), demands(finer), strict=True)
-        if (changed := _changes(before, after))
+        for number, after in zip(some, demands(finer), strict=True)
+        if (changed := _changes(table, number, after))
     ]
     if names:
         more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
@@ -54,13 +54,13 @@ def step_notes(table: Table, context: StudyContext) -> Iterator[str]:
         )
 
 
-def _changes(before: Demand, after: Demand) -> str:
-    """What shorter steps change, in words; empty if nothing."""
-    if before.outcome != after.outcome:
-        return f"{before.outcome} or {after.outcome}".replace("_", " ")
+def _changes(table: Table, number: int, after: Demand) -> str:
+    """What shorter steps change of a point, in words; empty if nothing."""
+    if (outcome := table.outcomes[number]) != after.outcome:
+        return f"{outcome} or {after.outcome}".replace("_", " ")
     parts = []
     for name in ("max_rotation", "max_base_shear"):
-        old, new = getattr(before, name), getattr(after, name)
+        old, new = float(table.columns[name][number]), getattr(after, name)
         if abs(new - old) > PROMISED * max(old, new):
             parts.append(f"{name} {abs(new - old) / max(old, new):.2g} of it")
     return ", ".join(parts)

@@ -29,7 +29,6 @@ pytestmark = pytest.mark.evidence("devices", "exact")
 RESIDUAL = 1e-6
 """Of the energy that was supplied; without devices it is no smaller."""
 
-QUICK, MANY = 12, 300
 COLUMNS = 6
 
 
@@ -98,16 +97,10 @@ def check(seed: int) -> None:
 
 
 @needs_compiled_kernels
-@pytest.mark.parametrize("seed", range(QUICK))
-def test_energy_closes(seed: int) -> None:
-    check(seed)
-
-
-@pytest.mark.long
-@needs_compiled_kernels
-@pytest.mark.parametrize("seed", range(QUICK, MANY))
-def test_energy_closes_in_many(seed: int) -> None:
-    check(seed)
+@pytest.mark.parametrize("block", range(10))
+def test_energy_closes(block: int) -> None:
+    for seed in range(30 * block, 30 * block + 30):
+        check(seed)
 
 
 def kept(found: Demand) -> str:

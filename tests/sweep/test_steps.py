@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from paper_structures import FLAT, building, needs_compiled_kernels, podium, stillness, waves
 
-from rpscli.analyses.demand import Request
+from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.sweep import steps
@@ -23,6 +23,10 @@ class Points:
         self.layout = list(range(count))
         self.structure = podium(1, 0.15, FLAT, superstructure=building(1, 0.1))
         self.chaotic = waves(60.0, 0.01, 3.0 * self.structure.uplift_acceleration, seed=3)
+        found = demands([self.history(number) for number in self.layout])
+        self.outcomes = np.array([one.outcome for one in found])
+        names = "max_rotation", "max_base_shear"
+        self.columns = {name: np.array([getattr(one, name) for one in found]) for name in names}
 
     def history(self, number: int) -> Request:
         motion = self.chaotic if number % 4 == 2 else stillness(1.0)
