@@ -14,7 +14,7 @@ from threading import Event, Thread, current_thread, main_thread
 import numpy as np
 
 from rpscli.physics.bed import first_phase, load_bed
-from rpscli.physics.compile import compiled, inlined, kernel
+from rpscli.physics.compile import borrowed, compiled, inlined, kernel
 from rpscli.physics.demands import observe, observe_start
 from rpscli.physics.devices import (
     change_law,
@@ -150,6 +150,15 @@ def follow(
 ) -> None:
     """The same, in a state that is made already: an array of one record."""
     s, lanes = state[0], lanes_of(state[0])
+    systems, requests, results = borrowed(systems), borrowed(requests), borrowed(results)
+    acceleration = borrowed(acceleration)
+    output = Output(
+        borrowed(output.samples),
+        borrowed(output.floors),
+        borrowed(output.log),
+        borrowed(output.devices),
+        output.finer,
+    )
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, 0
     for l in range(lanes):

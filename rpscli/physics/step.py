@@ -55,6 +55,12 @@ def accelerate(s: Record, at: float) -> None:
 
 
 @inlined
+def terms(s: Record, k: int) -> int:
+    """How many terms the sums up to stage k have: for loops over lanes a number that is known."""
+    return END if lanes_of(s) > 1 else k
+
+
+@inlined
 def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
     """Lead a mode of a lane to stage k; its part of the base shear there [N]."""
     h, omega2, damping, q, dq = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l], s.q[r, l], s.dq[r, l]
@@ -63,7 +69,7 @@ def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
     ddq = fma(-s.Gamma[r, l], base, -before)
     s.ddq[k - 1, r, l] = ddq
     far, fast = 0.0, 0.0
-    for j in range(k):
+    for j in range(terms(s, k)):
         if USED[k, j]:
             term = ddq if j == k - 1 else s.ddq[j, r, l]
             far, fast = fma(A2[k, j], term, far), fma(A[k, j], term, fast)
@@ -81,7 +87,7 @@ def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
 def advance_tilt(s: Record, l: int, axis: int, k: int) -> None:
     """Lead a component of a lane's tilt to stage k."""
     far, fast, h, rate = 0.0, 0.0, s.h[l], s.tilt_rate[axis, l]
-    for j in range(k):
+    for j in range(terms(s, k)):
         if USED[k, j]:
             far = fma(A2[k, j], s.bends[j, axis, l], far)
             fast = fma(A[k, j], s.bends[j, axis, l], fast)
