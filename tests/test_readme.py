@@ -35,7 +35,7 @@ from shown_commands import (
     shown_outputs,
 )  # fmt: skip
 
-from rpscli.analyses.verification.certified import ANSWERS, FOLDER
+from rpscli.analyses.verification import ANSWERS, FOLDER
 from rpscli.cli import COMMANDS as COMMANDS_OF_PROGRAM
 from rpscli.cli import program
 from rpscli.user_cache import VARIABLE

@@ -19,7 +19,7 @@ from rpscli.analyses.neighbours import Neighbour
 from rpscli.analyses.pushover import CapacityCurve
 from rpscli.analyses.results import ColumnForces, Energy
 from rpscli.analyses.trace import DeviceDemand
-from rpscli.analyses.verification.known import Comparison
+from rpscli.analyses.verification import Comparison
 from rpscli.case.conditions import Condition
 from rpscli.case.json_schema import DIALECT
 from rpscli.case.schema.keys import KeyReference

@@ -7,20 +7,54 @@ import pytest
 from paper_structures import podium
 
 from rpscli.analyses.modal import UpliftedModes, modal
-from rpscli.analyses.verification.statics import (
-    AMPLIFICATION,
-    FREQUENCY_PARAMETER,
-    ROCKING,
-    rounded,
-)
 
 pytestmark = pytest.mark.evidence("modes", "published")
 
 
+ROCKING = 0.0
+"""Stands for the rocking phase, in which the radius plays no part."""
+
+AMPLIFICATION = {
+    (1, 0.25): (1.395, 1.396),
+    (1, 0.5): (1.395, 1.395),
+    (1, 1.5): (1.396, 1.395),
+    (1, ROCKING): (1.376, 1.377),
+    (2, 0.25): (1.634, 1.613),
+    (2, 0.5): (1.635, 1.612),
+    (2, 1.5): (1.638, 1.608),
+    (2, ROCKING): (1.583, 1.569),
+    (3, 0.25): (1.732, 1.663),
+    (3, 0.5): (1.734, 1.660),
+    (3, 1.5): (1.742, 1.650),
+    (3, ROCKING): (1.664, 1.618),
+    (6, 0.25): (1.836, 1.688),
+    (6, 0.5): (1.844, 1.676),
+    (6, 1.5): (1.875, 1.627),
+    (6, ROCKING): (1.741, 1.661),
+    (10, 0.25): (1.869, 1.703),
+    (10, 0.5): (1.890, 1.668),
+    (10, 1.5): (1.974, 1.528),
+    (10, ROCKING): (1.753, 1.703),
+}
+"""By storeys and rho: frequency factor, damping factor."""
+
+FREQUENCY_PARAMETER = {
+    (0.25, 1.5): (1.275, 1.280),
+    (1.5, 0.5): (4.122, 4.435),
+    (1.5, 1.0): (3.008, 3.136),
+    (1.5, 1.5): (2.482, 2.560),
+    (1.5, 3.0): (1.774, 1.810),
+    (ROCKING, 1.5): (1.765, 1.810),
+}
+"""By rho and R [m]: p_ext of the model and of the rigid estimate [rad/s]."""
+
+
 def known(value: float) -> object:
-    """A number of the paper's table, with the tolerance that `rps verify` gives it."""
-    number = rounded(value)
-    return pytest.approx(number.value, abs=number.tolerance)
+    """Half of the third decimal; and some were computed with g = 9.81 m/s2.
+
+    That is 3.4e-4 more than the standard value, and frequencies go with its root.
+    """
+    return pytest.approx(value, abs=0.5e-3 + 1.8e-4 * value)
 
 
 def uplifted(storeys: int, rho: float, R: float = 1.5) -> UpliftedModes:

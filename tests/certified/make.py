@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from oracles.crossings import Array
 
-from rpscli.analyses.verification.certified import ANSWERS, FOLDER
+from rpscli.analyses.verification import ANSWERS, FOLDER
 
 from .problems import DT, FINE, MOTIONS, STARTS, Change, Problem, problems
 
