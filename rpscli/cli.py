@@ -12,11 +12,10 @@ import click
 from rpscli.commands.shell.lazy import LazyGroup, Member
 from rpscli.version import VERSION
 
+OTHERS = "Other commands"
 COMMANDS = {
     "init": Member("rpscli.commands.init", "write a commented case or study to start from"),
     "check": Member("rpscli.commands.check", "derived quantities of a case, and mistakes in it"),
-    "explain": Member("rpscli.commands.explain", "what a key, a result, a report or a word means"),
-    "schema": Member("rpscli.commands.init", "JSON schemas of files and of results", "schema"),
     "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
     "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
     "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
@@ -28,17 +27,39 @@ COMMANDS = {
     "report": Member(
         "rpscli.commands.report", "one page for a checking engineer, from all of these"
     ),
-    "budget": Member("rpscli.commands.budget", "sensitivity of limited results and verdicts"),
-    "export": Member("rpscli.commands.export", "write a case as a model for mujoco or OpenSees"),
-    "identify": Member("rpscli.commands.identify", "properties of a case from measured motion"),
     "record": Member("rpscli.commands.record", "read, draw, select, convert, make ground motions"),
-    "completion": Member(
-        "rpscli.commands.init", "complete commands, files and keys in your shell", "completion"
+    "explain": Member("rpscli.commands.explain", "what a key, a result, a report or a word means"),
+    "budget": Member(
+        "rpscli.commands.budget", "sensitivity of limited results and verdicts", section=OTHERS
     ),
-    "verify": Member("rpscli.commands.verify", "compare this installation with known numbers"),
-    "doctor": Member("rpscli.commands.doctor", "what is installed, what is missing"),
-    "clean": Member("rpscli.commands.doctor", "delete cached kernels and lists of fonts", "clean"),
+    "export": Member(
+        "rpscli.commands.export", "write a case as a model for mujoco or OpenSees", section=OTHERS
+    ),
+    "identify": Member(
+        "rpscli.commands.identify", "properties of a case from measured motion", section=OTHERS
+    ),
+    "schema": Member(
+        "rpscli.commands.init", "JSON schemas of files and of results", "schema", OTHERS
+    ),
+    "completion": Member(
+        "rpscli.commands.init",
+        "complete commands, files and keys in your shell",
+        "completion",
+        OTHERS,
+    ),
+    "verify": Member(
+        "rpscli.commands.verify", "compare this installation with known numbers", section=OTHERS
+    ),
+    "doctor": Member(
+        "rpscli.commands.doctor", "what is installed, what is missing", section=OTHERS
+    ),
 }
+GONE = {
+    "clean": "rps doctor names the folder of the cache; it can be deleted, rps makes it anew",
+    "compare": "rps report CASE says what differs from the results that are stored; of two runs"
+    " compare summary.json, or points.csv of two studies",
+}
+"""Commands of earlier versions, and what does the same."""
 
 
 class Program(LazyGroup):
@@ -75,10 +96,7 @@ def _show_version(ctx: click.Context, option: click.Parameter, value: object) ->
 @click.command(
     cls=Program,
     members=COMMANDS,
-    gone={
-        "compare": "rps report CASE says what differs from the results that are stored; of two runs"
-        " compare summary.json, or points.csv of two studies"
-    },
+    gone=GONE,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3 case or"
     " record invalid, 4 analysis failed, 5 study with failed points, 6 verification mismatch,"

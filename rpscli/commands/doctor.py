@@ -1,4 +1,4 @@
-"""`rps doctor` and `rps clean`: what rps finds on this machine, and what it keeps there."""
+"""`rps doctor`: what is installed, what is missing, and where rps keeps what it made."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ import click
 
 from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
-from rpscli.commands.shell.waiting import TIMES_FILE
 from rpscli.errors import VerificationMismatch
 from rpscli.machine import available_cores
 from rpscli.report.documents import heading, installed
@@ -32,8 +31,6 @@ EXTRAS = {
     "contact": "bodies in contact, rps export CASE mujoco",
 }
 """What packages add that users may do without."""
-KEPT = {"compiled kernels": "kernels-*", "times of compilation": TIMES_FILE, "fonts": "matplotlib"}
-"""What rps keeps, and can make again."""
 
 
 @click.command("doctor")
@@ -62,7 +59,7 @@ def _surroundings() -> list[tuple[str, str, str]]:
         ("Python", f"{platform.python_version()}, {sys.executable}", ""),
         ("system", f"{platform.platform()}, text in {locale.getencoding()}", ""),
         ("cores", str(available_cores()), ""),
-        ("cache", f"{place}, {_size(_bytes(place))}" if place else "-", mine),
+        ("cache", f"{place}, {_size(place)}, free to be deleted" if place else "-", mine),
         ("font of figures", font_file() if place and installed("matplotlib") else "-", ""),
         (ENCODER, encoder or "-", "" if encoder else "animations as MP4"),
     ]
@@ -86,29 +83,7 @@ def _numbers(version: str) -> list[int]:
     return [int(number) for number in re.findall(r"\d+", version)]
 
 
-@click.command("clean")
-@click.option("--dry-run", is_flag=True, help="Only say what would be deleted.")
-@terminal_options
-def clean(terminal: Terminal, *, dry_run: bool) -> None:
-    """Delete the files that rps caches on this machine: compiled kernels, lists of fonts.
-
-    Results are never touched. The next time history compiles its kernel anew.
-    """
-    place, sizes = user_cache(), {}
-    for what, pattern in KEPT.items():
-        found = sorted(place.glob(pattern)) if place else []
-        sizes[what] = sum(map(_bytes, found))
-        for path in [] if dry_run else found:
-            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-    document = {"folder": str(place or "-"), "dry_run": dry_run, "bytes": sizes}
-    head = f"{'would be deleted' if dry_run else 'deleted'} from {place or '-'}"
-    table = Table.of_texts((head, "size"), [(what, _size(size)) for what, size in sizes.items()])
-    terminal.result({**heading("clean"), **document}, [table])
-
-
-def _bytes(path: Path) -> int:
-    return sum(each.lstat().st_size for each in (path, *path.rglob("*")) if os.path.lexists(each))
-
-
-def _size(count: float) -> str:
-    return f"{count / 1e6:.1f} MB"
+def _size(folder: Path) -> str:
+    """Of all files in a folder."""
+    files = (each for each in (folder, *folder.rglob("*")) if os.path.lexists(each))
+    return f"{sum(each.lstat().st_size for each in files) / 1e6:.1f} MB"

@@ -201,7 +201,6 @@ DOCUMENTS: dict[str, Mapping[str, Shape]] = {
     },
     "verify --problems": _FILES,
     "doctor": {"findings": [dict.fromkeys(("subject", "found", "remedy"), str)], **_ENDED},
-    "clean": {"folder": str, "dry_run": bool, "bytes": dict[str, int]},
 }  # fmt: skip
 """What each command that succeeds, or finds a limit exceeded, says at least; `?`: not always."""
 

@@ -77,7 +77,6 @@ RUNS: dict[str, tuple[tuple[str, ...], int]] = {
     "verify": (("verify",), 0),
     "verify --problems": (("verify", "--problems", "problems"), 0),
     "doctor": (("doctor",), 0),
-    "clean": (("clean", "--dry-run"), 0),
     "error": (("check", "nothing.yaml"), 3),
 }  # fmt: skip
 

@@ -79,6 +79,7 @@ FAILURES = [
     (("check", "small.yaml", "--colour"), 2, "UsageError", "--colour"),
     (("chek", "small.yaml"), 2, "UsageError", "did you mean check?"),
     (("record", "show"), 2, "UsageError", "no such command: show"),
+    (("clean",), 2, "UsageError", "clean is gone: rps doctor names the folder"),
     (("compare", "a.yaml"), 2, "UsageError", "compare is gone: rps report CASE says"),
 ]
 

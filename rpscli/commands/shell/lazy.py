@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import import_module
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import click
@@ -12,11 +13,12 @@ from rpscli.errors import hint
 
 
 class Member(NamedTuple):
-    """A subcommand: its module, its line in the group's help, and its name in the module."""
+    """A subcommand: module, line in the group's help, name in the module, section of the help."""
 
     module: str
     summary: str
     command: str = "command"
+    section: str = "Commands"
 
 
 class LazyGroup(click.Group):
@@ -61,5 +63,6 @@ class LazyGroup(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """The list of members in the help."""
         del ctx
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, member.summary) for name, member in self.members.items()])
+        for section, members in groupby(self.members.items(), lambda item: item[1].section):
+            with formatter.section(section):
+                formatter.write_dl([(name, member.summary) for name, member in members])
