@@ -15,7 +15,6 @@ from rpscli.commands.inputs import CaseInput, MotionRequest, case_heading
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import announce_compilation
-from rpscli.commands.timehistory_run import HistoryRequest, compute, history_requests, look_beside
 from rpscli.errors import UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.case.conditions import Condition
     from rpscli.case.schema.case_file import DocumentSection
+    from rpscli.commands.timehistory_run import HistoryRequest
     from rpscli.errors import RpsError
 
 SUMMARY = "summary.json"
@@ -167,9 +167,12 @@ def case_page(
     with_budget: bool = False,
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
-    from rpscli.commands.timehistory_set import (
+    from rpscli.commands.timehistory_run import (
         all_document,
+        compute,
         computed_set,
+        history_requests,
+        look_beside,
         set_document,
         set_error,
         set_tables,

@@ -1,15 +1,22 @@
-"""One time history: what is asked for, and what it leaves behind."""
+"""Time histories of a command: what is asked for, computed, judged, written and shown."""
 
 from __future__ import annotations
 
+import hashlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from itertools import groupby
+from typing import Any, NamedTuple
 
-from rpscli.analyses.result_quantities import LIMITED, NEEDS
+from rpscli.analyses.column_forces import no_bound
+from rpscli.analyses.neighbours import Neighbour, neighbours
+from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.timehistory import time_history
 from rpscli.case.conditions import EVENTS, LIMITS, Condition, case_conditions, with_friction
+from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands.inputs import (
     RESULTS,
     CaseInput,
@@ -19,22 +26,50 @@ from rpscli.commands.inputs import (
     load_motion,
     motion_inputs,
     motion_source,
+    write,
 )
 from rpscli.commands.shell.options import OutputRequest
-from rpscli.commands.shell.terminal import Terminal, concluded
-from rpscli.commands.shell.waiting import patience
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
+from rpscli.commands.shell.waiting import counted, patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
+from rpscli.records.ground_motion import MotionComponents
+from rpscli.report.bundles import floor_spectra_files, timehistory_files
 from rpscli.report.documents import direction_note, heading, json_text, timehistory_document
-from rpscli.report.figures.look import Look
+from rpscli.report.figures.animation import history_film
+from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.look import Look, drawn_with
 from rpscli.report.files import OutputFolder
-
-if TYPE_CHECKING:
-    from rpscli.analyses.neighbours import Neighbour
-    from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.records.ground_motion import MotionComponents
-    from rpscli.sweep.statistics.verdicts import Verdict
+from rpscli.report.study.statistics import (
+    VERDICT,
+    demand_columns,
+    records_columns,
+    shown_by_text,
+    summary_document,
+    verdict_document,
+    verdict_lines,
+    verdict_texts,
+)
+from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown
+from rpscli.report.tables.timehistory import (
+    neighbours_texts,
+    overturned_text,
+    passes_text,
+    restitution_text,
+    timehistory_tables,
+)
+from rpscli.sweep.statistics.fractiles import Spread
+from rpscli.sweep.statistics.summary import Records, Summary, summary_of_records
+from rpscli.sweep.statistics.verdicts import Verdict, judged_records
 
 COMMAND = "timehistory"
+
+DIGITS = 4
+A_TABLE = 4
+"""Quantities side by side in a table that fits a page."""
+CODES = (
+    "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 pairs (ASCE/SEI 7-16, chapter"
+    " 16) and more; the largest of 3 to 6 is for EN 1998-1 alone"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +90,7 @@ class HistoryRequest:
 
 
 class HistoryResult(NamedTuple):
-    """What is known of a history that is over; its demands by name, NaN for what it has not."""
+    """A history that is over: document, demands by name, NaN for what it has not, verdicts."""
 
     request: HistoryRequest
     document: dict[str, Any]
@@ -65,7 +100,11 @@ class HistoryResult(NamedTuple):
 
 
 def history_requests(
-    cases: Sequence[CaseInput], motions: Sequence[MotionRequest], output: OutputRequest
+    cases: Sequence[CaseInput],
+    motions: Sequence[MotionRequest],
+    output: OutputRequest,
+    *,
+    floor_spectra: bool = False,
 ) -> list[HistoryRequest]:
     """Every case under every motion, all read and all folders claimed before any is computed."""
     requests = []
@@ -85,7 +124,7 @@ def history_requests(
                 record_source=motion_source(given.case, motion),
                 record=motion_inputs(ground),
             )
-            requests.append(HistoryRequest(given, case_label, ground, label, folder))
+            requests.append(HistoryRequest(given, case_label, ground, label, folder, floor_spectra))
     return requests
 
 
@@ -108,52 +147,41 @@ def compute(
     request: HistoryRequest, conditions: Sequence[Condition], look: Look, terminal: Terminal
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
-    from rpscli.analyses.column_forces import no_bound
-    from rpscli.analyses.timehistory import time_history
-    from rpscli.report.bundles import floor_spectra_files, timehistory_files
-    from rpscli.report.study.statistics import verdict_document
-    from rpscli.sweep.statistics.summary import Records
-    from rpscli.sweep.statistics.verdicts import judged_records
-
     case, ground = request.given.case, request.ground
     with patience(case, ground.horizontal.duration, terminal):
         result = time_history(case.structure, ground, case.analysis)
     request.folder.add_all(timehistory_files(result, case.title, look))
     if request.floor_spectra:
         request.folder.add_all(floor_spectra_files(result, case.title, look))
-    found = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
-    demands = {name: math.nan if each is None else float(each) for name, each in found.items()}
-    document = _document(request, result)
+    values = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
+    demands = {name: math.nan if each is None else float(each) for name, each in values.items()}
     verdicts: list[Verdict] = []
     error: RpsError | None = AnalysisError(result.failure) if result.failure else None
     if error is None:
         limits = case_conditions(case.limits, overturning=True)
         limits = [*with_friction(limits, case.structure), *conditions]
         for limit in limits:
-            needs = LIMITS[limit.name].needs if limit.name in found else ""
-            if result.both_components and (why := no_bound(limit.name, result.structure)):
-                raise UsageError(f"{limit.source}: {why}")
-            partial = needs == "columns" and result.left_out_of_columns
-            if needs and (found[limit.name] is None or partial):
-                raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
+            _refuse_unknown(limit, result)
         records = Records.of([result.outcome], [demands], [result.record.source])
         verdicts = judged_records(records, [request.label], limits)
-        over = [f"limit exceeded: {_found(verdict)}" for verdict in verdicts if verdict.exceeded]
+        over = [f"limit exceeded: {_excess(verdict)}" for verdict in verdicts if verdict.exceeded]
         error = LimitExceeded("\n".join(over)) if over else None
+    document = _document(request, result)
     document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]
     return HistoryResult(request, concluded(document, error), demands, verdicts, error), result
 
 
-def look_beside(done: HistoryResult, result: TimeHistoryResult) -> list[Neighbour]:
-    """Histories beside a single one, which go into its document too."""
-    from rpscli.analyses.neighbours import neighbours
+def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
+    """Refuse a limit on what a history does not know: raises UsageError."""
+    if result.both_components and (why := no_bound(limit.name, result.structure)):
+        raise UsageError(f"{limit.source}: {why}")
+    needs = LIMITS[limit.name].needs if limit.name in LIMITS else ""
+    incomplete = needs == "columns" and result.left_out_of_columns
+    if needs and (getattr(result, limit.name) is None or incomplete):
+        raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
 
-    found = neighbours(result)
-    done.document["neighbours"] = [each._asdict() for each in found]
-    return found
 
-
-def _found(verdict: Verdict) -> str:
+def _excess(verdict: Verdict) -> str:
     condition = verdict.condition
     if condition.name in EVENTS:
         return f"{condition.name} ({condition.source})"
@@ -164,16 +192,7 @@ def _found(verdict: Verdict) -> str:
     return f"{condition.name} = {value} ({condition.source})"
 
 
-def add_summary(done: HistoryResult) -> None:
-    """`summary.json`, which names all files that were collected before it."""
-    folder = done.request.folder
-    done.document["files"] = [str(folder.folder / "summary.json"), *folder.files]
-    folder.add("summary.json", json_text(done.document))
-
-
 def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, Any]:
-    from rpscli.case.rules.plausibility import doubts_of_directions  # the help needs no pydantic
-
     given, ground = request.given, request.ground
     document = {
         **heading(COMMAND),
@@ -186,3 +205,247 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
     warnings = [*given.case.warnings, *map(str, doubts)]
     document["warnings"] = [*warnings, *document["warnings"], *ground.warnings]
     return document
+
+
+def look_beside(done: HistoryResult, result: TimeHistoryResult) -> list[Neighbour]:
+    """Histories beside a single one, which go into its document too."""
+    beside = neighbours(result)
+    done.document["neighbours"] = [each._asdict() for each in beside]
+    return beside
+
+
+def _add_summary(done: HistoryResult) -> OutputFolder:
+    """The folder with `summary.json`, which names all files that were collected before it."""
+    folder = done.request.folder
+    done.document["files"] = [str(folder.folder / "summary.json"), *folder.files]
+    folder.add("summary.json", json_text(done.document))
+    return folder
+
+
+def run_one(
+    request: HistoryRequest,
+    conditions: Sequence[Condition],
+    look: Look,
+    film: FilmRequest | None,
+    terminal: Terminal,
+) -> None:
+    """Compute a single history, look beside it, and write and show all of it."""
+    title = request.given.case.title
+    done, result = compute(request, conditions, look, terminal)
+    beside = look_beside(done, result)
+    if film is not None:
+        with counted("drawing the animation", terminal) as progress:
+            draw = partial(history_film, result, title, film, progress)
+            moving = drawn_with(look, film.ending, draw)
+        request.folder.add_at(film.file, moving)
+    write(_add_summary(done), terminal)
+    terminal.warn(done.document["warnings"])
+    tables = timehistory_tables(result, done.verdicts, title, request.ground.scaled_to)
+    texts = [*neighbours_texts(result, beside), passes_text(result), done.document["note"]]
+    terminal.result(done.document, [*tables, *filter(None, texts)])
+    leave(done.error)
+
+
+class Computed(NamedTuple):
+    """The histories of one case, what they say together, and the folder for it."""
+
+    histories: list[HistoryResult]
+    together: Summary
+    verdicts: list[Verdict]
+    folder: OutputFolder | None
+
+    @property
+    def first(self) -> HistoryRequest:
+        """The first of them, whose case is that of all."""
+        return self.histories[0].request
+
+    @property
+    def labels(self) -> list[str]:
+        """Names of the records."""
+        return [history.request.label for history in self.histories]
+
+
+def run_all(
+    requests: Sequence[HistoryRequest],
+    conditions: Sequence[Condition],
+    look: Look,
+    output: OutputRequest,
+    terminal: Terminal,
+) -> None:
+    """Compute all histories, and write each as soon as it is over."""
+    cases = [list(group) for _, group in groupby(requests, lambda request: request.case_label)]
+    folders = [_set_folder(group, output, alone=len(cases) == 1) for group in cases]
+    computed = [
+        computed_set(group, conditions, look, terminal, folder)
+        for group, folder in zip(cases, folders, strict=True)
+    ]
+    for case in computed:
+        if case.folder is None:
+            terminal.note(f"written to {case.first.folder.folder}")
+            continue
+        scalars = [history.document for history in case.histories]
+        case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
+        case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
+        case.folder.add("summary.json", json_text({**heading(), **set_document(case)}))
+        write(case.folder, terminal)
+    error = set_error(computed)
+    document = all_document(computed, error)
+    terminal.warn_first(document["warnings"], "in the documents")
+    terminal.result(document, set_tables(computed))
+    leave(error)
+
+
+def computed_set(
+    group: Sequence[HistoryRequest],
+    conditions: Sequence[Condition],
+    look: Look,
+    terminal: Terminal,
+    folder: OutputFolder | None,
+    *,
+    written: bool = True,
+) -> Computed:
+    """Compute the histories of one case, each written as soon as it is over, and judge them."""
+    histories = []
+    for request in group:
+        done, _ = compute(request, conditions, look, terminal)
+        if written:
+            _add_summary(done).write()
+        histories.append(done)
+    outcomes = [history.document["outcome"] for history in histories]
+    sources = [request.ground.horizontal.source for request in group]
+    records = Records.of(outcomes, [history.demands for history in histories], sources)
+    judged = group[0].given.case
+    limits = with_friction(case_conditions(judged.limits), judged.structure)
+    found = judged_records(records, [each.label for each in group], [*limits, *conditions])
+    return Computed(histories, summary_of_records(records), found, folder)
+
+
+def _set_folder(
+    group: Sequence[HistoryRequest], output: OutputRequest, *, alone: bool
+) -> OutputFolder | None:
+    """Where the table of a case goes: each set of records has a place of its own."""
+    if len(group) == 1:
+        return None
+    first = group[0]
+    grounds = (request.ground.named for request in group)
+    motions = "".join(each[name].digest for each in grounds for name in each if name != "vertical")
+    name = f"{len(group)}_records_{hashlib.sha256(motions.encode()).hexdigest()[:6]}"
+    place = RESULTS / first.case_label / COMMAND / name
+    if output.place is not None:
+        place = output.place if alone else output.place / first.case_label
+    return case_folder(
+        first.given,
+        OutputRequest(place, output.force),
+        COMMAND,
+        record_source=name,
+        records=[motion_inputs(request.ground) for request in group],
+    )
+
+
+def set_error(computed: Sequence[Computed]) -> RpsError | None:
+    """What ends the command: failed histories, else limits that are exceeded."""
+    lines = [
+        f"{history.request.name}: {history.error}"
+        for case in computed
+        for history in case.histories
+        if isinstance(history.error, AnalysisError)
+    ]
+    if lines:
+        return AnalysisError("\n".join(lines))
+    lines = [
+        line
+        for case in computed
+        for line in verdict_lines((), case.verdicts, f"{case.first.case_label}: ")
+    ]
+    return LimitExceeded("\n".join(lines)) if lines else None
+
+
+def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[str, Any]:
+    """All histories and sets in JSON."""
+    histories = [history for case in computed for history in case.histories]
+    files = [file for history in histories for file in history.document.get("files", ())]
+    files += [file for case in computed if case.folder is not None for file in case.folder.files]
+    warnings = [
+        f"{history.request.name}: {text}"
+        for history in histories
+        for text in history.document["warnings"]
+    ]
+    document = {
+        **heading(COMMAND),
+        "note": _note(computed) or None,
+        "histories": [history.document for history in histories],
+        "sets": [set_document(case) for case in computed],
+        "warnings": warnings,
+        "files": files,
+    }
+    return concluded(document, error)
+
+
+def set_document(case: Computed) -> dict[str, Any]:
+    """What the records of a case say together."""
+    return {
+        "case": case.histories[0].document["case"],
+        "records": case.labels,
+        **summary_document(case.together)[0],
+        "verdicts": [verdict_document((), verdict) for verdict in case.verdicts],
+    }
+
+
+def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
+    """Every record, mean and largest, and the verdicts."""
+    for case in computed:
+        yield Heading(case.first.given.case.title)
+        if aims := dict.fromkeys(
+            filter(None, (each.request.ground.scaled_to for each in case.histories))
+        ):
+            yield f"records scaled to {' or '.join(aims)}"
+        (row,) = case.together.rows
+        found = zip(case.together.quantities, row.spreads, strict=True)
+        main = [(quantity, spread) for quantity, spread in found if quantity.demand]
+        for first in range(0, len(main), A_TABLE):
+            yield _records_table(case, dict(main[first : first + A_TABLE]))
+        if len(case.histories) > 1:
+            yield f"overturned: {row.overturned}; {CODES}"
+        own = case.first.given.case
+        yield overturned_text(own.structure, own.analysis)
+        yield restitution_text(own.structure)
+    if any(case.verdicts for case in computed):
+        yield _verdict_table(computed)
+    if note := _note(computed):
+        yield note
+
+
+def _note(computed: Sequence[Computed]) -> str:
+    grounds = (history.request.ground for case in computed for history in case.histories)
+    return direction_note(ground.y is not None for ground in grounds)
+
+
+def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:
+    rows = []
+    for label, history in zip(case.labels, case.histories, strict=True):
+        found, outcome = history.document, str(history.document["outcome"])
+        word = "overturned" if outcome.startswith("overturned") else outcome.replace("_", " ")
+        values = [large(found[q.name], q.unit)[0] for q in quantities]
+        rows.append([label, word, *(shown(value, DIGITS) for value in values)])
+    if len(case.histories) > 1:
+        words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
+        for name, label in words.items():
+            values = [large(getattr(each, name), q.unit)[0] for q, each in quantities.items()]
+            rows.append([label, "", *(shown(value, DIGITS) for value in values)])
+    heads = [headed(q.label, q.unit) for q in quantities]
+    return Table.of_texts(["record", "", *heads], rows, words=2)
+
+
+def _verdict_table(computed: Sequence[Computed]) -> Table:
+    rows = []
+    for case in computed:
+        for verdict in case.verdicts:
+            *texts, _ = verdict_texts(verdict)
+            which = "least" if verdict.condition.from_below else "largest"
+            value = shown(verdict.value) if math.isfinite(verdict.value) else "overturned"
+            event = verdict.condition.name in EVENTS
+            worst = "" if event else f", {which} {value} ({verdict.record})"
+            result = f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}"
+            result += f"; {shown_by_text(verdict)}" if verdict.shown_by else ""
+            rows.append([case.first.case_label, *texts, result])
+    return Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)
