@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
-from pathlib import Path
-from time import monotonic
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import OutputError
-from rpscli.report.files import write_whole
-from rpscli.user_cache import VARIABLE, user_cache
+from rpscli.user_cache import VARIABLE
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -26,9 +21,6 @@ LONG = 10.0
 USUALLY = "half a minute, some minutes on a busy machine"
 FIRST_LINE, GROWTH = 2.0, 1.6
 """Seconds until the first plain line; the next ones come after ever longer times."""
-
-TIMES_FILE = "compilation.json"
-"""How long each kernel took to compile when it was last done, of whatever version [s]."""
 
 _standing: list[Any] = []
 """What stands on the terminal; what else takes time becomes a line of it."""
@@ -114,37 +106,20 @@ def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContext
 
 
 def announce_compilation(terminal: Terminal) -> None:
-    """Say so if a kernel has to be compiled, and how long that took the last time."""
+    """Say so if a kernel has to be compiled, and how long that takes."""
     from rpscli.analyses.kernels.compilation import announce_to
 
     @contextmanager
-    def told(kernel: str) -> Iterator[None]:
+    def announced(kernel: str) -> Iterator[None]:
         from rpscli.physics.compile import cache_folder
 
         nowhere = f"each time: no folder that is yours alone can be written; name one in {VARIABLE}"
         often = "once for this version" if cache_folder() else nowhere
-        times = _compilation_times()
-        takes = f"{duration(times[kernel])} the last time" if kernel in times else USUALLY
-        terminal.note(f"compiling the {kernel}, {often}: {takes}")
-        start = monotonic()
-        with passing_time(f"compiling the {kernel} ({takes})", terminal):
+        terminal.note(f"compiling the {kernel}, {often}: {USUALLY}")
+        with passing_time(f"compiling the {kernel} ({USUALLY})", terminal):
             yield
-        taken = round(monotonic() - start, 1)
-        if taken > 1.0 and (place := user_cache()):  # else nothing was compiled
-            times = _compilation_times() | {kernel: taken}
-            with suppress(OutputError):
-                write_whole({place / TIMES_FILE: json.dumps(times).encode()})
 
-    announce_to(told)
-
-
-def _compilation_times() -> dict[str, float]:
-    """How long kernels took [s]; nothing is known where the file does not say so."""
-    try:
-        found = json.loads((user_cache() or Path()).joinpath(TIMES_FILE).read_bytes())
-        return {str(name): float(seconds) for name, seconds in found.items()}
-    except (OSError, ValueError, TypeError, AttributeError):
-        return {}
+    announce_to(announced)
 
 
 @contextmanager
