@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from rpscli.analyses.result_quantities import FIXED_BASE_MODES, LINEAR, UPLIFTED, values_of
 from rpscli.analyses.settings import require_structure
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import Superstructure
 from rpscli.model.uplifted_state import UpliftedState, uplifted_state
 from rpscli.physics import geometry
 from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
+Complex: TypeAlias = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,7 +48,7 @@ class UpliftedModes(Shown):
     linearised_at: float
     """|theta| where that is [rad]: 0, or beta rocking on curved ends."""
 
-    eigenvalues: NDArray[np.complex128]
+    eigenvalues: Complex
     """(2 n + 2,) the storey's own pair first, then the pairs of the vibration modes [1/s]."""
     frequencies: Array
     """(n,) omega_u = |lambda| of the vibration modes [rad/s]."""
@@ -177,11 +177,14 @@ def modal(structure: PodiumStructure) -> ModalResult:
     Exact where a state begins; the paper's first-order values are in `first_order` of each state.
     """
     require_structure(structure)
-    building, flat = structure.superstructure, structure.bearing.is_flat
+    fixed = None
+    if (building := structure.superstructure) is not None:
+        shapes = _scaled(np.array(building.shapes))
+        fixed = FixedBaseModes(building.frequencies, building.damping_ratios, shapes)
     return ModalResult(
         structure=structure,
-        fixed_base=_fixed_base(building) if building else None,
-        rolling=None if flat else _both_orders(structure, rolling=True),
+        fixed_base=fixed,
+        rolling=None if structure.bearing.is_flat else _both_orders(structure, rolling=True),
         rocking=_both_orders(structure, rolling=False),
         full_contact=_full_contact(structure),
     )
@@ -196,19 +199,21 @@ def _full_contact(structure: PodiumStructure) -> FixedBaseModes | None:
     state = UpliftedState(0.0, 0.0, C_u, kappa, C_u**2, (0.0, 0.0, 0.0))
     M, C, K = linearised_matrices(structure, state)
     C[0, 0] += 0.25 * structure.columns_mass * bed.damper
-    values, vectors = np.linalg.eig(_state_matrix(M, C, K))
-    pairs = _pairs(values.astype(complex))
-    frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])
-    damping = np.array([-(a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
-    vectors = vectors[: len(M)].astype(complex)
-    vectors[0] *= C_u  # u_b
+    values, vectors = _eigen(M, C, K, C_u)
+    pairs, frequencies, damping = _vibrations(values)
     shapes = np.column_stack([_real_shape(vectors[:, i]) for *_, i in pairs])
     return FixedBaseModes(frequencies, damping, _scaled(shapes))
 
 
-def _state_matrix(M: Array, C: Array, K: Array) -> Array:
-    size = len(M)
-    return np.block([[np.zeros((size, size)), np.eye(size)], [-_over(M, K), -_over(M, C)]])
+def _eigen(M: Array, C: Array, K: Array, height: float) -> tuple[Complex, Complex]:
+    """Eigenvalues (2 n + 2,) and their vectors [u_b, u_t] (n + 1, 2 n + 2); `height` is C."""
+    size, mass = len(M), np.diag(M)[:, None]  # dividing rows is exact where a solver would round
+    values, vectors = np.linalg.eig(
+        np.block([[np.zeros((size, size)), np.eye(size)], [-K / mass, -C / mass]])
+    )
+    values, vectors = values.astype(complex), vectors[:size].astype(complex)
+    vectors[0] *= height
+    return values, vectors
 
 
 def _both_orders(structure: PodiumStructure, *, rolling: bool) -> UpliftedModes:
@@ -217,12 +222,6 @@ def _both_orders(structure: PodiumStructure, *, rolling: bool) -> UpliftedModes:
         for order in (True, False)
     )
     return replace(exact, first_order=paper)
-
-
-def _fixed_base(building: Superstructure) -> FixedBaseModes:
-    return FixedBaseModes(
-        building.frequencies, building.damping_ratios, _scaled(np.array(building.shapes))
-    )
 
 
 def linearised_matrices(
@@ -260,22 +259,19 @@ def _of_devices(structure: PodiumStructure, state: UpliftedState) -> tuple[float
 
 def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes:
     M, C, K = linearised_matrices(structure, state)
-    size, diameter = len(M), 2.0 * structure.bearing.semi_diagonal
-    values, vectors = np.linalg.eig(_state_matrix(M, C, K))
+    values, vectors = _eigen(M, C, K, state.height)
+    diameter = 2.0 * structure.bearing.semi_diagonal
     stiffness, coefficient = _of_devices(structure, state)
     kappa = state.kappa + stiffness * diameter / structure.weight
     carried = structure.superstructure_mass * state.squared_distance
     rigid = _base_mass(structure, state) + carried
     own = _own_pair(values, kappa, coefficient / rigid)
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
-    values, vectors = values[order].astype(complex), vectors[:size, order]
-    vectors[0] *= state.height  # u_b
+    values, vectors = values[order], vectors[:, order]
     if kappa == coefficient == 0.0:
         # A defective double zero: rounding splits it into +-sqrt(eps), which is not a frequency.
         values[:2], vectors[:, :2] = 0.0, 1.0
-    pairs = _pairs(values[2:])
-    frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])
-    damping = np.array([-(a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
+    pairs, frequencies, damping = _vibrations(values[2:])
     columns = [0, *(2 + index for *_, index in pairs)]
     building = structure.superstructure
     omega = building.frequencies if building else np.empty(0)
@@ -293,7 +289,7 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
     )
 
 
-def _own_pair(values: NDArray[np.complex128], kappa: float, decay: float) -> tuple[int, int]:
+def _own_pair(values: Complex, kappa: float, decay: float) -> tuple[int, int]:
     """Indices of the storey's own eigenvalues, the growing or the slowest one first."""
     # With negative stiffness one root grows; its partner is the real one nearest to its mirror
     # image shifted by damping, as tall buildings have slower modes. Else it is the slow pair, but
@@ -306,13 +302,8 @@ def _own_pair(values: NDArray[np.complex128], kappa: float, decay: float) -> tup
     return first, min(real, key=lambda i: abs(values[i] + values[first] + decay))
 
 
-def _over(M: Array, X: Array) -> Array:
-    # M is diagonal: dividing rows is exact where a solver would round.
-    return np.asarray(X / np.diag(M)[:, None])
-
-
-def _pairs(values: NDArray[np.complex128]) -> list[tuple[complex, complex, int]]:
-    """Eigenvalues two by two, ascending in frequency, with the index of the first of each pair."""
+def _vibrations(values: Complex) -> tuple[list[tuple[complex, complex, int]], Array, Array]:
+    """Pairs ascending in frequency, with the index of each first; their frequencies and damping."""
     # Real ones are of overdamped modes, higher ones with the larger fast and smaller slow root: the
     # outermost two belong together, and so inwards.
     oscillating = [i for i, v in enumerate(values) if v.imag > 0.0]
@@ -320,10 +311,13 @@ def _pairs(values: NDArray[np.complex128]) -> list[tuple[complex, complex, int]]
     real = sorted((i for i, v in enumerate(values) if v.imag == 0.0), key=lambda i: abs(values[i]))
     half = len(real) // 2
     pairs += [(values[real[j]], values[real[-1 - j]], real[j]) for j in range(half)]
-    return sorted(pairs, key=lambda pair: abs(pair[0] * pair[1]))
+    pairs.sort(key=lambda pair: abs(pair[0] * pair[1]))
+    frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])
+    damping = np.array([-(a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
+    return pairs, frequencies, damping
 
 
-def _real_shape(vector: NDArray[np.complex128]) -> Array:
+def _real_shape(vector: Complex) -> Array:
     """The shape at the instant at which its largest component is at its peak."""
     largest = vector[np.argmax(np.abs(vector))]
     return np.asarray((vector / largest).real)
