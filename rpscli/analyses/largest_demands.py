@@ -138,12 +138,9 @@ class Histories:
         pairs = (self.left["ways"] == 2).reshape(-1, *(1,) * (values.ndim - 1))
         return np.where(pairs, values, np.nan)
 
-    def of_roof(self, field: str, storey: Callable[[Array], Array]) -> Array:
-        """One number of what stands by storeys; NaN where there is none."""
-        values = self.known(field)
-        if values.ndim == 1 or not self.storeys:
-            return np.full(len(self.left), np.nan)
-        return storey(values[:, : self.storeys])
+    def of_storeys_in(self, way: str, field: str) -> Array:
+        """A field in one direction (histories, n); NaN under one component."""
+        return self.known(f"{field}_{way}")[:, : self.storeys]
 
     def largest_force(self, result: str) -> Array:
         """Of the devices whose laws name a result."""
@@ -168,28 +165,28 @@ class _Result(Generic[T]):
     def __get__(self, demand: Demand | None, owner: type) -> _Result[T] | T:
         if demand is None:
             return self
-        found: T = self._told(demand._alone.column(self._name)[0])  # noqa: SLF001
-        return found
+        value: T = self._plain(demand.alone.column(self._name)[0])
+        return value
 
-    def _told(self, value: Any) -> Any:
+    def _plain(self, value: Any) -> Any:
         return value.item() if value.ndim == 0 else frozen(value)
 
 
 class _Optional(_Result[float | None]):
-    """One that not every history has: None in place of NaN."""
+    """One that not every history has: None where it is not finite."""
 
-    def _told(self, value: Any) -> Any:
-        return None if np.isnan(value) else float(value)
+    def _plain(self, value: Any) -> Any:
+        return float(value) if np.isfinite(value) else None
 
 
 def _largest(values: Array) -> Array:
-    """Of each row; NaN of empty ones."""
+    """The largest of each row; NaN of empty ones."""
     return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
 
 
-def _finite(h: Histories, field: str) -> Array:
-    values = h.known(field)
-    return np.where(np.isfinite(values), values, np.nan)
+def _first(values: Array) -> Array:
+    """The first of each row; NaN of empty ones."""
+    return _largest(values[:, :1])
 
 
 def _drifts(h: Histories) -> Array:
@@ -243,7 +240,8 @@ class Demand(Shown):
     history: Record
 
     @cached_property
-    def _alone(self) -> Histories:
+    def alone(self) -> Histories:
+        """A batch of this history."""
         return Histories.of_one(self.structure, self.history)
 
     @property
@@ -393,20 +391,24 @@ class Demand(Shown):
     max_cap_beam_displacement_x = _Optional(
         "Largest |u_b| in x [m]; None under one component.", lambda h: h.known("max_x")
     )
-    max_cap_beam_displacement_y = _Optional("The same in y.", lambda h: h.known("max_y"))
+    max_cap_beam_displacement_y = _Optional(
+        "Largest |u_b| in y [m]; None under one component.", lambda h: h.known("max_y")
+    )
     max_base_shear_x = _Optional(
         "Largest elastic shear of the first storey in x [N]; None under one component.",
-        lambda h: h.of_roof("storey_shear_x", lambda storeys: storeys[:, 0]),
+        lambda h: _first(h.of_storeys_in("x", "storey_shear")),
     )
     max_base_shear_y = _Optional(
-        "The same in y.", lambda h: h.of_roof("storey_shear_y", lambda storeys: storeys[:, 0])
+        "Largest elastic shear of the first storey in y [N]; None under one component.",
+        lambda h: _first(h.of_storeys_in("y", "storey_shear")),
     )
     max_floor_acceleration_x = _Optional(
         "Largest absolute floor acceleration in x [m/s2]; None under one component.",
-        lambda h: h.of_roof("floor_acceleration_x", _largest),
+        lambda h: _largest(h.of_storeys_in("x", "floor_acceleration")),
     )
     max_floor_acceleration_y = _Optional(
-        "The same in y.", lambda h: h.of_roof("floor_acceleration_y", _largest)
+        "Largest absolute floor acceleration in y [m/s2]; None under one component.",
+        lambda h: _largest(h.of_storeys_in("y", "floor_acceleration")),
     )
     passes = _Result[int](
         "Closest approaches to upright between swings, however wide.",
@@ -418,11 +420,11 @@ class Demand(Shown):
     )
     closest_pass = _Optional(
         "Least theta_min/alpha of a pass; None without passes.",
-        lambda h: _finite(h, "closest_pass"),
+        lambda h: h.known("closest_pass"),
     )
     shortest_pass = _Optional(
         "Least time theta_min/|theta phi'| of a pass [s]; None without passes.",
-        lambda h: _finite(h, "shortest_pass"),
+        lambda h: h.known("shortest_pass"),
     )
     energy_passes = _Optional(
         "Energy lost in passes [J], part of `energy_impact`.", lambda h: h.known("energy_passes")
