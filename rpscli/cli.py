@@ -86,13 +86,6 @@ class Program(LazyGroup):
         sys.exit(code or 0)
 
 
-def _show_version(ctx: click.Context, option: click.Parameter, value: object) -> None:
-    del option
-    if value and not ctx.resilient_parsing:
-        click.echo(f"rps {VERSION}")
-        ctx.exit()
-
-
 @click.command(
     cls=Program,
     members=COMMANDS,
@@ -102,14 +95,7 @@ def _show_version(ctx: click.Context, option: click.Parameter, value: object) ->
     " record invalid, 4 analysis failed, 5 study with failed points, 6 verification mismatch,"
     " 7 refused to overwrite, 10 a limit was exceeded, 130 interrupted.",
 )
-@click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_show_version,
-    help="Show the version.",
-)
+@click.version_option(VERSION, message="rps %(version)s", help="Show the version.")
 def program() -> None:
     """Rocking podium structures: buildings on kinematic bearings under earthquakes.
 
