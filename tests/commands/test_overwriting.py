@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
-from click.testing import Result
+import pytest
 
-Invoke = Callable[..., Result]
+from .conftest import Invoke, Shell
 
 
 def contents(folder: str) -> dict[str, bytes]:
@@ -72,3 +71,12 @@ def test_a_place_that_is_no_folder(rps: Invoke) -> None:
         assert result.exit_code == 1
         assert "is a file" in result.stderr
         assert "internal" not in result.stderr
+
+
+@pytest.mark.posix
+def test_two_processes_may_write_to_one_new_folder(shell: Shell) -> None:
+    """Both compute; the second writes its results over those of the first, which are its own."""
+    line = "rps modal small.yaml -o out --figures none"
+    done = shell(f"{line} & first=$!; {line}; second=$?; wait $first && exit $second")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(Path("out/run.json").read_bytes())["command"] == "modal"

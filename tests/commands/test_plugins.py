@@ -8,14 +8,12 @@ import shlex
 import shutil
 import sys
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import click
 import numpy as np
 import pytest
-from click.testing import Result
 from shown_commands import ROOT, command, of_blocks, run_in_shell
 
 import rpscli
@@ -26,6 +24,8 @@ from rpscli.errors import PluginError, RecordError
 from rpscli.records.codes import CODES, load_target
 from rpscli.records.formats import FORMATS
 from rpscli.records.measures import MEASURES
+
+from .conftest import Invoke, InvokeJson
 
 EXAMPLE = Path(__file__).parents[1] / "example_package"
 BROKEN = """\
@@ -124,7 +124,7 @@ def test_a_target(example: None) -> None:
     assert known == ["plateau:?"]
 
 
-def test_a_figure_of_a_history(example: None, rps: Callable[..., Result], workplace: Path) -> None:
+def test_a_figure_of_a_history(example: None, rps: Invoke, workplace: Path) -> None:
     result = rps("timehistory", "small.yaml", "-o", "here", "--figures", "png,phase_plane")
     assert result.exit_code == 0, result.stderr
     assert (workplace / "here" / "phase_plane.png").read_bytes()
@@ -133,7 +133,7 @@ def test_a_figure_of_a_history(example: None, rps: Callable[..., Result], workpl
     assert rpscli.figures.phase_plane.__doc__ == "The rate of rotation over the rotation."
 
 
-def test_a_study(example: None, rps_json: Callable[..., Any], workplace: Path) -> None:
+def test_a_study(example: None, rps_json: InvokeJson, workplace: Path) -> None:
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
     document = rps_json("sweep", "study.yaml", "-o", "here")
     table = document["reports"]["worst"]["rows"]
@@ -146,7 +146,7 @@ def test_a_study(example: None, rps_json: Callable[..., Any], workplace: Path) -
     assert (workplace / "here" / "worst.png").exists()
 
 
-def test_what_is_installed_is_listed(example: None, rps_json: Callable[..., Any]) -> None:
+def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> None:
     found = {each["name"]: each for each in rps_json("explain", "plugins")["plugins"]}
     assert [*found] == ["tidy", "ASI", "plateau", "worst", "phase_plane"]
     assert {each["package"] for each in found.values()} == {"rps-example 1.0"}
@@ -166,7 +166,7 @@ def rps_json_schema() -> str:
 
 
 def test_what_is_broken_is_named_and_breaks_nothing_else(
-    broken: None, rps: Callable[..., Result], workplace: Path
+    broken: None, rps: Invoke, workplace: Path
 ) -> None:
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     assert motion.scaled_to("PGV", 1.0).npts == motion.npts  # ours stays ours

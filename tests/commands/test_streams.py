@@ -4,22 +4,16 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
-from click.testing import Result
 
 from rpscli.cli import COMMANDS
 from rpscli.commands.record import MEMBERS
 from rpscli.commands.shell.terminal import rendered
 from rpscli.report.table import Table
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
-Shell = Callable[..., subprocess.CompletedProcess[str]]
+from .conftest import Invoke, InvokeJson, Shell
 
 EXAMPLES = [
     ("check", "small.yaml"),

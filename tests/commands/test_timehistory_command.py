@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from PIL import Image
 
 from rpscli.analyses.results import TimeHistoryResult
@@ -18,8 +14,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
+from .conftest import Invoke, InvokeJson, columns
 
 FOLDER = Path("results/small/timehistory/half_sine_T0.6s_a0.3g")
 FIGURES = {
@@ -34,13 +29,6 @@ def small_result() -> TimeHistoryResult:
     case = load_case("small.yaml")
     assert case.record is not None
     return time_history(case.structure, load_record(case.record.source), case.analysis)
-
-
-def columns(path: Path) -> dict[str, list[str]]:
-    """A CSV file by its header."""
-    with path.open(encoding="utf-8", newline="") as file:
-        head, *rows = csv.reader(file)
-    return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
 
 
 def test_results_say_that_one_direction_is_not_conservative(

