@@ -81,14 +81,13 @@ def _in_direction(
     building: Superstructure, record: GroundMotion, intervals: int
 ) -> tuple[FixedBaseResponse, list[Moving]]:
     """Response in one direction; drifts, shears, accelerations and velocities with their rates."""
-    floors = np.empty((intervals + 1, 2, building.storeys))
-    shears, accelerations = _follow(building, record, intervals, floors)
+    shears, accelerations, floors = _follow(building, record, intervals)
     histories = _accelerations(building, floors)
     response = FixedBaseResponse(
         storey_shears=shears,
         floor_accelerations=accelerations,
         floor_velocities=largest_velocities(floors[:, 1], histories, record),
-        floor_displacements=floors[:, 0].copy(),
+        floor_displacements=floors[:, 0],
         drifts=shears / building.stiffnesses,
         acceleration_histories=histories,
     )
@@ -124,17 +123,17 @@ def fixed_base_shears(
         raise ValueError("a structure without superstructure has no fixed-base response")
     if motion.y is not None:
         return fixed_base_response(structure, motion, intervals).storey_shears
-    nowhere = np.empty((0, 2, building.storeys))
-    shears: Array = _follow(building, motion.horizontal, intervals, nowhere)[0]
-    return shears
+    return _follow(building, motion.horizontal, intervals)[0]
 
 
 STEP_ANGLE = 0.5
 """Largest step times the highest frequency: cubics between its ends then keep 2e-4 of that mode."""
 
 
-def _follow(building: Superstructure, record: GroundMotion, intervals: int, floors: Array) -> Array:
-    """Largest shears and accelerations (2, n); displacements and velocities go to `floors`."""
+def _follow(
+    building: Superstructure, record: GroundMotion, intervals: int
+) -> tuple[Array, Array, Array]:
+    """Largest shears and accelerations (n,); displacements, velocities (samples, 2, n)."""
     parts = max(math.ceil(record.dt * float(building.frequencies[-1]) / STEP_ANGLE), 1)
     dt = record.dt / parts
     times = np.arange((record.npts - 1) * parts + 1) / parts
@@ -147,19 +146,17 @@ def _follow(building: Superstructure, record: GroundMotion, intervals: int, floo
             oscillator(ground, dt, building.frequencies[r], building.damping_ratios[r])
         ):
             states[:, into] += mode[:, None] * shape
-    if len(floors):
-        floors[:] = states[::parts]
-    found, k = np.empty((2, n)), building.stiffnesses
-    below = np.zeros((len(ground), 2))
+    floors, k = states[::parts].copy(), building.stiffnesses
+    below, shears = np.zeros((len(ground), 2)), np.empty(n)
     for i in range(n):
-        drift = states[:, :, i] - below
-        found[0, i] = largest_of_cubics(k[i] * drift[:, 0], k[i] * drift[:, 1], dt)
+        shear = k[i] * (states[:, :, i] - below)
+        shears[i] = largest_of_cubics(shear[:, 0], shear[:, 1], dt)
         below = states[:, :, i]
     values = _accelerations(building, states)
     states[:, 0], states[:, 1] = states[:, 1], values - ground[:, None]
-    for i, slopes in enumerate(_accelerations(building, states).T):
-        found[1, i] = largest_of_cubics(values[:, i], slopes, dt)
-    return found
+    slopes = _accelerations(building, states)
+    largest = [largest_of_cubics(*each, dt) for each in zip(values.T, slopes.T, strict=True)]
+    return shears, np.array(largest), floors
 
 
 def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array, Array]:

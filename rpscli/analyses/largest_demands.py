@@ -165,7 +165,7 @@ class _Result(Generic[T]):
     def __get__(self, demand: Demand | None, owner: type) -> _Result[T] | T:
         if demand is None:
             return self
-        value: T = self._plain(demand.alone.column(self._name)[0])
+        value: T = self._plain(demand._alone.column(self._name)[0])  # noqa: SLF001 -- of the class below
         return value
 
     def _plain(self, value: Any) -> Any:
@@ -240,8 +240,7 @@ class Demand(Shown):
     history: Record
 
     @cached_property
-    def alone(self) -> Histories:
-        """A batch of this history."""
+    def _alone(self) -> Histories:
         return Histories.of_one(self.structure, self.history)
 
     @property

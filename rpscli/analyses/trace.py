@@ -145,8 +145,8 @@ class DeviceTrace(_Sampled, Frozen):
     """Energy over what was stored at rest [J]; of a stop `k_s (|u_b| - d)^2/2`, let go or not."""
 
 
-@dataclass(frozen=True, eq=False)
-class Direction(_Sampled, Frozen):
+@dataclass(frozen=True, eq=False, repr=False)
+class Direction(_Sampled, Shown):
     """What a history has in one horizontal direction, as in `Trace`: (samples, ...)."""
 
     ground_acceleration: Array
@@ -162,7 +162,7 @@ class Direction(_Sampled, Frozen):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trace(_Sampled, Shown):
+class Trace(Direction):
     """Histories at the record's samples and on through the free vibration, SI units.
 
     What was largest between samples, and on both sides of impacts, is in the largest demands, not
@@ -204,20 +204,10 @@ class Trace(_Sampled, Shown):
     """
 
     time: Array
-    ground_acceleration: Array
     rotation: Array
     rotation_rate: Array
     phase: NDArray[np.int8]
-    cap_beam_displacement: Array
     lift: Array
-    floor_displacements: Array
-    floor_velocities: Array
-    drifts: Array
-    storey_shears: Array
-    floor_accelerations: Array
-    driving_moment: Array
-    shear_top: Array
-    shear_bottom: Array
     normal_top: Array
     normal_bottom: Array
     energy_input: Array
