@@ -146,13 +146,9 @@ def test_phases_of_the_samples_fit_their_rotations(result: TimeHistoryResult) ->
 
 def test_a_study_sees_the_same_numbers(result: TimeHistoryResult) -> None:
     quick = demand(result.structure, RECORD, SETTINGS, vertical=VERTICAL)
-    assert quick.outcome == result.outcome
-    assert quick.max_rotation == result.max_rotation
+    assert quick.scalars() == result.scalars()
     assert quick.storey_shears.tolist() == result.storey_shears.tolist()
     assert quick.floor_accelerations.tolist() == result.floor_accelerations.tolist()
-    assert quick.friction_demand == result.friction_demand
-    assert (quick.uplifts, quick.impacts) == (result.uplifts, result.impacts)
-    assert quick.duration == result.duration
     assert quick.energy_created == result.energy.created
 
 
