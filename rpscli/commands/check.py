@@ -23,12 +23,27 @@ from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.table import Heading, Part, Table, large, shown
-from rpscli.report.tables.derived import BOTH, CONTACT, DYNAMICS, FIRST_PERIOD, GEOMETRY
+from rpscli.report.tables.derived import (
+    AT_CRITICAL,
+    BOTH,
+    CONTACT,
+    DYNAMICS,
+    FIRST_PERIOD,
+    GEOMETRY,
+)
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.model.podium import PodiumStructure
 
+_BY_NAME = {row.name: row for row in (*GEOMETRY, *DYNAMICS)}
+LEADING = (
+    _BY_NAME["initial_stiffness"],
+    _BY_NAME["critical_rotation"],
+    *AT_CRITICAL,
+    _BY_NAME["static_base_shear"],
+)
+"""What is asked of every case, and stands first."""
 RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "pga")
 """What the document says of a ground motion."""
 
@@ -100,14 +115,17 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
 
 
 def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> Iterator[Part]:
-    """Geometry; masses, statics and periods; the record; the limits."""
+    """What leads; geometry; masses, statics and periods; the record; the limits."""
     heads = ("", "symbol", "value", "unit")
     yield Heading(document["case"]["title"])
     pair = document["record"] and document["record"]["y"]
     on_bed = CONTACT if "contact_stiffness" in document else ()
-    for rows in (GEOMETRY, (*DYNAMICS, FIRST_PERIOD, *on_bed), BOTH)[: 3 if pair else 2]:
+    dynamics = (*DYNAMICS, FIRST_PERIOD, *on_bed)
+    for rows in (LEADING, GEOMETRY, dynamics, BOTH)[: 4 if pair else 3]:
         texts = []
         for row in rows:
+            if row in LEADING and rows is not LEADING:
+                continue
             if document[row.name] is None and (row in on_bed or row.name == "rolling_period"):
                 continue  # columns with a flat part, edges, or curved ends have none
             value, unit = large(document[row.name], row.unit)

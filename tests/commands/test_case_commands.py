@@ -40,6 +40,7 @@ def test_check(rps_json: InvokeJson, case: Path) -> None:
         "rho_cr_paper": bearing.critical_curvature_ratio_of_paper,
         "rho_cr_exact": bearing.critical_curvature_ratio,
         "critical_rotation": bearing.critical_rotation,
+        "critical_lift": structure.path(np.array(bearing.critical_rotation))[2],
         "restitution": structure.restitution,
         "uplift_acceleration": structure.uplift_acceleration,
         "static_base_shear": structure.static_base_shear,

@@ -78,6 +78,24 @@ DYNAMICS = (
 )  # fmt: skip
 """Masses and statics."""
 
+
+def _path_at_critical(structure: PodiumStructure) -> tuple[float, float]:
+    """u_b and v_b at theta_cr [m]."""
+    import numpy as np  # slow
+
+    _, u, v = structure.path(np.array(structure.critical_rotation))
+    return float(u), float(v)
+
+
+AT_CRITICAL = (
+    Derived(
+        "critical_displacement", "cap beam displacement at it", "u_b", "m",
+        lambda s: _path_at_critical(s)[0],
+    ),
+    Derived("critical_lift", "lift at it", "v_b", "m", lambda s: _path_at_critical(s)[1]),
+)  # fmt: skip
+"""Where the weight no longer restores."""
+
 BOTH = (
     Derived("pass_turn", "azimuth change in a pass near upright", "Delta phi", "rad"),
     Derived("turning_inertia", "rotational inertia, upright", "K(0)", "-"),
@@ -109,7 +127,7 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
     building = structure.superstructure
     lists = ("periods", "damping_ratios", "stiffnesses")
     return {
-        **{row.name: row.value(structure) for row in (*GEOMETRY, *DYNAMICS, *BOTH)},
+        **{row.name: row.value(structure) for row in (*GEOMETRY, *AT_CRITICAL, *DYNAMICS, *BOTH)},
         "storeys": structure.storeys,
         FIRST_PERIOD.name: FIRST_PERIOD.value(structure),
         **({row.name: row.value(structure) for row in CONTACT} if structure.bed else {}),
