@@ -1,4 +1,4 @@
-"""What the machine gives this process."""
+"""Cores of the machine, and modes of its files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a package of yours needs to add things to rps, by entry points in its `pyproject.toml`.
+"""Names with which a package of yours adds things to rps, by entry points in its `pyproject.toml`.
 
 Each entry point has a name, which users write, and belongs to one of these groups:
 

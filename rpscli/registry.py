@@ -21,7 +21,7 @@ Item = TypeVar("Item")
 
 
 class Offer(NamedTuple):
-    """What another package adds; `fault` says why it cannot be used, empty if it can."""
+    """An item of another package; `fault` says why it cannot be used, empty if it can."""
 
     kind: str
     name: str
@@ -59,7 +59,7 @@ class Registry(dict[str, Item]):
         return list({**self, **_points(self.kind)})
 
     def theirs(self) -> Iterator[tuple[str, Item]]:
-        """What other packages add, as far as it can be used."""
+        """Items of other packages that can be used."""
         for name in _points(self.kind):
             try:
                 if name not in self:
@@ -80,7 +80,7 @@ class Registry(dict[str, Item]):
         return {**self.everything(), **named}
 
     def offers(self) -> Iterator[Offer]:
-        """What other packages add, usable or not."""
+        """Items of other packages, usable or not."""
         for name, point in _points(self.kind).items():
             meaning, fault = "", "rps has one of this name, which is taken" if name in self else ""
             if not fault:

@@ -1,4 +1,4 @@
-"""Where a user's own files that can be made again are kept: compiled kernels, fonts."""
+"""Folder of a user's own files that can be made again: compiled kernels, fonts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def user_cache() -> Path | None:
 
 
 def cache_places() -> list[Path]:
-    """What ``RPS_CACHE_DIR`` names, the user's cache folder, one in the temporary folder."""
+    """Folder that ``RPS_CACHE_DIR`` names, the user's cache, one in the temporary folder."""
     places = [users_folder(VARIABLE), users_folder("XDG_CACHE_HOME", "~/.cache", "rps")]
     user = os.getuid() if hasattr(os, "getuid") else 0
     with suppress(FileNotFoundError):  # not even temporary files can be written
@@ -30,13 +30,13 @@ def cache_places() -> list[Path]:
 
 
 def users_folder(variable: str, usual: str = "", *below: str) -> Path | None:
-    """What a variable names, else the usual folder; None where neither is, or nobody's home."""
+    """Folder that a variable names, else the usual one; None without either, or a home."""
     found = os.path.expanduser(os.environ.get(variable) or usual)  # noqa: PTH111 -- which raises
     return None if found[:1] in {"", "~"} else Path(found, *below)
 
 
 def is_private(folder: Path) -> bool:
-    """Whether only this user may write to a folder, from which code is run; else says so."""
+    """True if only this user may write to a folder, from which code is run; else a warning."""
     if os.name == "nt":
         return True
     found, amiss = folder.stat(), ""
@@ -50,7 +50,7 @@ def is_private(folder: Path) -> bool:
 
 
 def is_writable(folder: Path) -> bool:
-    """Whether files can be made in a folder, which is made if needed."""
+    """True if files can be made in a folder, which is made if needed."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

@@ -1,4 +1,4 @@
-"""What one column carries: weight, overturning moment, shocks (Theory (8.7), (8.8), (13.19))."""
+"""Forces of one column: weight, overturning moment, shocks (Theory (8.7), (8.8), (13.19))."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class AxialForces:
     """Largest r: what the moment of the floors' inertia about the cap beam adds to an outer row,
     over its mean force; None without rows."""
     lift_off: float | None
-    """When an outer row would first lift off [s]; None if never."""
+    """Time at which an outer row would first lift off [s]; None if never."""
 
 
 def no_bound(name: str, structure: PodiumStructure) -> str:
@@ -79,7 +79,7 @@ def overturning_moment(structure: PodiumStructure, trace: Trace) -> Array:
 
 
 def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
-    """What leaning thrust lines and drifts add to that moment (samples,) [N m]."""
+    """Moment of leaning thrust lines and drifts, beside that of inertia (samples,) [N m]."""
     # Columns bear on the beam at the edge they turn about, or where one at rest is in equilibrium.
     b, t = structure.bearing, trace
     B = structure.weight_arm(np.abs(t.rotation))
@@ -105,7 +105,7 @@ def in_shocks(structure: PodiumStructure, trace: Trace) -> NDArray[np.bool_]:
 
 
 def jumps(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> tuple[Array, Array]:
-    """When |theta'-| + |theta'+| of impacts acts [s], what theta' gains in shocks, and how much."""
+    """Times [s] and sizes of |theta'-| + |theta'+| of impacts, and of gains of theta' in shocks."""
     found = [
         (event.time, abs(event.rotation_rate_before) + abs(event.rotation_rate_after))
         for event in events
@@ -119,7 +119,7 @@ def jumps(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> 
 
 
 def shock(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> Array:
-    """What impacts and shocks add to the force under the building (samples,) [N]."""
+    """Force under the building that impacts and shocks add (samples,) [N]."""
     # 2 B (|w-| + |w+|) on the beam rings in the floors, a chain of equal vertical springs.
     time = trace.time
     building = structure.superstructure

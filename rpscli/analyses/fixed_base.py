@@ -1,4 +1,4 @@
-"""The same building without bearings, for comparison."""
+"""Response of the building without bearings, for comparison."""
 
 from __future__ import annotations
 

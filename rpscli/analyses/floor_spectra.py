@@ -97,7 +97,7 @@ def _ringing(result: TimeHistoryResult) -> float:
 
 
 def jumps_left_out(result: TimeHistoryResult, trace: Trace) -> Array:
-    """What keeps the impulse of each jump of the accelerations, at the instants beside it (n,)."""
+    """Ramps with the impulse of each jump of the accelerations, at the instants beside it (n,)."""
     structure, building = result.structure, result.structure.superstructure
     found = np.zeros_like(trace.floor_accelerations)
     if building is None or structure.impact_law.floors_jump or len(found) < 2:

@@ -1,4 +1,4 @@
-"""What histories ask of their structures at most: the results that need no samples."""
+"""Largest demands of histories: the results that need no samples."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Histories:
 
     @property
     def outcomes(self) -> NDArray[np.str_]:
-        """How each ended, in words."""
+        """Endings, in words."""
         return outcomes_of(self.left)
 
     def column(self, name: str) -> Array:
@@ -245,7 +245,7 @@ class Demand(Shown):
 
     @property
     def outcome(self) -> Outcome:
-        """How the history ended."""
+        """Ending of the history."""
         return cast("Outcome", str(outcomes_of(self.history)))
 
     @property
@@ -255,12 +255,12 @@ class Demand(Shown):
 
     @property
     def overturned(self) -> bool:
-        """Whether the overturning limit was passed."""
+        """True if the overturning limit was passed."""
         return self.outcome.startswith("overturned")
 
     @property
     def stays_tilted(self) -> bool:
-        """Whether friction holds the storey tilted at the end."""
+        """True if friction holds the storey tilted at the end."""
         return self.outcome == "stays_tilted"
 
     max_rotation = _Result[float]("Largest |theta|, turning points between samples included [rad].")
@@ -435,7 +435,7 @@ class Demand(Shown):
 
     @property
     def both_components(self) -> bool:
-        """Whether both horizontal components acted."""
+        """True if both horizontal components acted."""
         return bool(self.history["ways"] == 2)
 
     @property

@@ -82,7 +82,7 @@ class UpliftedModes(Shown):
 
     @property
     def own_motion(self) -> str:
-        """What the storey's own mode does, in words."""
+        """Motion in the storey's own mode, in words."""
         if self.own_period is not None:
             return f"swings with T = {self.own_period:.4g} s"
         if self.own_growth_time is not None:
@@ -125,7 +125,7 @@ class ModalResult(Shown):
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What of the devices is not linear, and therefore not in the modes."""
+        """Parts of the devices that are not linear, and therefore not in the modes."""
         state = uplifted_state(self.structure.bearing, rolling=False)
         laws = (device.linear(self.structure, state) for device in self.structure.devices)
         return tuple(dict.fromkeys(law.left_out for law in laws if law.left_out))
@@ -138,12 +138,12 @@ class ModalResult(Shown):
 
     @property
     def fixed_base_state(self) -> str:
-        """What the building on its fixed base is as a state: full contact of rigid ends."""
+        """Name of the state of the building on its fixed base: full contact of rigid ends."""
         return "fixed_base" if self.full_contact else "full_contact"
 
     @property
     def both_orders(self) -> dict[str, tuple[UpliftedModes, UpliftedModes]]:
-        """The same, exact and to first order."""
+        """The uplifted states, exact and to first order."""
         orders = {name: (modes, modes.first_order) for name, modes in self.uplifted.items()}
         return {name: (exact, paper) for name, (exact, paper) in orders.items() if paper}
 

@@ -1,4 +1,4 @@
-"""How a history ended, and why one could not be carried to its end, in words."""
+"""Outcomes of histories, and reasons of failures, in words."""
 
 from __future__ import annotations
 

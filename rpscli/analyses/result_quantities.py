@@ -91,7 +91,7 @@ NEEDS = {
     "stop": "a stop in podium.devices",
     "tendon": "a prestressed tendon in podium.devices",
 }
-"""What a structure must have for a result, in words."""
+"""Parts of a structure that a result needs, in words."""
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:
@@ -229,7 +229,7 @@ IMPACTS = (
         kernel="creating_impacts",
     ),
 )  # fmt: skip
-"""What the impacts of a history did, in the table of a study."""
+"""Effects of the impacts of a history, in the table of a study."""
 
 PAIR = (
     ResultQuantity("max_rotation_azimuth", "rad", "azimuth of the largest rotation"),
@@ -257,7 +257,7 @@ PAIR = (
         meaning="which friction in the contacts must resist to keep columns in place",
     ),
 )  # fmt: skip
-"""What a history besides has where both horizontal components act: its other results are those of
+"""Results of a history under both horizontal components; its other results are those of
 resultants, largest sqrt(x^2 + y^2)."""
 
 KERNEL_FIELDS = {q.name: q.kernel for q in (*HISTORY, *IMPACTS, *PAIR) if q.kernel}
@@ -287,7 +287,7 @@ STOREYS = (
 """Largest values in each storey from the bottom, on bearings and on a fixed base."""
 
 LIMITED = tuple(quantity for quantity in (*HISTORY, *SAMPLED) if quantity.limit)
-"""What limits, `--fail-on` and fragilities may name."""
+"""Results that limits, `--fail-on` and fragilities may name."""
 
 DEMANDS = tuple(quantity for quantity in LIMITED if not quantity.from_below)
 """Those that are the worse the larger they are, as an axis of demands needs them."""
@@ -310,7 +310,7 @@ UPLIFTED_RATIOS = (
     ),
     ResultQuantity("damping_ratio", "-", "damping ratio", r"$\xi_u/\xi_0$", meaning=ORDER),
 )
-"""The same lists over those of the fixed base."""
+"""Lists by vibration mode, over those of the fixed base."""
 
 FREQUENCY_PARAMETERS = (
     ResultQuantity(
@@ -323,14 +323,14 @@ FREQUENCY_PARAMETERS = (
 """Of the storey's own mode."""
 
 LINEAR = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS)
-"""What both orders have, the exact one and the paper's."""
+"""Results of both orders, the exact one and the paper's."""
 
 OWN_MOTION = (
     ResultQuantity("own_motion", "", "the storey's own mode"),
     ResultQuantity("own_period", "s", "its period, if it oscillates", "$T$"),
     ResultQuantity("own_growth_time", "s", "time of e-fold growth, if it diverges"),
 )
-"""The same in words and times."""
+"""The storey's own mode in words and times."""
 
 EIGENVALUES = ResultQuantity("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
 
@@ -345,7 +345,7 @@ UPLIFTED = (
 FIXED_BASE_SHAPES = (_SHAPES,)
 UPLIFTED_SHAPES = (_SHAPES, ResultQuantity("elastic_shapes", "-", "elastic mode shape"))
 LEVEL = ResultQuantity("floor", "", "level (0 = cap beam)")
-"""What shapes are drawn over."""
+"""Levels over which shapes are drawn."""
 
 PUSHOVER = (
     ResultQuantity("uplift_force", "N", "uplift force"),
@@ -368,7 +368,7 @@ STOREY_CURVE_RATIOS = (
     ResultQuantity("rotation_ratio", "-", "rotation ratio", r"$\theta/\theta_{cr}$"),
     ResultQuantity("force_over_weight", "-", "force over weight", "$F/W$"),
 )
-"""The same curve without units."""
+"""The storey's curve without units."""
 
 _ALL = [
     quantity

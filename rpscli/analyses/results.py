@@ -1,4 +1,4 @@
-"""What a time history gives besides its largest demands: samples, events, energies, warnings."""
+"""Result of a time history: beside its largest demands samples, events, energies, warnings."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
 
 @dataclass(frozen=True)
 class Energy:
-    """Where the energy went [J]: input = damped + devices + bed + impact + stored + residual.
+    """Balance of the energy [J]: input = damped + devices + bed + impact + stored + residual.
 
     Parameters
     ----------
@@ -242,12 +242,12 @@ class TimeHistoryResult(Demand):
 
     @property
     def left_out_of_columns(self) -> tuple[str, ...]:
-        """What they do not hold, and the key that would give it."""
+        """Parts that forces of columns do not hold, and the key that would give each."""
         return self.structure.left_out_of_columns(both=self.both_components)
 
     @property
     def overturning_ratio(self) -> float | None:
-        """What the floors' inertia adds to an outer row over its mean force; None without rows."""
+        """Force of the floors' inertia in an outer row over its mean force; None without rows."""
         return self.axial.overturning_ratio if self.axial else None
 
     @property
@@ -267,17 +267,17 @@ class TimeHistoryResult(Demand):
 
     @property
     def is_near_critical(self) -> bool:
-        """Whether it survived after rotations near the critical one, or beyond."""
+        """True if it survived after rotations near the critical one, or beyond."""
         return self.outcome in STOOD and self.rotation_ratio > NEAR_CRITICAL
 
     @property
     def slides(self) -> bool | None:
-        """Whether the friction demand exceeds the coefficient; None where that is not given."""
+        """True if the friction demand exceeds the coefficient; None where that is not given."""
         return None if self.friction_ratio is None else self.friction_ratio > 1.0
 
     @property
     def sliding_time(self) -> float | None:
-        """When |F|/N first exceeded the coefficient at a sample [s]; None if at no sample.
+        """Time of the first sample at which |F|/N exceeds the coefficient [s]; None if at none.
 
         `slides` tells what lies between samples too.
         """
@@ -291,7 +291,7 @@ class TimeHistoryResult(Demand):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the user must know before trusting the numbers."""
+        """Notes that the user must know before trusting the numbers."""
         notes = [*self.record.warnings, *self._near_the_limit()]
         least = min(self.history["normal_top"], self.history["normal_bottom"])
         if least <= 0.0:
@@ -344,7 +344,7 @@ class TimeHistoryResult(Demand):
         return tuple(notes)
 
     def _on_bed(self) -> Iterator[str]:
-        """What compliant ends were not tried for."""
+        """Demands for which compliant ends were not tried."""
         chi, pressure = self.max_impact_number, self.edge_pressure_ratio
         if chi is not None and chi > LARGEST_TRIED and self.structure.contact.kind == "plane":
             yield (
@@ -359,7 +359,7 @@ class TimeHistoryResult(Demand):
             )
 
     def _near_the_limit(self) -> Iterator[str]:
-        """How near a structure that survived came to overturning, and whether columns slide."""
+        """Nearness to overturning of a structure that survived, and sliding of columns."""
         ratio, passed = self.rotation_ratio, self.critical_passage_time
         if self.is_near_critical and passed is not None:
             yield (

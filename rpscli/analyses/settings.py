@@ -1,4 +1,4 @@
-"""How a time history is run."""
+"""Settings of a time history."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class TimeHistorySettings:
 
 
 LONGEST_FREE_VIBRATION = 120.0
-"""Where free vibration `auto` gives up waiting for rest [s]."""
+"""Time after which free vibration `auto` gives up waiting for rest [s]."""
 
 
 def require_structure(structure: object) -> None:

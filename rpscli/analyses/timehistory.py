@@ -80,7 +80,7 @@ weight high."""
 
 
 def denser_trace(result: TimeHistoryResult, step: float, beyond: float = 0.0) -> Trace:
-    """The same motion at even parts of the sampling interval, up to `step`, and so long on [s]."""
+    """Trace of a result at even parts of the sampling interval, up to `step`, so long on [s]."""
     parts = max(math.ceil(result.record.dt / step - 1e-9), 1)
     settings = result.settings
     if beyond > 0.0:

@@ -54,7 +54,7 @@ class Event:
     time: float
     """Since the start of the record [s]."""
     kind: EventKind
-    """What happened."""
+    """Name of the event."""
     rotation: float
     """theta [rad]."""
     rotation_rate_before: float
@@ -132,7 +132,7 @@ class _Sampled:
 
 @dataclass(frozen=True, eq=False)
 class DeviceTrace(_Sampled, Frozen):
-    """What each device does at the record's samples: arrays (samples, devices)."""
+    """Forces, displacements and energies of devices at the samples: arrays (samples, devices)."""
 
     force: Array
     """On the cap beam, positive to the right, of pairs outwards [N]; of a tendon the tension."""
@@ -147,7 +147,7 @@ class DeviceTrace(_Sampled, Frozen):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Direction(_Sampled, Shown):
-    """What a history has in one horizontal direction, as in `Trace`: (samples, ...)."""
+    """Part of a trace in one horizontal direction: arrays (samples, ...)."""
 
     ground_acceleration: Array
     cap_beam_displacement: Array

@@ -58,7 +58,7 @@ class Comparison:
 
     @property
     def holds(self) -> bool:
-        """Whether the computed value is close enough; one that is not a number never is."""
+        """True if the computed value is close enough; one that is not a number never is."""
         return abs(self.computed - self.expected) <= self.tolerance
 
     @property
@@ -220,7 +220,7 @@ SAMPLED: dict[str, Callable[[Trace], Array]] = {
     "tilt towards x": lambda t: _towards(t).real,
     "tilt towards y": lambda t: _towards(t).imag,
 }
-"""What quantities are at some time, by their names."""
+"""Quantities that a problem asks for at some time, by their names."""
 
 
 def of_history(result: TimeHistoryResult, quantity: str) -> float:

@@ -30,7 +30,7 @@ EXTRAS = {
     "cluster": "studies on a Dask cluster",
     "contact": "bodies in contact, rps export CASE mujoco",
 }
-"""What packages add that users may do without."""
+"""Uses of packages that users may do without."""
 
 
 @click.command("doctor")
@@ -66,7 +66,7 @@ def _surroundings() -> list[tuple[str, str, str]]:
 
 
 def _packages(extra: str | None) -> list[tuple[str, str, str]]:
-    """What rps needs, or what one of its extras brings: name, version, and what to do."""
+    """Packages that rps needs, or that one of its extras brings: name, version, remedy."""
     rows = []
     for text in metadata.requires("rpscli") or [] if installed("rpscli") else []:
         said = re.match(r"([\w.-]+)>=([\d.]+)(?:.*extra == .(\w+))?", text)

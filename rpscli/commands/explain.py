@@ -48,7 +48,7 @@ KINDS = ("keys", "results", "words", "reports", "options", "plugins")
 
 
 def _known() -> list[str]:
-    """What may be asked for: keys, their ends, results, reports and words."""
+    """All that may be asked for: keys, their ends, results, reports and words."""
     from rpscli.report.study.registry import REPORTS
 
     keys = [key.key for key in _formats()]
@@ -211,7 +211,7 @@ def _options(word: str) -> Iterator[Entry]:
 
 
 def _offers(word: str) -> Iterator[Offer]:
-    """What other packages add: all for the word plugins, else what is called so."""
+    """Items of other packages: all for the word plugins, else those of that name."""
     from rpscli.records.codes import CODES
     from rpscli.records.formats import FORMATS
     from rpscli.records.measures import MEASURES

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 RESULTS = Path("results")
-"""Where results go by default, below the working folder."""
+"""Default folder of results, below the working folder."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +139,7 @@ FACTOR = _Factor()
 
 @dataclass(frozen=True)
 class MotionRequest:
-    """What the command line says about the ground motion; None leaves it to the case.
+    """The ground motion as the command line has it; None leaves it to the case.
 
     A record that is measured as a pair has both components of that.
     """
@@ -198,7 +198,7 @@ def single_motions(
 
 
 def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
-    """What identifies a motion in `run.json`; digests are those of the scaled samples."""
+    """Identity of a motion in `run.json`; digests are those of the scaled samples."""
     sources = {
         name: {"source": found.source, "sha256": found.digest}
         for name, found in motion.named.items()
@@ -207,7 +207,7 @@ def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
 
 
 def motion_source(case: Case, request: MotionRequest) -> Path | str:
-    """Which record a motion is, whatever its scale: a file, or a source that is none."""
+    """The record of a motion, whatever its scale: a file, or a source that is none."""
     from rpscli.records.source import Source
 
     folder = case.folder if request.record is None else Path()
@@ -244,7 +244,7 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
 
 
 def _target(case: Case, request: MotionRequest) -> tuple[ScaleToSection, str] | None:
-    """What measure the motion is scaled to, and who asks for it: command line or case."""
+    """The measure to scale to, and who asks for it: command line or case."""
     if request.scale is not None:
         return None
     if request.scale_to is not None:
@@ -297,7 +297,7 @@ def _scaled_to(
 
 
 def _parsed_target(text: str) -> ScaleToSection:
-    """What `--scale-to` asks for: ``PGA=0.4g``, ``PGV=0.5 m/s``, or ``Sa(0.6 s)=1 g``."""
+    """Target of `--scale-to`: ``PGA=0.4g``, ``PGV=0.5 m/s``, or ``Sa(0.6 s)=1 g``."""
     from rpscli.case.schema.scale_to import scale_to_of
 
     try:

@@ -323,7 +323,7 @@ def computed_set(
 def _set_folder(
     group: Sequence[HistoryRequest], output: OutputRequest, *, alone: bool
 ) -> OutputFolder | None:
-    """Where the table of a case goes: each set of records has a place of its own."""
+    """Folder for the table of a case: each set of records has one of its own."""
     if len(group) == 1:
         return None
     first = group[0]
@@ -343,7 +343,7 @@ def _set_folder(
 
 
 def set_error(computed: Sequence[Computed]) -> RpsError | None:
-    """What ends the command: failed histories, else limits that are exceeded."""
+    """The error that ends the command: failed histories, else limits that are exceeded."""
     lines = [
         f"{history.request.name}: {history.error}"
         for case in computed
@@ -382,7 +382,7 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
 
 
 def set_document(case: Computed) -> dict[str, Any]:
-    """What the records of a case say together."""
+    """Statistics and verdicts of the records of a case."""
     return {
         "case": case.histories[0].document["case"],
         "records": case.labels,

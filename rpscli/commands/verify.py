@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 DIGITS = 10
 OWN_DIGITS = 9.0
-"""Which rps itself must have, or all that are certified: another processor rounds in another way,
-which weights of the steps and impacts multiply."""
+"""Digits that rps itself must have, or all that are certified: another processor rounds in another
+way, which weights of the steps and impacts multiply."""
 INSTALLATION = (
     "differ from what is known: do not trust results of this installation; install rps again, and"
     " report it if they still differ"

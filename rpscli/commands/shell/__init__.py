@@ -1,1 +1,1 @@
-"""What every command shares: options, streams, tables, errors and exit codes."""
+"""Parts that every command shares: options, streams, tables, errors and exit codes."""

@@ -1,4 +1,4 @@
-"""What a shell may complete: files, keys of the case, names of results."""
+"""Options of commands, and words with which a shell completes them."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _sources() -> Iterator[str]:
 
 
 def measures() -> list[str]:
-    """What `--scale-to` may begin with."""
+    """Measures that `--scale-to` may begin with."""
     from rpscli.records.measures import MEASURES
 
     return [f"{name}=" for name in MEASURES.names()]
@@ -94,7 +94,7 @@ class CaseRequest:
 
 @dataclass(frozen=True)
 class OutputRequest:
-    """Where results go; None is the default folder."""
+    """Folder of the results; None is the default one."""
 
     place: Path | None
     force: bool
@@ -275,7 +275,7 @@ _PART = (
 film_options = gathered("film", _film, *_FILM)
 """--animate and --animate-size, as `film`."""
 history_film_options = gathered("film", _film, *_PART, *_FILM)
-"""The same, with speed and part of a history."""
+"""--animate and its options, with speed and part of a history, as `film`."""
 
 run_options = in_order(
     click.option(
@@ -293,7 +293,7 @@ run_options = in_order(
     click.option("--fresh", is_flag=True, help="Discard stored results."),
     click.option("--retry-failed", is_flag=True, help="Recompute failed points."),
 )
-"""How the points of a study are computed, as the keywords of `SweepChoices`."""
+"""Choices for the points of a study, as the keywords of `SweepChoices`."""
 
 
 def _case_requests(cases: tuple[str, ...], overrides: tuple[str, ...]) -> list[CaseRequest]:
@@ -326,7 +326,7 @@ output_options = gathered(
 """-o and --force, as `output`."""
 
 result_options = in_order(figure_options, output_options, terminal_options)
-"""What every command that draws and writes takes: `look`, `output` and `terminal`."""
+"""Options of every command that draws and writes: `look`, `output` and `terminal`."""
 
 
 def fail_on_option(meaning: str) -> Decorator:

@@ -1,4 +1,4 @@
-"""What a command says: results on the standard output, all else on the standard error; errors."""
+"""Streams of a command: results on the standard output, all else on the standard error; errors."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WARNINGS_SHOWN = 5
 PLAIN_WIDTH = 100
 """Columns where the output is no terminal and COLUMNS is not set."""
 LONGEST_WORD, LONGEST_HEAD, MOST_LINES = 30, 14, 9
-"""Which is not broken, in cells and in heads."""
+"""Letters of a word that is not broken, in cells and in heads; lines of heads."""
 ALL_FOLD = 0
 """Lines of heads where numbers are broken as well, since one column beside the keys is too wide."""
 GAP = 3
@@ -256,7 +256,7 @@ def kind(error: BaseException) -> str:
 
 
 def message(error: BaseException) -> str:
-    """What an error says, without its kind; words of hundreds of letters are cut."""
+    """Text of an error, without its kind; words of hundreds of letters are cut."""
     # The end of a path says most of it.
     return re.sub(r"\S{301,}", lambda word: f"{word[0][:140]}...{word[0][-140:]}", _message(error))
 

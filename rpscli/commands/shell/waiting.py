@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 MANY = 5000
 """Of what takes a millisecond each."""
 LONG = 10.0
-"""What is worth a word [s]."""
+"""Time that is worth a word [s]."""
 USUALLY = "half a minute, some minutes on a busy machine"
 FIRST_LINE, GROWTH = 2.0, 1.6
 """Seconds until the first plain line; the next ones come after ever longer times."""
 
 _standing: list[Any] = []
-"""What stands on the terminal; what else takes time becomes a line of it."""
+"""Bars on the terminal; other work that takes time becomes a line of the last."""
 
 
 def _looked_at(terminal: Terminal) -> bool:
@@ -46,7 +46,7 @@ def _bar(*columns: Any) -> Iterator[Any]:
 
 @contextmanager
 def passing_time(what: str, terminal: Terminal) -> Iterator[None]:
-    """What takes time and how much has passed, where somebody looks."""
+    """A line with the work in progress and the time that has passed, where somebody looks."""
     if not _looked_at(terminal):
         yield
         return
@@ -157,7 +157,7 @@ def progress_line(progress: Progress) -> str:
 
 
 def _pace(progress: Progress) -> Iterator[str]:
-    """What failed, rate and time left, as far as they are known."""
+    """Failures, rate and time left, as far as they are known."""
     if progress.failed:
         yield f"{progress.failed} failed"
     if progress.rate:
