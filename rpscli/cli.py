@@ -12,47 +12,37 @@ import click
 from rpscli.commands.shell.lazy import LazyGroup, Member
 from rpscli.version import VERSION
 
-OTHERS = "Other commands"
+SECTIONS = {
+    "Commands": {
+        "init": "write a commented case or study to start from",
+        "check": "derived quantities of a case, and mistakes in it",
+        "modal": "modes in full contact, rolling and rocking",
+        "pushover": "restoring force and capacity curves",
+        "timehistory": "response to a ground motion",
+        "sweep": "compute the points of a study and draw its reports",
+        "design": "values of a case that meet limits and minimise an objective",
+        "report": "one page for a checking engineer, from all of these",
+        "record": "read, draw, select, convert, make ground motions",
+        "explain": "what a key, a result, a report or a word means",
+    },
+    "Other commands": {
+        "budget": "sensitivity of limited results and verdicts",
+        "export": "write a case as a model for mujoco or OpenSees",
+        "identify": "properties of a case from measured motion",
+        "schema": "JSON schemas of files and of results",
+        "completion": "complete commands, files and keys in your shell",
+        "verify": "compare this installation with known numbers",
+        "doctor": "what is installed, what is missing",
+    },
+}
+"""Lines of the help."""
+OF_INIT = ("schema", "completion")
 COMMANDS = {
-    "init": Member("rpscli.commands.init", "write a commented case or study to start from"),
-    "check": Member("rpscli.commands.check", "derived quantities of a case, and mistakes in it"),
-    "modal": Member("rpscli.commands.modal", "modes in full contact, rolling and rocking"),
-    "pushover": Member("rpscli.commands.pushover", "restoring force and capacity curves"),
-    "timehistory": Member("rpscli.commands.timehistory", "response to a ground motion"),
-    "sweep": Member("rpscli.commands.sweep", "compute the points of a study and draw its reports"),
-    "design": Member(
-        "rpscli.commands.design",
-        "values of a case that meet limits and minimise an objective",
-    ),
-    "report": Member(
-        "rpscli.commands.report", "one page for a checking engineer, from all of these"
-    ),
-    "record": Member("rpscli.commands.record", "read, draw, select, convert, make ground motions"),
-    "explain": Member("rpscli.commands.explain", "what a key, a result, a report or a word means"),
-    "budget": Member(
-        "rpscli.commands.budget", "sensitivity of limited results and verdicts", section=OTHERS
-    ),
-    "export": Member(
-        "rpscli.commands.export", "write a case as a model for mujoco or OpenSees", section=OTHERS
-    ),
-    "identify": Member(
-        "rpscli.commands.identify", "properties of a case from measured motion", section=OTHERS
-    ),
-    "schema": Member(
-        "rpscli.commands.init", "JSON schemas of files and of results", "schema", OTHERS
-    ),
-    "completion": Member(
-        "rpscli.commands.init",
-        "complete commands, files and keys in your shell",
-        "completion",
-        OTHERS,
-    ),
-    "verify": Member(
-        "rpscli.commands.verify", "compare this installation with known numbers", section=OTHERS
-    ),
-    "doctor": Member(
-        "rpscli.commands.doctor", "what is installed, what is missing", section=OTHERS
-    ),
+    name: Member("rpscli.commands.init", summary, name, section)
+    if name in OF_INIT
+    else Member(f"rpscli.commands.{name}", summary, section=section)
+    for section, commands in SECTIONS.items()
+    for name, summary in commands.items()
 }
 GONE = {
     "clean": "rps doctor names the folder of the cache; it can be deleted, rps makes it anew",

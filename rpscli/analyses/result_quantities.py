@@ -16,49 +16,22 @@ from typing import Any, NamedTuple
 
 
 class ResultQuantity(NamedTuple):
-    """One quantity that an analysis finds.
+    """One quantity that an analysis finds."""
 
-    Parameters
-    ----------
-    name
-        In the Python interface, JSON and CSV.
-    unit
-        SI unit; ``-`` for a plain number, nothing for one that needs no unit on an axis.
-    label
-        In words, for tables and figures.
-    symbol
-        The paper's letters as a formula for figures, where there are any.
-    limit
-        An example of a limit; empty where none makes sense. What has one may be limited in a case,
-        a study, a fragility and by `--fail-on`.
-    demand
-        Whether it is among the main demands, which tables of studies show in the terminal.
-    whole
-        Whether it is a count.
-    needs
-        What a structure must have to have it, one of `NEEDS`.
-    meaning
-        What a ratio is made of, for the schemas of limits.
-    from_below
-        Whether small values are bad, so that a limit is the least that is admissible.
-    column
-        Its head in a table of storeys, where that is not the name.
-    kernel
-        The field of `physics.planar.state.RESULT` that holds it; empty where it is computed.
-    """
-
-    name: str
-    unit: str
-    label: str
-    symbol: str = ""
+    name: str  # in the Python interface, JSON and CSV
+    unit: str  # SI; ``-`` for a plain number, nothing for one that needs no unit on an axis
+    label: str  # in words, for tables and figures
+    symbol: str = ""  # the paper's letters as a formula for figures, where there are any
+    # An example of a limit; empty where none makes sense. What has one may be limited in a case, a
+    # study, a fragility and by `--fail-on`.
     limit: str = ""
-    demand: bool = False
-    whole: bool = False
-    needs: str = ""
-    meaning: str = ""
-    from_below: bool = False
-    column: str = ""
-    kernel: str = ""
+    demand: bool = False  # one of the main demands, which tables of studies show in the terminal
+    whole: bool = False  # a count
+    needs: str = ""  # what a structure must have to have it, one of `NEEDS`
+    meaning: str = ""  # what a ratio is made of, for the schemas of limits
+    from_below: bool = False  # small values are bad: a limit is the least that is admissible
+    column: str = ""  # its head in a table of storeys, where that is not the name
+    kernel: str = ""  # the field of `physics.state.RESULT` that holds it; empty where computed
 
     @property
     def axis_label(self) -> str:
