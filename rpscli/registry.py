@@ -46,12 +46,12 @@ class Registry(dict[str, Item]):
         point = _points(self.kind).get(name)
         if point is None:
             raise KeyError(name)
-        found, what = _loaded(point), _named(point)
-        fits = callable(found) if self._item is None else isinstance(found, self._item)
+        offered, what = _loaded(point), _named(point)
+        fits = callable(offered) if self._item is None else isinstance(offered, self._item)
         if not fits:
             wanted = "a function" if self._item is None else f"a {self._item.__name__}"
-            raise PluginError(f"{what} is a {type(found).__name__}, and must be {wanted}")
-        item: Item = _guarded(found, what)
+            raise PluginError(f"{what} is a {type(offered).__name__}, and must be {wanted}")
+        item: Item = _guarded(offered, what)
         return item
 
     def names(self) -> list[str]:
@@ -95,8 +95,8 @@ class Registry(dict[str, Item]):
 def _points(kind: str) -> dict[str, EntryPoint]:
     from importlib.metadata import entry_points  # takes 60 ms
 
-    found = sorted(entry_points(group=f"rpscli.{kind}"), key=lambda point: point.name)
-    return {point.name: point for point in found}
+    points = sorted(entry_points(group=f"rpscli.{kind}"), key=lambda point: point.name)
+    return {point.name: point for point in points}
 
 
 def _package(point: EntryPoint) -> str:
@@ -115,23 +115,23 @@ def _loaded(point: EntryPoint) -> Any:
         raise PluginError(f"{_named(point)}: {type(error).__name__}: {error}") from error
 
 
-def _parts(found: Any) -> dict[str, Any]:
+def _parts(item: Any) -> dict[str, Any]:
     """Functions and classes that a dataclass holds."""
-    values = {each.name: getattr(found, each.name) for each in fields(found)}
+    values = {each.name: getattr(item, each.name) for each in fields(item)}
     return {name: value for name, value in values.items() if callable(value)}
 
 
-def _guarded(found: Any, what: str) -> Any:
-    if isinstance(found, type):
-        return found
-    if is_dataclass(found):
-        parts = {name: _guarded(part, what) for name, part in _parts(found).items()}
-        return replace(cast("Any", found), **parts)
+def _guarded(item: Any, what: str) -> Any:
+    if isinstance(item, type):
+        return item
+    if is_dataclass(item):
+        parts = {name: _guarded(part, what) for name, part in _parts(item).items()}
+        return replace(cast("Any", item), **parts)
 
-    @wraps(found)
+    @wraps(item)
     def function(*arguments: Any, **named: Any) -> Any:
         try:
-            made = found(*arguments, **named)
+            made = item(*arguments, **named)
             return list(made) if isgenerator(made) else made
         except RpsError:
             raise
@@ -141,6 +141,6 @@ def _guarded(found: Any, what: str) -> Any:
     return function
 
 
-def _meaning(found: Any) -> str:
-    described = next(iter(_parts(found).values())) if is_dataclass(found) else found
+def _meaning(item: Any) -> str:
+    described = next(iter(_parts(item).values())) if is_dataclass(item) else item
     return (described.__doc__ or "").strip().split("\n")[0]

@@ -18,28 +18,28 @@ def shipped_cases() -> Path:
 def examples() -> dict[str, str]:
     """Their names, as in `studies/product`, and the first sentence of what stands above each."""
     place = shipped_cases()
-    told = {}
+    sentences = {}
     for file in sorted(place.rglob("*.yaml"), key=lambda file: (len(file.parts), file)):
         above = file.read_text("utf-8").partition("\nrps:")[0].replace("\n#", "").lstrip("# ")
         name = file.relative_to(place).with_suffix("").as_posix()
-        told[name] = re.split(r"(?<=[.?])\s", above)[0]
-    return told
+        sentences[name] = re.split(r"(?<=[.?])\s", above)[0]
+    return sentences
 
 
 def example_files(name: str) -> dict[str, bytes]:
     """An example and the files that it names, in comments too, by their paths in the folder."""
     place = shipped_cases()
-    found: dict[Path, bytes] = {}
+    contents: dict[Path, bytes] = {}
     waiting = [place / f"{name}.yaml"]
     while waiting:
         file = waiting.pop()
-        if file in found or not file.is_file() or place not in file.parents:
+        if file in contents or not file.is_file() or place not in file.parents:
             continue
-        found[file] = file.read_bytes()
+        contents[file] = file.read_bytes()
         if file.suffix == ".yaml":
             # Beside the file, or as commands are typed, from above the folder.
-            named = ["README.md", *_FILE_NAMES.findall(found[file].decode("utf-8"))]
+            named = ["README.md", *_FILE_NAMES.findall(contents[file].decode("utf-8"))]
             waiting += [
                 (up / each).resolve() for each in named for up in (file.parent, place.parent)
             ]
-    return {file.relative_to(place).as_posix(): content for file, content in found.items()}
+    return {file.relative_to(place).as_posix(): content for file, content in contents.items()}

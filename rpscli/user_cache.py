@@ -31,18 +31,18 @@ def cache_places() -> list[Path]:
 
 def users_folder(variable: str, usual: str = "", *below: str) -> Path | None:
     """Folder that a variable names, else the usual one; None without either, or a home."""
-    found = os.path.expanduser(os.environ.get(variable) or usual)  # noqa: PTH111 -- which raises
-    return None if found[:1] in {"", "~"} else Path(found, *below)
+    path = os.path.expanduser(os.environ.get(variable) or usual)  # noqa: PTH111 -- which raises
+    return None if path[:1] in {"", "~"} else Path(path, *below)
 
 
 def is_private(folder: Path) -> bool:
     """True if only this user may write to a folder, from which code is run; else a warning."""
     if os.name == "nt":
         return True
-    found, amiss = folder.stat(), ""
-    if found.st_uid != os.getuid():
+    state, amiss = folder.stat(), ""
+    if state.st_uid != os.getuid():
         amiss = f"{folder} belongs to somebody else"
-    elif found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+    elif state.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
         amiss = f"others may write to {folder}, where code is kept: chmod go-w {folder}"
     if amiss:
         warnings.warn(f"{amiss}; it is not used", stacklevel=2)

@@ -106,16 +106,16 @@ def in_shocks(structure: PodiumStructure, trace: Trace) -> NDArray[np.bool_]:
 
 def jumps(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> tuple[Array, Array]:
     """Times [s] and sizes of |theta'-| + |theta'+| of impacts, and of gains of theta' in shocks."""
-    found = [
+    impacts = [
         (event.time, abs(event.rotation_rate_before) + abs(event.rotation_rate_after))
         for event in events
         if event.kind == "impact"
     ]
     shocked = in_shocks(structure, trace)
     (rows,) = np.nonzero(shocked[1:] & shocked[:-1])
-    at = np.concatenate([[time for time, _ in found], trace.time[rows + 1]])
+    at = np.concatenate([[time for time, _ in impacts], trace.time[rows + 1]])
     gained = np.diff(trace.rotation_rate)[rows]
-    return at, np.concatenate([[size for _, size in found], gained])
+    return at, np.concatenate([[size for _, size in impacts], gained])
 
 
 def shock(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> Array:

@@ -54,11 +54,11 @@ def histories(
 
 def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> list[Demand]:
     """Largest demands of each of many histories, in their order; see `histories`."""
-    found: dict[int, Demand] = {}
+    by_number: dict[int, Demand] = {}
     for members, together in histories(requests, worth_lanes=worth_lanes):
         for i, left in zip(members, together.left.view(np.recarray), strict=True):
-            found[i] = Demand(requests[i].structure, left)
-    return [found[i] for i in range(len(requests))]
+            by_number[i] = Demand(requests[i].structure, left)
+    return [by_number[i] for i in range(len(requests))]
 
 
 @overload

@@ -188,20 +188,20 @@ def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array
     recursion = np.array([1.0, -np.trace(a), a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]])
     other = np.array([[-a[1, 1], a[0, 1]], [a[1, 0], -a[0, 0]]])
     weights = np.array([slope, start + other @ slope, other @ start])
-    found = []
+    responses = []
     for i, unit in enumerate((dt * dt, dt)):
         # Rest at the first sample, which may be a jump, fixes the state of the filter.
         rest = np.array([-weights[0, i], -(other @ slope)[i]]) * ground[0]
-        found.append(unit * lfilter(weights[:, i], recursion, ground, zi=rest)[0])
-    return found[0], found[1]
+        responses.append(unit * lfilter(weights[:, i], recursion, ground, zi=rest)[0])
+    return responses[0], responses[1]
 
 
 def _accelerations(building: Superstructure, floors: Array) -> Array:
     """Absolute ones (samples, n) [m/s2]."""
-    found = floors[:, 0] @ building.stiffness_matrix
-    found += floors[:, 1] @ building.damping_matrix
-    found /= -building.masses
-    return found
+    accelerations = floors[:, 0] @ building.stiffness_matrix
+    accelerations += floors[:, 1] @ building.damping_matrix
+    accelerations /= -building.masses
+    return accelerations
 
 
 def largest_velocities(relative: Array, accelerations: Array, record: GroundMotion) -> Array:

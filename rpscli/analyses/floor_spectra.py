@@ -99,19 +99,19 @@ def _ringing(result: TimeHistoryResult) -> float:
 def jumps_left_out(result: TimeHistoryResult, trace: Trace) -> Array:
     """Ramps with the impulse of each jump of the accelerations, at the instants beside it (n,)."""
     structure, building = result.structure, result.structure.superstructure
-    found = np.zeros_like(trace.floor_accelerations)
-    if building is None or structure.impact_law.floors_jump or len(found) < 2:
-        return found
+    ramps = np.zeros_like(trace.floor_accelerations)
+    if building is None or structure.impact_law.floors_jump or len(ramps) < 2:
+        return ramps
     b, step = structure.bearing, _step(result)
     height = 2.0 * b.semi_diagonal * math.cos(b.alpha)
     each = height * building.damping_matrix.sum(axis=1) / building.masses
     for event in result.events:
         if event.kind == "impact":
             at = event.time / step
-            before = min(int(at), len(found) - 2)
+            before = min(int(at), len(ramps) - 2)
             jump = each * (event.rotation_rate_after - event.rotation_rate_before)
-            found[before : before + 2] += 0.5 * (0.5 - (at - before)) * jump
-    return found
+            ramps[before : before + 2] += 0.5 * (0.5 - (at - before)) * jump
+    return ramps
 
 
 def fixed_base_floor_spectra(

@@ -72,8 +72,8 @@ class Histories:
 
     def each(self, constant: Callable[[PodiumStructure], Any]) -> Array:
         """Of the structure of each history; NaN for None."""
-        found = np.array([constant(structure) for structure in self.structures], np.float64)
-        return np.asarray(found[self.number])
+        values = np.array([constant(structure) for structure in self.structures], np.float64)
+        return np.asarray(values[self.number])
 
     def of_building(self, constant: Callable[[Superstructure], Any]) -> Array:
         """Of each storey of the building of each history (histories, n); NaN for None."""
@@ -123,14 +123,14 @@ class Histories:
 
     def of_devices(self, value: Callable[[Device, dict[str, Array]], Array | None]) -> Array:
         """Largest value of the devices of each history, of what it left in their slots."""
-        found = np.full((len(self.left), state.SLOTS), np.nan)
+        largest = np.full((len(self.left), state.SLOTS), np.nan)
         for number, structure in enumerate(self.structures):
             rows = np.flatnonzero(self.number == number)
             for i, device in enumerate(structure.devices):
                 left = {name: self.left[name][rows, i] for name in ("device_force", "permanent")}
                 if (values := value(device, left)) is not None:
-                    found[rows, i] = values
-        return np.asarray(np.fmax.reduce(found, axis=1))
+                    largest[rows, i] = values
+        return np.asarray(np.fmax.reduce(largest, axis=1))
 
     def known(self, field: str) -> Array:
         """A field that histories under both components have; NaN of the others."""

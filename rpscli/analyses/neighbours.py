@@ -57,7 +57,7 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
         for of, factor, angle in beside
     ]
     # One by one: the kernel for many at a time would have to be compiled first.
-    found = demands(requests, worth_lanes=len(requests) + 1)
+    results = demands(requests, worth_lanes=len(requests) + 1)
     limited = [quantity for quantity in HISTORY if quantity.limit]
     return [
         Neighbour(
@@ -69,5 +69,5 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
             values_of(each, limited),
             angle,
         )
-        for (of, factor, angle), each in zip(beside, found, strict=True)
+        for (of, factor, angle), each in zip(beside, results, strict=True)
     ]

@@ -92,8 +92,8 @@ class PushoverResult(Shown):
     def results(self) -> dict[str, Any]:
         """Scalars, the storey's curve and one entry a load pattern; forces in N, lengths in m."""
         curves = [asdict(curve) for curve in self.capacity]
-        found = {**values_of(self, PUSHOVER), "curve": values_of(self.curve, STOREY_CURVE)}
-        return {**found, "capacity": curves}
+        scalars = {**values_of(self, PUSHOVER), "curve": values_of(self.curve, STOREY_CURVE)}
+        return {**scalars, "capacity": curves}
 
     def curve_ratios(self) -> dict[str, Array]:
         """The storey's curve without units."""

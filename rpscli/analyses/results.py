@@ -230,15 +230,16 @@ class TimeHistoryResult(Demand):
         """
         st, history, axial = self.structure, self.history, self.axial
         upper = st.cap_beam_mass + st.superstructure_mass
-        found = {}
+        envelopes = {}
         for end, mass in (("top", upper), ("bottom", upper + st.columns_mass)):
             weight = st.gravity * mass
             forces = (float(history[f"{of}_{end}"]) * weight for of in ("heavy", "normal"))
             largest, least = (force / st.columns for force in forces)
             if axial is not None:
                 largest, least = axial.largest[end], axial.least[end]
-            found[end] = ColumnForces(float(history[f"shear_{end}"]) / st.columns, largest, least)
-        return found if upper > 0.0 else found | {"top": ColumnForces(0.0, 0.0, 0.0)}
+            shear = float(history[f"shear_{end}"]) / st.columns
+            envelopes[end] = ColumnForces(shear, largest, least)
+        return envelopes if upper > 0.0 else envelopes | {"top": ColumnForces(0.0, 0.0, 0.0)}
 
     @property
     def left_out_of_columns(self) -> tuple[str, ...]:

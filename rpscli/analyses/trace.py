@@ -76,7 +76,7 @@ def event_list(log: Record, *, both: bool) -> tuple[Event, ...]:
     """Events from the rows of the kernel's log, under both components or one."""
     known = len(EVENT) if both else 6
     rows = (row[:known] for row in log.tolist())
-    return tuple(Event(time, EVENT_NAMES[kind], *told) for time, kind, *told in rows)
+    return tuple(Event(time, EVENT_NAMES[kind], *values) for time, kind, *values in rows)
 
 
 @dataclass(frozen=True)

@@ -200,8 +200,8 @@ def single_motions(
 def motion_inputs(motion: MotionComponents) -> dict[str, Any]:
     """Identity of a motion in `run.json`; digests are those of the scaled samples."""
     sources = {
-        name: {"source": found.source, "sha256": found.digest}
-        for name, found in motion.named.items()
+        name: {"source": component.source, "sha256": component.digest}
+        for name, component in motion.named.items()
     }
     return {"scale": motion.scale, "horizontal": None, "vertical": None, **sources}
 

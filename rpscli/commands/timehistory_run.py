@@ -316,8 +316,8 @@ def computed_set(
     records = Records.of(outcomes, [history.demands for history in histories], sources)
     judged = group[0].given.case
     limits = with_friction(case_conditions(judged.limits), judged.structure)
-    found = judged_records(records, [each.label for each in group], [*limits, *conditions])
-    return Computed(histories, summary_of_records(records), found, folder)
+    verdicts = judged_records(records, [each.label for each in group], [*limits, *conditions])
+    return Computed(histories, summary_of_records(records), verdicts, folder)
 
 
 def _set_folder(
@@ -400,8 +400,8 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         ):
             yield f"records scaled to {' or '.join(aims)}"
         (row,) = case.together.rows
-        found = zip(case.together.quantities, row.spreads, strict=True)
-        main = [(quantity, spread) for quantity, spread in found if quantity.demand]
+        spreads = zip(case.together.quantities, row.spreads, strict=True)
+        main = [(quantity, spread) for quantity, spread in spreads if quantity.demand]
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, dict(main[first : first + A_TABLE]))
         if len(case.histories) > 1:
@@ -423,9 +423,9 @@ def _note(computed: Sequence[Computed]) -> str:
 def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:
     rows = []
     for label, history in zip(case.labels, case.histories, strict=True):
-        found, outcome = history.document, str(history.document["outcome"])
+        document, outcome = history.document, str(history.document["outcome"])
         word = "overturned" if outcome.startswith("overturned") else outcome.replace("_", " ")
-        values = [large(found[q.name], q.unit)[0] for q in quantities]
+        values = [large(document[q.name], q.unit)[0] for q in quantities]
         rows.append([label, word, *(shown(value, DIGITS) for value in values)])
     if len(case.histories) > 1:
         words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}

@@ -32,9 +32,10 @@ def completing(known: Callable[[], Words], *, or_file: bool = False) -> dict[str
     """For `click.option`: the words that a shell may complete a value with, or files."""
 
     def words(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
-        found = known()
-        told = found if isinstance(found, Mapping) else dict.fromkeys(found)
-        fit = [CompletionItem(word, help=told[word]) for word in told if word.startswith(begun)]
+        known_words = known()
+        meanings = known_words if isinstance(known_words, Mapping) else dict.fromkeys(known_words)
+        begin = [each for each in meanings.items() if each[0].startswith(begun)]
+        fit = [CompletionItem(word, help=text) for word, text in begin]
         return [CompletionItem(begun, type="file")] if or_file and not (begun and fit) else fit
 
     return {"shell_complete": words}
