@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import click
@@ -48,7 +48,7 @@ def command(
 
     if patterns and given.case.structure.superstructure is None:
         raise UsageError("--pattern: the case has no storeys to push at")
-    asked = [_pattern(text) for text in patterns] or PATTERNS
+    asked = [_pattern(text, PATTERNS) for text in patterns] or PATTERNS
     folder = case_folder(given, output, "pushover", patterns=list(asked))
     try:
         result = pushover(given.case.structure, patterns=asked)
@@ -58,17 +58,15 @@ def command(
     conclude(given, folder, result.results(), _tables(result, given.case.title), terminal)
 
 
-def _pattern(text: str) -> PatternName | list[float]:
-    from rpscli.analyses.pushover import PATTERNS
-
-    for name in PATTERNS:
+def _pattern(text: str, names: Sequence[PatternName]) -> PatternName | list[float]:
+    for name in names:
         if text == name:
             return name
     try:
         return [float(force) for force in text.split(",")]
     except ValueError:
         raise UsageError(
-            f"--pattern {text}: write {', '.join(PATTERNS)}, or floor forces from the bottom as in"
+            f"--pattern {text}: write {', '.join(names)}, or floor forces from the bottom as in"
             " 1,2,3"
         ) from None
 
