@@ -12,7 +12,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from paper_structures import ground, needs_compiled_kernels, podium
+from paper_structures import chain_of_springs, ground, needs_compiled_kernels, podium
 from scipy.linalg import expm
 from scipy.signal import lsim
 
@@ -278,12 +278,7 @@ def test_the_shock_of_impacts_is_that_of_a_chain_of_springs() -> None:
     result = time_history(with_plan(2, (), 0.12), motion(), SHORT)
     plain = time_history(with_plan(2, (), None), motion(), SHORT)
     # the chain, followed step by step over every jump of the beam's velocity
-    k = np.array([[2.0, -1.0], [-1.0, 1.0]])
-    values, shapes = np.linalg.eigh(k)
-    k *= (2.0 * math.pi / 0.12) ** 2 / values[0]
-    w = np.sqrt(np.linalg.eigvalsh(k))
-    c = shapes @ np.diag(0.1 * w) @ shapes.T  # 5 % in each mode
-    A = np.block([[np.zeros((2, 2)), np.eye(2)], [-k, -c]])
+    k, c, A = chain_of_springs(0.12)
     b = result.structure.bearing
     state, now, forces, times = np.zeros(4), 0.0, [], denser_trace(result, 5e-4).time
     events = [e for e in result.events if e.kind == "impact"]

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import building, needs_compiled_kernels, podium, waves
+from paper_structures import building, chain_of_springs, needs_compiled_kernels, podium, waves
 from scipy.linalg import expm
 
 from rpscli.analyses.column_forces import no_bound, shock
@@ -32,11 +32,9 @@ def test_the_shock_is_that_of_floors_on_springs() -> None:
     peak = 1.8 * of.uplift_acceleration
     motion = MotionComponents(waves(6.0, 0.01, peak, 2), y=waves(6.0, 0.01, peak, 3))
     result = time_history(of, motion, TimeHistorySettings(free_vibration=1.0))
-    trace, k = denser_trace(result, 5e-4), np.array([[2.0, -1.0], [-1.0, 1.0]])
-    k *= (2.0 * np.pi / 0.1) ** 2 / np.linalg.eigvalsh(k)[0]
-    values, shapes = np.linalg.eigh(k)
-    c = shapes @ np.diag(0.1 * np.sqrt(values)) @ shapes.T  # 5 % in each mode
-    step = expm(5e-4 * np.block([[np.zeros((2, 2)), np.eye(2)], [-k, -c]]))
+    trace = denser_trace(result, 5e-4)
+    k, c, rates = chain_of_springs(0.1)
+    step = expm(5e-4 * rates)
     above = of.superstructure
     assert above is not None
     turns = np.hypot(trace.rotation_rate, trace.rotation * np.asarray(trace.azimuth_rate))
