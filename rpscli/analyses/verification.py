@@ -162,7 +162,7 @@ def answers(
 ) -> dict[Key, list[float]]:
     """Answers of rps to a problem, from what its case says; the motion is scaled.
 
-    An event that does not come is NaN.
+    Events that do not come, and samples after an early end, are NaN.
     """
     asked = [quantity for name, quantity in certified() if name == problem]
     if problem == "capacity":
@@ -227,7 +227,8 @@ def of_history(result: TimeHistoryResult, quantity: str) -> float:
     """A quantity of a history, by its name, as in ``tilt at 2 s`` or ``time of impact 3``."""
     what, _, when = quantity.removesuffix(" s").partition(" at ")
     if when:
-        return float(SAMPLED[what](result.trace)[round(float(when) / result.record.dt)])
+        samples, row = SAMPLED[what](result.trace), round(float(when) / result.record.dt)
+        return float(samples[row]) if row < len(samples) else math.nan
     if quantity == "largest tilt":
         return result.max_rotation
     name, kind, number = re.fullmatch(r"(.+) (uplift|impact) ?(\d*)", quantity).groups()  # type: ignore[union-attr]
