@@ -211,7 +211,7 @@ class TimeHistoryResult(Demand):
 
     @property
     def floor_acceleration_over_fixed(self) -> float | None:
-        """Largest floor acceleration over that of the fixed base, of whatever floors these are.
+        """Largest floor acceleration over the largest on the fixed base, maybe of another floor.
 
         None where `fixed_base_ratio` is.
         """
