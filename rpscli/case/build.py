@@ -1,4 +1,4 @@
-"""A validated case file -> the structure and the settings of its analysis."""
+"""A consistent case file -> the structure and the settings of its analysis."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from rpscli.case.schema.case_file import (
     AnalysisSection,
     BearingSection,
     CaseFile,
-    DimensionsSection,
     PlanSection,
-    PodiumMasses,
+    PodiumSection,
     SuperstructureSection,
 )
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
@@ -29,6 +28,8 @@ from rpscli.model.superstructure import (
     profile_stiffnesses,
 )
 
+COMPLETE = "the rules of the case make sure that the value is given"
+
 
 class Shape(NamedTuple):
     """Ratios of a column; `wedge_slenderness` equals `slenderness` where flat ends leave it out."""
@@ -39,95 +40,96 @@ class Shape(NamedTuple):
     curvature_ratio: float
 
 
-class Podium(NamedTuple):
-    """Columns and cap beam, and what they carry."""
-
-    bearing: Bearing
-    columns_mass: float
-    cap_beam_mass: float
-    building_mass: float
-    impact_law: ImpactLaw
-
-    @property
-    def gamma(self) -> float:
-        """m_b/(N m_c)."""
-        return self.cap_beam_mass / self.columns_mass
-
-    @property
-    def eta(self) -> float:
-        """M_tot/m_b; 0 without a cap beam."""
-        return self.building_mass / self.cap_beam_mass if self.cap_beam_mass else 0.0
-
-
-def shape_of(bearing: BearingSection) -> Shape | None:
-    """The shape, or None if the description is not complete."""
-    if bearing.dimensions is not None:
-        return _shape_of_dimensions(bearing.dimensions)
-    R, slenderness, wedge = bearing.semi_diagonal, bearing.slenderness, bearing.wedge_slenderness
-    rho = bearing.curvature_ratio
-    if R is None or slenderness is None or rho is None or (wedge is None and rho != 0.0):
-        return None
-    if wedge is None:
-        wedge = slenderness
+def shape_of(bearing: BearingSection) -> Shape:
+    """Ratios of the column, from its sizes where these are given."""
+    if (sizes := bearing.dimensions) is not None:
+        h, width = sizes.height, sizes.width
+        wedge = width if sizes.wedge_width is None else sizes.wedge_width
+        return Shape(0.5 * math.hypot(h, width), width / h, wedge / h, sizes.radius / h)
+    R, slenderness, rho = bearing.semi_diagonal, bearing.slenderness, bearing.curvature_ratio
+    assert R is not None and slenderness is not None and rho is not None, COMPLETE  # noqa: PT018
+    wedge = slenderness if bearing.wedge_slenderness is None else bearing.wedge_slenderness
     if isinstance(rho, str):
         rho = first_order_critical_curvature_ratio(slenderness, wedge)
     return Shape(R, slenderness, wedge, rho)
 
 
-def _shape_of_dimensions(sizes: DimensionsSection) -> Shape | None:
-    if sizes.wedge_width is None and sizes.radius != 0.0:
-        return None
-    wedge = sizes.width if sizes.wedge_width is None else sizes.wedge_width
-    h = sizes.height
-    return Shape(0.5 * math.hypot(h, sizes.width), sizes.width / h, wedge / h, sizes.radius / h)
+def bearing_of(section: BearingSection, shape: Shape) -> Bearing:
+    """The column of a shape."""
+    given = {"inertia_ratio", "inertia_ratio_axial"}
+    return Bearing(*shape, **section.model_dump(include=given, exclude_none=True))
 
 
-def podium_of(file: CaseFile, shape: Shape) -> Podium:
-    """The podium that a validated case file describes, with columns of a given shape."""
-    total = building_mass(file.superstructure)
-    columns, cap_beam = podium_masses(file.podium, total)
-    impact = file.podium.impact.model_dump(exclude={"law"})
-    if impact["loss"] is None:
-        impact["loss"] = USUAL_LOSS[file.podium.contact.kind]
-    return Podium(
-        Bearing(
-            *shape,
-            inertia_ratio=file.podium.bearing.inertia_ratio,
-            inertia_ratio_axial=file.podium.bearing.inertia_ratio_axial or math.nan,
-        ),
-        columns,
-        cap_beam,
-        total,
-        ImpactLaw(**impact, kind=file.podium.impact.law),
-    )
+def impact_law_of(section: PodiumSection) -> ImpactLaw:
+    """The impact law; how much it loses goes by the contact unless the case says it."""
+    given = section.impact.model_dump(exclude={"law", "loss"})
+    loss = section.impact.loss
+    loss = USUAL_LOSS[section.contact.kind] if loss is None else loss
+    return ImpactLaw(section.impact.law, loss=loss, **given)
 
 
-def podium_structure(podium: Podium, file: CaseFile) -> PodiumStructure:
-    """The whole structure: the podium with the building on it."""
+class Masses(NamedTuple):
+    """N m_c, m_b and M_tot [kg]."""
+
+    columns: float
+    cap_beam: float
+    building: float
+
+    @property
+    def gamma(self) -> float:
+        """m_b/(N m_c)."""
+        return self.cap_beam / self.columns
+
+    @property
+    def eta(self) -> float:
+        """M_tot/m_b; 0 without a cap beam."""
+        return self.building / self.cap_beam if self.cap_beam else 0.0
+
+
+def masses_of(file: CaseFile) -> Masses:
+    """All masses from those and the ratios that are given (Theory, section 2)."""
+    podium, floors = file.podium, file.superstructure
+    building = sum(each_storey(floors.storey_mass, floors.storeys)) if floors.storeys else 0.0
+    gamma, eta = podium.cap_beam_mass_ratio, podium.superstructure_mass_ratio
+    columns, beam = None, podium.cap_beam_mass
+    if podium.column_mass is not None:
+        columns = podium.column_mass * (podium.columns or 1)
+    if podium.without_cap_beam:
+        beam = 0.0
+    elif eta is not None:
+        beam = building / eta
+    elif beam is None and gamma is not None and columns is not None:
+        beam = gamma * columns
+    if columns is None and gamma and beam is not None:
+        columns = beam / gamma
+    assert columns is not None, COMPLETE
+    assert beam is not None, COMPLETE
+    return Masses(columns, beam, building)
+
+
+def structure_of(
+    bearing: Bearing, law: ImpactLaw, masses: Masses, file: CaseFile
+) -> PodiumStructure:
+    """The whole structure: columns and cap beam with the building on them."""
+    podium, floors = file.podium, file.superstructure
+    across = None if floors.y is None else floors.model_copy(update=floors.y.model_dump())
     return PodiumStructure(
-        bearing=podium.bearing,
-        columns_mass=podium.columns_mass,
-        cap_beam_mass=podium.cap_beam_mass,
-        superstructure=building(file.superstructure),
-        impact_law=podium.impact_law,
+        bearing=bearing,
+        columns_mass=masses.columns,
+        cap_beam_mass=masses.cap_beam,
+        superstructure=building(floors),
+        impact_law=law,
         gravity=file.analysis.gravity,
         devices=tuple(
             DEVICES[section.kind](**section.model_dump(exclude={"kind"}, exclude_none=True))
-            for section in file.podium.devices
+            for section in podium.devices
         ),
-        columns=file.podium.columns or 1,
-        friction=file.podium.friction,
-        rows=_rows(file.podium.plan),
-        superstructure_y=_across(file.superstructure),
-        contact=Contact(**file.podium.contact.model_dump()),
+        columns=podium.columns or 1,
+        friction=podium.friction,
+        rows=_rows(podium.plan),
+        superstructure_y=None if across is None else building(across),
+        contact=Contact(**podium.contact.model_dump()),
     )
-
-
-def _across(section: SuperstructureSection) -> Superstructure | None:
-    """The building in y; None where it is that in x."""
-    if section.y is None:
-        return None
-    return building(section.model_copy(update=section.y.model_dump()))
 
 
 def _rows(plan: PlanSection | None) -> tuple[float, ...]:
@@ -141,7 +143,7 @@ def building(section: SuperstructureSection) -> Superstructure | None:
     n, given, height = section.storeys, section.damping, section.storey_height
     if n == 0:
         return None
-    assert given is not None, "the rules of the case make sure that damping is given"
+    assert given is not None, COMPLETE
     masses = np.array(each_storey(section.storey_mass, n))
     if section.period is None:
         stiffnesses = np.array(each_storey(section.stiffness, n))
@@ -156,48 +158,21 @@ def building(section: SuperstructureSection) -> Superstructure | None:
 
 def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[float]:
     """One value for each storey from the bottom."""
-    assert value is not None, "the rules of the case make sure that the value is given"
+    assert value is not None, COMPLETE
     return list(value) if isinstance(value, tuple) else [value] * storeys
 
 
-def building_mass(section: SuperstructureSection) -> float:
-    """M_tot [kg]; 0 without storeys."""
-    return sum(each_storey(section.storey_mass, section.storeys)) if section.storeys else 0.0
-
-
-def podium_masses(section: PodiumMasses, building_mass: float) -> tuple[float, float]:
-    """N m_c and m_b [kg] from the masses and ratios that are given (Theory, section 2)."""
-    gamma, eta = section.cap_beam_mass_ratio, section.superstructure_mass_ratio
-    columns, beam = None, section.cap_beam_mass
-    if section.column_mass is not None:
-        columns = section.column_mass * (section.columns or 1)
-    if section.without_cap_beam:
-        beam = 0.0
-    elif eta is not None:
-        beam = building_mass / eta
-    elif beam is None and gamma is not None and columns is not None:
-        beam = gamma * columns
-    if columns is None and gamma and beam is not None:
-        columns = beam / gamma
-    assert columns is not None, "the rules of the case make sure that the masses are complete"
-    assert beam is not None, "the rules of the case make sure that the masses are complete"
-    return columns, beam
-
-
 def overturning_limit(section: AnalysisSection, bearing: Bearing) -> float:
-    """What counts as overturned, over theta_cr: the least of what the case names."""
-    found, critical = [section.overturning_limit], bearing.critical_rotation
-    if section.overturning_rotation is not None:
-        found.append(section.overturning_rotation / critical)
-    if section.overturning_displacement is not None:
-        found.append(bearing.rotation_at(section.overturning_displacement) / critical)
-    return min(found)
+    """What counts as overturned, over theta_cr: the lesser of what the case names."""
+    if (displacement := section.overturning_displacement) is None:
+        return section.overturning_limit
+    rotation = bearing.rotation_at(displacement)
+    return min(section.overturning_limit, rotation / bearing.critical_rotation)
 
 
 def time_history_settings(section: AnalysisSection, bearing: Bearing) -> TimeHistorySettings:
     """Settings of the time history; gravity belongs to the structure."""
-    others = {"gravity", "overturning_rotation", "overturning_displacement"}
-    given = section.model_dump(exclude=others)
+    given = section.model_dump(exclude={"gravity", "overturning_displacement"})
     given["overturning_limit"] = overturning_limit(section, bearing)
     if given["free_vibration"] == "auto":
         given["free_vibration"] = None

@@ -11,48 +11,32 @@ from pathlib import Path
 from typing import Any
 
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.case.build import Podium, podium_of, podium_structure, time_history_settings
+from rpscli.case.build import (
+    bearing_of,
+    impact_law_of,
+    masses_of,
+    shape_of,
+    structure_of,
+    time_history_settings,
+)
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.rules.partial_case import CONTACT, PartialCase
-from rpscli.case.rules.plausibility import Doubt, doubts_of_storeys, doubts_of_structure
-from rpscli.case.rules.podium import (
-    bearing_rules,
-    contact_rules,
-    devices_rules,
-    impact_rules,
-    overturning_rule,
-    release_rule,
-    restitution_rule,
+from rpscli.case.rules.consistency import (
+    CONTACT,
+    PODIUM,
+    faults_between_keys,
+    faults_of_motion,
+    faults_of_shape,
 )
-from rpscli.case.rules.superstructure import (
-    column_rules,
-    ignored_text,
-    limits_rules,
-    masses_rules,
-    record_rules,
-    superstructure_rules,
-)
+from rpscli.case.rules.plausibility import Doubt, doubts_of_structure, doubts_of_text
 from rpscli.case.schema.case_file import CaseFile, RecordSection
-from rpscli.case.schema.check import schema_check
+from rpscli.case.schema.check import checked
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.text.document import Document, is_design, is_study, text_of_values
+from rpscli.case.text.document import Document, dotted, is_design, is_study, text_of_values
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, require_kind, stem_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.shown import Shown
-
-RULES = (
-    superstructure_rules,
-    masses_rules,
-    bearing_rules,
-    impact_rules,
-    contact_rules,
-    devices_rules,
-    record_rules,
-    limits_rules,
-    column_rules,
-)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,8 +53,8 @@ class Case(Shown):
         Where relative file names inside the case start.
     file
         The validated file.
-    podium
-        Columns and cap beam, built.
+    structure
+        What it describes, built.
     doubts_of_text
         What is unusual in the values as they are written, and keys without effect.
     digest
@@ -83,7 +67,7 @@ class Case(Shown):
     source: str
     folder: Path
     file: CaseFile
-    podium: Podium
+    structure: PodiumStructure
     doubts_of_text: tuple[Doubt, ...] = ()
     digest: str = ""
     written: Mapping[str, Any] = field(default_factory=dict)
@@ -115,15 +99,7 @@ class Case(Shown):
     @cached_property
     def analysis(self) -> TimeHistorySettings:
         """Settings of the time history."""
-        return time_history_settings(self.file.analysis, self.podium.bearing)
-
-    @cached_property
-    def structure(self) -> PodiumStructure:
-        """The structure, built when it is first asked for."""
-        try:
-            return podium_structure(self.podium, self.file)
-        except ValueError as error:
-            raise CaseError(f"{self.source}: {error}") from None
+        return time_history_settings(self.file.analysis, self.structure.bearing)
 
     @cached_property
     def doubts(self) -> tuple[Doubt, ...]:
@@ -205,47 +181,32 @@ def case_from_mapping(
     """A case from values in memory, or from a document (or part of one) with its positions."""
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
-    check = schema_check(CaseFile, document)
-    partial = PartialCase(document, check)
-    faults = [*check.faults, *(fault for rule in RULES for fault in rule(partial))]
-    document.refuse(fault for fault in faults if not check.suggested.intersection(fault.needs))
-    file = check.read
-    assert file is not None, "without faults the file is read"
-    stem = stem_of(Path(name.strip("<>"))) or "case"
-    podium = _podium(file, partial)
-    doubts = (
-        *((Doubt(ignored),) if (ignored := ignored_text(partial)) else ()),
-        *doubts_of_storeys(file.superstructure, document),
+    file = checked(CaseFile, document)
+    document.refuse(faults_between_keys(file, document))
+    structure = _structure(file, document)
+    return Case(
+        stem_of(Path(name.strip("<>"))) or "case",
+        name,
+        folder or Path(),
+        file,
+        structure,
+        tuple(doubts_of_text(file.superstructure, document)),
+        written=document.content,
     )
-    written = document.content
-    return Case(stem, name, folder or Path(), file, podium, doubts, written=written)
 
 
-def _podium(file: CaseFile, partial: PartialCase) -> Podium:
-    """Columns and cap beam, if the model takes them."""
-    assert partial.shape is not None, "the rules make sure that the shape is complete"
-    document = partial.document
+def _structure(file: CaseFile, document: Document) -> PodiumStructure:
+    """What complete sections describe, if the model takes it."""
+    shape = shape_of(file.podium.bearing)
+    document.refuse(faults_of_shape(shape, file, document))
     try:
-        podium = podium_of(file, partial.shape)
-        faults = [
-            *restitution_rule(podium, document),
-            *overturning_rule(podium.bearing, file.analysis),
-            *release_rule(podium.bearing, file.analysis),
-        ]
-    except ValueError as error:
-        place = document.key_place(("podium",))
-        raise CaseError(f"{place}: podium: {error}") from None
-    document.refuse(faults)
-    if document.has(CONTACT):
-        _refuse_contact(podium, file, document)
-    return podium
-
-
-def _refuse_contact(podium: Podium, file: CaseFile, document: Document) -> None:
-    """Say what the model does not take of compliant ends, or of a start below phi_u."""
-    try:
-        structure = podium_structure(podium, file)
+        bearing, law = bearing_of(file.podium.bearing, shape), impact_law_of(file.podium)
+        masses = masses_of(file)
+        document.refuse(faults_of_motion(bearing, law, masses, file))
+        structure = structure_of(bearing, law, masses, file)
         if structure.bed is not None:
             structure.bed.refuse_start(file.analysis.initial_rotation)
     except ValueError as error:
-        raise CaseError(f"{document.key_place(CONTACT)}: podium.contact: {error}") from None
+        owner = CONTACT if document.has(CONTACT) else PODIUM
+        raise CaseError(f"{document.key_place(owner)}: {dotted(owner)}: {error}") from None
+    return structure

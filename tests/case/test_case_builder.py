@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -186,16 +185,6 @@ def test_what_only_the_model_refuses_is_placed(
     def refusing(*_: object) -> None:
         raise ValueError("no such column")
 
-    monkeypatch.setattr("rpscli.case.case.restitution_rule", refusing)
+    monkeypatch.setattr("rpscli.case.case.structure_of", refusing)
     with pytest.raises(CaseError, match=r"c\.yaml:9:1: podium: no such column"):
         parse_case(building, name="c.yaml")
-
-
-def test_what_the_model_refuses_is_named_after_the_file(building: str) -> None:
-    case = parse_case(building, name="c.yaml")
-    weightless = case.file.model_copy(
-        update={"analysis": case.file.analysis.model_copy(update={"gravity": 0.0})}
-    )
-    broken = replace(case, file=weightless)
-    with pytest.raises(CaseError, match=r"c\.yaml: .*gravity"):
-        broken.structure.static_base_shear  # noqa: B018 -- asking for it is enough

@@ -6,8 +6,8 @@ import pytest
 
 from rpscli.case.build import each_storey
 from rpscli.case.conditions import Condition, condition_text, parse_condition
+from rpscli.case.rules.consistency import above, largest_slenderness
 from rpscli.case.rules.plausibility import Doubt, doubts_of_many
-from rpscli.case.rules.podium import above, largest_slenderness
 from rpscli.case.schema.fields import ValueRange
 from rpscli.case.schema.keys import is_whole
 from rpscli.case.schema.scale_to import scale_to_of

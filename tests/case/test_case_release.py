@@ -51,20 +51,19 @@ def test_a_limit_that_is_not_written_is_refused_too() -> None:
         load_case(FRAME, [*stout, law])
 
 
-def test_what_counts_as_overturned_is_the_least_of_what_the_case_names() -> None:
-    critical = load_case(FRAME).structure.critical_rotation
+def test_what_counts_as_overturned_is_the_lesser_of_what_the_case_names() -> None:
+    structure = load_case(FRAME).structure
+    at_the_moat = structure.bearing.rotation_at(0.1) / structure.critical_rotation
     named: list[tuple[dict[str, str], float]] = [
         ({}, 2.0),
-        ({"rotation": "0.1"}, 0.1 / critical),
-        ({"rotation": "0.1", "limit": "1.5"}, 0.1 / critical),
-        ({"rotation": "1.0", "limit": "1.5"}, 1.5),
         ({"displacement": "100 m"}, 2.0),
+        ({"displacement": "0.1", "limit": "1.5"}, at_the_moat),
     ]
     for values, limit in named:
         case = load_case(FRAME, [f"analysis.overturning_{name}={v}" for name, v in values.items()])
         assert case.analysis.overturning_limit == pytest.approx(limit, rel=1e-12)
-    with pytest.raises(CaseError, match=r"must stay below the overturning limit, 0\.1 rad"):
-        load_case(FRAME, ["analysis.overturning_rotation=0.1", "analysis.initial_rotation=0.11"])
+    with pytest.raises(CaseError, match=r"must stay below the overturning limit, 0\."):
+        load_case(FRAME, ["analysis.overturning_displacement=0.1", "analysis.initial_rotation=0.5"])
 
 
 @pytest.mark.parametrize("displacement", [1e-6, 0.05, 0.4])

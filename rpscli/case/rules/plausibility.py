@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rpscli.case.build import each_storey
 from rpscli.case.schema.case_file import SuperstructureSection
 from rpscli.case.text.document import Document
+from rpscli.errors import listed
 
 if TYPE_CHECKING:
     from rpscli.model.contact import Bed
@@ -183,8 +184,12 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
         )
 
 
-def doubts_of_storeys(section: SuperstructureSection, document: Document) -> Iterator[Doubt]:
-    """Neighbours that differ too much, and lists in which some numbers lack a unit."""
+def doubts_of_text(section: SuperstructureSection, document: Document) -> Iterator[Doubt]:
+    """Keys without effect, lists in which some numbers lack a unit, unequal neighbours."""
+    ignored = [name for name in type(section).model_fields if name in section.model_fields_set]
+    if section.storeys == 0 and len(ignored) > 1:
+        keys = listed((f"superstructure.{name}" for name in ignored[1:]), "and")
+        yield Doubt(f"superstructure.storeys = 0: there is no building, so {keys} had no effect")
     for name in PER_STOREY:
         written = document.at(("superstructure", name))
         if isinstance(written, list):

@@ -375,13 +375,11 @@ class AnalysisSection(Section):
     overturning_limit: Annotated[
         float, Quantity(symbol="times the critical rotation", at_least=1)
     ] = 2.0
-    """rotation that counts as overturned, over theta_cr; the least of these three does"""
-    overturning_rotation: Annotated[float | None, Quantity(symbol="rad", above=0)] = None
-    """rotation that counts as overturned, such as that at which an edge is crushed"""
+    """rotation that counts as overturned, over theta_cr"""
     overturning_displacement: Annotated[
         float | None, Quantity("m", symbol="of the cap beam", above=0)
     ] = None
-    """displacement of the cap beam that does, such as a moat or the length of a seat"""
+    """displacement of the cap beam that does too, such as a moat or the length of a seat"""
     gravity: Annotated[float, Quantity("m/s2", above=0)] = STANDARD_GRAVITY
     """g"""
     accuracy: PositiveRatio = 1.0

@@ -16,83 +16,99 @@ from rpscli.errors import listed, nearest
 
 Model = TypeVar("Model", bound=BaseModel)
 
+KEYS_SHOWN = 12
+"""Of a section in a message; `rps explain` has all."""
+
 
 class SchemaCheck(NamedTuple, Generic[Model]):
-    """Faults of a document, known keys taken for unknown ones, sound content, and what was read."""
+    """Faults of a document, and what was read of it if there are none."""
 
     faults: list[Fault]
-    suggested: set[Path]
-    sound: dict[str, Any]
     read: Model | None
+
+
+def checked(model: type[Model], document: Document) -> Model:
+    """The sections of a document, each valid in itself; raises CaseError with all faults."""
+    check = schema_check(model, document)
+    document.refuse(check.faults)
+    assert check.read is not None, "without faults the document is read"
+    return check.read
 
 
 def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
     """Faults of a document in the eyes of a model, key by key."""
-    later = {key for key, f in fields_of(model).items() if CHECKED_BY_ITSELF in f.metadata}
-    content = {key: value for key, value in document.content.items() if key not in later}
-    empty = dict.fromkeys(_nulls(content, ()))
+    content = dict(document.content)
+    by_itself = {
+        key: content.pop(key)
+        for key, field in fields_of(model).items()
+        if CHECKED_BY_ITSELF in field.metadata and key in content
+    }
+    faults, empty = _Faults(model, document, content), [*_nulls(content, ())]
     announced = {fault.path for fault in document.faults}
-    check: SchemaCheck[Model] = SchemaCheck([*document.faults], set(), {}, None)
-    for path in empty:
-        if path not in announced:
-            _empty_value(check, model, path, content)
-    content = document.pruned(empty, elements=True)
-    read, errors = _read(model, content)
-    if not (errors or check.faults):
-        return check._replace(sound=content, read=read)
-    bad = [*empty]
+    for path in (path for path in empty if path not in announced):
+        faults.add_empty(path)
+    read, errors = _read(model, _without_nulls(content) | by_itself)
     for error in errors:
         path = _path(error, document)
-        if error["type"] == "too_short" and document.at(path):
-            continue  # its values are refused one by one
-        if error["type"] == "extra_forbidden":
-            _unknown(check, model, path, content)
-        elif any(path == inner[: len(path)] for inner in empty if path != inner):
-            continue  # it may be faulty because of what it lacks, which is told
-        elif error["type"] != "missing":
-            text = f"{dotted(path)} = {shown(document.at(path))} {_rule(error, path, model)}"
-            check.faults.append(Fault(path, text))
-        elif path not in empty:
-            field = field_at(model, path)
+        lacks = any(path == inner[: len(path)] for inner in empty)
+        if not lacks or error["type"] == "extra_forbidden":  # else faulty by what is told already
+            faults.add(error, path)
+    told = faults.told()
+    return SchemaCheck(told, None if told else read)
+
+
+class _Faults:
+    """Faults of one document as they are met."""
+
+    def __init__(self, model: type[BaseModel], document: Document, content: dict[str, Any]) -> None:
+        self._model, self._document, self._all = model, document, [*document.faults]
+        self._missing, self._meant = set[Fault](), set[Path | None]()
+        known = fields_of(model)
+        self._of_another_file = "rps" in known and content.keys().isdisjoint(known)
+
+    def told(self) -> list[Fault]:
+        """All of them, but for missing keys that unknown ones were taken for."""
+        instead = {fault for fault in self._missing if fault.path in self._meant}
+        return [fault for fault in self._all if fault not in instead]
+
+    def add(self, error: ErrorDetails, path: Path) -> None:
+        """What pydantic says of the value at a path."""
+        value, kind = self._document.at(path), error["type"]
+        if kind == "extra_forbidden":
+            self._add_unknown(path)
+        elif kind == "missing":
+            field = field_at(self._model, path)
             text = f"{dotted(path)} is missing: {field.description if field else 'write it'}"
-            check.faults.append(Fault(path, text, at_key=True, needs=(path,)))
-            continue
-        bad.append(path)
-    faults = [fault for fault in check.faults if not check.suggested.intersection(fault.needs)]
-    return check._replace(faults=faults, sound=document.pruned(bad))
+            self._all.append(Fault(path, text, at_key=True))
+            self._missing.add(self._all[-1])
+        elif kind != "too_short" or not value:  # else its values are refused one by one
+            text = f"{dotted(path)} = {shown(value)} {_rule(error, path, self._model)}"
+            self._all.append(Fault(path, text))
+
+    def add_empty(self, path: Path) -> None:
+        """A key with nothing behind it; its name may be wrong besides."""
+        named = tuple(part for part in path if isinstance(part, str))
+        known = [annotation_at(self._model, named[: n + 1]) is not None for n in range(len(named))]
+        if all(known):
+            text = f"{dotted(path)} has no value; write one, or remove the key"
+            self._all.append(Fault(path, text, at_key=isinstance(path[-1], str)))
+        elif all(known[:-1]):  # otherwise the unknown key further up is told of
+            self._add_unknown(named)
+
+    def _add_unknown(self, path: Path) -> None:
+        if self._of_another_file:
+            return
+        fault, suggestion = (
+            Fault(path, f"{dotted(path)} is not a key of the format", at_key=True),
+            None,
+        )
+        if len(self._all) <= MOST_FAULTS:  # beyond these there is no use in what was meant
+            fault, suggestion = unknown_key(self._model, path)
+        self._all.append(fault)
+        self._meant.add(suggestion)
 
 
-def _unknown(
-    check: SchemaCheck[Any], model: type[BaseModel], path: Path, content: dict[str, Any]
-) -> None:
-    if "rps" in (known := fields_of(model)) and content.keys().isdisjoint(known):
-        return  # another file than was meant, of which nothing is told
-    # Beyond what is told at once there is no use in looking for what was meant.
-    if len(check.faults) > MOST_FAULTS:
-        check.faults.append(Fault(path, f"{dotted(path)} is not a key of the format", at_key=True))
-        return
-    fault, suggestion = unknown_key(model, path)
-    check.faults.append(fault)
-    if suggestion:
-        check.suggested.add(suggestion)
-
-
-def _empty_value(
-    check: SchemaCheck[Any], model: type[BaseModel], path: Path, content: dict[str, Any]
-) -> None:
-    """A key with nothing behind it; its name may be wrong besides."""
-    named = tuple(part for part in path if isinstance(part, str))
-    known = [
-        annotation_at(model, named[:length]) is not None for length in range(1, len(named) + 1)
-    ]
-    if all(known):
-        text = f"{dotted(path)} has no value; write one, or remove the key"
-        check.faults.append(Fault(path, text, at_key=isinstance(path[-1], str)))
-    elif all(known[:-1]):  # otherwise the unknown key further up is told of
-        _unknown(check, model, named, content)
-
-
-def _read(model: type[Model], content: dict[str, Any]) -> tuple[Model | None, list[ErrorDetails]]:
+def _read(model: type[Model], content: Any) -> tuple[Model | None, list[ErrorDetails]]:
     try:
         return model.model_validate(content), []
     except ValidationError as error:
@@ -102,12 +118,22 @@ def _read(model: type[Model], content: dict[str, Any]) -> tuple[Model | None, li
 def _nulls(value: object, path: Path) -> Iterator[Path]:
     if value is None:
         yield path
-    elif isinstance(value, dict):
-        for key, item in value.items():
+    elif isinstance(value, dict | list):
+        for key, item in value.items() if isinstance(value, dict) else enumerate(value):
             yield from _nulls(item, (*path, key))
-    elif isinstance(value, list):
-        for index, item in enumerate(value):
-            yield from _nulls(item, (*path, index))
+
+
+def _without_nulls(value: Any) -> Any:
+    """A value without keys that hold null; an element that is null takes its list with it."""
+    if isinstance(value, list):
+        return [_without_nulls(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    return {key: _without_nulls(item) for key, item in value.items() if not _holds_null(item)}
+
+
+def _holds_null(value: object) -> bool:
+    return value is None or (isinstance(value, list) and any(map(_holds_null, value)))
 
 
 def _path(error: ErrorDetails, document: Document) -> Path:
@@ -118,10 +144,6 @@ def _path(error: ErrorDetails, document: Document) -> Path:
         if document.has((*path, part)):
             path = (*path, part)
     return (*path, error["loc"][-1]) if missing else path
-
-
-KEYS_SHOWN = 12
-"""Of a section in a message; `rps explain` has all."""
 
 
 def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:

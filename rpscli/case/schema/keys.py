@@ -115,15 +115,17 @@ def suggestion_for(model: type[BaseModel], path: Path) -> Path | None:
 
 REMOVED = {
     "analysis.recontact_rule": "floors always get what the bounces left out would give them"
-    " (was: limit)",
+    " (was: limit); remove the key",
+    "analysis.overturning_rotation": "use overturning_displacement, where the cap beam is at this"
+    " rotation, or from theta_cr on overturning_limit, the rotation over theta_cr",
 }
-"""Keys of earlier versions, and what holds without them."""
+"""Keys of earlier versions, and what to do without them."""
 
 
 def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]:
     """The fault of an unknown key, and the known key it was taken for."""
     if now := REMOVED.get(dotted(path)):
-        return Fault(path, f"{dotted(path)} is gone: {now}; remove the key", at_key=True), None
+        return Fault(path, f"{dotted(path)} is gone: {now}", at_key=True), None
     suggestion = suggestion_for(model, path)
     siblings = fields_of(section_at(model, path[:-1]) or model)
     inside = [name for name in siblings if f"_{path[-1]}_" in f"_{name}_"]
